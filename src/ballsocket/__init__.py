@@ -1,0 +1,93 @@
+"""ballsocket: contact of a ball in a socket of nearly its own radius.
+
+    import ballsocket as bs
+    hip = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
+    contact = bs.HessForsbach().press(hip, force=3000.0)
+    contact.max_pressure
+
+Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
+"""
+
+from .compare import compare
+from .contact import Contact
+from .files import read_joint
+from .joint import Joint, Material
+from .models import catalogue
+from .models.adhesion import AdhesiveSocket
+from .models.base import ClosedForm, Model
+from .models.cylinder import PinInHole
+from .models.foundation import (
+    Bartel,
+    BondedLayer,
+    BondedLayerExact,
+    CosineLimit,
+    HessForsbach,
+    RadialFoundation,
+    Vessel,
+)
+from .models.half_space import Hertz, Steuermann
+from .models.kinematics import cosine_kinematics, exact_kinematics, linear_kinematics
+from .models.liu import LiuReconstruction
+from .models.modulus import bonded_layer, constant, hess_forsbach, polynomial, spherical_vessel
+from .models.plane_layer import PlaneLayer
+from .presets import (
+    ALUMINA,
+    ALUMINA_COMPOSITE,
+    COCR,
+    CROSSLINKED_PE,
+    POM,
+    STEEL,
+    STRUCTURAL_STEEL,
+    UHMWPE,
+    joints,
+    materials,
+)
+from .sources import cite
+from .validity import Range, Status
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "ALUMINA",
+    "ALUMINA_COMPOSITE",
+    "COCR",
+    "CROSSLINKED_PE",
+    "POM",
+    "STEEL",
+    "STRUCTURAL_STEEL",
+    "UHMWPE",
+    "AdhesiveSocket",
+    "Bartel",
+    "BondedLayer",
+    "BondedLayerExact",
+    "ClosedForm",
+    "Contact",
+    "CosineLimit",
+    "Hertz",
+    "HessForsbach",
+    "Joint",
+    "LiuReconstruction",
+    "Material",
+    "Model",
+    "PinInHole",
+    "PlaneLayer",
+    "RadialFoundation",
+    "Range",
+    "Status",
+    "Steuermann",
+    "Vessel",
+    "bonded_layer",
+    "catalogue",
+    "cite",
+    "compare",
+    "constant",
+    "cosine_kinematics",
+    "exact_kinematics",
+    "hess_forsbach",
+    "joints",
+    "linear_kinematics",
+    "materials",
+    "polynomial",
+    "read_joint",
+    "spherical_vessel",
+]

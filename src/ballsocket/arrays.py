@@ -1,0 +1,249 @@
+"""Which array library is this? The few functions the formulas need, and the one bracketed inversion.
+
+The formulas of this package are written once, with plain arithmetic and the functions below. They run on
+NumPy, JAX, PyTorch and any other library that follows the array API standard, and - because the functions
+below are all they call - a compiler can be taught to run them on scalars (`ballsocket.compiled`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
+
+import array_api_compat
+import numpy
+
+Array = Any
+"""A Python number or an array of any library that follows the array API standard."""
+
+
+def is_plain(value: Any) -> bool:
+    """Whether `value` is a Python (or NumPy) number, which takes the library and dtype of its neighbours."""
+    return isinstance(value, int | float)
+
+
+def namespace(*values: Array) -> Any:
+    """The array library of `values`: NumPy where all of them are plain numbers."""
+    arrays = [value for value in values if not is_plain(value)]
+    if not arrays:
+        return numpy
+    try:
+        return array_api_compat.array_namespace(*arrays)
+    except TypeError as error:
+        kinds = sorted({f"{type(value).__module__.split('.')[0]}.{type(value).__name__}" for value in arrays})
+        raise TypeError(f"arrays of one library are needed, got {', '.join(kinds)}") from error
+
+
+def sqrt(x: Array) -> Array:
+    return namespace(x).sqrt(x)
+
+
+def exp(x: Array) -> Array:
+    return namespace(x).exp(x)
+
+
+def log(x: Array) -> Array:
+    return namespace(x).log(x)
+
+
+def sin(x: Array) -> Array:
+    return namespace(x).sin(x)
+
+
+def cos(x: Array) -> Array:
+    return namespace(x).cos(x)
+
+
+def tan(x: Array) -> Array:
+    return namespace(x).tan(x)
+
+
+def atan(x: Array) -> Array:
+    return namespace(x).atan(x)
+
+
+def asinh(x: Array) -> Array:
+    return namespace(x).asinh(x)
+
+
+def asin(x: Array) -> Array:
+    return namespace(x).asin(x)
+
+
+def where(condition: Array, this: Array, that: Array) -> Array:
+    return namespace(condition, this, that).where(condition, this, that)
+
+
+def clip(x: Array, low: float, high: float) -> Array:
+    return namespace(x).clip(x, low, high)
+
+
+def isfinite(x: Array) -> Array:
+    return namespace(x).isfinite(x)
+
+
+def positive(x: Array) -> Array:
+    """`x`, and 1 where it is not above zero: a divisor for quotients whose numerator is zero there."""
+    return where(x > 0, x, 1.0)
+
+
+def device(x: Array) -> Any:
+    """Where `x` lives."""
+    return array_api_compat.device(x)
+
+
+def known(x: Array) -> numpy.ndarray | None:
+    """The values of `x` as a NumPy array; None where they cannot be known yet (inside `jax.jit`, `jax.grad`)."""
+    try:
+        return to_numpy(x)
+    except (TypeError, RuntimeError):
+        return None
+
+
+def truth(condition: Array) -> bool | None:
+    """Whether all of `condition` holds; None where that cannot be known yet (inside `jax.jit`, `vmap`)."""
+    try:
+        return bool(namespace(condition).all(condition))
+    except (TypeError, RuntimeError):  # JAX's and PyTorch's tracers refuse to be read
+        return None
+
+
+def frozen(x: Array) -> Array:
+    """The values of `x`, cut off from automatic differentiation."""
+    if array_api_compat.is_torch_array(x):
+        return x.detach()
+    if array_api_compat.is_jax_array(x):
+        import jax
+
+        return jax.lax.stop_gradient(x)
+    return x
+
+
+def common(*values: Array) -> tuple[Array, ...]:
+    """`values` as arrays of one library, floating dtype and device: those of the arrays among them.
+
+    Lists and integers are taken as floats. Plain numbers alone become NumPy float64 scalars.
+    """
+    listed = [numpy.asarray(value) if isinstance(value, list | tuple) else value for value in values]
+    xp = namespace(*listed)
+    arrays = [value for value in listed if not is_plain(value)]
+    floating = [value for value in arrays if xp.isdtype(value.dtype, "real floating")]
+    dtype = xp.result_type(*floating) if floating else xp.asarray(1.0).dtype
+    device = array_api_compat.device(arrays[0]) if arrays else None
+
+    def converted(value: Array) -> Array:
+        if is_plain(value):
+            return xp.asarray(float(value), dtype=dtype, device=device)
+        return value if value.dtype == dtype else xp.astype(value, dtype)
+
+    return tuple(converted(value) for value in listed)
+
+
+def broadcast(x: Array, *others: Array) -> Array:
+    """`x` in the shape that it and `others` broadcast to."""
+    shape = numpy.broadcast_shapes(*(tuple(getattr(value, "shape", ())) for value in (x, *others)))
+    return x if tuple(x.shape) == shape else namespace(x).broadcast_to(x, shape)
+
+
+@cache
+def gauss_legendre(points: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Nodes and weights of the Gauss-Legendre rule on [0, 1]."""
+    nodes, weights = numpy.polynomial.legendre.leggauss(points)
+    return tuple(float(x) for x in (1 + nodes) / 2), tuple(float(w) for w in weights / 2)
+
+
+def integral(integrand: Callable[[float], Array], points: int) -> Array:
+    """∫ integrand(x) dx over [0, 1] by the Gauss-Legendre rule, for integrands that are arrays of any kind."""
+    nodes, weights = gauss_legendre(points)
+    return weighted_sum([integrand(node) for node in nodes], weights)
+
+
+def weighted_sum(values: Sequence[Array], weights: Sequence[float]) -> Array:
+    """Sum of `weights[i] * values[i]`: a quadrature rule over any kind of array."""
+    total = weights[0] * values[0]
+    for value, weight in zip(values[1:], weights[1:], strict=True):
+        total = total + weight * value
+    return total
+
+
+def increasing_root(
+    law: Callable[[Array], tuple[Array, Array]],
+    target: Array,
+    low: Array,
+    high: Array,
+    start: Array,
+    *,
+    steps: int = 60,
+    tolerance: float = 4e-16,
+) -> Array:
+    """Solve `law(x)[0] == target` for an increasing law, element by element, inside the bracket [low, high].
+
+    Newton's method with the slope `law(x)[1]`; a step that leaves the bracket is replaced by its middle, and the
+    bracket shrinks with every evaluation, so the result never leaves it. At most `steps` evaluations (all of them
+    inside `jax.jit`), fewer once every element has stopped moving. Automatic differentiation gives the derivatives
+    of the root (the implicit function theorem), not of the way to it.
+
+    Parameters
+    ----------
+    law : callable
+        x -> (value, slope), both of the shape of x.
+    target, low, high, start : array
+        Broadcastable; low <= start <= high.
+
+    Returns
+    -------
+    array
+        The root; the nearest end of the bracket where there is none.
+    """
+    xp = namespace(target, low, high, start)
+
+    def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
+        x, low, high, _ = state
+        value, slope = law(x)
+        low = where(value <= target, x, low)
+        high = where(value >= target, x, high)
+        newton = x - (value - target) / positive(slope)
+        safe = (slope > 0) & (newton >= low) & (newton <= high)
+        after = where(safe, newton, low + (high - low) / 2)
+        return after, low, high, xp.abs(after - x) > tolerance * xp.abs(after)
+
+    x = _repeated(step, (start, low, high, start == start), steps)
+    x = frozen(x)
+    for _ in range(2):  # each step at the root keeps its value and doubles the order of the derivatives that are right
+        value, slope = law(x)
+        x = x - where(slope > 0, (value - target) / positive(slope), 0.0)
+    return x
+
+
+def to_numpy(x: Array) -> numpy.ndarray:
+    """The values of `x` as a NumPy array on this machine, for people and files."""
+    if array_api_compat.is_torch_array(x):
+        return numpy.asarray(x.detach().cpu())
+    try:
+        return numpy.asarray(x)
+    except TypeError:  # strict libraries offer DLPack alone
+        return numpy.from_dlpack(x)
+
+
+def _repeated(step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], times: int) -> Array:
+    """The first part of `state` after `step` has been taken until its last part, a mask, is false everywhere."""
+    if truth(state[-1]) is None and array_api_compat.is_jax_array(state[0]):
+        import jax  # a loop that is compiled once in place of one that is written out
+
+        return jax.lax.fori_loop(0, times, lambda _, now: step(now), state)[0]
+    for _ in range(times):
+        state = step(state)
+        if truth(~state[-1]):
+            break
+    return state[0]
+
+
+def to_list(x: Array) -> Any:
+    """The values of `x` for JSON, which has no NaN and no infinity: None and the text "inf" stand for them."""
+    values = to_numpy(x)
+    if values.dtype == bool:
+        return values.tolist()
+    listed = values.astype(object)
+    listed = numpy.where(numpy.isnan(values), numpy.array(None), listed)
+    return numpy.where(numpy.isinf(values), numpy.array("inf", dtype=object), listed).tolist()

@@ -1,0 +1,135 @@
+"""One joint, one load, every model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from html import escape
+from math import degrees
+from typing import Any
+
+from . import arrays
+from .arrays import Array
+from .checks import one_load
+from .contact import QUANTITIES, Contact
+from .joint import Joint
+from .models import catalogue
+from .models.base import Model
+from .validity import OutsideDomainError
+
+
+@dataclass(frozen=True, repr=False)
+class Comparison(Mapping[str, Contact]):
+    """Contacts by the name of the model, and for the models that have no answer the reason.
+
+    Prints as a table; for plain numbers one row a model.
+    """
+
+    joint: Joint
+    contacts: dict[str, Contact]
+    missing: dict[str, str]
+
+    def __getitem__(self, name: str) -> Contact:
+        if name in self.missing:
+            raise KeyError(self.missing[name])
+        return self.contacts[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.contacts)
+
+    def __len__(self) -> int:
+        return len(self.contacts)
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """Text for a table: model, force, indentation, half angle, max pressure, area, stiffness, valid."""
+        rows = []
+        for name, contact in self.contacts.items():
+            angle = arrays.to_numpy(contact.half_angle) * degrees(1.0)
+            values = (contact.force, contact.indentation, angle, contact.max_pressure, contact.area, contact.stiffness)
+            rows.append((name, *(_text(value) for value in values), _yes(contact.valid)))
+        return rows
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON: version, joint and results, in mm, N, MPa, degrees."""
+        from . import __version__
+
+        results = [contact.summary() for contact in self.contacts.values()]
+        for name, reason in self.missing.items():
+            results.append({"model": name, **dict.fromkeys(QUANTITIES), "valid": False, "notes": [reason]})
+        return {"version": __version__, "joint": self.joint.summary(), "results": results}
+
+    def __repr__(self) -> str:
+        table = [HEAD, *self.rows()]
+        widths = [max(len(row[i]) for row in table) for i in range(len(HEAD))]
+        lines = [
+            "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(pairs))
+            for pairs in (list(zip(row, widths, strict=True)) for row in table)
+        ]
+        return "\n".join([str(self.joint), *lines, *self.missing.values()])
+
+    def _repr_html_(self) -> str:
+        cells = "".join(f"<th>{escape(text)}</th>" for text in HEAD)
+        rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in self.rows())
+        notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.missing.values())
+        return f"<div>{escape(str(self.joint))}</div><table><tr>{cells}</tr>{rows}</table>{notes}"
+
+
+HEAD = ("model", "F [N]", "d [mm]", "ε [°]", "p0 [MPa]", "A [mm²]", "dF/dd [N/mm]", "valid")
+
+
+def compare(
+    joint: Joint,
+    *,
+    force: Array | None = None,
+    indentation: Array | None = None,
+    half_angle: Array | None = None,
+    models: Mapping[str, Model] | None = None,
+) -> Comparison:
+    """Press one joint by every model.
+
+    Parameters
+    ----------
+    joint : Joint
+    force, indentation, half_angle : float or array
+        Exactly one, in N, mm or rad.
+    models : mapping of str to Model, optional
+        By default the whole catalogue.
+
+    Returns
+    -------
+    Comparison
+        A mapping from name to `Contact`; a model without any answer for the joint is in `missing`, with the reason.
+
+    Raises
+    ------
+    ValueError
+        A load that is not allowed.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> answers = bs.compare(bs.joints["hess-forsbach"], force=3000.0)
+    >>> round(answers["bartel"].max_pressure, 3)
+    11.717
+    """
+    kind, load = one_load(force=force, indentation=indentation, half_angle=half_angle)
+    keyword: dict[str, Any] = {kind: load}
+    contacts, missing = {}, {}
+    for name, model in (catalogue if models is None else models).items():
+        try:
+            contacts[name] = model.press(joint, **keyword)
+        except OutsideDomainError as error:
+            missing[name] = str(error)
+    return Comparison(joint, contacts, missing)
+
+
+def _text(value: Array) -> str:
+    listed = arrays.to_numpy(value)
+    if listed.size == 1:
+        return "-" if listed != listed else f"{listed.item():.5g}"
+    return f"{float(listed.min()):.4g}..{float(listed.max()):.4g}"
+
+
+def _yes(valid: Array) -> str:
+    listed = arrays.to_numpy(valid)
+    return ("yes" if listed.item() else "no") if listed.size == 1 else f"{int(listed.sum())}/{listed.size}"

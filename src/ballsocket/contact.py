@@ -1,0 +1,270 @@
+"""The answer: what a load does to a joint, with its status and validity."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from math import degrees, pi
+from typing import Any, Protocol
+
+import numpy
+
+from . import arrays
+from .arrays import Array
+from .joint import Joint
+from .validity import Range, Status
+
+
+class Answerer(Protocol):
+    """What a contact knows of the model that made it."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def validity(self) -> tuple[Range, ...]: ...
+    def force_vector(self, joint: Joint, displacement: Array) -> Array: ...
+
+
+class Laws(Protocol):
+    """Where a contact's further quantities come from: functions of joint and indentation."""
+
+    def half_angle(self, joint: Joint, indentation: Array) -> Array: ...
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array: ...
+    def stiffness(self, joint: Joint, indentation: Array) -> Array: ...
+    def energy(self, joint: Joint, indentation: Array) -> Array: ...
+    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array: ...
+    def pressure_integral(self, joint: Joint, indentation: Array) -> Array: ...
+    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array: ...
+
+
+def _law(name: str, symbol: str, unit: str, text: str) -> Any:
+    """A quantity of the contact, computed by the model's law of that name when it is first asked for."""
+
+    def quantity(self: Contact) -> Array:
+        return self._answer(lambda joint, indentation: getattr(self.laws, name)(joint, indentation))
+
+    quantity.__doc__ = f"{text}, {symbol} in {unit}."
+    quantity.__name__ = name
+    return cached_property(quantity)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class Contact:
+    """What `model.press(joint, ...)` answers. Every quantity has the shape that joint and load broadcast to.
+
+    Points without an answer are NaN and have a `status` other than `Status.OK`; points whose joint or answer lies
+    outside the model's `validity` keep their numbers and have `valid` false. `notes` says both in words.
+
+    Attributes
+    ----------
+    force, indentation : float or array
+        Axial load F in N; approach d of the centres from first touch in mm.
+    status : Status or array of int
+        How the press ended, point by point.
+    model, joint
+        What answered, and what was pressed.
+    laws
+        Where the further quantities come from; for a closed form that is the model itself.
+    """
+
+    model: Answerer
+    laws: Laws
+    joint: Joint
+    force: Array
+    indentation: Array
+    status: Array
+
+    half_angle = _law("half_angle", "ε", "rad", "Contact half-angle")
+    max_pressure = _law("max_pressure", "p0", "MPa", "Pressure at the pole")
+    stiffness = _law("stiffness", "dF/dd", "N/mm", "Tangent stiffness")
+    energy = _law("energy", "U", "N mm", "Work of the load from first touch")
+    foundation_modulus = _law("foundation_modulus", "K = p0/d", "MPa/mm", "Pressure per indentation, Eq. (16)")
+    pressure_integral = _law("pressure_integral", "∫p dA", "N", "Pressure summed over the area without its direction")
+
+    @cached_property
+    def area(self) -> Array:
+        """Contact area on the ball, A = 2π R1² (1 - cos ε) in mm², Eq. (19)."""
+        half_sine = arrays.sin(arrays.clip(self.half_angle, 0.0, pi) / 2)
+        return self._plain(4 * pi * self.joint.ball_radius**2 * half_sine**2)
+
+    @property
+    def indentation_ratio(self) -> Array:
+        """d/L: indentation over liner thickness."""
+        return self.indentation / self.joint.liner_thickness
+
+    @property
+    def width_ratio(self) -> Array:
+        """R2 sin ε / L: contact radius over liner thickness."""
+        return arrays.sin(self.half_angle) * self.joint.thickness_ratio
+
+    @property
+    def conformity(self) -> Array:
+        """c/d: clearance over indentation; 0 is a ball of the socket's own radius."""
+        return self.joint.clearance / arrays.positive(self.indentation)
+
+    def pressure(self, angle: Array) -> Array:
+        """Contact pressure in MPa at polar angles (rad) from the load axis; 0 outside the contact.
+
+        `angle` broadcasts against the contact's shape: for a profile of each of many contacts give it a leading
+        axis, `contact.pressure(angle[:, None])`.
+        """
+        _, angle = arrays.common(self.indentation, angle)
+        return self._answer(lambda joint, indentation: self.laws.pressure(joint, indentation, angle))
+
+    def friction_torque(self, coefficient: Array, axis_angle: float = pi / 2) -> Array:
+        """Torque in N mm about an axis through the centre of the ball, sliding everywhere with Coulomb friction.
+
+        Parameters
+        ----------
+        coefficient : float or array
+            Coefficient of friction.
+        axis_angle : float
+            Angle (rad) between the axis of rotation and the load: π/2 is flexion under an axial load, 0 is spin
+            about the load axis.
+
+        Returns
+        -------
+        float or array
+            μ R1 ∫ p sin(angle between axis and radius) dA: at most μ R1 times `pressure_integral`.
+        """
+
+        def ring(x: float) -> Array:
+            angle = self.half_angle * x
+            return self.pressure(angle) * _mean_lever(angle, axis_angle) * arrays.sin(angle)
+
+        integral = 2 * pi * self.joint.socket_radius**2 * self.half_angle * arrays.integral(ring, 32)
+        return self._plain(coefficient * self.joint.ball_radius * integral)
+
+    def force_vector(self, displacement: Array) -> Array:
+        """Force in N on the ball when its centre sits at `displacement` (mm) from the centre of the socket.
+
+        Parameters
+        ----------
+        displacement : array (..., 3)
+            Any direction; within the clearance nothing touches and the force is zero.
+
+        Returns
+        -------
+        array (..., 3)
+            Points back to the centre of the socket. The rim of the socket is not part of the model.
+        """
+        return self.model.force_vector(self.joint, displacement)
+
+    @cached_property
+    def valid(self) -> Array:
+        """Whether joint and answer lie inside the model's validity, point by point."""
+        inside = self.status == int(Status.OK)
+        for limit in self.model.validity:
+            inside = inside & limit.holds(self)
+        inside = arrays.broadcast(inside, self.indentation) if hasattr(inside, "shape") else inside
+        return bool(inside) if self._is_plain else inside
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """In words: what has no answer, and what lies outside the model's validity."""
+        notes = []
+        for status in list(Status)[1:]:
+            notes += self._note(self.status != int(status), status.sentence)
+        for limit in self.model.validity:
+            notes += self._note(limit.holds(self) | self._failed, f"outside {limit}: {limit.why}")
+        return tuple(notes)
+
+    def _note(self, good: Array, sentence: str) -> list[str]:
+        if arrays.truth(good) is not False:
+            return []
+        good = arrays.to_numpy(good)
+        return [sentence if good.size == 1 else f"{int((~good).sum())} of {good.size}: {sentence}"]
+
+    @property
+    def _failed(self) -> Array:
+        return (self.status != int(Status.OK)) & (self.status != int(Status.BEYOND_EQUATOR))
+
+    @property
+    def _is_plain(self) -> bool:
+        return isinstance(self.indentation, float)
+
+    def _answer(self, law: Callable[[Joint, Array], Array]) -> Array:
+        with numpy.errstate(all="ignore"):  # a point without an answer has a status, not a warning
+            return self._plain(law(self.joint, self.indentation))
+
+    def _plain(self, value: Array) -> Array:
+        """A contact pressed with plain numbers answers in plain numbers."""
+        if self._is_plain and getattr(value, "shape", ()) == ():
+            return float(value)
+        if hasattr(self.indentation, "shape"):
+            return arrays.broadcast(value, self.indentation)
+        return value
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON in N, mm, MPa and degrees; arrays become (nested) lists, a missing number None."""
+        quantities = {name: getattr(self, attribute) for name, attribute, _ in _COLUMNS}
+        quantities["half_angle_deg"] = quantities["half_angle_deg"] * degrees(1.0)
+        numbers = {name: arrays.to_list(value) for name, value in quantities.items()}
+        return {"model": self.model.name, **numbers, "valid": arrays.to_list(self.valid), "notes": list(self.notes)}
+
+    def _rows(self) -> list[tuple[str, str, str]]:
+        rows = []
+        for name, attribute, unit in _COLUMNS:
+            value = arrays.to_numpy(getattr(self, attribute))
+            value = numpy.degrees(value) if unit == "deg" else value
+            rows.append((name.removesuffix("_deg"), _range_text(value), unit))
+        return rows
+
+    def __repr__(self) -> str:
+        if arrays.truth(self.indentation == self.indentation) is None:
+            return f"<Contact of {self.model.name}, traced>"
+        width = max(len(text) for _, text, _ in self._rows())
+        lines = [f"{self.model.name} on {self.joint}"]
+        lines += [f"  {name:<19}{text:>{width}} {unit}" for name, text, unit in self._rows()]
+        lines.append(f"  {'valid':<19}{_count_text(self.valid):>{width}}")
+        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td style='text-align:left'>{name.replace('_', ' ')}</td><td>{escape(text)}</td>"
+            f"<td style='text-align:left'>{unit}</td></tr>"
+            for name, text, unit in [*self._rows(), ("valid", _count_text(self.valid), "")]
+        )
+        notes = "".join(f"<div>{escape(note)}</div>" for note in self.notes)
+        return f"<b>{escape(self.model.name)}</b><div>{escape(str(self.joint))}</div><table>{rows}</table>{notes}"
+
+
+# name in JSON, attribute, unit
+_COLUMNS = (
+    ("force", "force", "N"),
+    ("indentation", "indentation", "mm"),
+    ("half_angle_deg", "half_angle", "deg"),
+    ("max_pressure", "max_pressure", "MPa"),
+    ("area", "area", "mm²"),
+    ("stiffness", "stiffness", "N/mm"),
+    ("energy", "energy", "N mm"),
+    ("foundation_modulus", "foundation_modulus", "MPa/mm"),
+)
+
+
+QUANTITIES = tuple(name for name, _, _ in _COLUMNS)
+"""The names of a contact's numbers in JSON."""
+
+
+def _mean_lever(angle: Array, axis_angle: float) -> Array:
+    """Mean over the circle at polar `angle` of the sine between the radius and an axis at `axis_angle`."""
+    turns = [pi * (k + 0.5) / 64 for k in range(64)]
+    polar, across = arrays.cos(angle) * float(numpy.cos(axis_angle)), arrays.sin(angle) * float(numpy.sin(axis_angle))
+    sines = [arrays.sqrt(arrays.clip(1 - (polar + across * float(numpy.cos(turn))) ** 2, 0.0, 1.0)) for turn in turns]
+    return arrays.weighted_sum(sines, [1 / 64] * 64)
+
+
+def _range_text(value: Any) -> str:
+    if value.size == 1:
+        return f"{value.item():.6g}"
+    known = value[numpy.isfinite(value)]
+    if not known.size:
+        return "no answer"
+    return f"{known.min():.5g} to {known.max():.5g}"
+
+
+def _count_text(valid: Array) -> str:
+    listed = arrays.to_numpy(valid)
+    return ("yes" if listed.item() else "no") if listed.size == 1 else f"{int(listed.sum())} of {listed.size}"

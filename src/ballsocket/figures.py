@@ -1,0 +1,108 @@
+"""A result becomes a picture. Nothing is solved here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from . import arrays
+from .contact import Contact
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Okabe & Ito's colours, safe for the colour-blind; the dashes keep the curves apart in grey
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#E69F00")
+_DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (2, 1.5)), (0, (7, 2, 1.5, 2)), (0, (4, 1.5, 1, 1.5, 1, 1.5)))
+FORMATS = ("png", "svg", "pdf")
+
+
+def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact]) -> Figure:
+    """Pressure over angle beside force over indentation.
+
+    Parameters
+    ----------
+    contacts : mapping of str to Contact
+        One contact of plain numbers a model: the pressed state.
+    curves : mapping of str to Contact
+        For each of these models a contact of a 1-D array of loads: its force-indentation curve.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Curves of models outside their validity are drawn thin.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 4.6), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for index, (name, contact) in enumerate(contacts.items()):
+        style = _style(index, bool(contact.valid))
+        angle = _angles(contact)
+        left.plot(numpy.degrees(angle), contact.pressure(angle), label=name, **style)
+        curve = curves[name]
+        right.plot(arrays.to_numpy(curve.indentation) * 1e3, arrays.to_numpy(curve.force) / 1e3, **style)
+        right.plot(contact.indentation * 1e3, contact.force / 1e3, "o", color=style["color"], markersize=4.5)
+    _finish(left, "polar angle φ [°]", "contact pressure [MPa]")
+    left.set_xlim(0.0, 90.0)
+    if left.dataLim.ymin > -0.02 * left.dataLim.ymax:
+        left.set_ylim(bottom=0.0)
+    left.set_xticks(range(0, 91, 15))
+    _finish(right, "indentation d [µm]", "force F [kN]")
+    right.set_xlim(0.0, 1.12e3 * max(contact.indentation for contact in contacts.values()))
+    right.set_ylim(0.0, 1.6e-3 * max(contact.force for contact in contacts.values()))
+    columns = min(len(contacts), 4)
+    figure.legend(loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
+    figure.suptitle(_title(next(iter(contacts.values()))), fontsize=10)
+    return figure
+
+
+def check_format(path: Path) -> None:
+    """Raise ValueError unless `path` ends in .png, .svg or .pdf."""
+    if path.suffix.lower().lstrip(".") not in FORMATS:
+        raise ValueError(f"figure {str(path)!r} must end in {', '.join('.' + name for name in FORMATS)}")
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure as PNG, SVG or PDF, by the ending of `path`."""
+    check_format(path)
+    figure.savefig(path, format=path.suffix.lower().lstrip("."), dpi=160)
+
+
+def _style(index: int, valid: bool) -> dict[str, Any]:
+    return {
+        "color": _COLOURS[index % len(_COLOURS)],
+        "linestyle": _DASHES[(index + index // len(_COLOURS)) % len(_DASHES)],
+        "linewidth": 2.0 if valid else 1.0,
+    }
+
+
+def _angles(contact: Contact) -> numpy.ndarray:
+    """Polar angles up to just beyond the edge of the contact, dense where the pressure falls steeply."""
+    edge = min(float(contact.half_angle), numpy.pi / 2)
+    return edge * numpy.append(numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 200)), 1.0 + 1e-6)
+
+
+def _finish(axes: Axes, x: str, y: str) -> None:
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
+    axes.grid(color="0.9", linewidth=0.6)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _title(contact: Contact) -> str:
+    joint = contact.joint
+    ball = "rigid ball" if joint.ball is None else f"ball {float(joint.ball.young) / 1e3:g} GPa"
+    return (
+        f"R1 {float(joint.ball_radius):g} mm, clearance {float(joint.clearance):g} mm, "
+        f"liner {float(joint.liner_thickness):g} mm of {float(joint.liner.young) / 1e3:g} GPa, "
+        f"ν {float(joint.liner.poisson):g}; {ball}; ● at {_load(contact)}"
+    )
+
+
+def _load(contact: Contact) -> str:
+    return f"{contact.force:.4g} N"

@@ -1,0 +1,155 @@
+"""A joint file: TOML with units in, `Joint` and load out. Strict: what is not known is named, with what is near it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from .joint import Joint, Material
+from .presets import materials
+from .units import parse
+
+_MAX_BYTES = 100_000
+_LENGTHS = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
+_TABLES = {
+    "": ("name", "source", "joint", "liner", "ball", "load"),
+    "joint": _LENGTHS,
+    "liner": ("material", "young", "poisson"),
+    "ball": ("material", "young", "poisson"),
+    "load": ("force", "indentation", "half_angle"),
+}
+_LOADS = {"force": "force", "indentation": "length", "half_angle": "angle"}
+
+
+@dataclass(frozen=True)
+class JointFile:
+    """What a joint file holds: the joint, and its load (empty, or one of force, indentation, half_angle)."""
+
+    joint: Joint
+    load: dict[str, float]
+
+
+def read_joint(path: str | Path) -> JointFile:
+    """Read a joint file.
+
+    The file is TOML: a table `joint` with `liner_thickness` and two of `ball_radius`, `socket_radius`, `clearance`;
+    tables `liner` and (for a ball that is not rigid) `ball`, each with a `material` by name or `young` and `poisson`,
+    or both, where the numbers win; a table `load` with one of `force`, `indentation`, `half_angle`. Values are text
+    with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N, MPa, degrees.
+
+    Raises
+    ------
+    ValueError
+        One sentence: what is wrong, and the nearest thing that is right.
+    OSError
+        The file cannot be read.
+    """
+    path = Path(path)
+    with path.open("rb") as stream:
+        raw = stream.read(_MAX_BYTES + 1)
+    if len(raw) > _MAX_BYTES:
+        raise ValueError(f"{path.name} is larger than {_MAX_BYTES} bytes; a joint file is a few lines")
+    return parse_joint(raw, path.name)
+
+
+def parse_joint(raw: bytes, title: str) -> JointFile:
+    """A joint file's content; see `read_joint`."""
+    try:
+        table = tomllib.loads(raw.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{title} is not text in UTF-8: {error.reason} at byte {error.start}") from error
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{title} is not TOML: {error}") from error
+    try:
+        return joint_of(table)
+    except ValueError as error:
+        raise ValueError(f"{title}: {error}") from error
+
+
+def joint_of(table: Mapping[str, Any]) -> JointFile:
+    """Joint and load from the tables of a joint file, or of the command line; see `read_joint`."""
+    for name, known in _TABLES.items():
+        part = table.get(name, {}) if name else table
+        if not isinstance(part, Mapping):
+            raise ValueError(f"{name} = {part!r} must be a table: [{name}]")
+        check_names(part, known, f"in [{name}]" if name else "at the top")
+    for name in ("name", "source"):
+        if not isinstance(table.get(name, ""), str):
+            raise ValueError(f"{name} = {table[name]!r} must be text")
+    joint = Joint(
+        **_lengths(table.get("joint", {})),
+        liner=_material("liner", table.get("liner", {})),
+        ball=_material("ball", table["ball"]) if "ball" in table else None,
+        name=table.get("name", ""),
+        source=table.get("source", ""),
+    )
+    return JointFile(joint, read_load(table.get("load", {})))
+
+
+def read_load(table: Mapping[str, Any]) -> dict[str, float]:
+    """At most one of force, indentation, half_angle, as the keyword of a press."""
+    if len(table) > 1:
+        raise ValueError(f"one load is needed, got {', '.join(table)}")
+    return {name: parse(name, value, _LOADS[name]) for name, value in table.items()}
+
+
+def _lengths(table: Mapping[str, Any]) -> dict[str, float]:
+    lengths = {name: parse(name, value, "length") for name, value in table.items()}
+    if "liner_thickness" not in lengths:
+        raise ValueError("liner_thickness is missing; inf is a massive socket")
+    given = [name for name in _LENGTHS[:3] if name in lengths]
+    if len(given) != 2:
+        got = ", ".join(given) or "none"
+        raise ValueError(f"two of ball_radius, socket_radius, clearance are needed, got {got}")
+    socket = lengths.pop("socket_radius", None)
+    if socket is not None:
+        if "clearance" in lengths:
+            lengths["ball_radius"] = _difference(socket, lengths["clearance"])
+        else:
+            lengths["clearance"] = _difference(socket, lengths["ball_radius"])
+    return lengths
+
+
+def _difference(larger: float, smaller: float) -> float:
+    """Rounded to a femtometre in a metre, so that 18 - 17.9 is 0.1."""
+    return round(larger - smaller, 12)
+
+
+def _material(name: str, table: Mapping[str, Any]) -> Material:
+    """A material from a table with `material` (by name) and/or `young` and `poisson`."""
+    young = parse(f"{name}.young", table["young"], "modulus") if "young" in table else None
+    poisson = parse(f"{name}.poisson", table["poisson"], "number") if "poisson" in table else None
+    if "material" in table:
+        preset = _named_material(name, table["material"])
+        young = preset.young if young is None else young
+        poisson = preset.poisson if poisson is None else poisson
+        return replace(preset, young=young, poisson=poisson)
+    missing = [key for key, value in (("young", young), ("poisson", poisson)) if value is None]
+    if missing:
+        raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
+    return Material(young=young, poisson=poisson)
+
+
+def _named_material(name: str, chosen: Any) -> Material:
+    """The preset material called `chosen`, in any spelling of capitals."""
+    key = str(chosen).lower().replace(" ", "-").replace("_", "-")
+    if key not in materials:
+        raise ValueError(f"{name} material {chosen!r} is not known{nearest(key, materials)}")
+    return materials[key]
+
+
+def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
+    """Raise ValueError for the first of `names` that is not `known`."""
+    for name in names:
+        if name not in known:
+            raise ValueError(f"{name!r} {where} is not known{nearest(name, known)}")
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """A hint: the nearest known name, or all of them."""
+    close = get_close_matches(name, list(known), n=1, cutoff=0.5)
+    return f"; did you mean {close[0]!r}?" if close else f"; known: {', '.join(known)}"

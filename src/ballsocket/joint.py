@@ -1,0 +1,206 @@
+"""The words of the problem: a material, and a ball in a lined socket."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+from .arrays import Array, to_list
+from .checks import numeric, require
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """A linear elastic, isotropic material.
+
+    Parameters
+    ----------
+    young : float or array
+        Young's modulus E in MPa, positive.
+    poisson : float or array
+        Poisson's ratio, above -1 and at most 0.5.
+    name, source : str
+        What it is called, and where the numbers come from.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+
+    Examples
+    --------
+    >>> Material(young=1000.0, poisson=0.4).poisson
+    0.4
+    """
+
+    young: Array
+    poisson: Array
+    name: str = ""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        young = numeric("young", self.young)
+        poisson = numeric("poisson", self.poisson)
+        require("young", young, (young > 0) & (young < inf), "Young's modulus (MPa) is above 0 and finite")
+        require("poisson", poisson, (poisson > -1) & (poisson <= 0.5), "Poisson's ratio lies above -1, up to 0.5")
+        _set(self, young=young, poisson=poisson)
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON."""
+        return {"name": self.name, "young": to_list(self.young), "poisson": to_list(self.poisson)}
+
+    def __str__(self) -> str:
+        numbers = f"E {_text(self.young)} MPa, nu {_text(self.poisson)}"
+        return f"{self.name} ({numbers})" if self.name else numbers
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """A ball in a socket of nearly its own radius, lined with an elastic layer on a much stiffer backing.
+
+    Every number may be an array; arrays broadcast against each other and against the loads.
+
+    Parameters
+    ----------
+    ball_radius : float or array
+        R1 in mm, positive.
+    clearance : float or array
+        Radial clearance c = R2 - R1 in mm, zero or more.
+    liner_thickness : float or array
+        L in mm, positive; `inf` is a massive socket.
+    liner : Material
+        What the socket is lined with.
+    ball : Material or None
+        None is a rigid ball. Models that take the ball as rigid say so in their validity.
+    name, source : str
+        What it is called, and where the numbers come from.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> hip = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
+    >>> hip.socket_radius
+    18.0
+    """
+
+    ball_radius: Array
+    clearance: Array
+    liner_thickness: Array
+    liner: Material
+    ball: Material | None = None
+    name: str = ""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        radius = numeric("ball_radius", self.ball_radius)
+        clearance = numeric("clearance", self.clearance)
+        thickness = numeric("liner_thickness", self.liner_thickness)
+        require("ball_radius", radius, (radius > 0) & (radius < inf), "a radius (mm) is above 0 and finite")
+        require(
+            "clearance",
+            clearance,
+            (clearance >= 0) & (clearance < inf),
+            "a radial clearance (mm) is 0 or more and finite; negative is a preloaded joint, another problem",
+        )
+        require("liner_thickness", thickness, thickness > 0, "a thickness (mm) is above 0; inf is a massive socket")
+        if not isinstance(self.liner, Material):
+            raise TypeError(f"liner must be a Material, got {self.liner!r}")
+        if not (self.ball is None or isinstance(self.ball, Material)):
+            raise TypeError(f"ball must be a Material, or None for a rigid ball, got {self.ball!r}")
+        _set(self, ball_radius=radius, clearance=clearance, liner_thickness=thickness)
+
+    @property
+    def socket_radius(self) -> Array:
+        """R2 = R1 + c in mm."""
+        return self.ball_radius + self.clearance
+
+    @property
+    def thickness_ratio(self) -> Array:
+        """R2/L: socket radius over liner thickness."""
+        return self.socket_radius / self.liner_thickness
+
+    @property
+    def clearance_ratio(self) -> Array:
+        """c/R2: radial clearance over socket radius."""
+        return self.clearance / self.socket_radius
+
+    @property
+    def modulus_ratio(self) -> Array:
+        """Young's modulus of the liner over that of the ball; 0 for a rigid ball."""
+        return 0.0 * self.liner.young if self.ball is None else self.liner.young / self.ball.young
+
+    @property
+    def effective_modulus(self) -> Array:
+        """E* in MPa: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 of ball and liner."""
+        compliance = (1 - self.liner.poisson**2) / self.liner.young
+        if self.ball is not None:
+            compliance = compliance + (1 - self.ball.poisson**2) / self.ball.young
+        return 1 / compliance
+
+    def numbers(self) -> tuple[Array, ...]:
+        """Every number of the joint, in a fixed order (see `with_numbers`)."""
+        ball = () if self.ball is None else (self.ball.young, self.ball.poisson)
+        own = (self.ball_radius, self.clearance, self.liner_thickness)
+        return (*own, self.liner.young, self.liner.poisson, *ball)
+
+    def with_numbers(self, numbers: Any) -> Joint:
+        """The same joint with other numbers, in the order of `numbers()`. Nothing is checked."""
+        radius, clearance, thickness, young, poisson, *ball = numbers
+        return unchecked(
+            Joint,
+            ball_radius=radius,
+            clearance=clearance,
+            liner_thickness=thickness,
+            liner=_with(self.liner, young, poisson),
+            ball=_with(self.ball, *ball) if self.ball is not None else None,
+            name=self.name,
+            source=self.source,
+        )
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON in mm and MPa; arrays become lists, and what is infinite the text "inf"."""
+        lengths = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
+        return {
+            "name": self.name,
+            **{name: to_list(getattr(self, name)) for name in lengths},
+            "liner": self.liner.summary(),
+            "ball": None if self.ball is None else self.ball.summary(),
+        }
+
+    def __str__(self) -> str:
+        ball = "rigid" if self.ball is None else str(self.ball)
+        head = f"{self.name}: " if self.name else ""
+        return (
+            f"{head}R1 {_text(self.ball_radius)} mm, clearance {_text(self.clearance)} mm, "
+            f"liner {_text(self.liner_thickness)} mm of {self.liner}; ball {ball}"
+        )
+
+
+def _with(material: Material, young: Array, poisson: Array) -> Material:
+    return unchecked(Material, young=young, poisson=poisson, name=material.name, source=material.source)
+
+
+def unchecked(cls: Any, **fields: Any) -> Any:
+    """A material or joint from numbers that have been checked before, or are not known yet."""
+    made = object.__new__(cls)
+    _set(made, **fields)
+    return made
+
+
+def _set(made: Any, **fields: Any) -> None:
+    for name, value in fields.items():
+        object.__setattr__(made, name, value)
+
+
+def _text(value: Array) -> str:
+    shape = tuple(getattr(value, "shape", ()))
+    try:
+        return f"{float(value):g}" if not shape else f"<array {'x'.join(map(str, shape))}>"
+    except TypeError:  # a tracer has no value yet
+        return "<traced>"

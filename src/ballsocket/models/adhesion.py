@@ -1,0 +1,147 @@
+"""The adhesive socket: a radial foundation whose springs hold on until they are stretched too far."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, pi
+from typing import Any
+
+from ..arrays import Array, asin, broadcast, clip, increasing_root, positive, sin, sqrt, where
+from ..checks import numeric, require
+from ..joint import Joint
+from ..sources import Source
+from ..validity import SMALL_STRAIN, Range
+from .base import ClosedForm
+from .kinematics import linear_displacement, linear_indentation
+from .modulus import Modulus, hess_forsbach
+
+
+def _adhesion_number(contact: Any) -> Array:
+    return contact.model.adhesion_number(contact.joint)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AdhesiveSocket(ClosedForm):
+    """A radial foundation with work of adhesion w: a spring lets go at the stretch u_c = sqrt(2w/K).
+
+    The edge obeys u(ε) = -u_c, so (c + d) cos ε = c - u_c with the paper's linear kinematics. With the adhesion number
+    η = u_c/c: below 1 a ball that is pulled lets go at `pull_off`; from 1 on the whole hemisphere sticks by itself
+    (the bistability of Ciavarella 2018). Derived in the docs (theory).
+
+    Parameters
+    ----------
+    work_of_adhesion : float or array
+        w in N/mm (1 N/mm = 1000 J/m²), zero or more. The default is 0.05 J/m².
+    modulus : Modulus
+        Foundation modulus.
+
+    Notes
+    -----
+    Forces may be negative at small indentations (the ball hangs on); a press by force finds the stable state for
+    zero force or more.
+    """
+
+    work_of_adhesion: Array = 5e-5
+    modulus: Modulus = hess_forsbach
+
+    def __post_init__(self) -> None:
+        w = numeric("work_of_adhesion", self.work_of_adhesion)
+        require("work_of_adhesion", w, (w >= 0) & (w < inf), "a work of adhesion (N/mm) is 0 or more and finite")
+
+    @property
+    def name(self) -> str:
+        return "adhesive"
+
+    @property
+    def title(self) -> str:
+        return f"radial springs that adhere (work of adhesion); {self.modulus.title}"
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return (*self.modulus.sources, Source("ciavarella2018"))
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        return self.modulus.domain
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        why = "from 1 on the whole hemisphere sticks by itself, and the rim decides"
+        return (*self.modulus.validity, Range(quantity=_adhesion_number, symbol="η", high=1.0, why=why), SMALL_STRAIN)
+
+    def critical_stretch(self, joint: Joint) -> Array:
+        """u_c = sqrt(2w/K) in mm."""
+        return sqrt(2 * self.work_of_adhesion / self.modulus(joint))
+
+    def adhesion_number(self, joint: Joint) -> Array:
+        """η = u_c/c."""
+        c = joint.clearance
+        return where(c > 0, self.critical_stretch(joint) / positive(c), inf)
+
+    def pull_off(self, joint: Joint) -> Array:
+        """Largest force in N that can pull the ball without freeing it, positive; NaN where η is 1 or more.
+
+        -F = π R2² K c [1 - (1 - η)^(2/3) (1 + 2η)^(1/3)], about 2π w R2²/c for small η.
+        """
+        eta = self.adhesion_number(joint)
+        eta = where(eta < 1, eta, float("nan"))
+        rest = 1 - eta * eta * (3 - 2 * eta)
+        share = eta * eta * (3 - 2 * eta) / (1 + rest ** (1 / 3) + rest ** (2 / 3))
+        return pi * joint.socket_radius**2 * self.modulus(joint) * joint.clearance * share
+
+    def _factor(self, joint: Joint) -> Array:
+        return 2 * pi * joint.socket_radius**2 * self.modulus(joint)
+
+    def _cosine(self, joint: Joint, indentation: Array) -> Array:
+        """k = cos ε; 0 where the hemisphere sticks."""
+        c = joint.clearance
+        return clip((c - self.critical_stretch(joint)) / positive(c + indentation), 0.0, 1.0)
+
+    def _versine(self, joint: Joint, indentation: Array) -> Array:
+        c = joint.clearance
+        return clip((indentation + self.critical_stretch(joint)) / positive(c + indentation), 0.0, 1.0)
+
+    def force(self, joint: Joint, indentation: Array) -> Array:
+        # F = 2π R2² K [e (1 - k³)/3 - c (1 - k²)/2], with m = 1 - k taken out
+        k, m = self._cosine(joint, indentation), self._versine(joint, indentation)
+        e = joint.clearance + indentation
+        return self._factor(joint) * m * (indentation * (1 + k) / 2 - e * m * (1 + 2 * k) / 6)
+
+    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+        # the edge moves: dF/de + dF/dk dk/de
+        k, m = self._cosine(joint, indentation), self._versine(joint, indentation)
+        e = positive(joint.clearance + indentation)
+        return self._factor(joint) * (m * (1 + k + k * k) / 3 - k * k * self.critical_stretch(joint) / e)
+
+    def energy(self, joint: Joint, indentation: Array) -> Array:
+        # springs less surfaces, from d = 0 on
+        c, d, u = joint.clearance, indentation, self.critical_stretch(joint)
+        e = positive(c + d)
+        partial = d * d * (d / e) / 3 - u * u * (d / e) * (1 - 2 * u / (3 * positive(c)))
+        return self._factor(joint) / 2 * where(u < c, partial, d * (d - c) / 3)
+
+    def indentation(self, joint: Joint, force: Array) -> Array:
+        # between the springs without adhesion (too strong) and with all of the hemisphere hanging on (too weak)
+        R2, c, K = joint.socket_radius, joint.clearance, self.modulus(joint)
+        low = linear_indentation(R2, c, K, force)
+        high = 3 * force / self._factor(joint) + c / 2
+        shape = (low, high, self.critical_stretch(joint))
+        low, high = broadcast(low, *shape), broadcast(where(high > low, high, low), *shape)
+        return increasing_root(lambda d: (self.force(joint, d), self.stiffness(joint, d)), force, low, high, low)
+
+    def half_angle(self, joint: Joint, indentation: Array) -> Array:
+        return 2 * asin(sqrt(self._versine(joint, indentation) / 2))
+
+    def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
+        versine = 2 * sin(half_angle / 2) ** 2
+        d = (joint.clearance * versine - self.critical_stretch(joint)) / (1 - versine)
+        return where(d >= 0, d, float("nan"))
+
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        return self.modulus(joint) * indentation
+
+    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        """Negative (tension) towards the edge."""
+        versine = 2 * sin(angle / 2) ** 2
+        u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
+        return where(versine <= self._versine(joint, indentation), self.modulus(joint) * u, 0.0)

@@ -1,0 +1,252 @@
+"""What a model is: a frozen value that answers to `press`, from a few short laws."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from math import cos, pi, sin
+from types import SimpleNamespace
+from typing import Any
+
+import numpy
+
+from .. import arrays
+from ..arrays import Array, where
+from ..checks import numeric, one_load, require
+from ..contact import Contact
+from ..joint import Joint
+from ..sources import Source
+from ..validity import OutsideDomainError, Range, Status
+
+
+class Model(ABC):
+    """Anything that answers `press(joint, force=... | indentation=... | half_angle=...)` with a `Contact`.
+
+    Attributes
+    ----------
+    name, title : str
+        As in the catalogue; one line for people.
+    sources : tuple of Source
+        Where the formulas come from.
+    domain : tuple of Range
+        Open ranges outside of which there is no formula.
+    validity : tuple of Range
+        Closed ranges inside which the answer can be trusted.
+    """
+
+    @property
+    @abstractmethod
+    def name(self) -> str: ...
+
+    @property
+    @abstractmethod
+    def title(self) -> str: ...
+
+    @property
+    @abstractmethod
+    def sources(self) -> tuple[Source, ...]: ...
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        return ()
+
+    @property
+    @abstractmethod
+    def validity(self) -> tuple[Range, ...]: ...
+
+    @abstractmethod
+    def press(
+        self,
+        joint: Joint,
+        *,
+        force: Array | None = None,
+        indentation: Array | None = None,
+        half_angle: Array | None = None,
+    ) -> Contact:
+        """Press the ball into the socket by exactly one of three loads.
+
+        Parameters
+        ----------
+        joint : Joint
+        force : float or array, optional
+            Axial load in N, zero or more, finite.
+        indentation : float or array, optional
+            Approach of the centres from first touch in mm, zero or more, finite.
+        half_angle : float or array, optional
+            Contact half-angle in rad, from 0 to below π/2.
+
+        Returns
+        -------
+        Contact
+            Of the shape that joint and load broadcast to, in their array library, dtype and device.
+
+        Raises
+        ------
+        ValueError
+            Not exactly one load; a load that is not allowed; no point at all inside the model's domain.
+        """
+
+    def force_vector(self, joint: Joint, displacement: Array) -> Array:
+        """Force (..., 3) in N on the ball whose centre is displaced by (..., 3) mm; see `Contact.force_vector`."""
+        xp = arrays.namespace(displacement)
+        square = xp.sum(displacement * displacement, axis=-1)
+        length = arrays.sqrt(arrays.positive(square))
+        depth = length - joint.clearance
+        touching = (square > 0) & (depth > 0)
+        force = where(touching, self.press(joint, indentation=where(touching, depth, 0.0)).force, 0.0)
+        return -displacement * (force / length)[..., None]
+
+
+class ClosedForm(Model):
+    """A model given by its laws: what happens at an indentation, element by element.
+
+    A new model states `force`, `stiffness`, `energy`, `half_angle`, `max_pressure` and `pressure`, and the
+    indentation that belongs to a half angle. The indentation that belongs to a force is found here, once for all;
+    a model with a closed inverse states that too. All laws take a joint of arrays and d > 0 or d = 0.
+    """
+
+    @abstractmethod
+    def force(self, joint: Joint, indentation: Array) -> Array:
+        """F in N."""
+
+    @abstractmethod
+    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+        """dF/dd in N/mm."""
+
+    @abstractmethod
+    def energy(self, joint: Joint, indentation: Array) -> Array:
+        """Integral of F over d from first touch, in N mm."""
+
+    @abstractmethod
+    def half_angle(self, joint: Joint, indentation: Array) -> Array:
+        """ε in rad."""
+
+    @abstractmethod
+    def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
+        """d in mm; NaN where no indentation gives this half angle."""
+
+    @abstractmethod
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        """p(0) in MPa."""
+
+    @abstractmethod
+    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        """p(φ) in MPa, 0 outside the contact."""
+
+    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
+        """K = p0/d in MPa/mm, Eq. (16) of the paper."""
+        return self.max_pressure(joint, indentation) / arrays.positive(indentation)
+
+    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
+        """∫ p dA in N over the spherical contact, by quadrature."""
+        edge = self.half_angle(joint, indentation)
+
+        def ring(x: float) -> Array:
+            angle = edge * sin(pi / 2 * x)  # tames a square root at the edge
+            return self.pressure(joint, indentation, angle) * arrays.sin(angle) * (pi / 2 * cos(pi / 2 * x))
+
+        return 2 * pi * joint.socket_radius**2 * edge * arrays.integral(ring, 40)
+
+    def indentation(self, joint: Joint, force: Array) -> Array:
+        """d in mm that belongs to F.
+
+        Force laws of contact are close to power laws, ln F against ln d has a slope between 1 and 2 (0.4 and 2.5 to
+        be safe), so one point of the curve brackets every other one, and Newton's method in the logarithms is quick.
+        """
+        scale = joint.clearance + 1e-3 * joint.socket_radius
+        known = arrays.log(self.force(joint, scale))
+        goal = arrays.log(arrays.positive(force)) - known
+        steep, flat = goal / 2.5, goal / 0.4
+
+        def law(log_ratio: Array) -> tuple[Array, Array]:
+            d = scale * arrays.exp(log_ratio)
+            F = self.force(joint, d)
+            return arrays.log(F) - known, d * self.stiffness(joint, d) / F
+
+        shape = (steep, flat, known)
+        low = arrays.broadcast(where(goal > 0, steep, flat), *shape)
+        high = arrays.broadcast(where(goal > 0, flat, steep), *shape)
+        root = arrays.increasing_root(law, arrays.broadcast(goal, *shape), low, high, low + (high - low) / 4)
+        return where(force > 0, scale * arrays.exp(root), 0.0 * root)
+
+    def press(
+        self,
+        joint: Joint,
+        *,
+        force: Array | None = None,
+        indentation: Array | None = None,
+        half_angle: Array | None = None,
+    ) -> Contact:
+        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
+        plain, joint, load = prepared(joint, given)
+        inside = inside_domain(self, joint)
+        with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
+            return self._pressed(joint, kind, load, plain, inside)
+
+    def _pressed(self, joint: Joint, kind: str, load: Array, plain: bool, inside: Array) -> Contact:
+        if kind == "force":
+            d = self.indentation(joint, load)
+            F = load
+        elif kind == "half_angle":
+            d = where(load > 0, self.indentation_of_half_angle(joint, load), 0.0 * load)
+            F = self.force(joint, d)
+        else:
+            d, F = load, self.force(joint, load)
+        return finished(self, joint, kind, plain, inside, d, F)
+
+
+def checked_load(**loads: Array | None) -> tuple[str, Array]:
+    """The one load that was given, checked, with its name."""
+    kind, given = one_load(**loads)
+    load = numeric(kind, given)
+    if kind == "half_angle":
+        require(kind, load, (load >= 0) & (load < pi / 2), "a half angle (rad) is 0 or more and below pi/2")
+    else:
+        unit = "N" if kind == "force" else "mm"
+        allowed = f"{'a force' if kind == 'force' else 'an indentation'} ({unit}) is 0 or more and finite"
+        require(kind, load, (load >= 0) & (load < numpy.inf), allowed)
+    return kind, load
+
+
+def prepared(joint: Joint, load: Array) -> tuple[bool, Joint, Array]:
+    """Whether only plain numbers came in, and joint and load as arrays of one library and dtype."""
+    numbers = (*joint.numbers(), load)
+    plain = all(arrays.is_plain(number) for number in numbers)
+    *joint_numbers, load = arrays.common(*numbers)
+    return plain, joint.with_numbers(joint_numbers), load
+
+
+def inside_domain(model: Any, joint: Joint) -> Array:
+    """Where the model has a formula; OutsideDomainError (a ValueError) where it has none for any point."""
+    inside: Array = joint.ball_radius == joint.ball_radius
+    for limit in model.domain:
+        holds = limit.strictly_holds(SimpleNamespace(joint=joint))
+        if arrays.truth(~holds):
+            raise OutsideDomainError(f"{model.name} has no answer for {_value_text(limit, joint)}: {limit.why}")
+        inside = inside & holds
+    return inside
+
+
+def _value_text(limit: Range, joint: Joint) -> str:
+    value = arrays.to_numpy(limit.of(SimpleNamespace(joint=joint))).ravel()
+    return f"{limit.symbol} = {value[0]:g}" + (f" (and {value.size - 1} more)" if value.size > 1 else "")
+
+
+def finished(model: ClosedForm, joint: Joint, kind: str, plain: bool, inside: Array, d: Array, F: Array) -> Contact:
+    """The contact with its status: NaN where there is no answer, and why."""
+    xp = arrays.namespace(d, F)
+    d = arrays.broadcast(d, F, *joint.numbers())
+    F = arrays.broadcast(F, d)
+    found = arrays.isfinite(d) & arrays.isfinite(F)
+    safe = where(found, d, 0.0)
+    rounding = 1e3 * float(xp.finfo(d.dtype).eps)
+    converged = xp.abs(model.force(joint, safe) - F) <= rounding * xp.abs(F)
+    status = xp.astype(model.half_angle(joint, safe) > pi / 2 * (1 + 1e-6), xp.int8) * int(Status.BEYOND_EQUATOR)
+    for good, code in ((converged, Status.NOT_CONVERGED), (found, Status.NOT_REACHED), (inside, Status.OUTSIDE_DOMAIN)):
+        status = where(good, status, xp.asarray(int(code), dtype=xp.int8))
+    answered = (status == int(Status.OK)) | (status == int(Status.BEYOND_EQUATOR))
+    d, F = where(answered, d, xp.nan), where(answered | (kind == "force"), F, xp.nan)
+    if plain:
+        return Contact(
+            model=model, laws=model, joint=joint, force=float(F), indentation=float(d), status=Status(int(status))
+        )
+    return Contact(model=model, laws=model, joint=joint, force=F, indentation=d, status=status)

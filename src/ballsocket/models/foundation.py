@@ -1,0 +1,138 @@
+"""The radial foundation: a rigid ball on springs that act along the socket's radius. The paper's model and its kin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..arrays import Array, asin, cos, sin, sqrt, where
+from ..joint import Joint
+from ..sources import Source
+from ..validity import SMALL_STRAIN, Range
+from .base import ClosedForm
+from .kinematics import Kinematics, cosine_kinematics, exact_kinematics, linear_kinematics
+from .modulus import Modulus, bonded_layer, hess_forsbach, spherical_vessel
+
+
+@dataclass(frozen=True, kw_only=True)
+class RadialFoundation(ClosedForm):
+    """p = K u on the socket's surface, u the radial displacement under a rigid ball.
+
+    Parameters
+    ----------
+    modulus : Modulus
+        How stiff: `hess_forsbach` (default), `spherical_vessel`, `bonded_layer`, `polynomial(...)`, `constant(...)`.
+    kinematics : Kinematics
+        How the ball's shape is taken: `linear_kinematics` (Eq. 6, default), `exact_kinematics` (Eq. 5) or
+        `cosine_kinematics` (Eq. 6 without clearance).
+
+    References
+    ----------
+    Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (4)-(13). The closed form for exact kinematics, which the
+    paper calls numerical, is derived in the docs (theory).
+    """
+
+    modulus: Modulus = hess_forsbach
+    kinematics: Kinematics = linear_kinematics
+
+    @property
+    def name(self) -> str:
+        return _NAMES.get((self.modulus.name, self.kinematics.name), f"{self.modulus.name}-{self.kinematics.name}")
+
+    @property
+    def title(self) -> str:
+        return f"radial springs, {self.kinematics.name} kinematics; {self.modulus.title}"
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return (*self.modulus.sources, *self.kinematics.sources)
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        return self.modulus.domain
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        return (*self.modulus.validity, *self.kinematics.validity, SMALL_STRAIN)
+
+    def force(self, joint: Joint, indentation: Array) -> Array:
+        return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus(joint), indentation)
+
+    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+        return self.kinematics.stiffness(joint.socket_radius, joint.clearance, self.modulus(joint), indentation)
+
+    def energy(self, joint: Joint, indentation: Array) -> Array:
+        return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus(joint), indentation)
+
+    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
+        return self.kinematics.pressure_integral(joint.socket_radius, joint.clearance, self.modulus(joint), indentation)
+
+    def indentation(self, joint: Joint, force: Array) -> Array:
+        d = self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus(joint), force)
+        return where(self._rising(joint, d), d, float("nan"))
+
+    def _rising(self, joint: Joint, indentation: Array) -> Array:
+        """Beyond the top of the force's curve (exact kinematics, more than a socket radius deep) there is no root."""
+        return self.stiffness(joint, indentation) >= 0
+
+    def half_angle(self, joint: Joint, indentation: Array) -> Array:
+        versine = self.kinematics.versine(joint.socket_radius, joint.clearance, indentation)
+        return 2 * asin(sqrt(versine / 2))
+
+    def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
+        versine = 2 * sin(half_angle / 2) ** 2
+        return self.kinematics.indentation_of_versine(joint.socket_radius, joint.clearance, versine)
+
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        return self.modulus(joint) * indentation
+
+    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
+        return self.modulus(joint) + 0.0 * indentation
+
+    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        versine = 2 * sin(angle / 2) ** 2
+        u = self.kinematics.displacement(joint.socket_radius, joint.clearance, indentation, versine)
+        inside = (u > 0) & (cos(angle) > 0)
+        return where(inside, self.modulus(joint) * u, 0.0)
+
+
+_NAMES = {
+    ("hess-forsbach", "linear"): "hess-forsbach",
+    ("hess-forsbach", "cosine"): "cosine-limit",
+    ("spherical-vessel", "linear"): "vessel",
+    ("spherical-vessel", "exact"): "bartel",
+    ("bonded-layer", "linear"): "bonded-layer",
+    ("bonded-layer", "exact"): "bonded-layer-exact",
+}
+
+
+def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like the models it stands beside
+    """The paper's model: linear kinematics and the modulus fitted to finite elements (Table 3)."""
+    return RadialFoundation()
+
+
+def Vessel() -> RadialFoundation:  # noqa: N802
+    """Vessel modulus with linear kinematics: the closed form that the paper suggests in place of Bartel's integral.
+
+    Also the constrained radial columns with K_B of Jin, Dowson & Fisher 1994.
+    """
+    return RadialFoundation(modulus=spherical_vessel)
+
+
+def Bartel() -> RadialFoundation:  # noqa: N802
+    """Bartel et al. 1985: vessel modulus with exact kinematics, here in closed form."""
+    return RadialFoundation(modulus=spherical_vessel, kinematics=exact_kinematics)
+
+
+def BondedLayer() -> RadialFoundation:  # noqa: N802
+    """Bonded-layer (constrained column) modulus with linear kinematics, as the paper compares it."""
+    return RadialFoundation(modulus=bonded_layer)
+
+
+def BondedLayerExact() -> RadialFoundation:  # noqa: N802
+    """Bonded-layer modulus with exact kinematics: the physics of Askari & Andersen 2018 (their text was not read)."""
+    return RadialFoundation(modulus=bonded_layer, kinematics=exact_kinematics)
+
+
+def CosineLimit() -> RadialFoundation:  # noqa: N802
+    """The paper's modulus in the limit of no clearance: p = p0 cos φ up to 90 degrees, F = (2π/3) K R2² d."""
+    return RadialFoundation(kinematics=cosine_kinematics)

@@ -1,0 +1,165 @@
+"""Half-space models: Hertz, and Steuermann's power-law gap."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from math import comb, factorial, inf, pi, radians
+
+from ..arrays import Array, clip, sqrt, where
+from ..joint import Joint
+from ..sources import Source
+from ..validity import SMALL_STRAIN, Range
+from .base import ClosedForm
+
+
+class HalfSpace(ClosedForm):
+    """Two elastic half-spaces with the gap A r^(2n) between them; r is the arc from the pole, a = R2 ε at the edge.
+
+    d = κ A a^(2n) with κ = (2n)!!/(2n - 1)!!. The gap is the parabola of the two spheres at r = R2, so n = 1 is Hertz:
+    A = R2^(2 - 2n)/(2 R*), R* = R1 R2/c.
+    """
+
+    @property
+    @abstractmethod
+    def order(self) -> int:
+        """n"""
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        why = "the effective radius R1 R2/c is infinite without clearance, so a half-space carries no finite load"
+        return (Range(quantity="joint.clearance", symbol="c", low=0.0, why=why),)
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        return (
+            Range(
+                quantity="half_angle",
+                symbol="ε",
+                high=radians(10.0),
+                why="a half-space ignores that the surfaces curve (3 % too soft at 10°)",
+            ),
+            Range(quantity="width_ratio", symbol="a/L", high=0.3, why="a half-space ignores the backing of the liner"),
+            SMALL_STRAIN,
+        )
+
+    def _profile(self, joint: Joint) -> Array:
+        """κ A in mm^(1 - 2n)."""
+        n = self.order
+        kappa = 4**n * factorial(n) ** 2 / factorial(2 * n)
+        R2 = joint.socket_radius
+        return kappa * joint.clearance / (2 * joint.ball_radius * R2) * R2 ** (2 - 2 * n)
+
+    def _radius(self, joint: Joint, indentation: Array) -> Array:
+        return (indentation / self._profile(joint)) ** (1 / (2 * self.order))
+
+    def force(self, joint: Joint, indentation: Array) -> Array:
+        # F = 2 E* d a 2n/(2n + 1)
+        n = self.order
+        return 4 * n / (2 * n + 1) * joint.effective_modulus * indentation * self._radius(joint, indentation)
+
+    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+        # a flat punch of the contact radius: dF/dd = 2 E* a
+        return 2 * joint.effective_modulus * self._radius(joint, indentation)
+
+    def energy(self, joint: Joint, indentation: Array) -> Array:
+        # F ~ d^(1 + 1/2n)
+        n = self.order
+        return 2 * n / (4 * n + 1) * self.force(joint, indentation) * indentation
+
+    def indentation(self, joint: Joint, force: Array) -> Array:
+        n = self.order
+        profile = self._profile(joint)
+        radius = (force * ((2 * n + 1) / (4 * n)) / (joint.effective_modulus * profile)) ** (1 / (2 * n + 1))
+        return profile * radius ** (2 * n)
+
+    def half_angle(self, joint: Joint, indentation: Array) -> Array:
+        return self._radius(joint, indentation) / joint.socket_radius
+
+    def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
+        return self._profile(joint) * (half_angle * joint.socket_radius) ** (2 * self.order)
+
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        # p0 = (E*/π) 2n/(2n - 1) d/a, with d/a = κ A a^(2n - 1)
+        n = self.order
+        slope = self._profile(joint) * self._radius(joint, indentation) ** (2 * n - 1)
+        return joint.effective_modulus / pi * (2 * n / (2 * n - 1)) * slope
+
+    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        # p = (E*/π) κ A 2n ∫ t^(2n - 1)/sqrt(t² - r²) dt over r..a, a polynomial in y = sqrt(a² - r²)
+        n = self.order
+        r = angle * joint.socket_radius
+        a = self._radius(joint, indentation)
+        y = sqrt(clip(a**2 - r**2, 0.0, inf))
+        series = 0.0 * y
+        for j in range(n):
+            series = series + comb(n - 1, j) / (2 * j + 1) * r ** (2 * (n - 1 - j)) * y ** (2 * j + 1)
+        return where(r < a, joint.effective_modulus / pi * self._profile(joint) * 2 * n * series, 0.0)
+
+    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
+        # on a plane the pressure has one direction
+        return self.force(joint, indentation)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hertz(HalfSpace):
+    """Hertz 1882 with R* = R1 R2/c: the start of every contact, and no more than that in a close socket.
+
+    References
+    ----------
+    Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (1)-(3); Johnson 1985, chapter 4.
+    """
+
+    @property
+    def order(self) -> int:
+        return 1
+
+    @property
+    def name(self) -> str:
+        return "hertz"
+
+    @property
+    def title(self) -> str:
+        return "two elastic half-spaces, parabolic gap"
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return (Source("hertz1882"), Source("hess2021", "(1), (2), (3)"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Steuermann(HalfSpace):
+    """Steuermann 1939: two half-spaces with a gap that grows like r^(2n), flatter at the pole than Hertz's parabola.
+
+    Parameters
+    ----------
+    exponent : int
+        n, 1 or more; 1 is Hertz. What n stands for a given socket is the user's choice, which is the model's
+        known weakness.
+
+    References
+    ----------
+    Steuermann 1939; Johnson 1985, section 5.3.
+    """
+
+    exponent: int = 2
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.exponent, int) or self.exponent < 1:
+            raise ValueError(f"exponent = {self.exponent!r} is not allowed: a whole number of 1 or more")
+
+    @property
+    def order(self) -> int:
+        return self.exponent
+
+    @property
+    def name(self) -> str:
+        return "steuermann"
+
+    @property
+    def title(self) -> str:
+        return f"two elastic half-spaces, gap growing like r^{2 * self.exponent}"
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return (Source("steuermann1939"), Source("johnson1985", "section 5.3"))

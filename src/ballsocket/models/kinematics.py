@@ -1,0 +1,231 @@
+"""How far a displaced ball presses into each point of a radial foundation, and what follows from it.
+
+Two closed forms of the same problem: a rigid ball of radius R1 whose centre sits e = c + d below the centre of a
+socket of radius R2 = R1 + c, on springs that act along the radius. With u(φ) the radial displacement of the socket's
+surface and p = K u,
+
+    F = 2π R2² ∫ p cos φ sin φ dφ.
+
+All lengths in mm, K in MPa/mm, forces in N. Every formula is written in the form that does not cancel, from
+d/c = 1e-12 to 1e6, and holds for c = 0. `versine` is 1 - cos ε of the half angle ε.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi
+
+from ..arrays import Array, integral, positive, sqrt, where
+from ..sources import Source
+from ..validity import Range
+
+
+def linear_versine(R2: Array, c: Array, d: Array) -> Array:
+    # Eq. (8): cos ε = c/(c + d)
+    return d / positive(c + d)
+
+
+def linear_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
+    # Eq. (8) solved for d
+    return c * versine / positive(1 - versine)
+
+
+def linear_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
+    # Eq. (6): u = d cos φ - c (1 - cos φ), with m = 1 - cos φ
+    return d - (c + d) * m
+
+
+def linear_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    # Eq. (13): F = π R2² K/3 [2d - c + c (c/(c + d))²]
+    e = positive(c + d)
+    return (pi / 3) * K * R2**2 * (d * d * (3 * c + 2 * d) / (e * e))
+
+
+def linear_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    # slope of Eq. (13)
+    e = positive(c + d)
+    x = c / e
+    return (2 * pi / 3) * K * R2**2 * (d / e) * (1 + x + x * x)
+
+
+def linear_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    # integral of Eq. (13), which is also the energy of the springs
+    return (pi / 3) * K * R2**2 * d * d * (d / positive(c + d))
+
+
+def linear_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    # ∫ p dA = 2π R2² K ∫ u sin φ dφ
+    return pi * K * R2**2 * d * (d / positive(c + d))
+
+
+def linear_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
+    # Eq. (13) solved for d: a cubic. The first guess is right at both ends (d << c and d >> c) and never more than
+    # 3.1 % off; two Halley steps (on 2z - 3 + 1/z² = q, z = 1 + d/c) take that to 1e-18.
+    s = 1.5 * F / (pi * R2**2 * K)
+    d = 0.5 * (s + sqrt(s * (s + (8 / 3) * c)))
+    for _ in range(2):
+        e = c + d
+        N = d * d * (3 * c + 2 * d) - 2 * s * e * e
+        M = d * (3 * c * (c + d) + d * d)
+        d = d - 2 * N * M * e / positive(4 * M * M - 3 * N * c * c * c)
+    return d
+
+
+def cosine_versine(R2: Array, c: Array, d: Array) -> Array:
+    return where(d > 0, 1.0, 0.0 * d)
+
+
+def cosine_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
+    # every indentation gives 90 degrees
+    return versine * float("nan")
+
+
+def cosine_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
+    return linear_displacement(R2, 0.0 * c, d, m)
+
+
+def cosine_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    return linear_force(R2, 0.0 * c, K, d)
+
+
+def cosine_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    return linear_stiffness(R2, 0.0 * c, K, d)
+
+
+def cosine_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    return linear_energy(R2, 0.0 * c, K, d)
+
+
+def cosine_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    return linear_pressure_integral(R2, 0.0 * c, K, d)
+
+
+def cosine_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
+    # F = (2π/3) K R2² d
+    return 1.5 * F / (pi * R2**2 * K)
+
+
+def circular_versine(R2: Array, c: Array, d: Array) -> Array:
+    # Eq. (5) with u = 0: cos ε = (e² + R2² - R1²)/(2 e R2)
+    return d * (2 * (R2 - c) - d) / positive(2 * R2 * (c + d))
+
+
+def circular_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
+    # smaller root of e² - 2 e R2 cos ε + R2² - R1² = 0, written for d = e - c; NaN beyond the largest half angle
+    b = R2 - c - R2 * versine
+    return 2 * R2 * c * versine / positive(b + sqrt(b * b - 2 * R2 * c * versine))
+
+
+def circular_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
+    # Eq. (5): u = e cos φ + sqrt(R1² - e² sin² φ) - R2, with m = 1 - cos φ
+    e = c + d
+    R1 = R2 - c
+    dropped = e * e * m * (2 - m)
+    return d - e * m - dropped / (R1 + sqrt(R1 * R1 - dropped))
+
+
+def circular_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    # Eq. (11) with Eq. (5): F = 2π R2² K {e (1 - k³)/3 + [R1³ - (R2 - e k)³]/(3 e²) - R2 (1 - k²)/2}, k = cos ε,
+    # which is a Laurent polynomial in e with a double root at first touch
+    e = positive(c + d)
+    return (pi / 12) * K * R2 * d * (d / e) * ((4 * R2 * (2 * e + c) - 3 * (e + c) ** 2) / e)
+
+
+def circular_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    # slope of the force
+    e = positive(c + d)
+    x = c / e
+    return (pi / 6) * K * R2 * (d / e) * (4 * R2 * (1 + x + x * x) - 3 * (e + c) * (1 + x * x))
+
+
+def circular_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    # integral of the force
+    return (pi / 12) * K * R2 * d * d * (d / positive(c + d)) * (4 * (R2 - c) - d)
+
+
+def circular_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    # ∫ p dA = 2π R2² K ∫ u dm over 0..versine by Gauss-Legendre with 8 points: u is nearly linear in m
+    versine = circular_versine(R2, c, d)
+    return 2 * pi * K * R2**2 * versine * integral(lambda x: circular_displacement(R2, c, d, x * versine), 8)
+
+
+def circular_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
+    # The force is less than that of Eq. (13), so the linear answer is a guess from below; the force is nearly linear
+    # in d there and Newton's method converges from that side.
+    d = linear_indentation(R2, c, K, F)
+    for _ in range(6):
+        slope = circular_stiffness(R2, c, K, d)
+        d = d - (circular_force(R2, c, K, d) - F) / where(slope > 0, slope, 1.0)
+    return d
+
+
+Law = Callable[..., Array]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kinematics:
+    """The formulas of a radial foundation, as plain functions; `linear_kinematics` and `exact_kinematics` are the two.
+
+    force, stiffness, energy and pressure_integral take (R2, c, K, d); indentation takes (R2, c, K, F); versine takes
+    (R2, c, d), its inverse indentation_of_versine (R2, c, versine), displacement (R2, c, d, 1 - cos φ).
+    """
+
+    name: str
+    sources: tuple[Source, ...]
+    force: Law
+    stiffness: Law
+    energy: Law
+    pressure_integral: Law
+    indentation: Law
+    versine: Law
+    indentation_of_versine: Law
+    displacement: Law
+    validity: tuple[Range, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"{self.name}_kinematics"
+
+
+linear_kinematics = Kinematics(
+    name="linear",
+    sources=(Source("hess2021", "(6), (8), (12), (13)"),),
+    force=linear_force,
+    stiffness=linear_stiffness,
+    energy=linear_energy,
+    pressure_integral=linear_pressure_integral,
+    indentation=linear_indentation,
+    versine=linear_versine,
+    indentation_of_versine=linear_indentation_of_versine,
+    displacement=linear_displacement,
+)
+"""u = d cos φ - c (1 - cos φ), Eq. (6) of the paper: sin² φ neglected under the root of Eq. (5)."""
+
+cosine_kinematics = Kinematics(
+    name="cosine",
+    sources=(Source("hess2021", "(6), (8), (13)"),),
+    force=cosine_force,
+    stiffness=cosine_stiffness,
+    energy=cosine_energy,
+    pressure_integral=cosine_pressure_integral,
+    indentation=cosine_indentation,
+    versine=cosine_versine,
+    indentation_of_versine=cosine_indentation_of_versine,
+    displacement=cosine_displacement,
+    validity=(Range(quantity="conformity", symbol="c/d", high=0.05, why="the limit of a ball that fills its socket"),),
+)
+"""u = d cos φ: Eq. (6) in the limit of vanishing clearance, half angle 90 degrees at any load."""
+
+exact_kinematics = Kinematics(
+    name="exact",
+    sources=(Source("bartel1985", ""), Source("hess2021", "(4), (5), (11)")),
+    force=circular_force,
+    stiffness=circular_stiffness,
+    energy=circular_energy,
+    pressure_integral=circular_pressure_integral,
+    indentation=circular_indentation,
+    versine=circular_versine,
+    indentation_of_versine=circular_indentation_of_versine,
+    displacement=circular_displacement,
+)
+"""u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5) of the paper: the circle that the ball is."""

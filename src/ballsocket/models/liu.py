@@ -1,0 +1,101 @@
+"""Liu, Zhang & Yang's construction for spherical joints, reconstructed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, pi
+
+from ..arrays import Array, asin, clip, integral, log, positive, sin, sqrt, where
+from ..checks import require
+from ..joint import Joint
+from ..sources import Source
+from ..validity import SMALL_STRAIN, Range
+from .base import ClosedForm
+from .kinematics import linear_indentation_of_versine, linear_versine
+
+
+@dataclass(frozen=True, kw_only=True)
+class LiuReconstruction(ClosedForm):
+    """F = (4π λ/3) E* R2 d²/(c + d), a reconstruction and not the published formula.
+
+    A rigid cone on a plane Winkler layer as thick as the socket's radius, with an ellipsoidal pressure over the
+    contact circle a = R2 sin ε, cos ε = c/(c + d). The text of Liu et al. 2006 and its coefficients were not
+    available; their construction is as Heß & Forsbach 2021 (section 2) describe it.
+
+    Parameters
+    ----------
+    coefficient : float
+        λ, the one fitted number; 1/2 before any fit.
+    """
+
+    coefficient: float = 0.5
+
+    def __post_init__(self) -> None:
+        require("coefficient", self.coefficient, 0 < self.coefficient < inf, "a coefficient is above 0 and finite")
+
+    @property
+    def name(self) -> str:
+        return "liu-reconstruction"
+
+    @property
+    def title(self) -> str:
+        return "cone on a plane Winkler layer, ellipsoidal pressure (a reconstruction)"
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return (Source("liu2006"), Source("hess2021", "section 2"))
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        same = "made for ball and socket of one material"
+        massive = "made for a massive socket: the liner's thickness does not enter"
+        return (
+            Range(quantity="joint.modulus_ratio", symbol="E/E_ball", low=0.5, high=2.0, why=same),
+            Range(quantity="joint.thickness_ratio", symbol="R2/L", high=1.0, why=massive),
+            SMALL_STRAIN,
+        )
+
+    def _factor(self, joint: Joint) -> Array:
+        return 4 * pi * self.coefficient / 3 * joint.effective_modulus * joint.socket_radius
+
+    def force(self, joint: Joint, indentation: Array) -> Array:
+        return self._factor(joint) * indentation * (indentation / positive(joint.clearance + indentation))
+
+    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+        e = positive(joint.clearance + indentation)
+        return self._factor(joint) * (indentation / e) * (1 + joint.clearance / e)
+
+    def energy(self, joint: Joint, indentation: Array) -> Array:
+        # ∫ s²/(c + s) ds: by quadrature where the closed form cancels
+        c, d = joint.clearance, indentation
+        closed = d * d / 2 - c * d + c * c * log(1 + d / positive(c))
+        series = integral(lambda x: x * x / positive(c + d * x), 24)
+        return self._factor(joint) * where(d < c, d * d * d * series, closed)
+
+    def indentation(self, joint: Joint, force: Array) -> Array:
+        # d² - s d - s c = 0
+        s = force / self._factor(joint)
+        return (s + sqrt(s * (s + 4 * joint.clearance))) / 2
+
+    def half_angle(self, joint: Joint, indentation: Array) -> Array:
+        return 2 * asin(sqrt(linear_versine(joint.socket_radius, joint.clearance, indentation) / 2))
+
+    def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
+        versine = 2 * sin(half_angle / 2) ** 2
+        return linear_indentation_of_versine(joint.socket_radius, joint.clearance, versine)
+
+    def _square_sine(self, joint: Joint, indentation: Array) -> Array:
+        # sin² ε = d (2c + d)/(c + d)²
+        e = positive(joint.clearance + indentation)
+        return indentation / e * (1 + joint.clearance / e)
+
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        # F = (2/3) π a² p0; F and a² share the factor d/(c + d)
+        c, d = joint.clearance, indentation
+        share = d * (c + d) / positive(2 * c + d)
+        return 1.5 * self._factor(joint) * share / (pi * joint.socket_radius**2)
+
+    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        square = sin(angle) ** 2 / positive(self._square_sine(joint, indentation))
+        inside = (square < 1) & (angle < pi / 2) & (indentation > 0)
+        return where(inside, self.max_pressure(joint, indentation) * sqrt(clip(1 - square, 0.0, 1.0)), 0.0)

@@ -1,0 +1,213 @@
+"""Foundation moduli: how stiff the springs of a radial foundation are, from geometry and material (MPa/mm)."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.resources import files
+from math import inf
+from typing import Any
+
+import numpy
+
+from ..arrays import Array, clip
+from ..checks import numeric, require
+from ..joint import Joint
+from ..sources import Source
+from ..validity import RIGID_BALL, Range
+
+Formula = Callable[[Array, Array, Array, Array], Array]
+"""K of R2, L, E, ν."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Modulus:
+    """A foundation modulus: Joint -> MPa/mm, with its source, its domain and its validity.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> hip = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE)
+    >>> round(bs.hess_forsbach(hip), 2), round(bs.spherical_vessel(hip), 2), round(bs.bonded_layer(hip), 2)
+    (276.67, 302.63, 317.46)
+    """
+
+    name: str
+    title: str
+    formula: Formula
+    sources: tuple[Source, ...] = ()
+    domain: tuple[Range, ...] = ()
+    validity: tuple[Range, ...] = ()
+
+    def __call__(self, joint: Joint) -> Array:
+        return self.formula(joint.socket_radius, joint.liner_thickness, joint.liner.young, joint.liner.poisson)
+
+    def __repr__(self) -> str:
+        return self.name.replace("-", "_")
+
+
+def vessel_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
+    # Eq. (14), K_B, with 1 - κ³ = (1 - κ)(1 + κ + κ²) and 1 - κ = L/(R2 + L)
+    kappa = 1 / (1 + L / R2)
+    gap = 1 / (1 + R2 / L) * (1 + kappa * (1 + kappa))
+    return E / R2 * (2 * (1 - 2 * nu) + (1 + nu) * kappa**3) / ((1 + nu) * (1 - 2 * nu) * gap)
+
+
+def layer_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
+    # Eq. (15), K_BL
+    return (1 - nu) / ((1 + nu) * (1 - 2 * nu)) * E / L
+
+
+def _poisson(low: float, high: float, why: str) -> Range:
+    return Range(quantity="joint.liner.poisson", symbol="ν", low=low, high=high, why=why)
+
+
+def _thickness_ratio(low: float, high: float, why: str) -> Range:
+    return Range(quantity="joint.thickness_ratio", symbol="R2/L", low=low, high=high, why=why)
+
+
+_COMPRESSIBLE = _poisson(-1.0, 0.5, "the modulus is unbounded for an incompressible liner (ν = 0.5)")
+_FINITE_LAYER = Range(
+    quantity="joint.liner_thickness",
+    symbol="L",
+    low=0.0,
+    high=inf,
+    why="a layer of infinite thickness has no stiffness",
+)
+
+spherical_vessel = Modulus(
+    name="spherical-vessel",
+    title="spherical vessel under uniform pressure, K_B",
+    formula=vessel_formula,
+    sources=(Source("bartel1985"), Source("hess2021", "(14)")),
+    domain=(_COMPRESSIBLE,),
+    validity=(
+        _poisson(-1.0, 0.45, "stiffer than finite elements from about 0.45 on, without bound towards 0.5"),
+        RIGID_BALL,
+    ),
+)
+"""K_B of Bartel et al. 1985: exact for uniform pressure all around, Eq. (14) of the paper."""
+
+bonded_layer = Modulus(
+    name="bonded-layer",
+    title="thin compressible layer bonded to a rigid base, K_BL",
+    formula=layer_formula,
+    sources=(Source("johnson1985"), Source("hess2021", "(15)")),
+    domain=(_COMPRESSIBLE, _FINITE_LAYER),
+    validity=(
+        _poisson(-1.0, 0.45, "unbounded towards 0.5"),
+        Range(quantity="width_ratio", symbol="a/L", low=2.0, why="the layer must be thin against the contact radius"),
+        RIGID_BALL,
+    ),
+)
+"""K_BL of uniaxial compression between bonded faces, Eq. (15) of the paper."""
+
+
+def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
+    """K R2/E = c1 + c2 (R2/L) + c3 (R2/L)², Eq. (18), with constants of one's own.
+
+    Raises
+    ------
+    ValueError
+        A constant that is negative or NaN.
+    """
+    for name, value in (("c1", c1), ("c2", c2), ("c3", c3)):
+        require(name, numeric(name, value), value >= 0, "a constant of Eq. (18) is 0 or more")
+
+    def formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
+        ratio = R2 / L
+        return E / R2 * (c1 + ratio * (c2 + ratio * c3))
+
+    title = f"Eq. (18) with constants {c1}, {c2}, {c3}" + (f" ({source})" if source else "")
+    return Modulus(name="polynomial", title=title, formula=formula, sources=(Source("hess2021", "(18)"),))
+
+
+def constant(modulus: Array) -> Modulus:
+    """A foundation modulus known from elsewhere, in MPa/mm, positive.
+
+    Raises
+    ------
+    ValueError
+        A modulus that is not positive and finite.
+    """
+    value = numeric("modulus", modulus)
+    require("modulus", value, (value > 0) & (value < inf), "a foundation modulus (MPa/mm) is above 0 and finite")
+
+    def formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
+        return value + 0.0 * R2
+
+    return Modulus(name="constant", title=f"{modulus} MPa/mm", formula=formula)
+
+
+def table_3() -> dict[str, Any]:
+    """Table 3 of the paper: Poisson's ratios and the constants C1, C2, C3."""
+    return tomllib.loads((files("ballsocket") / "data" / "hess_forsbach_2021.toml").read_text(encoding="utf-8"))
+
+
+def _monotone_slopes(x: numpy.ndarray, y: numpy.ndarray) -> numpy.ndarray:
+    """Slopes at the knots of the monotone cubic of Fritsch & Butland 1984 (doi 10.1137/0905021), in rows of y.
+
+    The same as `scipy.interpolate.PchipInterpolator`, which would double the time that importing takes.
+    """
+    width = numpy.diff(x)
+    rise = numpy.diff(y) / width
+    first, last = width[1:] + 2 * width[:-1], 2 * width[1:] + width[:-1]
+    with numpy.errstate(divide="ignore"):
+        inner = (last + first) / (last / rise[:, :-1] + first / rise[:, 1:])
+    inner = numpy.where(rise[:, :-1] * rise[:, 1:] > 0, inner, 0.0)
+    ends = []
+    for (h0, h1), (m0, m1) in (((width[0], width[1]), rise[:, :2].T), ((width[-1], width[-2]), rise[:, :-3:-1].T)):
+        end = ((2 * h0 + h1) * m0 - h0 * m1) / (h0 + h1)
+        end = numpy.where(end * m0 <= 0, 0.0, end)
+        ends.append(numpy.where((m0 * m1 < 0) & (abs(end) > 3 * abs(m0)), 3 * m0, end))
+    return numpy.column_stack([ends[0], inner, ends[1]])
+
+
+def _table_formula() -> Formula:
+    """Eq. (18) with the constants of Table 3, monotone cubics in ν between its columns, constant outside."""
+    table = table_3()
+    knots = numpy.array(table["poisson"])
+    values = numpy.array([table["C1"], table["C2"], table["C3"]])
+    width, rise = numpy.diff(knots), numpy.diff(values) / numpy.diff(knots)
+    slopes = _monotone_slopes(knots, values)
+    second = (3 * rise - 2 * slopes[:, :-1] - slopes[:, 1:]) / width
+    third = (slopes[:, :-1] + slopes[:, 1:] - 2 * rise) / width**2
+    start = tuple(map(float, values[:, 0]))
+    # the increment over each interval is a cubic in the part of the interval passed: no branch, any array
+    (a1, b1, c1), (a2, b2, c2), (a3, b3, c3), (a4, b4, c4) = (
+        tuple(tuple(map(float, part[:, i])) for part in (slopes, second, third)) for i in range(4)
+    )
+    x1, x2, x3, x4 = map(float, knots[:-1])
+    w1, w2, w3, w4 = map(float, width)
+
+    def formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
+        ratio = R2 / L
+        t1, t2, t3, t4 = clip(nu - x1, 0.0, w1), clip(nu - x2, 0.0, w2), clip(nu - x3, 0.0, w3), clip(nu - x4, 0.0, w4)
+
+        def eq_18(constants):  # type: ignore[no-untyped-def]
+            return constants[0] + ratio * (constants[1] + ratio * constants[2])
+
+        scaled = eq_18(start)
+        scaled = scaled + t1 * (eq_18(a1) + t1 * (eq_18(b1) + t1 * eq_18(c1)))
+        scaled = scaled + t2 * (eq_18(a2) + t2 * (eq_18(b2) + t2 * eq_18(c2)))
+        scaled = scaled + t3 * (eq_18(a3) + t3 * (eq_18(b3) + t3 * eq_18(c3)))
+        scaled = scaled + t4 * (eq_18(a4) + t4 * (eq_18(b4) + t4 * eq_18(c4)))
+        return E / R2 * scaled
+
+    return formula
+
+
+hess_forsbach = Modulus(
+    name="hess-forsbach",
+    title="fitted to finite elements, Table 3",
+    formula=_table_formula(),
+    sources=(Source("hess2021", "(18), Table 3"),),
+    validity=(
+        _poisson(0.30, 0.49, "Table 3 ends there; its last column is kept beyond"),
+        _thickness_ratio(0.73, 7.7, "Table 1: R1 11 to 23 mm, L 3 to 15 mm"),
+        Range(quantity="joint.clearance_ratio", symbol="c/R2", high=0.018, why="Table 1: clearance up to 0.2 mm"),
+        RIGID_BALL,
+    ),
+)
+"""The paper's fit (18), with monotone cubic interpolation in ν between the columns of Table 3."""

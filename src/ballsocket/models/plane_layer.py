@@ -1,0 +1,258 @@
+"""A rigid ball on a plane elastic layer bonded to a rigid base: numerical, and exact for that plane problem."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from math import ceil, inf, pi, radians
+
+import numpy
+
+from .. import arrays
+from ..arrays import Array, broadcast, clip, cos, exp, gauss_legendre, integral, log, positive, sin, sqrt, where
+from ..contact import Contact
+from ..joint import Joint
+from ..sources import Source
+from ..validity import RIGID_BALL, SMALL_STRAIN, Range, Status
+from .base import Model, checked_load, inside_domain, prepared
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlaneLayer(Model):
+    """Jin 2000: the ball-in-socket as a paraboloid of R* = R1 R2/c on a plane layer of the liner's thickness.
+
+    The layer's Hankel kernel 2(1 - ν²)/E Φ(kL)/k turns, in Abel space, into an integral equation of the second kind
+    for H(t) on [0, a], which is solved with Gauss-Legendre points (see the docs, theory):
+
+        (π/2) H(t) + ∫ H(s) ∫ [Φ(kL) - 1] cos kt cos ks dk ds = (d - t²/R*) E / (2(1 - ν²)),   H(a) = 0.
+
+    Half angles are arcs, ε = a/R2.
+
+    References
+    ----------
+    Jin 2000, Proc. IMechE H 214, 425.
+    """
+
+    @property
+    def name(self) -> str:
+        return "plane-layer"
+
+    @property
+    def title(self) -> str:
+        return "rigid ball on a plane layer bonded to a rigid base (numerical)"
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return (Source("jin2000"),)
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        flat = "the effective radius R1 R2/c is infinite without clearance"
+        massive = "a layer of infinite thickness is a half-space: ask hertz"
+        return (
+            Range(quantity="joint.clearance", symbol="c", low=0.0, why=flat),
+            Range(quantity="joint.liner_thickness", symbol="L", low=0.0, high=inf, why=massive),
+        )
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        why = "the plane layer has no curvature: p0 is 23 % low at 45° (R2 18, L 6.75)"
+        return (Range(quantity="half_angle", symbol="ε", high=radians(20.0), why=why), RIGID_BALL, SMALL_STRAIN)
+
+    def press(
+        self,
+        joint: Joint,
+        *,
+        force: Array | None = None,
+        indentation: Array | None = None,
+        half_angle: Array | None = None,
+    ) -> Contact:
+        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
+        plain, joint, load = prepared(joint, given)
+        inside = inside_domain(self, joint)
+        with numpy.errstate(all="ignore"):
+            solution = _solve(joint, kind, load)
+            return _contact(self, joint, kind, load, plain, inside, solution)
+
+
+def layer_ratio(x: Array, poisson: Array) -> Array:
+    """Φ(x) - 1 of the bonded layer: Φ = [2 k0 sinh 2x - 4x]/[2 k0 cosh 2x + 1 + k0² + 4x²], k0 = 3 - 4ν."""
+    k0 = 3 - 4 * poisson
+    decay = exp(-2 * x)
+    below = k0 * (1 + decay * decay) + (1 + k0 * k0 + 4 * x * x) * decay
+    return -decay * (2 * k0 * decay + (1 + 2 * x) ** 2 + k0 * k0) / below
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LayerSolution:
+    """The scaled solution at the contact width α = a/L: H = (a²/(R* C)) (δ h1 - h2), δ = d R*/a², C = 2(1 - ν²)/E.
+
+    h1 and h2 answer the right-hand sides 1 and x², x = t/a; the quadrature is made for widths up to `widest`. Also
+    the `Laws` of the contact it belongs to.
+    """
+
+    joint: Joint
+    width: Array
+    widest: float
+
+    @cached_property
+    def _parts(self) -> tuple[Array, ...]:
+        """(transform of h1, of h2, h1(1), h2(1), moments)"""
+        xp = arrays.namespace(self.width)
+        like = {"dtype": self.width.dtype, "device": arrays.device(self.width)}
+        x, wx, k, wk = (xp.asarray(part, **like) for part in _quadrature(self.widest))
+        alpha = self.width[..., None, None]
+        kernel = layer_ratio(k, self.joint.liner.poisson[..., None]) * wk
+        waves = cos(k[:, None] * x * alpha)
+        matrix = alpha * (xp.matrix_transpose(waves) @ (kernel[..., None] * waves)) * wx
+        matrix = matrix + pi / 2 * xp.eye(x.shape[0], **like)
+        sides = xp.stack([xp.ones_like(x), x * x], axis=-1)
+        sides = xp.broadcast_to(sides, (*matrix.shape[:-1], 2))
+        h = xp.linalg.solve(matrix, sides)
+        weighted = wx[:, None] * h
+        transform = waves @ weighted
+        edge_wave = cos(k * self.width[..., None])
+        edge = (1 - self.width[..., None] * xp.sum((kernel * edge_wave)[..., None] * transform, axis=-2)) * (2 / pi)
+        mean = xp.sum(weighted, axis=-2)
+        second = xp.sum((x * x)[:, None] * weighted, axis=-2)
+        return kernel, k, transform, edge, mean, second
+
+    @cached_property
+    def _scaled_indentation(self) -> Array:
+        edge = self._parts[3]
+        return edge[..., 1] / edge[..., 0]
+
+    @property
+    def _effective_radius(self) -> Array:
+        return self.joint.ball_radius * self.joint.socket_radius / self.joint.clearance
+
+    @property
+    def _radius(self) -> Array:
+        return self.width * self.joint.liner_thickness
+
+    @property
+    def _compliance(self) -> Array:
+        return 2 * (1 - self.joint.liner.poisson**2) / self.joint.liner.young
+
+    def _steepness(self, x: Array) -> Array:
+        """-H'(x)/x in units of a²/(R* C): 4/π on a half-space."""
+        xp = arrays.namespace(self.width)
+        kernel, k, transform, *_ = self._parts
+        wave = k * self.width[..., None]
+        turn = wave * x[..., None]
+        sinc = where(turn > 1e-4, sin(turn) / positive(turn), 1 - turn * turn / 6)
+        mix = transform[..., 1] - self._scaled_indentation[..., None] * transform[..., 0]
+        total = xp.sum(kernel * wave * wave * sinc * mix, axis=-1)
+        return (2 / pi) * (2 + self.width * total)
+
+    @cached_property
+    def values(self) -> tuple[Array, Array]:
+        """F and d."""
+        mean = self._parts[4]
+        delta, a = self._scaled_indentation, self._radius
+        force = 2 * pi * a**3 / (self._compliance * self._effective_radius) * (delta * mean[..., 0] - mean[..., 1])
+        return force, delta * a * a / self._effective_radius
+
+    @cached_property
+    def slopes(self) -> tuple[Array, Array]:
+        """dF/da and dd/da: a wider contact adds a flat punch of its own radius."""
+        steep = self._steepness(self.width**0)
+        deepening = self._radius / self._effective_radius * steep / self._parts[3][..., 0]
+        return self.stiffness(self.joint, deepening) * deepening, deepening
+
+    def half_angle(self, joint: Joint, indentation: Array) -> Array:
+        return self._radius / joint.socket_radius
+
+    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+        return 2 * pi * self._radius * self._parts[4][..., 0] / self._compliance
+
+    def energy(self, joint: Joint, indentation: Array) -> Array:
+        # half of ∫ p (d - r²/2R*) dA
+        second, delta, a = self._parts[5], self._scaled_indentation, self._radius
+        force, d = self.values
+        spread = 4 * pi * a**5 / (self._compliance * self._effective_radius) * (delta * second[..., 0] - second[..., 1])
+        return (d * force - spread / (2 * self._effective_radius)) / 2
+
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        return self.pressure(joint, indentation, 0.0)
+
+    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
+        return self.max_pressure(joint, indentation) / positive(indentation)
+
+    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
+        return self.values[0]
+
+    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        # ∫ -H'(s)/sqrt(s² - r²) ds over r..a, with s² = r² + (a² - r²) y²
+        share = angle * joint.socket_radius / positive(self._radius)
+        rest = clip(1 - share * share, 0.0, 1.0)
+        total = integral(lambda y: self._steepness(sqrt(share * share + rest * y * y)), 32)
+        scale = self._radius / (self._effective_radius * self._compliance)
+        return where(share < 1, scale * sqrt(rest) * total, 0.0)
+
+
+TRACED_WIDTH = 8.0
+"""The widest contact (a/L) that a call inside `jax.jit` or `jax.grad` is prepared for; wider ones have no answer."""
+
+
+@cache
+def _quadrature(widest: float) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+    """Points and weights along the radius (0 to 1) and in k L, enough for a width a/L of `widest`: 1e-10."""
+    x, wx = map(numpy.array, gauss_legendre(20 + 4 * ceil(widest)))
+    k, wk = map(numpy.array, gauss_legendre(60 + 14 * ceil(widest)))
+    return x, wx, 22 * k, 22 * wk  # Φ - 1 is below 1e-16 beyond k L = 22
+
+
+def _solve(joint: Joint, kind: str, load: Array) -> LayerSolution:
+    """The solution at the width that belongs to the load (NaN where none below a half angle of π/2 does)."""
+    shape = (load, *joint.numbers())
+    widest = broadcast(pi / 2 * joint.thickness_ratio, *shape)
+    numbers = arrays.known(widest)
+    if numbers is None:
+        widest = clip(widest, 0.0, TRACED_WIDTH)
+        numbers = numpy.array(TRACED_WIDTH)
+    reach = float(ceil(numpy.max(numbers, initial=0.0, where=numpy.isfinite(numbers))))
+    if kind == "half_angle":
+        width = broadcast(load * joint.thickness_ratio, *shape)
+        width = where(width <= widest, width, float("nan"))
+        return LayerSolution(joint=joint, width=width, widest=reach)
+    which = 0 if kind == "force" else 1
+    goal = log(broadcast(positive(load), *shape))
+
+    def law(log_width: Array) -> tuple[Array, Array]:
+        solution = LayerSolution(joint=joint, width=exp(log_width), widest=reach)
+        value, slope = solution.values[which], solution.slopes[which]
+        return log(value), slope * exp(log_width) * joint.liner_thickness / value
+
+    end = log(widest)
+    missing = goal - law(end)[0]
+    steep, guess, flat = (end + missing / power for power in ((8.0, 3.4, 2.0) if which == 0 else (4.0, 1.6, 0.8)))
+    root = arrays.increasing_root(law, goal, flat, steep, guess, steps=24, tolerance=1e-13)
+    width = where(missing <= 0, exp(root), float("nan"))
+    return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=reach)
+
+
+def _contact(
+    model: PlaneLayer, joint: Joint, kind: str, load: Array, plain: bool, inside: Array, solution: LayerSolution
+) -> Contact:
+    xp = arrays.namespace(load)
+    F, d = solution.values
+    given = d if kind == "indentation" else F
+    load = broadcast(load, given)
+    rounding = 1e5 * float(xp.finfo(given.dtype).eps)
+    converged = (kind == "half_angle") | (xp.abs(given - load) <= rounding * xp.abs(load)) | (load <= 0)
+    status = xp.zeros_like(xp.astype(given > 0, xp.int8))
+    for good, code in (
+        (converged, Status.NOT_CONVERGED),
+        (arrays.isfinite(given), Status.NOT_REACHED),
+        (inside, Status.OUTSIDE_DOMAIN),
+    ):
+        status = where(good, status, xp.asarray(int(code), dtype=xp.int8))
+    answered = status == int(Status.OK)
+    F = load if kind == "force" else where(answered, F, xp.nan)
+    d = where(answered, load if kind == "indentation" else d, xp.nan)
+    if plain:
+        return Contact(
+            model=model, laws=solution, joint=joint, force=float(F), indentation=float(d), status=Status(int(status))
+        )
+    return Contact(model=model, laws=solution, joint=joint, force=F, indentation=d, status=status)

@@ -1,0 +1,50 @@
+"""Teach JAX that materials, joints and contacts are trees of numbers.
+
+    import ballsocket.pytrees
+
+Then a whole `Joint` can be an argument of `jax.jit`, `jax.vmap` and `jax.grad` (which returns a `Joint` of
+derivatives), and a `Contact` can be returned by them.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from jax.tree_util import register_pytree_node
+
+from .contact import Contact
+from .joint import Joint, Material, unchecked
+from .models.plane_layer import LayerSolution
+
+Parts = tuple[Any, ...]
+
+
+def _register(cls: Any, parts: tuple[str, ...], fixed: tuple[str, ...]) -> None:
+    """`parts` are the branches of the tree, `fixed` what must be equal for two trees to be alike."""
+
+    def flatten(made: Any) -> tuple[Parts, Parts]:
+        return tuple(getattr(made, name) for name in parts), tuple(getattr(made, name) for name in fixed)
+
+    def unflatten(fixed_values: Parts, values: Parts) -> Any:
+        names = (*parts, *fixed)
+        return unchecked(cls, **dict(zip(names, (*values, *fixed_values), strict=True)))
+
+    register_pytree_node(cls, flatten, unflatten)
+
+
+def _flatten_contact(contact: Contact) -> tuple[Parts, Parts]:
+    solution = None if contact.laws is contact.model else contact.laws
+    return (contact.joint, contact.force, contact.indentation, contact.status, solution), (contact.model,)
+
+
+def _unflatten_contact(fixed: Parts, parts: Parts) -> Contact:
+    (model,) = fixed
+    joint, force, indentation, status, solution = parts
+    laws = model if solution is None else solution
+    return Contact(model=model, laws=laws, joint=joint, force=force, indentation=indentation, status=status)
+
+
+_register(Material, ("young", "poisson"), ("name", "source"))
+_register(Joint, ("ball_radius", "clearance", "liner_thickness", "liner", "ball"), ("name", "source"))
+_register(LayerSolution, ("joint", "width"), ("widest",))
+register_pytree_node(Contact, _flatten_contact, _unflatten_contact)

@@ -1,0 +1,89 @@
+"""Validity as data: the range of a quantity, why it ends there, and what a press that has no answer is called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+from math import degrees, inf
+from operator import attrgetter
+from typing import Any
+
+from .arrays import Array
+
+
+class Status(IntEnum):
+    """How a press ended, point by point."""
+
+    OK = 0
+    OUTSIDE_DOMAIN = 1
+    NOT_REACHED = 2
+    NOT_CONVERGED = 3
+    BEYOND_EQUATOR = 4
+
+    @property
+    def sentence(self) -> str:
+        return _SENTENCES[self]
+
+    @property
+    def failed(self) -> bool:
+        """Whether the numbers are missing (NaN)."""
+        return self in (Status.OUTSIDE_DOMAIN, Status.NOT_REACHED, Status.NOT_CONVERGED)
+
+
+_SENTENCES = {
+    Status.OK: "done",
+    Status.OUTSIDE_DOMAIN: "the model has no formula for this joint",
+    Status.NOT_REACHED: "the model does not reach this load",
+    Status.NOT_CONVERGED: "the iteration did not converge",
+    Status.BEYOND_EQUATOR: "the contact circle would pass the socket's equator (half angle above 90 degrees)",
+}
+
+
+class OutsideDomainError(ValueError):
+    """No point of a joint lies where the model has a formula."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """Where one quantity may lie, and why.
+
+    `quantity` is the attribute path from a contact ("joint.liner.poisson", "half_angle") or a function of it;
+    `symbol` is how people write it. A half angle is stored in rad and printed in degrees.
+    """
+
+    quantity: str | Callable[[Any], Array]
+    symbol: str
+    low: float = -inf
+    high: float = inf
+    why: str = ""
+
+    def of(self, contact: Any) -> Array:
+        return self.quantity(contact) if callable(self.quantity) else attrgetter(self.quantity)(contact)
+
+    def holds(self, contact: Any) -> Array:
+        """Inside the closed range."""
+        value = self.of(contact)
+        return (value >= self.low) & (value <= self.high)
+
+    def strictly_holds(self, contact: Any) -> Array:
+        """Inside the open range."""
+        value = self.of(contact)
+        return (value > self.low) & (value < self.high)
+
+    def __str__(self) -> str:
+        scale, unit = (degrees(1.0), "°") if self.quantity == "half_angle" else (1.0, "")
+        low, high = f"{self.low * scale:.4g}{unit}", f"{self.high * scale:.4g}{unit}"
+        if self.low == -inf:
+            return f"{self.symbol} ≤ {high}"
+        if self.high == inf:
+            return f"{self.symbol} ≥ {low}"
+        return f"{self.symbol} {low} to {high}"
+
+
+SMALL_STRAIN = Range(
+    quantity="indentation_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"
+)
+RIGID_BALL = Range(
+    quantity="joint.modulus_ratio", symbol="E/E_ball", high=0.02, why="the model takes the ball as rigid"
+)
