@@ -33,14 +33,20 @@ joints = st.builds(
 )
 
 
-def random_joint(size: int, seed: int, *, clearance: tuple[float, float] = (-6.0, -1.0)) -> bs.Joint:
-    """Wildly different joints in one: log-uniform sizes and moduli."""
+def random_joint(
+    size: int,
+    seed: int,
+    *,
+    clearance: tuple[float, float] = (-6.0, -1.0),
+    thickness: tuple[float, float] = (-1.5, 1.5),
+) -> bs.Joint:
+    """Wildly different joints in one: log-uniform sizes and moduli; clearance and thickness as powers of the radius."""
     rng = np.random.default_rng(seed)
     radius = 10 ** rng.uniform(-1, 3, size)
     return bs.Joint(
         ball_radius=radius,
         clearance=radius * 10 ** rng.uniform(*clearance, size),
-        liner_thickness=radius * 10 ** rng.uniform(-1.5, 1.5, size),
+        liner_thickness=radius * 10 ** rng.uniform(*thickness, size),
         liner=bs.Material(young=10 ** rng.uniform(-1, 6, size), poisson=rng.uniform(-0.9, 0.4999, size)),
         ball=bs.Material(young=10 ** rng.uniform(3, 6, size), poisson=rng.uniform(0.0, 0.5, size)),
     )

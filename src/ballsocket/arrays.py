@@ -143,6 +143,11 @@ def common(*values: Array) -> tuple[Array, ...]:
 def broadcast(x: Array, *others: Array) -> Array:
     """`x` in the shape that it and `others` broadcast to."""
     shape = numpy.broadcast_shapes(*(tuple(getattr(value, "shape", ())) for value in (x, *others)))
+    return broadcast_to(x, shape)
+
+
+def broadcast_to(x: Array, shape: tuple[int, ...]) -> Array:
+    """`x` in a given shape."""
     return x if tuple(x.shape) == shape else namespace(x).broadcast_to(x, shape)
 
 
@@ -175,13 +180,14 @@ def increasing_root(
     start: Array,
     *,
     steps: int = 60,
-    tolerance: float = 4e-16,
+    tolerance: float = 1e-10,
 ) -> Array:
     """Solve `law(x)[0] == target` for an increasing law, element by element, inside the bracket [low, high].
 
     Newton's method with the slope `law(x)[1]`; a step that leaves the bracket is replaced by its middle, and the
     bracket shrinks with every evaluation, so the result never leaves it. At most `steps` evaluations (all of them
-    inside `jax.jit`), fewer once every element has stopped moving. Automatic differentiation gives the derivatives
+    inside `jax.jit`), fewer once every element moves by less than `tolerance` of itself; two more Newton steps then
+    take that to rounding. Automatic differentiation gives the derivatives
     of the root (the implicit function theorem), not of the way to it.
 
     Parameters

@@ -153,7 +153,7 @@ def rows() -> Iterator[str]:
 
 
 if __name__ == "__main__":
-    sys.stdout.write("# made by make_reference.py; R2 18 mm, K 276.5 MPa/mm, E 1000 MPa, nu 0.4, rigid ball, eta 0.25\n")
+    sys.stdout.write("# make_reference.py: R2 18 mm, K 276.5 MPa/mm, E 1000 MPa, nu 0.4, rigid ball, eta 0.25\n")
     sys.stdout.write("model,clearance,indentation,force,half_angle,max_pressure,stiffness,energy\n")
     for row in rows():
         sys.stdout.write(row + "\n")

@@ -239,7 +239,8 @@ def finished(model: ClosedForm, joint: Joint, kind: str, plain: bool, inside: Ar
     found = arrays.isfinite(d) & arrays.isfinite(F)
     safe = where(found, d, 0.0)
     rounding = 1e3 * float(xp.finfo(d.dtype).eps)
-    converged = xp.abs(model.force(joint, safe) - F) <= rounding * xp.abs(F)
+    # an error of rounding in d: F alone is no measure where it is a small difference of large parts (adhesion)
+    converged = xp.abs(model.force(joint, safe) - F) <= rounding * (xp.abs(F) + safe * model.stiffness(joint, safe))
     status = xp.astype(model.half_angle(joint, safe) > pi / 2 * (1 + 1e-6), xp.int8) * int(Status.BEYOND_EQUATOR)
     for good, code in ((converged, Status.NOT_CONVERGED), (found, Status.NOT_REACHED), (inside, Status.OUTSIDE_DOMAIN)):
         status = where(good, status, xp.asarray(int(code), dtype=xp.int8))

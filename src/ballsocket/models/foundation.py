@@ -67,12 +67,7 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.pressure_integral(joint.socket_radius, joint.clearance, self.modulus(joint), indentation)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        d = self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus(joint), force)
-        return where(self._rising(joint, d), d, float("nan"))
-
-    def _rising(self, joint: Joint, indentation: Array) -> Array:
-        """Beyond the top of the force's curve (exact kinematics, more than a socket radius deep) there is no root."""
-        return self.stiffness(joint, indentation) >= 0
+        return self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus(joint), force)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         versine = self.kinematics.versine(joint.socket_radius, joint.clearance, indentation)

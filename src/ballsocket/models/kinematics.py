@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi
+from math import nan, pi
 
 from ..arrays import Array, integral, positive, sqrt, where
 from ..sources import Source
@@ -78,7 +78,7 @@ def cosine_versine(R2: Array, c: Array, d: Array) -> Array:
 
 def cosine_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
     # every indentation gives 90 degrees
-    return versine * float("nan")
+    return versine * nan
 
 
 def cosine_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
@@ -127,9 +127,10 @@ def circular_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
 
 def circular_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
     # Eq. (11) with Eq. (5): F = 2π R2² K {e (1 - k³)/3 + [R1³ - (R2 - e k)³]/(3 e²) - R2 (1 - k²)/2}, k = cos ε,
-    # which is a Laurent polynomial in e with a double root at first touch
+    # which is a Laurent polynomial in e with a double root at first touch. The ball's centre stays inside the socket.
     e = positive(c + d)
-    return (pi / 12) * K * R2 * d * (d / e) * ((4 * R2 * (2 * e + c) - 3 * (e + c) ** 2) / e)
+    force = (pi / 12) * K * R2 * (d * d * (4 * R2 * (2 * e + c) - 3 * (e + c) ** 2) / (e * e))
+    return where(e <= R2, force, nan)
 
 
 def circular_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
@@ -152,11 +153,10 @@ def circular_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array
 
 def circular_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
     # The force is less than that of Eq. (13), so the linear answer is a guess from below; the force is nearly linear
-    # in d there and Newton's method converges from that side.
+    # in d there and Newton's method climbs from that side. NaN where the ball's centre would leave the socket.
     d = linear_indentation(R2, c, K, F)
     for _ in range(6):
-        slope = circular_stiffness(R2, c, K, d)
-        d = d - (circular_force(R2, c, K, d) - F) / where(slope > 0, slope, 1.0)
+        d = d - (circular_force(R2, c, K, d) - F) / positive(circular_stiffness(R2, c, K, d))
     return d
 
 

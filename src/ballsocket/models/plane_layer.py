@@ -96,30 +96,54 @@ class LayerSolution:
     widest: float
 
     @cached_property
-    def _parts(self) -> tuple[Array, ...]:
-        """(transform of h1, of h2, h1(1), h2(1), moments)"""
-        xp = arrays.namespace(self.width)
+    def _points(self) -> tuple[Array, Array, Array, Array]:
+        """The quadrature in the caller's library: x, its weights, k L, its weights."""
         like = {"dtype": self.width.dtype, "device": arrays.device(self.width)}
-        x, wx, k, wk = (xp.asarray(part, **like) for part in _quadrature(self.widest))
-        alpha = self.width[..., None, None]
-        kernel = layer_ratio(k, self.joint.liner.poisson[..., None]) * wk
+        return tuple(arrays.namespace(self.width).asarray(part, **like) for part in _quadrature(self.widest))
+
+    @cached_property
+    def _kernel(self) -> Array:
+        """Weighted Φ - 1 at the points in k L."""
+        _, _, k, wk = self._points
+        return layer_ratio(k, self.joint.liner.poisson[..., None]) * wk
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array, Array, Array]:
+        """Of h1 and h2 (last axis): the transform ∫ h cos(k x α) dx, the edge value h(1), ∫ h dx, ∫ h x² dx.
+
+        In blocks, since the waves of all contacts at once may not fit into memory.
+        """
+        xp = arrays.namespace(self.width)
+        x, _, k, _ = self._points
+        kernel = arrays.broadcast_to(self._kernel, (*self.width.shape, k.shape[0]))
+        flat_width, flat_kernel = xp.reshape(self.width, (-1,)), xp.reshape(kernel, (-1, k.shape[0]))
+        size = max(1, _BLOCK // (k.shape[0] * x.shape[0]))
+        blocks = [
+            self._block(flat_width[i : i + size], flat_kernel[i : i + size, :])
+            for i in range(0, flat_width.shape[0], size)
+        ]
+        whole = (xp.concat(part, axis=0) if len(blocks) > 1 else part[0] for part in zip(*blocks, strict=True))
+        transform, edge, mean, second = (xp.reshape(part, (*self.width.shape, *part.shape[1:])) for part in whole)
+        return transform, edge, mean, second
+
+    def _block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
+        xp = arrays.namespace(width)
+        x, wx, k, _ = self._points
+        alpha = width[:, None, None]
         waves = cos(k[:, None] * x * alpha)
         matrix = alpha * (xp.matrix_transpose(waves) @ (kernel[..., None] * waves)) * wx
-        matrix = matrix + pi / 2 * xp.eye(x.shape[0], **like)
+        matrix = matrix + pi / 2 * xp.eye(x.shape[0], dtype=width.dtype, device=arrays.device(width))
         sides = xp.stack([xp.ones_like(x), x * x], axis=-1)
-        sides = xp.broadcast_to(sides, (*matrix.shape[:-1], 2))
-        h = xp.linalg.solve(matrix, sides)
+        h = xp.linalg.solve(matrix, arrays.broadcast_to(sides, (*matrix.shape[:-1], 2)))
         weighted = wx[:, None] * h
         transform = waves @ weighted
-        edge_wave = cos(k * self.width[..., None])
-        edge = (1 - self.width[..., None] * xp.sum((kernel * edge_wave)[..., None] * transform, axis=-2)) * (2 / pi)
-        mean = xp.sum(weighted, axis=-2)
-        second = xp.sum((x * x)[:, None] * weighted, axis=-2)
-        return kernel, k, transform, edge, mean, second
+        edge_wave = cos(k * width[:, None])
+        edge = (1 - width[:, None] * xp.sum((kernel * edge_wave)[..., None] * transform, axis=-2)) * (2 / pi)
+        return transform, edge, xp.sum(weighted, axis=-2), xp.sum((x * x)[:, None] * weighted, axis=-2)
 
     @cached_property
     def _scaled_indentation(self) -> Array:
-        edge = self._parts[3]
+        edge = self._parts[1]
         return edge[..., 1] / edge[..., 0]
 
     @property
@@ -137,7 +161,7 @@ class LayerSolution:
     def _steepness(self, x: Array) -> Array:
         """-H'(x)/x in units of a²/(R* C): 4/π on a half-space."""
         xp = arrays.namespace(self.width)
-        kernel, k, transform, *_ = self._parts
+        kernel, k, transform = self._kernel, self._points[2], self._parts[0]
         wave = k * self.width[..., None]
         turn = wave * x[..., None]
         sinc = where(turn > 1e-4, sin(turn) / positive(turn), 1 - turn * turn / 6)
@@ -148,7 +172,7 @@ class LayerSolution:
     @cached_property
     def values(self) -> tuple[Array, Array]:
         """F and d."""
-        mean = self._parts[4]
+        mean = self._parts[2]
         delta, a = self._scaled_indentation, self._radius
         force = 2 * pi * a**3 / (self._compliance * self._effective_radius) * (delta * mean[..., 0] - mean[..., 1])
         return force, delta * a * a / self._effective_radius
@@ -157,18 +181,18 @@ class LayerSolution:
     def slopes(self) -> tuple[Array, Array]:
         """dF/da and dd/da: a wider contact adds a flat punch of its own radius."""
         steep = self._steepness(self.width**0)
-        deepening = self._radius / self._effective_radius * steep / self._parts[3][..., 0]
+        deepening = self._radius / self._effective_radius * steep / self._parts[1][..., 0]
         return self.stiffness(self.joint, deepening) * deepening, deepening
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         return self._radius / joint.socket_radius
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        return 2 * pi * self._radius * self._parts[4][..., 0] / self._compliance
+        return 2 * pi * self._radius * self._parts[2][..., 0] / self._compliance
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
         # half of ∫ p (d - r²/2R*) dA
-        second, delta, a = self._parts[5], self._scaled_indentation, self._radius
+        second, delta, a = self._parts[3], self._scaled_indentation, self._radius
         force, d = self.values
         spread = 4 * pi * a**5 / (self._compliance * self._effective_radius) * (delta * second[..., 0] - second[..., 1])
         return (d * force - spread / (2 * self._effective_radius)) / 2
@@ -190,6 +214,8 @@ class LayerSolution:
         scale = self._radius / (self._effective_radius * self._compliance)
         return where(share < 1, scale * sqrt(rest) * total, 0.0)
 
+
+_BLOCK = 4_000_000  # numbers in a block of waves: 32 MB
 
 TRACED_WIDTH = 8.0
 """The widest contact (a/L) that a call inside `jax.jit` or `jax.grad` is prepared for; wider ones have no answer."""
@@ -227,7 +253,7 @@ def _solve(joint: Joint, kind: str, load: Array) -> LayerSolution:
     end = log(widest)
     missing = goal - law(end)[0]
     steep, guess, flat = (end + missing / power for power in ((8.0, 3.4, 2.0) if which == 0 else (4.0, 1.6, 0.8)))
-    root = arrays.increasing_root(law, goal, flat, steep, guess, steps=24, tolerance=1e-13)
+    root = arrays.increasing_root(law, goal, flat, steep, guess, steps=24)
     width = where(missing <= 0, exp(root), float("nan"))
     return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=reach)
 

@@ -1,0 +1,52 @@
+"""The runner: `python -m benchmarks` lists the benchmarks, `python -m benchmarks NAME ... [--write]` runs them."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from difflib import get_close_matches
+from importlib import import_module
+
+from . import report
+
+BENCHMARKS = {
+    "inverse": ("inverse", "ten million inverse solves of the paper's model: compiled, NumPy, JAX, SciPy"),
+    "opensim": ("opensim_rival", "one force evaluation against OpenSim's ElasticFoundationForce"),
+    "plane-layer": ("plane_layer", "one case of the numerical plane layer, alone and in a batch"),
+    "import": ("start", "how long a fresh interpreter takes to import the package and to answer a joint file"),
+}
+"""Name: the module with a `measure()`, and one line on it."""
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="which to run; none lists them")
+    parser.add_argument("--write", action="store_true", help="also put the rows into benchmarks/RESULTS.md")
+    given = parser.parse_args(words)
+    for name in given.names:
+        if name not in BENCHMARKS:
+            return _unknown(name)
+    if not given.names:
+        for name, (_, title) in BENCHMARKS.items():
+            print(f"{name:<12} {title}")
+    for name in given.names:
+        module, title = BENCHMARKS[name]
+        found = import_module(f".{module}", __package__).measure()
+        if isinstance(found, str):
+            print(f"{name}: skipped, {found}")
+            continue
+        report.show(name, title, found)
+        if given.write:
+            report.write(name, title, found)
+    return 0
+
+
+def _unknown(name: str) -> int:
+    close = get_close_matches(name, BENCHMARKS, n=1, cutoff=0.0)
+    print(f"benchmarks: {name!r} is not known; did you mean {close[0]!r}?", file=sys.stderr)
+    return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

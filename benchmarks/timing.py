@@ -1,0 +1,69 @@
+"""Repeated, interleaved timing: ours, rival, ours, rival, ..., so that a machine that slows down slows both."""
+
+from __future__ import annotations
+
+import gc
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from statistics import median
+
+Work = Callable[[], object]
+
+
+@dataclass(frozen=True)
+class Spread:
+    """The same number measured again and again."""
+
+    values: tuple[float, ...]
+
+    @property
+    def median(self) -> float:
+        return median(self.values)
+
+    def over(self, other: Spread) -> Spread:
+        """The quotient, round by round."""
+        return Spread(tuple(mine / its for mine, its in zip(self.values, other.values, strict=True)))
+
+    def per(self, unit: float) -> Spread:
+        """In other units: seconds `per(1e-9 * n)` are nanoseconds for one of n."""
+        return Spread(tuple(value / unit for value in self.values))
+
+    def __str__(self) -> str:
+        return f"{short(self.median)} ({short(min(self.values))}..{short(max(self.values))})"
+
+
+def short(value: float) -> str:
+    """Three digits, without an exponent."""
+    digits = 0 if abs(value) >= 99.95 else 1 if abs(value) >= 9.995 else 2 if abs(value) >= 0.9995 else 3
+    return f"{value:.{digits}f}"
+
+
+def interleaved(repeats: int, work: dict[str, Work]) -> dict[str, Spread]:
+    """Seconds that each piece of work takes, measured in `repeats` rounds after one round that is not counted."""
+    for each in work.values():
+        each()
+    taken: dict[str, list[float]] = {name: [] for name in work}
+    for _ in range(repeats):
+        for name, each in work.items():
+            gc.collect()
+            start = time.perf_counter()
+            each()
+            taken[name].append(time.perf_counter() - start)
+    return {name: Spread(tuple(seconds)) for name, seconds in taken.items()}
+
+
+@contextmanager
+def one_core() -> Iterator[bool]:
+    """Keeps this process, and the threads it starts inside, on one core; False where the system cannot do that."""
+    if not hasattr(os, "sched_setaffinity"):
+        yield False
+        return
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {max(before)})
+    try:
+        yield True
+    finally:
+        os.sched_setaffinity(0, before)
