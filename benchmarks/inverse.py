@@ -61,12 +61,16 @@ def _measure(inputs: list[numpy.ndarray], pinned: bool) -> Report:
         for _ in range(POINTS // CHUNK):
             kernel(*first)
 
+    def chunked() -> None:
+        for part, load in chunks:
+            _answer(model.press(part, force=load))
+
     work: dict[str, Work] = {
         COPY: copy,
         KERNEL: lambda: kernel(*inputs, *outputs[:3], status),
         IN_CACHE: in_cache,
         PRESS: lambda: _answer(fast.press(joint, force=force)),
-        CHUNKED: lambda: [_answer(model.press(*chunk[:1], force=chunk[1])) and None for chunk in chunks],
+        CHUNKED: chunked,
         WHOLE: lambda: _answer(model.press(joint, force=force)),
         **({JAX: jax_solve} if jax_solve else {}),
         BRENTQ: lambda: rivals.brentq_solve(sample),

@@ -72,7 +72,7 @@ def brentq_solve(inputs: Sequence[numpy.ndarray]) -> Answer:
     """One root after the other, in plain floats."""
     constants = _constants(inputs)
     rows = zip(*(part.tolist() for part in (*constants, inputs[2])), strict=True)
-    d = [brentq(_excess, 0.0, thickness, args=numbers, xtol=1e-15, rtol=1e-15) for *numbers, thickness in rows]
+    d = [brentq(_excess, 0.0, thickness, args=tuple(numbers), xtol=1e-15, rtol=1e-15) for *numbers, thickness in rows]
     return _answer(numpy.array(d), constants)
 
 

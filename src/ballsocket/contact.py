@@ -13,6 +13,7 @@ import numpy
 
 from . import arrays
 from .arrays import Array
+from .checks import numeric
 from .joint import Joint
 from .validity import Range, Status
 
@@ -149,7 +150,17 @@ class Contact:
         -------
         array (..., 3)
             Points back to the centre of the socket. The rim of the socket is not part of the model.
+
+        Raises
+        ------
+        ValueError
+            A displacement whose last axis is not of length 3.
         """
+        displacement = numeric("displacement", displacement)
+        if arrays.is_plain(displacement) or displacement.shape[-1:] != (3,):
+            shape = getattr(displacement, "shape", ())
+            raise ValueError(f"displacement of shape {shape} is not allowed: its last axis holds x, y, z (mm)")
+        _, displacement = arrays.common(self.indentation, displacement)
         return self.model.force_vector(self.joint, displacement)
 
     @cached_property

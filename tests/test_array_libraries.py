@@ -1,0 +1,175 @@
+"""The same answer in every array library, in the caller's dtype, with derivatives."""
+
+import array_api_strict
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from .joints import HIP
+
+FORCES = [0.0, 100.0, 3000.0]
+NAMES = (
+    "force",
+    "indentation",
+    "half_angle",
+    "max_pressure",
+    "area",
+    "stiffness",
+    "energy",
+    "foundation_modulus",
+    "pressure_integral",
+)
+EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+INPUTS = (3000.0, 17.9, 0.1, 6.75, 1000.0, 0.41, 230000.0, 0.3)  # 0.41: between the columns of Table 3
+
+
+def of_numbers(model, force, radius, clearance, thickness, young, poisson, ball_young, ball_poisson):
+    joint = bs.Joint(
+        ball_radius=radius,
+        clearance=clearance,
+        liner_thickness=thickness,
+        liner=bs.Material(young=young, poisson=poisson),
+        ball=bs.Material(young=ball_young, poisson=ball_poisson),
+    )
+    return model.press(joint, force=force).max_pressure
+
+
+def central_differences(model):
+    slopes = []
+    for index, value in enumerate(INPUTS):
+        step = 1e-5 * value
+        above, below = list(INPUTS), list(INPUTS)
+        above[index] += step
+        below[index] -= step
+        slopes.append((of_numbers(model, *above) - of_numbers(model, *below)) / (2 * step))
+    return np.array(slopes)
+
+
+@EVERY
+def test_the_strict_standard_is_enough(model):
+    expected = model.press(HIP, force=np.array(FORCES))
+    contact = model.press(HIP, force=array_api_strict.asarray(FORCES))
+    for name in NAMES:
+        value = getattr(contact, name)
+        assert type(value) is type(contact.force), name
+        assert value.dtype == array_api_strict.float64
+        np.testing.assert_allclose(np.from_dlpack(value), getattr(expected, name), rtol=1e-12, err_msg=name)
+    angle = array_api_strict.asarray([0.1, 0.2, 0.3])
+    np.testing.assert_allclose(np.from_dlpack(contact.pressure(angle)), expected.pressure(np.array([0.1, 0.2, 0.3])))
+    np.testing.assert_allclose(np.from_dlpack(contact.friction_torque(0.05)), expected.friction_torque(0.05))
+    displacement = array_api_strict.asarray([[0.1, 0.1, 0.0]])
+    assert contact.force_vector(displacement).shape == (1, 3)
+    for load in ("indentation", "half_angle"):
+        assert model.press(HIP, **{load: array_api_strict.asarray([0.01])}).force.dtype == array_api_strict.float64
+    assert contact.summary()["model"] == model.name
+    assert model.name in repr(contact)
+
+
+@EVERY
+def test_single_precision_stays_single(model):
+    contact = model.press(HIP, force=np.array(FORCES, dtype=np.float32))
+    expected = model.press(HIP, force=np.array(FORCES))
+    for name in NAMES:
+        assert getattr(contact, name).dtype == np.float32, name
+        np.testing.assert_allclose(getattr(contact, name)[1:], getattr(expected, name)[1:], rtol=2e-4, err_msg=name)
+    assert np.all(contact.status == bs.Status.OK) or model.name == "cosine-limit"
+
+
+def test_lists_and_integers_are_floats():
+    contact = bs.HessForsbach().press(HIP, force=[1000, 3000])
+    assert contact.max_pressure.dtype == np.float64
+    assert bs.HessForsbach().press(HIP, force=3000).max_pressure == contact.max_pressure[1]
+    assert isinstance(bs.HessForsbach().press(HIP, force=3000).max_pressure, float)
+
+
+def test_libraries_do_not_mix():
+    joint = bs.Joint(ball_radius=np.array([16.0]), clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+    with pytest.raises(TypeError, match="arrays of one library are needed, got array_api_strict.Array, numpy.ndarray"):
+        bs.Hertz().press(joint, force=array_api_strict.asarray([1.0]))
+
+
+@EVERY
+def test_jax_gradient_and_jit(model):
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        numbers = [jax.numpy.asarray(value) for value in INPUTS]
+        gradient = jax.grad(lambda *values: of_numbers(model, *values), argnums=tuple(range(len(INPUTS))))
+        slopes = np.array(gradient(*numbers))
+        expected = central_differences(model)
+        scale = np.abs(of_numbers(model, *INPUTS) / np.array(INPUTS))
+        assert np.max(np.abs(slopes - expected) / scale) < 1e-7
+        compiled = jax.jit(lambda *values: of_numbers(model, *values))
+        assert float(compiled(*numbers)) == pytest.approx(of_numbers(model, *INPUTS), rel=1e-9)
+        if model.name != "plane-layer":  # its compilation takes a quarter of a minute
+            np.testing.assert_allclose(np.array(jax.jit(gradient)(*numbers)), slopes, rtol=1e-8, atol=1e-12)
+
+
+def test_jax_arrays_stay_in_jax_and_bad_loads_become_a_status_under_jit():
+    jax = pytest.importorskip("jax")
+    contact = bs.HessForsbach().press(HIP, force=jax.numpy.asarray(FORCES))
+    assert isinstance(contact.energy, jax.Array)
+    assert contact.energy.dtype == jax.numpy.asarray(FORCES).dtype
+    negative = jax.jit(lambda force: bs.HessForsbach().press(HIP, force=force).status)(-1.0)
+    assert negative == bs.Status.NOT_REACHED
+
+
+def test_jax_trees():
+    jax = pytest.importorskip("jax")
+    import ballsocket.pytrees  # noqa: F401 - registers the words
+
+    with jax.enable_x64(True):
+        slopes = jax.grad(lambda joint: bs.HessForsbach().press(joint, force=3000.0).max_pressure)(HIP)
+        assert isinstance(slopes, bs.Joint)
+        assert float(slopes.ball.young) == 0.0  # the paper's model has a rigid ball
+        assert float(slopes.clearance) == pytest.approx(central_differences_of_clearance(), rel=1e-6)
+        for model in (bs.HessForsbach(), bs.PlaneLayer()):
+            pressed = jax.jit(lambda joint, model=model: model.press(joint, force=3000.0))(HIP)
+            assert isinstance(pressed, bs.Contact)
+            assert float(pressed.max_pressure) == pytest.approx(model.press(HIP, force=3000.0).max_pressure, rel=1e-9)
+        many = jax.vmap(lambda force: bs.Bartel().press(HIP, force=force).max_pressure)(jax.numpy.asarray(FORCES[1:]))
+        np.testing.assert_allclose(many, bs.Bartel().press(HIP, force=np.array(FORCES[1:])).max_pressure, rtol=1e-12)
+
+
+def central_differences_of_clearance():
+    pressures = [
+        bs.HessForsbach()
+        .press(bs.Joint(ball_radius=17.9, clearance=c, liner_thickness=6.75, liner=bs.UHMWPE), force=3000.0)
+        .max_pressure
+        for c in (0.1 + 1e-6, 0.1 - 1e-6)
+    ]
+    return (pressures[0] - pressures[1]) / 2e-6
+
+
+@EVERY
+def test_torch_gradient(model):
+    torch = pytest.importorskip("torch")
+    numbers = [torch.tensor(value, dtype=torch.float64, requires_grad=True) for value in INPUTS]
+    of_numbers(model, *numbers).backward()
+    slopes = np.array([0.0 if number.grad is None else float(number.grad) for number in numbers])
+    scale = np.abs(of_numbers(model, *INPUTS) / np.array(INPUTS))
+    assert np.max(np.abs(slopes - central_differences(model)) / scale) < 1e-7
+
+
+@EVERY
+def test_torch_keeps_dtype(model):
+    torch = pytest.importorskip("torch")
+    contact = model.press(HIP, force=torch.tensor(FORCES))
+    for name in NAMES:
+        assert getattr(contact, name).dtype == torch.float32, name
+    assert contact.valid.shape == (3,)
+
+
+def test_second_derivatives_of_an_implicit_answer():
+    """d²d/dF² = -S'/S³, through the bracketed inversion of the adhesive socket."""
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        model = bs.AdhesiveSocket(work_of_adhesion=1e-3)
+
+        def indentation(force):
+            return model.press(HIP, force=force).indentation
+
+        second = jax.grad(jax.grad(indentation))(3000.0)
+        step = 1.0
+        slopes = [1 / model.press(HIP, force=force).stiffness for force in (3000.0 + step, 3000.0 - step)]
+        assert float(second) == pytest.approx((slopes[0] - slopes[1]) / (2 * step), rel=1e-5)

@@ -1,0 +1,139 @@
+"""The door: units and joint files."""
+
+import math
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import ballsocket as bs
+from ballsocket.files import parse_joint
+from ballsocket.units import parse
+
+EXAMPLE = Path(__file__).parents[1] / "examples" / "hip.toml"
+HIP = """
+[joint]
+ball_radius = 17.9
+clearance = "100 um"
+liner_thickness = "6.75 mm"
+[liner]
+material = "UHMWPE"
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "value"),
+    [
+        ("16 mm", "length", 16.0),
+        ("1.6 cm", "length", 16.0),
+        ("100 µm", "length", 0.1),
+        ("1e-1mm", "length", 0.1),
+        ("inf", "length", math.inf),
+        (16, "length", 16.0),
+        ("3 kN", "force", 3000.0),
+        ("1 GPa", "modulus", 1000.0),
+        ("1000 N/mm**2", "modulus", 1000.0),
+        ("1000 N/mm^2", "modulus", 1000.0),
+        ("45 deg", "angle", math.pi / 4),
+        ("45°", "angle", math.pi / 4),
+        (45, "angle", math.pi / 4),
+        ("0.5 rad", "angle", 0.5),
+        ("0.05 J/m**2", "adhesion", 5e-5),
+        ("0.4", "number", 0.4),
+    ],
+)
+def test_quantities(text, kind, value):
+    assert parse("it", text, kind) == pytest.approx(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("16 kg", "length"),
+        ("16 mmm", "length"),
+        ("((", "force"),
+        ("9**9**9**9", "modulus"),
+        ("1 N**9", "force"),
+        ("3 kN + 2 kN", "force"),
+        ("__import__('os')", "length"),
+        ("", "length"),
+        ("0.4 mm", "number"),
+        (True, "length"),
+        (None, "length"),
+        ([1], "length"),
+        ("1 " + "m" * 10_000, "length"),
+    ],
+)
+def test_what_is_no_quantity_is_named(text, kind):
+    with pytest.raises(ValueError, match=r"^it = .* is not a"):
+        parse("it", text, kind)
+
+
+@given(st.text(max_size=40))
+def test_no_text_breaks_the_parser(text):
+    try:
+        value = parse("it", text, "length")
+    except ValueError as error:
+        value = str(error)
+    assert isinstance(value, float) or value.startswith("it = ")
+
+
+def test_the_example_is_the_papers_case():
+    file = bs.read_joint(EXAMPLE)
+    assert file.joint.socket_radius == pytest.approx(18.0, abs=1e-12)
+    assert file.joint.ball_radius == 17.9
+    assert file.joint.liner.poisson == 0.4
+    assert file.joint.ball == bs.STEEL
+    assert file.load == {"force": 3000.0}
+
+
+def test_two_of_three_radii_and_named_materials():
+    file = parse_joint(HIP.encode(), "hip")
+    assert file.joint.socket_radius == 18.0
+    assert file.joint.liner == bs.UHMWPE
+    assert file.joint.ball is None
+    assert file.load == {}
+    other = parse_joint(HIP.replace('clearance = "100 um"', "socket_radius = 18").encode(), "hip")
+    assert other.joint.clearance == 0.1
+
+
+def test_numbers_win_over_the_material():
+    file = parse_joint(HIP.replace('"UHMWPE"', '"uhmwpe"\npoisson = 0.45').encode(), "hip")
+    assert file.joint.liner.poisson == 0.45
+    assert file.joint.liner.young == 1000.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("clearance", "clearence", "hip: 'clearence' in .joint. is not known; did you mean 'clearance'?"),
+        ("[liner]", "[linner]", "hip: 'linner' at the top is not known; did you mean 'liner'?"),
+        ("[joint]", "[ball]", "hip: 'ball_radius' in .ball. is not known"),
+        ("UHMWPE", "UHMPE", "hip: liner material 'UHMPE' is not known; did you mean 'uhmwpe'?"),
+        ('material = "UHMWPE"', "young = 1000", "hip: the liner needs a material, .* missing: poisson"),
+        ('"100 um"', '"-100 um"', "hip: clearance = -0.1 is not allowed"),
+        ('"6.75 mm"', '"6.75 s"', "hip: liner_thickness = '6.75 s' is not a length, such as '16 mm'"),
+        ("ball_radius = 17.9", "", "hip: two of ball_radius, socket_radius, clearance are needed, got clearance"),
+        ("ball_radius = 17.9", "ball_radius = 17.9\nsocket_radius = 18", "needed, got ball_radius, socket_radius, cl"),
+        ('liner_thickness = "6.75 mm"', "", "hip: liner_thickness is missing"),
+        ("[liner]", "[liner", "hip is not TOML"),
+        ("[joint]", "load = 3\n[joint]", "hip: load = 3 must be a table"),
+        ("[joint]", "name = 3\n[joint]", "hip: name = 3 must be text"),
+        ("[joint]", "[load]\nforce = 1\nindentation = 2\n[joint]", "hip: one load is needed, got force, indentation"),
+    ],
+)
+def test_a_file_that_is_wrong_is_told_how(old, new, message):
+    with pytest.raises(ValueError, match=message):
+        parse_joint(HIP.replace(old, new, 1).encode(), "hip")
+
+
+def test_files_that_are_no_joint_files(tmp_path):
+    with pytest.raises(ValueError, match="is not text in UTF-8"):
+        parse_joint(b"\xff\xfe\x00", "binary")
+    big = tmp_path / "big.toml"
+    big.write_bytes(b"#" * 200_000)
+    with pytest.raises(ValueError, match="big.toml is larger than 100000 bytes"):
+        bs.read_joint(big)
+    with pytest.raises(FileNotFoundError):
+        bs.read_joint(tmp_path / "none.toml")

@@ -1,0 +1,162 @@
+"""Material, Joint, presets, Contact: checked once, printed well, cited."""
+
+import json
+from dataclasses import FrozenInstanceError
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from .joints import HIP
+
+GOOD = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "liner": bs.UHMWPE}
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"ball_radius": 0.0}, r"ball_radius = 0 is not allowed: a radius \(mm\) is above 0 and finite"),
+        ({"ball_radius": -16.0}, "ball_radius = -16 is not allowed"),
+        ({"ball_radius": np.inf}, "ball_radius = inf is not allowed"),
+        ({"ball_radius": np.nan}, "ball_radius = nan is not allowed"),
+        ({"clearance": -0.1}, r"clearance = -0.1 is not allowed: .* negative is a preloaded joint"),
+        ({"clearance": np.array([0.1, 0.2, np.nan])}, r"clearance\[2\] = nan is not allowed"),
+        ({"clearance": np.array([[0.1, -1.0], [-2.0, 0.2]])}, r"clearance\[0, 1\] = -1 \(and 1 more\) is not allowed"),
+        ({"liner_thickness": 0.0}, r"liner_thickness = 0 is not allowed: .* inf is a massive socket"),
+    ],
+)
+def test_a_joint_that_is_not_allowed_is_named(changes, message):
+    with pytest.raises(ValueError, match=message):
+        bs.Joint(**(GOOD | changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"young": 0.0}, "young = 0 is not allowed"),
+        ({"young": np.inf}, "young = inf is not allowed"),
+        ({"poisson": 0.51}, "poisson = 0.51 is not allowed: Poisson's ratio lies above -1, up to 0.5"),
+        ({"poisson": -1.0}, "poisson = -1 is not allowed"),
+        ({"poisson": np.nan}, "poisson = nan is not allowed"),
+    ],
+)
+def test_a_material_that_is_not_allowed_is_named(changes, message):
+    with pytest.raises(ValueError, match=message):
+        bs.Material(**({"young": 1000.0, "poisson": 0.4} | changes))
+
+
+def test_what_is_no_number_or_no_material_is_a_type_error():
+    with pytest.raises(TypeError, match="ball_radius must be a number or an array .* got '16 mm'"):
+        bs.Joint(**(GOOD | {"ball_radius": "16 mm"}))
+    with pytest.raises(TypeError, match="clearance must be a number or an array .* got True"):
+        bs.Joint(**(GOOD | {"clearance": True}))
+    with pytest.raises(TypeError, match="liner must be a Material, got 'UHMWPE'"):
+        bs.Joint(**(GOOD | {"liner": "UHMWPE"}))
+    with pytest.raises(TypeError, match=r"ball must be a Material, or None for a rigid ball, got 3\.0"):
+        bs.Joint(**(GOOD | {"ball": 3.0}))
+    with pytest.raises(TypeError):
+        bs.Joint(16.0, 0.1, 6.0, bs.UHMWPE)
+
+
+def test_words_are_frozen_values():
+    assert bs.Joint(**GOOD) == bs.Joint(**GOOD)
+    with pytest.raises(FrozenInstanceError):
+        bs.UHMWPE.young = 2.0
+
+
+def test_the_ends_of_what_is_allowed():
+    joint = bs.Joint(ball_radius=16.0, clearance=0.0, liner_thickness=np.inf, liner=bs.Material(young=1.0, poisson=0.5))
+    assert joint.thickness_ratio == 0.0
+    assert joint.modulus_ratio == 0.0
+    assert joint.ball is None
+
+
+def test_effective_modulus():
+    assert HIP.effective_modulus == pytest.approx(1 / (0.84 / 1000.0 + 0.91 / 230000.0))
+    assert bs.Joint(**GOOD).effective_modulus == pytest.approx(1000.0 / 0.84)
+
+
+@pytest.mark.parametrize("name", bs.materials)
+def test_materials_have_sources(name):
+    material = bs.materials[name]
+    assert material.source
+    assert material.name
+    assert str(material).startswith(material.name)
+
+
+@pytest.mark.parametrize("name", bs.joints)
+def test_joints_have_sources_and_press(name):
+    joint = bs.joints[name]
+    assert joint.source
+    answers = bs.compare(joint, force=1000.0)
+    assert "hess-forsbach" in answers
+    assert all(contact.max_pressure > 0 for contact in answers.values())
+
+
+def test_contact_prints_and_summarises():
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
+    assert "max_pressure" in repr(contact)
+    assert "11.27" in repr(contact)
+    assert "<table>" in contact._repr_html_()
+    summary = json.loads(json.dumps(contact.summary(), allow_nan=False))
+    assert list(summary) == [
+        *("model", "force", "indentation", "half_angle_deg", "max_pressure", "area", "stiffness", "energy"),
+        *("foundation_modulus", "valid", "notes"),
+    ]
+    assert summary["half_angle_deg"] == pytest.approx(44.7199, abs=1e-4)
+    assert summary["valid"] is True
+
+
+def test_many_contacts_print_their_ranges_and_keep_their_gaps():
+    contact = bs.Bartel().press(HIP, force=np.array([1000.0, 1e13]))
+    assert "1 of 2" in repr(contact)
+    summary = contact.summary()
+    assert summary["indentation"][1] is None
+    assert json.dumps(summary, allow_nan=False)
+
+
+def test_compare_prints_a_row_a_model_and_the_reasons_for_the_missing():
+    answers = bs.compare(bs.joints["tilting-pad-pivot"], force=1000.0)
+    assert "plane-layer" in answers.missing
+    assert "ask hertz" in repr(answers)
+    assert len(answers.rows()) == len(answers)
+    assert "<table>" in answers._repr_html_()
+    with pytest.raises(KeyError, match="a layer of infinite thickness"):
+        answers["bonded-layer"]
+    with pytest.raises(ValueError, match="force = -1 is not allowed"):
+        bs.compare(HIP, force=-1.0)
+
+
+def test_a_displacement_has_three_components():
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
+    assert contact.force_vector([0.0, 0.0, 0.12]).shape == (3,)
+    for wrong in ([0.1, 0.1], 0.1, [[1.0], [2.0]]):
+        with pytest.raises(ValueError, match="displacement of shape .* its last axis holds x, y, z"):
+            contact.force_vector(wrong)
+
+
+def test_area_and_ratios():
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
+    assert contact.area == pytest.approx(2 * np.pi * 17.9**2 * (1 - np.cos(contact.half_angle)))
+    assert contact.indentation_ratio == pytest.approx(contact.indentation / 6.75)
+    assert contact.width_ratio == pytest.approx(18.0 * np.sin(contact.half_angle) / 6.75)
+    assert contact.conformity == pytest.approx(0.1 / contact.indentation)
+
+
+def test_bibtex_of_what_was_used():
+    text = bs.cite(bs.Bartel().press(HIP, force=1.0), bs.hess_forsbach, bs.PinInHole())
+    for key in ("bartel1985", "hess2021", "persson1964", "ciavarella2001"):
+        assert text.count("{" + key + ",") == 1
+    assert "hertz1882" not in text
+
+
+def test_every_source_is_in_the_bibliography():
+    from ballsocket.sources import bibliography
+
+    for model in (*bs.catalogue.values(), bs.PinInHole()):
+        for source in model.sources:
+            assert source.key in bibliography()
+            assert source.short
+            assert "\\" not in str(source)
+    assert bs.HessForsbach().sources[0].doi == "10.3390/app112311170"
