@@ -41,18 +41,33 @@ def short(value: float) -> str:
     return f"{value:.{digits}f}"
 
 
-def interleaved(repeats: int, work: dict[str, Work]) -> dict[str, Spread]:
-    """Seconds that each piece of work takes, measured in `repeats` rounds after one round that is not counted."""
-    for each in work.values():
-        each()
-    taken: dict[str, list[float]] = {name: [] for name in work}
-    for _ in range(repeats):
+Spreads = dict[str, Spread]
+
+
+def interleaved(repeats: int, work: dict[str, Work]) -> tuple[Spreads, Spreads]:
+    """Seconds that each piece of work takes, in `repeats` rounds in which all take turns; one more is not counted.
+
+    A turn is two calls, kept apart: the first finds the caches and the free memory as the others left them, the
+    second as its like did. The second is what a program that keeps calling sees.
+    """
+    first: dict[str, list[float]] = {name: [] for name in work}
+    again: dict[str, list[float]] = {name: [] for name in work}
+    for _ in range(1 + repeats):
         for name, each in work.items():
             gc.collect()
-            start = time.perf_counter()
-            each()
-            taken[name].append(time.perf_counter() - start)
-    return {name: Spread(tuple(seconds)) for name, seconds in taken.items()}
+            first[name].append(_seconds(each))
+            again[name].append(_seconds(each))
+    return _counted(first), _counted(again)
+
+
+def _seconds(work: Work) -> float:
+    start = time.perf_counter()
+    work()
+    return time.perf_counter() - start
+
+
+def _counted(seconds: dict[str, list[float]]) -> Spreads:
+    return {name: Spread(tuple(values[1:])) for name, values in seconds.items()}
 
 
 @contextmanager

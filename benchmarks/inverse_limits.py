@@ -1,0 +1,76 @@
+"""How near the compiled pass comes to what the machine can do with as many bytes.
+
+The limit is a copy of five arrays (`numpy.copyto`): 80 bytes read or written per solve, where a solve reads 48 and
+writes 25. That copy writes past the cache; a compiled loop fetches each line of its outputs before it overwrites it,
+so sums of the inputs, two by two, into the same outputs are measured as well: a pass that computes next to nothing.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy
+
+import ballsocket as bs
+
+from .inverse_rivals import joint_of
+from .report import Rows
+from .timing import interleaved
+
+REPEATS = 15
+COPY, SUMS = "copy of five arrays", "compiled sums, same arrays"
+KERNEL, IN_CACHE, PRESS = "compiled kernel", "compiled kernel, arrays in cache", "Compiled(...).press"
+NOTES = (
+    "The copy (`numpy.copyto`) reads or writes 80 bytes per solve; a solve reads 48 and writes 25. The copy writes "
+    "past the cache, which compiled loops do not: hence the sums of the inputs, two by two, into the same outputs.",
+    "Kernel, sums and copy write into arrays that were used before. `press` checks its input and takes new memory for "
+    "its answer, whose pages the system hands out inside the pass: dearest in a first call, where a virtual machine "
+    "has given its free memory back meanwhile.",
+)
+
+
+def table(inputs: list[numpy.ndarray], chunk: int) -> Rows:
+    import numba
+
+    from ballsocket.compiled import Compiled, _kernel
+
+    kernel: Any = _kernel(bs.HessForsbach())
+    fast, joint, points = Compiled(model=bs.HessForsbach()), joint_of(inputs), inputs[0].size
+    targets = [numpy.zeros(points) for _ in range(5)]
+    passed = [*inputs, *targets[:3], numpy.zeros(points, dtype=numpy.int8)]
+    first = [part[:chunk] for part in passed]
+
+    @numba.njit
+    def sums(R1, c, L, E, nu, F, d, p0, angle, status):  # type: ignore[no-untyped-def]
+        for i in range(d.size):
+            d[i], p0[i], angle[i], status[i] = R1[i] + c[i], L[i] + E[i], nu[i] + F[i], 0
+
+    def copy() -> None:
+        for source, target in zip(inputs, targets, strict=False):
+            numpy.copyto(target, source)
+
+    def in_cache() -> None:
+        for _ in range(points // chunk):
+            kernel(*first)
+
+    _, seconds = interleaved(
+        REPEATS,
+        {
+            COPY: copy,
+            SUMS: lambda: sums(*passed),
+            KERNEL: lambda: kernel(*passed),
+            IN_CACHE: in_cache,
+            PRESS: lambda: fast.press(joint, force=inputs[5]),
+        },
+    )
+    times = {name: spread.per(1e-9 * points) for name, spread in seconds.items()}
+    rows = Rows("Against the machine's limit, ns per solve", ("what", "ours", "limit", "ratio"))
+    for name, limit, aim in (
+        (KERNEL, COPY, "; aim 2"),
+        (PRESS, COPY, "; aim 2"),
+        (IN_CACHE, COPY, ""),
+        (KERNEL, SUMS, ""),
+    ):
+        ratio = times[name].over(times[limit])
+        rows.add(f"{name} / {limit}", times[name], times[limit], f"{ratio} times the limit{aim}")
+    return rows
