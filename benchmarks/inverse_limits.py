@@ -1,8 +1,9 @@
 """How near the compiled pass comes to what the machine can do with as many bytes.
 
 The limit is a copy of five arrays (`numpy.copyto`): 80 bytes read or written per solve, where a solve reads 48 and
-writes 25. That copy writes past the cache; a compiled loop fetches each line of its outputs before it overwrites it,
-so sums of the inputs, two by two, into the same outputs are measured as well: a pass that computes next to nothing.
+writes 25. Copies run one after the other, which need not be the fastest way to move bytes, so sums of the inputs, two
+by two, into the same outputs are measured as well: a compiled pass over the very same arrays that computes next to
+nothing. The kernel again on arrays that stay in cache tells how much of its time is arithmetic.
 """
 
 from __future__ import annotations
@@ -14,15 +15,16 @@ import numpy
 import ballsocket as bs
 
 from .inverse_rivals import joint_of
-from .report import Rows
+from .report import Rows, verdict
 from .timing import interleaved
 
-REPEATS = 15
+REPEATS, AIM = 15, 2.0
 COPY, SUMS = "copy of five arrays", "compiled sums, same arrays"
 KERNEL, IN_CACHE, PRESS = "compiled kernel", "compiled kernel, arrays in cache", "Compiled(...).press"
 NOTES = (
-    "The copy (`numpy.copyto`) reads or writes 80 bytes per solve; a solve reads 48 and writes 25. The copy writes "
-    "past the cache, which compiled loops do not: hence the sums of the inputs, two by two, into the same outputs.",
+    "The copy (`numpy.copyto`) reads or writes 80 bytes per solve; a solve reads 48 and writes 25. The sums read and "
+    "write exactly the arrays of a solve, in one compiled pass that computes next to nothing.",
+    "Where the kernel takes as long on arrays that stay in cache, its time is arithmetic and not memory.",
     "Kernel, sums and copy write into arrays that were used before. `press` checks its input and takes new memory for "
     "its answer, whose pages the system hands out inside the pass: dearest in a first call, where a virtual machine "
     "has given its free memory back meanwhile.",
@@ -66,11 +68,11 @@ def table(inputs: list[numpy.ndarray], chunk: int) -> Rows:
     times = {name: spread.per(1e-9 * points) for name, spread in seconds.items()}
     rows = Rows("Against the machine's limit, ns per solve", ("what", "ours", "limit", "ratio"))
     for name, limit, aim in (
-        (KERNEL, COPY, "; aim 2"),
-        (PRESS, COPY, "; aim 2"),
-        (IN_CACHE, COPY, ""),
-        (KERNEL, SUMS, ""),
+        (KERNEL, COPY, AIM),
+        (PRESS, COPY, AIM),
+        (IN_CACHE, COPY, None),
+        (KERNEL, SUMS, None),
     ):
         ratio = times[name].over(times[limit])
-        rows.add(f"{name} / {limit}", times[name], times[limit], f"{ratio} times the limit{aim}")
+        rows.add(f"{name} / {limit}", times[name], times[limit], f"{ratio} times the limit{verdict(ratio, aim)}")
     return rows

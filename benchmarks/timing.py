@@ -27,6 +27,10 @@ class Spread:
         """The quotient, round by round."""
         return Spread(tuple(mine / its for mine, its in zip(self.values, other.values, strict=True)))
 
+    def less(self, other: Spread) -> Spread:
+        """The difference, round by round."""
+        return Spread(tuple(mine - its for mine, its in zip(self.values, other.values, strict=True)))
+
     def per(self, unit: float) -> Spread:
         """In other units: seconds `per(1e-9 * n)` are nanoseconds for one of n."""
         return Spread(tuple(value / unit for value in self.values))

@@ -44,8 +44,7 @@ from .presets import (
 )
 from .sources import cite
 from .validity import Range, Status
-
-__version__ = "0.1.0"
+from .version import __version__ as __version__
 
 __all__ = [
     "ALUMINA",

@@ -76,7 +76,7 @@ def where(condition: Array, this: Array, that: Array) -> Array:
 
 
 def clip(x: Array, low: float, high: float) -> Array:
-    return namespace(x).clip(x, low, high)
+    return min(max(x, low), high) if is_plain(x) else namespace(x).clip(x, low, high)
 
 
 def isfinite(x: Array) -> Array:
@@ -91,6 +91,11 @@ def positive(x: Array) -> Array:
 def device(x: Array) -> Any:
     """Where `x` lives."""
     return array_api_compat.device(x)
+
+
+def rounding(x: Array) -> float:
+    """The relative rounding error of `x`'s dtype."""
+    return float(namespace(x).finfo(x.dtype).eps)
 
 
 def known(x: Array) -> numpy.ndarray | None:

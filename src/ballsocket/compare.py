@@ -8,14 +8,16 @@ from html import escape
 from math import degrees
 from typing import Any
 
-from . import arrays
+from . import arrays, describe
 from .arrays import Array
 from .checks import one_load
-from .contact import QUANTITIES, Contact
+from .contact import Contact
+from .describe import QUANTITIES
 from .joint import Joint
 from .models import catalogue
 from .models.base import Model
 from .validity import OutsideDomainError
+from .version import __version__
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,13 +48,11 @@ class Comparison(Mapping[str, Contact]):
         for name, contact in self.contacts.items():
             angle = arrays.to_numpy(contact.half_angle) * degrees(1.0)
             values = (contact.force, contact.indentation, angle, contact.max_pressure, contact.area, contact.stiffness)
-            rows.append((name, *(_text(value) for value in values), _yes(contact.valid)))
+            rows.append((name, *(_text(value) for value in values), describe.count(contact.valid)))
         return rows
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON: version, joint and results, in mm, N, MPa, degrees."""
-        from . import __version__
-
         results = [contact.summary() for contact in self.contacts.values()]
         for name, reason in self.missing.items():
             results.append({"model": name, **dict.fromkeys(QUANTITIES), "valid": False, "notes": [reason]})
@@ -128,8 +128,3 @@ def _text(value: Array) -> str:
     if listed.size == 1:
         return "-" if listed != listed else f"{listed.item():.5g}"
     return f"{float(listed.min()):.4g}..{float(listed.max()):.4g}"
-
-
-def _yes(valid: Array) -> str:
-    listed = arrays.to_numpy(valid)
-    return ("yes" if listed.item() else "no") if listed.size == 1 else f"{int(listed.sum())}/{listed.size}"

@@ -23,7 +23,7 @@ from .arrays import Array
 from .contact import Contact
 from .joint import Joint
 from .models import kinematics
-from .models.base import Model, checked_load, inside_domain, prepared
+from .models.base import Answer, Model, checked_load, inside_domain, prepared
 from .models.foundation import RadialFoundation
 from .sources import Source
 from .validity import Range, Status
@@ -47,7 +47,7 @@ class Compiled(Model):
     >>> fast = Compiled(model=bs.HessForsbach())
     >>> contact = fast.press(bs.joints["hess-forsbach"], force=numpy.array([1000.0, 3000.0]))
     >>> contact.max_pressure.round(3)
-    array([ 6.024, 11.27 ])
+    array([ 5.921, 11.27 ])
     """
 
     model: RadialFoundation
@@ -84,8 +84,11 @@ class Compiled(Model):
         numbers = (*joint.numbers(), given)
         large = [number for number in numbers if not arrays.is_plain(number)]
         if kind != "force" or not large or not all(_is_float64(number) for number in large):
-            return self.model.press(joint, force=force, indentation=indentation, half_angle=half_angle)
+            return super().press(joint, force=force, indentation=indentation, half_angle=half_angle)
         return self._pass(joint, given)
+
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        return self.model._solve(joint, kind, load)
 
     def _pass(self, joint: Joint, force: Array) -> Contact:
         _, whole, load = prepared(joint, force)
@@ -101,7 +104,7 @@ class Compiled(Model):
             status = numpy.where(inside, status, numpy.int8(Status.OUTSIDE_DOMAIN))
             d, p0, angle = (numpy.where(inside, part, numpy.nan) for part in (d, p0, angle))
         contact = Contact(
-            model=self.model,
+            model=self,
             laws=self.model,
             joint=whole,
             force=numpy.broadcast_to(load, shape),

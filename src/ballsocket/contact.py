@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from html import escape
-from math import degrees, pi
+from math import pi
 from typing import Any, Protocol
 
 import numpy
 
-from . import arrays
+from . import arrays, describe
 from .arrays import Array
 from .checks import numeric
 from .joint import Joint
@@ -210,53 +209,13 @@ class Contact:
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON in N, mm, MPa and degrees; arrays become (nested) lists, a missing number None."""
-        quantities = {name: getattr(self, attribute) for name, attribute, _ in _COLUMNS}
-        quantities["half_angle_deg"] = quantities["half_angle_deg"] * degrees(1.0)
-        numbers = {name: arrays.to_list(value) for name, value in quantities.items()}
-        return {"model": self.model.name, **numbers, "valid": arrays.to_list(self.valid), "notes": list(self.notes)}
-
-    def _rows(self) -> list[tuple[str, str, str]]:
-        rows = []
-        for name, attribute, unit in _COLUMNS:
-            value = arrays.to_numpy(getattr(self, attribute))
-            value = numpy.degrees(value) if unit == "deg" else value
-            rows.append((name.removesuffix("_deg"), _range_text(value), unit))
-        return rows
+        return describe.summary(self)
 
     def __repr__(self) -> str:
-        if arrays.truth(self.indentation == self.indentation) is None:
-            return f"<Contact of {self.model.name}, traced>"
-        width = max(len(text) for _, text, _ in self._rows())
-        lines = [f"{self.model.name} on {self.joint}"]
-        lines += [f"  {name:<19}{text:>{width}} {unit}" for name, text, unit in self._rows()]
-        lines.append(f"  {'valid':<19}{_count_text(self.valid):>{width}}")
-        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
+        return describe.text(self)
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td style='text-align:left'>{name.replace('_', ' ')}</td><td>{escape(text)}</td>"
-            f"<td style='text-align:left'>{unit}</td></tr>"
-            for name, text, unit in [*self._rows(), ("valid", _count_text(self.valid), "")]
-        )
-        notes = "".join(f"<div>{escape(note)}</div>" for note in self.notes)
-        return f"<b>{escape(self.model.name)}</b><div>{escape(str(self.joint))}</div><table>{rows}</table>{notes}"
-
-
-# name in JSON, attribute, unit
-_COLUMNS = (
-    ("force", "force", "N"),
-    ("indentation", "indentation", "mm"),
-    ("half_angle_deg", "half_angle", "deg"),
-    ("max_pressure", "max_pressure", "MPa"),
-    ("area", "area", "mm²"),
-    ("stiffness", "stiffness", "N/mm"),
-    ("energy", "energy", "N mm"),
-    ("foundation_modulus", "foundation_modulus", "MPa/mm"),
-)
-
-
-QUANTITIES = tuple(name for name, _, _ in _COLUMNS)
-"""The names of a contact's numbers in JSON."""
+        return describe.html(self)
 
 
 def _mean_lever(angle: Array, axis_angle: float) -> Array:
@@ -265,17 +224,3 @@ def _mean_lever(angle: Array, axis_angle: float) -> Array:
     polar, across = arrays.cos(angle) * float(numpy.cos(axis_angle)), arrays.sin(angle) * float(numpy.sin(axis_angle))
     sines = [arrays.sqrt(arrays.clip(1 - (polar + across * float(numpy.cos(turn))) ** 2, 0.0, 1.0)) for turn in turns]
     return arrays.weighted_sum(sines, [1 / 64] * 64)
-
-
-def _range_text(value: Any) -> str:
-    if value.size == 1:
-        return f"{value.item():.6g}"
-    known = value[numpy.isfinite(value)]
-    if not known.size:
-        return "no answer"
-    return f"{known.min():.5g} to {known.max():.5g}"
-
-
-def _count_text(valid: Array) -> str:
-    listed = arrays.to_numpy(valid)
-    return ("yes" if listed.item() else "no") if listed.size == 1 else f"{int(listed.sum())} of {listed.size}"

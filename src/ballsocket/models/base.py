@@ -3,19 +3,30 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from math import cos, pi, sin
 from types import SimpleNamespace
-from typing import Any
 
 import numpy
 
 from .. import arrays
 from ..arrays import Array, where
 from ..checks import numeric, one_load, require
-from ..contact import Contact
+from ..contact import Contact, Laws
 from ..joint import Joint
 from ..sources import Source
 from ..validity import OutsideDomainError, Range, Status
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Answer:
+    """What a solver hands back: force and indentation, masks of how it went, and where the rest comes from."""
+
+    laws: Laws
+    force: Array
+    indentation: Array
+    converged: Array
+    beyond_equator: Array
 
 
 class Model(ABC):
@@ -53,7 +64,6 @@ class Model(ABC):
     @abstractmethod
     def validity(self) -> tuple[Range, ...]: ...
 
-    @abstractmethod
     def press(
         self,
         joint: Joint,
@@ -84,6 +94,15 @@ class Model(ABC):
         ValueError
             Not exactly one load; a load that is not allowed; no point at all inside the model's domain.
         """
+        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
+        plain, joint, load = prepared(joint, given)
+        inside = inside_domain(self, joint)
+        with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
+            return _finished(self, joint, kind, load, inside, self._solve(joint, kind, load), plain)
+
+    @abstractmethod
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        """The answer to a load of one kind ("force", "indentation", "half_angle"), all numbers being arrays."""
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Force (..., 3) in N on the ball whose centre is displaced by (..., 3) mm; see `Contact.force_vector`."""
@@ -168,21 +187,7 @@ class ClosedForm(Model):
         root = arrays.increasing_root(law, arrays.broadcast(goal, *shape), low, high, low + (high - low) / 4)
         return where(force > 0, scale * arrays.exp(root), 0.0 * root)
 
-    def press(
-        self,
-        joint: Joint,
-        *,
-        force: Array | None = None,
-        indentation: Array | None = None,
-        half_angle: Array | None = None,
-    ) -> Contact:
-        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
-        plain, joint, load = prepared(joint, given)
-        inside = inside_domain(self, joint)
-        with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
-            return self._pressed(joint, kind, load, plain, inside)
-
-    def _pressed(self, joint: Joint, kind: str, load: Array, plain: bool, inside: Array) -> Contact:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         if kind == "force":
             d = self.indentation(joint, load)
             F = load
@@ -191,7 +196,17 @@ class ClosedForm(Model):
             F = self.force(joint, d)
         else:
             d, F = load, self.force(joint, load)
-        return finished(self, joint, kind, plain, inside, d, F)
+        xp = arrays.namespace(load)
+        safe = where(arrays.isfinite(d), d, 0.0)
+        # an error of rounding in d: F alone is no measure where it is a small difference of large parts (adhesion)
+        scale = xp.abs(F) + safe * self.stiffness(joint, safe)
+        return Answer(
+            laws=self,
+            force=F,
+            indentation=d,
+            converged=xp.abs(self.force(joint, safe) - F) <= 1e3 * arrays.rounding(safe) * scale,
+            beyond_equator=self.half_angle(joint, safe) > pi / 2 * (1 + 1e-6),
+        )
 
 
 def checked_load(**loads: Array | None) -> tuple[str, Array]:
@@ -215,7 +230,7 @@ def prepared(joint: Joint, load: Array) -> tuple[bool, Joint, Array]:
     return plain, joint.with_numbers(joint_numbers), load
 
 
-def inside_domain(model: Any, joint: Joint) -> Array:
+def inside_domain(model: Model, joint: Joint) -> Array:
     """Where the model has a formula; OutsideDomainError (a ValueError) where it has none for any point."""
     inside: Array = joint.ball_radius == joint.ball_radius
     for limit in model.domain:
@@ -231,23 +246,25 @@ def _value_text(limit: Range, joint: Joint) -> str:
     return f"{limit.symbol} = {value[0]:g}" + (f" (and {value.size - 1} more)" if value.size > 1 else "")
 
 
-def finished(model: ClosedForm, joint: Joint, kind: str, plain: bool, inside: Array, d: Array, F: Array) -> Contact:
-    """The contact with its status: NaN where there is no answer, and why."""
-    xp = arrays.namespace(d, F)
-    d = arrays.broadcast(d, F, *joint.numbers())
-    F = arrays.broadcast(F, d)
-    found = arrays.isfinite(d) & arrays.isfinite(F)
-    safe = where(found, d, 0.0)
-    rounding = 1e3 * float(xp.finfo(d.dtype).eps)
-    # an error of rounding in d: F alone is no measure where it is a small difference of large parts (adhesion)
-    converged = xp.abs(model.force(joint, safe) - F) <= rounding * (xp.abs(F) + safe * model.stiffness(joint, safe))
-    status = xp.astype(model.half_angle(joint, safe) > pi / 2 * (1 + 1e-6), xp.int8) * int(Status.BEYOND_EQUATOR)
-    for good, code in ((converged, Status.NOT_CONVERGED), (found, Status.NOT_REACHED), (inside, Status.OUTSIDE_DOMAIN)):
-        status = where(good, status, xp.asarray(int(code), dtype=xp.int8))
+def _finished(
+    model: Model, joint: Joint, kind: str, load: Array, inside: Array, answer: Answer, plain: bool
+) -> Contact:
+    """The contact with its status: NaN where there is no answer."""
+    xp = arrays.namespace(load)
+    shape = (load, answer.force, answer.indentation, *joint.numbers())
+    F = arrays.broadcast(load if kind == "force" else answer.force, *shape)
+    d = arrays.broadcast(load if kind == "indentation" else answer.indentation, *shape)
+    found = arrays.isfinite(answer.force) & arrays.isfinite(answer.indentation)
+    status = xp.zeros_like(xp.astype(F > 0, xp.int8))
+    for wrong, code in (
+        (answer.beyond_equator, Status.BEYOND_EQUATOR),
+        (~answer.converged, Status.NOT_CONVERGED),
+        (~found, Status.NOT_REACHED),
+        (~inside, Status.OUTSIDE_DOMAIN),
+    ):
+        status = where(wrong, xp.asarray(int(code), dtype=xp.int8), status)
     answered = (status == int(Status.OK)) | (status == int(Status.BEYOND_EQUATOR))
-    d, F = where(answered, d, xp.nan), where(answered | (kind == "force"), F, xp.nan)
+    F, d = where(answered | (kind == "force"), F, xp.nan), where(answered | (kind == "indentation"), d, xp.nan)
     if plain:
-        return Contact(
-            model=model, laws=model, joint=joint, force=float(F), indentation=float(d), status=Status(int(status))
-        )
-    return Contact(model=model, laws=model, joint=joint, force=F, indentation=d, status=status)
+        F, d, status = float(F), float(d), Status(int(status))
+    return Contact(model=model, laws=answer.laws, joint=joint, force=F, indentation=d, status=status)

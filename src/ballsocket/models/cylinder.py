@@ -14,7 +14,7 @@ from ..checks import numeric, one_load, require
 from ..joint import Joint
 from ..sources import Source
 from ..validity import Range, Status
-from .base import inside_domain, prepared
+from .base import prepared
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,10 +44,6 @@ class PinInHole:
         return (Source("persson1964"), Source("ciavarella2001"))
 
     @property
-    def domain(self) -> tuple[Range, ...]:
-        return ()
-
-    @property
     def validity(self) -> tuple[Range, ...]:
         same = "pin and plate of one material (a rigid pin is none)"
         massive = "an infinite plate"
@@ -72,7 +68,6 @@ class PinInHole:
             limit = f"a half angle (rad) is 0 or more and below {PERFECT_FIT:.6f} (perfect fit)"
             require(kind, load, (load >= 0) & (load < PERFECT_FIT), limit)
         plain, joint, load = prepared(joint, load)
-        inside_domain(self, joint)
         with numpy.errstate(all="ignore"):
             stiffness = joint.liner.young / (1 - joint.liner.poisson**2) * joint.clearance
             if kind == "line_load":

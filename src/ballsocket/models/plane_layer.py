@@ -10,11 +10,10 @@ import numpy
 
 from .. import arrays
 from ..arrays import Array, broadcast, clip, cos, exp, gauss_legendre, integral, log, positive, sin, sqrt, where
-from ..contact import Contact
 from ..joint import Joint
 from ..sources import Source
-from ..validity import RIGID_BALL, SMALL_STRAIN, Range, Status
-from .base import Model, checked_load, inside_domain, prepared
+from ..validity import RIGID_BALL, SMALL_STRAIN, Range
+from .base import Answer, Model
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,20 +58,18 @@ class PlaneLayer(Model):
         why = "the plane layer has no curvature: p0 is 23 % low at 45° (R2 18, L 6.75)"
         return (Range(quantity="half_angle", symbol="ε", high=radians(20.0), why=why), RIGID_BALL, SMALL_STRAIN)
 
-    def press(
-        self,
-        joint: Joint,
-        *,
-        force: Array | None = None,
-        indentation: Array | None = None,
-        half_angle: Array | None = None,
-    ) -> Contact:
-        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
-        plain, joint, load = prepared(joint, given)
-        inside = inside_domain(self, joint)
-        with numpy.errstate(all="ignore"):
-            solution = _solve(joint, kind, load)
-            return _contact(self, joint, kind, load, plain, inside, solution)
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        solution = _solution(joint, kind, load)
+        force, indentation = solution.values
+        given = indentation if kind == "indentation" else force
+        miss = 0.0 * given if kind == "half_angle" else arrays.namespace(given).abs(given - load)
+        return Answer(
+            laws=solution,
+            force=force,
+            indentation=indentation,
+            converged=miss <= 1e5 * arrays.rounding(given) * load,
+            beyond_equator=given < 0,
+        )
 
 
 def layer_ratio(x: Array, poisson: Array) -> Array:
@@ -227,7 +224,7 @@ def _quadrature(widest: float) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndar
     return x, wx, 22 * k, 22 * wk  # Φ - 1 is below 1e-16 beyond k L = 22
 
 
-def _solve(joint: Joint, kind: str, load: Array) -> LayerSolution:
+def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
     """The solution at the width that belongs to the load (NaN where none below a half angle of π/2 does)."""
     shape = (load, *joint.numbers())
     widest = broadcast(pi / 2 * joint.thickness_ratio, *shape)
@@ -254,29 +251,3 @@ def _solve(joint: Joint, kind: str, load: Array) -> LayerSolution:
     root = arrays.increasing_root(law, goal, flat, steep, guess, steps=24)
     width = where(missing <= 0, exp(root), float("nan"))
     return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=reach)
-
-
-def _contact(
-    model: PlaneLayer, joint: Joint, kind: str, load: Array, plain: bool, inside: Array, solution: LayerSolution
-) -> Contact:
-    xp = arrays.namespace(load)
-    F, d = solution.values
-    given = d if kind == "indentation" else F
-    load = broadcast(load, given)
-    rounding = 1e5 * float(xp.finfo(given.dtype).eps)
-    converged = (kind == "half_angle") | (xp.abs(given - load) <= rounding * xp.abs(load)) | (load <= 0)
-    status = xp.zeros_like(xp.astype(given > 0, xp.int8))
-    for good, code in (
-        (converged, Status.NOT_CONVERGED),
-        (arrays.isfinite(given), Status.NOT_REACHED),
-        (inside, Status.OUTSIDE_DOMAIN),
-    ):
-        status = where(good, status, xp.asarray(int(code), dtype=xp.int8))
-    answered = status == int(Status.OK)
-    F = load if kind == "force" else where(answered, F, xp.nan)
-    d = where(answered, load if kind == "indentation" else d, xp.nan)
-    if plain:
-        return Contact(
-            model=model, laws=solution, joint=joint, force=float(F), indentation=float(d), status=Status(int(status))
-        )
-    return Contact(model=model, laws=solution, joint=joint, force=F, indentation=d, status=status)
