@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy
+from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import lsqr
 
 METRES, STIFFNESS = 1e-3, 1e9  # per millimetre; Pa/m per MPa/mm
 
@@ -46,13 +48,25 @@ def socket_mesh(radius: float, faces: int) -> tuple[numpy.ndarray, numpy.ndarray
             triangles += [(near[step], far[step + 1], far[step]) for step in range(ring)]
             triangles += [(near[step], near[step + 1], far[step + 1]) for step in range(ring - 1)]
     vertices, inside = numpy.vstack(rows), numpy.array(triangles)
-    for _ in range(30):  # springs act at the centroids: put these, rather than the vertices, on the sphere
-        scale = numpy.repeat(radius / numpy.linalg.norm(vertices[inside].mean(axis=1), axis=1), 3)
-        vertices *= (numpy.bincount(inside.ravel(), weights=scale) / numpy.bincount(inside.ravel()))[:, None]
+    vertices = _centroids_on_sphere(vertices, inside, radius)
     rim, edge, apex = len(vertices) - 6 * rings, len(vertices), len(vertices) + 6 * rings
     for a, b in ((step, (step + 1) % (6 * rings)) for step in range(6 * rings)):
         triangles += [(rim + a, rim + b, edge + a), (rim + b, edge + b, edge + a), (edge + a, edge + b, apex)]
     return numpy.vstack([vertices, 1.3 * vertices[rim:], [[3 * radius, 0.0, 0.0]]]), numpy.array(triangles)
+
+
+def _centroids_on_sphere(vertices: numpy.ndarray, faces: numpy.ndarray, radius: float) -> numpy.ndarray:
+    """The vertices moved as little as puts the centroids of all faces, where the springs act, onto the sphere."""
+    rows = numpy.repeat(numpy.arange(len(faces)), 9)
+    columns = (3 * faces[:, :, None] + numpy.arange(3)).ravel()
+    for _ in range(6):
+        centroids = vertices[faces].mean(axis=1)
+        size = numpy.linalg.norm(centroids, axis=1)
+        slopes = numpy.tile(centroids / size[:, None] / 3, (1, 3)).ravel()
+        matrix = csr_matrix((slopes, (rows, columns)), shape=(len(faces), vertices.size))
+        step = lsqr(matrix, radius - size, atol=1e-12, btol=1e-12, iter_lim=20000)[0]
+        vertices = vertices + step.reshape(-1, 3)
+    return vertices
 
 
 def build(ball_radius: float, clearance: float, foundation_modulus: float, faces: int) -> BallInSocket:

@@ -18,6 +18,9 @@ Array = Any
 """A Python number or an array of any library that follows the array API standard."""
 
 
+_OF_NUMPY = (float, int, numpy.ndarray, numpy.generic)
+
+
 def is_plain(value: Any) -> bool:
     """Whether `value` is a Python (or NumPy) number, which takes the library and dtype of its neighbours."""
     return isinstance(value, int | float)
@@ -25,9 +28,9 @@ def is_plain(value: Any) -> bool:
 
 def namespace(*values: Array) -> Any:
     """The array library of `values`: NumPy where all of them are plain numbers."""
-    arrays = [value for value in values if not is_plain(value)]
-    if not arrays:
+    if all(isinstance(value, _OF_NUMPY) for value in values):
         return numpy
+    arrays = [value for value in values if not is_plain(value)]
     try:
         return array_api_compat.array_namespace(*arrays)
     except TypeError as error:

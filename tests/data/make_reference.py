@@ -136,7 +136,7 @@ def joints() -> Iterator[tuple[float, float]]:
 def rows() -> Iterator[str]:
     for clearance, indentation in joints():
         c, d = mpf(clearance), mpf(indentation)
-        cases = [linear(c), exact(c)] if clearance else [linear(c)]
+        cases = [linear(c), exact(c)]
         if clearance:
             cases += [half_space(c, 1), half_space(c, 3), liu(c)]
         if clearance and indentation >= clearance:  # below, forces change sign and relative errors mean nothing

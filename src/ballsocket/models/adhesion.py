@@ -127,7 +127,7 @@ class AdhesiveSocket(ClosedForm):
         high = 3 * force / self._factor(joint) + c / 2
         shape = (low, high, self.critical_stretch(joint))
         low, high = broadcast(low, *shape), broadcast(where(high > low, high, low), *shape)
-        return increasing_root(lambda d: (self.force(joint, d), self.stiffness(joint, d)), force, low, high, low)
+        return increasing_root(lambda d: (self.force(joint, d), self.stiffness(joint, d)), force, low, high, high)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         return 2 * asin(sqrt(self._versine(joint, indentation) / 2))
