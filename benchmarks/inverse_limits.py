@@ -15,8 +15,8 @@ import numpy
 import ballsocket as bs
 
 from .inverse_rivals import joint_of
-from .report import Rows, verdict
-from .timing import interleaved
+from .report import Rows
+from .timing import Spread, interleaved
 
 REPEATS, AIM = 15, 2.0
 COPY, SUMS = "copy of five arrays", "compiled sums, same arrays"
@@ -74,5 +74,11 @@ def table(inputs: list[numpy.ndarray], chunk: int) -> Rows:
         (KERNEL, SUMS, None),
     ):
         ratio = times[name].over(times[limit])
-        rows.add(f"{name} / {limit}", times[name], times[limit], f"{ratio} times the limit{verdict(ratio, aim)}")
+        rows.add(f"{name} / {limit}", times[name], times[limit], f"{ratio} times the limit{_verdict(ratio, aim)}")
     return rows
+
+
+def _verdict(ratio: Spread, aim: float | None) -> str:
+    if aim is None:
+        return ""
+    return f"; aim {aim:g}: {'met' if ratio.median <= aim else 'missed'}"

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy
-from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import lsqr
+from scipy.sparse import csr_matrix, identity
+from scipy.sparse.linalg import spsolve
 
 METRES, STIFFNESS = 1e-3, 1e9  # per millimetre; Pa/m per MPa/mm
 
@@ -25,6 +25,7 @@ class BallInSocket:
     ball: int  # index of the ball's forces
     clearance: float  # mm
     faces: int
+    off_sphere: float  # mm, the farthest spring
 
     def force(self, indentation: float) -> float:
         """The axial force, in N, with the ball pressed `indentation` mm beyond first touch."""
@@ -33,8 +34,11 @@ class BallInSocket:
         return -float(self.model.getRigidBodyForces(self.state).get(self.ball).get(1).get(0))
 
 
-def socket_mesh(radius: float, faces: int) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """Vertices and triangles of a closed solid: a hemispherical socket (pole at +x), a rim and an outer cone."""
+def socket_mesh(radius: float, faces: int) -> tuple[numpy.ndarray, numpy.ndarray, float]:
+    """Vertices and triangles of a closed solid: a hemispherical socket (pole at +x), a rim and an outer cone.
+
+    And how far off the sphere the farthest spring of the socket sits.
+    """
     rings = max(2, round(math.sqrt(faces / 6 + 2.25) - 1.5))  # gives 6 rings² + 18 rings faces
     rows, triangles = [numpy.array([[radius, 0.0, 0.0]])], []
     for ring in range(1, rings + 1):
@@ -48,24 +52,33 @@ def socket_mesh(radius: float, faces: int) -> tuple[numpy.ndarray, numpy.ndarray
             triangles += [(near[step], far[step + 1], far[step]) for step in range(ring)]
             triangles += [(near[step], near[step + 1], far[step + 1]) for step in range(ring - 1)]
     vertices, inside = numpy.vstack(rows), numpy.array(triangles)
-    vertices = _centroids_on_sphere(vertices, inside, radius)
+    vertices = _centroids_near_sphere(vertices, inside, radius)
+    off_sphere = float(abs(numpy.linalg.norm(vertices[inside].mean(axis=1), axis=1) - radius).max())
     rim, edge, apex = len(vertices) - 6 * rings, len(vertices), len(vertices) + 6 * rings
     for a, b in ((step, (step + 1) % (6 * rings)) for step in range(6 * rings)):
         triangles += [(rim + a, rim + b, edge + a), (rim + b, edge + b, edge + a), (edge + a, edge + b, apex)]
-    return numpy.vstack([vertices, 1.3 * vertices[rim:], [[3 * radius, 0.0, 0.0]]]), numpy.array(triangles)
+    solid = numpy.vstack([vertices, 1.3 * vertices[rim:], [[3 * radius, 0.0, 0.0]]])
+    return solid, numpy.array(triangles), off_sphere
 
 
-def _centroids_on_sphere(vertices: numpy.ndarray, faces: numpy.ndarray, radius: float) -> numpy.ndarray:
-    """The vertices moved as little as puts the centroids of all faces, where the springs act, onto the sphere."""
-    rows = numpy.repeat(numpy.arange(len(faces)), 9)
-    columns = (3 * faces[:, :, None] + numpy.arange(3)).ravel()
-    for _ in range(6):
+def _centroids_near_sphere(vertices: numpy.ndarray, faces: numpy.ndarray, radius: float) -> numpy.ndarray:
+    """The vertices moved so that the centroids of the faces, where the springs act, come near to the sphere.
+
+    First along the radius; then by damped least squares in all directions, with little damping: without any the
+    faces would lose their shape, without this step the force on the coarsest mesh would be 75 % off at 5 µm.
+    """
+    corners = faces.ravel()
+    for _ in range(30):
+        scale = numpy.repeat(radius / numpy.linalg.norm(vertices[faces].mean(axis=1), axis=1), 3)
+        vertices = vertices * (numpy.bincount(corners, weights=scale) / numpy.bincount(corners))[:, None]
+    places = numpy.repeat(numpy.arange(len(faces)), 9), (3 * faces[:, :, None] + numpy.arange(3)).ravel()
+    for _ in range(10):
         centroids = vertices[faces].mean(axis=1)
         size = numpy.linalg.norm(centroids, axis=1)
         slopes = numpy.tile(centroids / size[:, None] / 3, (1, 3)).ravel()
-        matrix = csr_matrix((slopes, (rows, columns)), shape=(len(faces), vertices.size))
-        step = lsqr(matrix, radius - size, atol=1e-12, btol=1e-12, iter_lim=20000)[0]
-        vertices = vertices + step.reshape(-1, 3)
+        matrix = csr_matrix((slopes, places), shape=(len(faces), vertices.size))
+        damped = (matrix @ matrix.T + 1e-4 * identity(len(faces))).tocsc()
+        vertices = vertices + (matrix.T @ spsolve(damped, radius - size)).reshape(-1, 3)
     return vertices
 
 
@@ -75,7 +88,7 @@ def build(ball_radius: float, clearance: float, foundation_modulus: float, faces
 
     opensim.Logger.setLevelString("Error")
     opensim.Logger.removeFileSink()  # no opensim.log in the working directory
-    vertices, triangles = socket_mesh((ball_radius + clearance) * METRES, faces)
+    vertices, triangles, off_sphere = socket_mesh((ball_radius + clearance) * METRES, faces)
     model, zero = opensim.Model(), opensim.Vec3(0)
     model.setGravity(zero)
     ball = opensim.Body("ball", 1.0, zero, opensim.Inertia(1.0, 1.0, 1.0))
@@ -95,4 +108,5 @@ def build(ball_radius: float, clearance: float, foundation_modulus: float, faces
         model.addContactGeometry(opensim.ContactSphere(ball_radius * METRES, zero, ball, "sphere"))
         model.addForce(contact)
         state = model.initSystem()  # reads the mesh: the folder must still exist
-    return BallInSocket(model, state, joint.getCoordinate(), ball.getMobilizedBodyIndex(), clearance, len(triangles))
+    coordinate, index = joint.getCoordinate(), ball.getMobilizedBodyIndex()
+    return BallInSocket(model, state, coordinate, index, clearance, len(triangles), off_sphere / METRES)

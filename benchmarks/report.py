@@ -14,8 +14,6 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from .timing import Spread
-
 RESULTS = Path(__file__).with_name("RESULTS.md")
 _HEAD = """# Measured
 
@@ -44,13 +42,6 @@ class Report:
     tables: list[Rows]
     notes: Sequence[str]
     rivals: Sequence[str] = ()
-
-
-def verdict(found: Spread, aim: float | None) -> str:
-    """Whether the median keeps to what was aimed at."""
-    if aim is None:
-        return ""
-    return f"; aim {aim:g}: {'met' if found.median <= aim else 'missed'}"
 
 
 def machine(packages: Sequence[str]) -> str:

@@ -162,7 +162,7 @@ def _kernel(model: RadialFoundation) -> Any:
             d = d if good else math.nan
             d_out[i] = d
             p0_out[i] = K * d
-            angle_out[i] = 2 * arrays.asin(arrays.sqrt(versine(R2, clearance, d) / 2))
+            angle_out[i] = kinematics.angle_of(versine(R2, clearance, d))
             status[i] = converged if good else failed
 
     # contract: a product and a sum may be rounded once; the order of operations stays as written
@@ -184,32 +184,35 @@ def _clip(x: Any, low: Any, high: Any) -> Callable[..., Any]:
     return lambda x, low, high: min(max(x, low), high)
 
 
-@overload(arrays.asin, strict=False)
-def _asin(x: Any) -> Callable[..., Any]:
-    return _asin_polynomial
+@overload(kinematics.angle_of, strict=False, jit_options={"forceinline": True})
+def _angle_of(versine: Any) -> Callable[..., Any]:
+    return _angle_polynomial
 
 
-def _asin_polynomial(x: float) -> float:
-    """asin without a call into the C library, so that several are computed at once; |x| above ½ by the half angle."""
-    size = abs(x)
-    z = 0.5 * (1 - size) if size > 0.5 else x * x
-    s = math.sqrt(z) if size > 0.5 else size
-    # (asin(s) - s)/s³ in z = s² on [0, 1/4]: Chebyshev fit to 2e-16 of it, 1e-17 of asin
-    r = 0.028169218060881414
-    r = r * z - 0.010749050339697808
-    r = r * z + 0.01603551434914882
-    r = r * z + 0.0078029494773533175
-    r = r * z + 0.011875494382636922
-    r = r * z + 0.013929652902326633
-    r = r * z + 0.017355259955786323
-    r = r * z + 0.02237204763174451
-    r = r * z + 0.03038194736709848
-    r = r * z + 0.044642857103423646
-    r = r * z + 0.07500000000020764
-    r = r * z + 0.1666666666666665
-    r = s + s * z * r
-    r = 0.5 * math.pi - 2 * r if size > 0.5 else r
-    return math.copysign(r, x)
+def _angle_polynomial(versine: float) -> float:
+    """`kinematics.angle_of` up to π/2 without a call into the C library, so that several are computed at once.
+
+    ε = sqrt(2v) P(v), P a Chebyshev fit on [0, 1]: 1e-16.
+    """
+    p = 5.3808098398167465e-06
+    p = p * versine - 3.6946632563759546e-05
+    p = p * versine + 0.00012100726393978694
+    p = p * versine - 0.00024256787149814154
+    p = p * versine + 0.00033365819930609243
+    p = p * versine - 0.0003262055706979571
+    p = p * versine + 0.00024170243545992032
+    p = p * versine - 0.00012117413285500441
+    p = p * versine + 7.179378545774666e-05
+    p = p * versine + 2.908058015756967e-05
+    p = p * versine + 0.00011269686358655027
+    p = p * versine + 0.0002705562428799403
+    p = p * versine + 0.000699195178549289
+    p = p * versine + 0.001898866700217143
+    p = p * versine + 0.005580357359544115
+    p = p * versine + 0.018749999994887395
+    p = p * versine + 0.083333333333381
+    p = p * versine + 0.9999999999999999
+    return math.sqrt(2 * versine) * p
 
 
 for _formula in (

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from math import inf, pi
 from typing import Any
 
-from ..arrays import Array, asin, broadcast, clip, increasing_root, positive, sin, sqrt, where
+from ..arrays import Array, broadcast, clip, increasing_root, positive, sqrt, where
 from ..checks import numeric, require
 from ..joint import Joint
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Range
 from .base import ClosedForm
-from .kinematics import linear_displacement, linear_indentation
+from .kinematics import angle_of, linear_displacement, linear_indentation, versine_of
 from .modulus import Modulus, hess_forsbach
 
 
@@ -130,10 +130,10 @@ class AdhesiveSocket(ClosedForm):
         return increasing_root(lambda d: (self.force(joint, d), self.stiffness(joint, d)), force, low, high, high)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        return 2 * asin(sqrt(self._versine(joint, indentation) / 2))
+        return angle_of(self._versine(joint, indentation))
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
-        versine = 2 * sin(half_angle / 2) ** 2
+        versine = versine_of(half_angle)
         d = (joint.clearance * versine - self.critical_stretch(joint)) / (1 - versine)
         return where(d >= 0, d, float("nan"))
 
@@ -142,6 +142,6 @@ class AdhesiveSocket(ClosedForm):
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         """Negative (tension) towards the edge."""
-        versine = 2 * sin(angle / 2) ** 2
+        versine = versine_of(angle)
         u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
         return where(versine <= self._versine(joint, indentation), self.modulus(joint) * u, 0.0)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..arrays import Array, asin, cos, sin, sqrt, where
+from ..arrays import Array, cos, where
 from ..joint import Joint
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Range
 from .base import ClosedForm
-from .kinematics import Kinematics, cosine_kinematics, exact_kinematics, linear_kinematics
+from .kinematics import Kinematics, angle_of, cosine_kinematics, exact_kinematics, linear_kinematics, versine_of
 from .modulus import Modulus, bonded_layer, hess_forsbach, spherical_vessel
 
 
@@ -71,11 +71,10 @@ class RadialFoundation(ClosedForm):
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         versine = self.kinematics.versine(joint.socket_radius, joint.clearance, indentation)
-        return 2 * asin(sqrt(versine / 2))
+        return angle_of(versine)
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
-        versine = 2 * sin(half_angle / 2) ** 2
-        return self.kinematics.indentation_of_versine(joint.socket_radius, joint.clearance, versine)
+        return self.kinematics.indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
     def max_pressure(self, joint: Joint, indentation: Array) -> Array:
         return self.modulus(joint) * indentation
@@ -84,8 +83,7 @@ class RadialFoundation(ClosedForm):
         return self.modulus(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        versine = 2 * sin(angle / 2) ** 2
-        u = self.kinematics.displacement(joint.socket_radius, joint.clearance, indentation, versine)
+        u = self.kinematics.displacement(joint.socket_radius, joint.clearance, indentation, versine_of(angle))
         inside = (u > 0) & (cos(angle) > 0)
         return where(inside, self.modulus(joint) * u, 0.0)
 

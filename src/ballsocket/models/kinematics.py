@@ -16,9 +16,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import nan, pi
 
-from ..arrays import Array, integral, positive, sqrt, where
+from ..arrays import Array, asin, integral, positive, sin, sqrt, where
 from ..sources import Source
 from ..validity import Range
+
+
+def versine_of(angle: Array) -> Array:
+    """1 - cos of an angle, without cancellation."""
+    return 2 * sin(angle / 2) ** 2
+
+
+def angle_of(versine: Array) -> Array:
+    """The angle up to π whose 1 - cos is given."""
+    return 2 * asin(sqrt(versine / 2))
 
 
 def linear_versine(R2: Array, c: Array, d: Array) -> Array:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, pi
 
-from ..arrays import Array, asin, clip, integral, log, positive, sin, sqrt, where
+from ..arrays import Array, clip, integral, log, positive, sin, sqrt, where
 from ..checks import require
 from ..joint import Joint
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Range
 from .base import ClosedForm
-from .kinematics import linear_indentation_of_versine, linear_versine
+from .kinematics import angle_of, linear_indentation_of_versine, linear_versine, versine_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,11 +78,10 @@ class LiuReconstruction(ClosedForm):
         return (s + sqrt(s * (s + 4 * joint.clearance))) / 2
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        return 2 * asin(sqrt(linear_versine(joint.socket_radius, joint.clearance, indentation) / 2))
+        return angle_of(linear_versine(joint.socket_radius, joint.clearance, indentation))
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
-        versine = 2 * sin(half_angle / 2) ** 2
-        return linear_indentation_of_versine(joint.socket_radius, joint.clearance, versine)
+        return linear_indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
     def _square_sine(self, joint: Joint, indentation: Array) -> Array:
         # sin² ε = d (2c + d)/(c + d)²

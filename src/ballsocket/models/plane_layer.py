@@ -115,7 +115,7 @@ class LayerSolution:
         kernel = arrays.broadcast_to(self._kernel, (*self.width.shape, k.shape[0]))
         flat_width, flat_kernel = xp.reshape(self.width, (-1,)), xp.reshape(kernel, (-1, k.shape[0]))
         count, size = flat_width.shape[0], max(1, _BLOCK // (k.shape[0] * x.shape[0]))
-        spans = [slice(first, min(first + size, count)) for first in range(0, count, size)]
+        spans = [slice(first, min(first + size, count)) for first in range(0, max(count, 1), size)]
         blocks = [self._block(flat_width[span], flat_kernel[span, :]) for span in spans]
         whole = (xp.concat(part, axis=0) if len(blocks) > 1 else part[0] for part in zip(*blocks, strict=True))
         transform, edge, mean, second = (xp.reshape(part, (*self.width.shape, *part.shape[1:])) for part in whole)
