@@ -9,7 +9,8 @@ own = bs.RadialFoundation(modulus=bs.polynomial(1.02, 1.25, 0.10, source="our li
 hip = bs.joints["hip-32"]
 for name, model in {"paper": bs.HessForsbach(), "own": own}.items():
     contact = model.press(hip, force=3000.0)
-    print(f"{name:>6}: K {contact.foundation_modulus:6.1f} MPa/mm, p0 {contact.max_pressure:5.2f} MPa, valid {contact.valid}")
+    stiffness, pressure = contact.foundation_modulus, contact.max_pressure
+    print(f"{name:>6}: K {stiffness:6.1f} MPa/mm, p0 {pressure:5.2f} MPa, valid {contact.valid}")
 
 # The ball pushed off the axis: the socket pushes back along the displacement.
 contact = own.press(hip, force=3000.0)

@@ -173,3 +173,43 @@ def test_second_derivatives_of_an_implicit_answer():
         step = 1.0
         slopes = [1 / model.press(HIP, force=force).stiffness for force in (3000.0 + step, 3000.0 - step)]
         assert float(second) == pytest.approx((slopes[0] - slopes[1]) / (2 * step), rel=1e-5)
+
+
+@EVERY
+def test_a_point_without_load_does_not_spoil_the_derivatives_of_the_others(model):
+    """d/d(joint) of a sum over loads that contains a zero, and of pressures beyond the edge, is finite."""
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        forces = jax.numpy.array([0.0, 3000.0])
+
+        def total(clearance):
+            joint = bs.Joint(ball_radius=17.9, clearance=clearance, liner_thickness=6.75, liner=bs.UHMWPE)
+            contact = model.press(joint, force=forces)
+            return contact.max_pressure.sum() + contact.pressure(1.4).sum()
+
+        assert np.isfinite(float(jax.grad(total)(0.1)))
+
+
+def test_a_massive_socket_has_derivatives():
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+
+        def pressure(radius):
+            joint = bs.Joint(ball_radius=radius, clearance=0.1, liner_thickness=np.inf, liner=bs.UHMWPE)
+            return bs.Vessel().press(joint, force=3000.0).max_pressure
+
+        assert np.isfinite(float(jax.grad(pressure)(17.9)))
+
+
+def test_a_plain_contact_is_asked_with_other_arrays():
+    jax = pytest.importorskip("jax")
+    torch = pytest.importorskip("torch")
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
+    expected = contact.pressure(0.3)
+    assert float(contact.pressure(jax.numpy.asarray(0.3))) == pytest.approx(expected, rel=1e-5)
+    assert float(contact.pressure(torch.tensor(0.3))) == pytest.approx(expected, rel=1e-5)
+    pushed = contact.force_vector(torch.tensor([0.0, 0.0, -0.14], dtype=torch.float64))
+    assert isinstance(pushed, torch.Tensor)
+    np.testing.assert_allclose(
+        np.asarray(contact.force_vector(jax.numpy.asarray([0.0, 0.0, -0.14]))), pushed.numpy(), rtol=1e-4, atol=1e-2
+    )

@@ -2,27 +2,31 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import ballsocket as bs
+from ballsocket import cli
 
 EXAMPLE = str(Path(__file__).parents[1] / "examples" / "hip.toml")
 NUMBERS = ("--ball-radius", "16", "--clearance", "0.1", "--liner-thickness", "6")
 NUMBERS += ("--young", "1GPa", "--poisson", "0.4", "--force", "3kN")
 
 
-def run(*words: str, columns: int = 100) -> subprocess.CompletedProcess[str]:
+def run(*words: str, columns: int = 100, encoding: str = "utf-8") -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "ballsocket", *words],
         capture_output=True,
         encoding="utf-8",
         timeout=120,
         check=False,
-        env={**os.environ, "COLUMNS": str(columns), "PYTHONIOENCODING": "utf-8"},
+        env={**os.environ, "COLUMNS": str(columns), "PYTHONIOENCODING": encoding},
     )
 
 
@@ -34,14 +38,50 @@ def test_press_a_file():
         assert text in done.stdout
 
 
-@pytest.mark.parametrize("columns", [80, 100, 160])
+@pytest.mark.parametrize("columns", [40, 50, 60, 80, 100, 160])
 def test_the_table_fits_the_terminal(columns):
     done = run("press", EXAMPLE, "--all", columns=columns)
-    table = done.stdout.split("\n")[1:14]
-    assert max(map(len, table)) <= columns
-    assert not any("…" in line for line in table)
+    lines = done.stdout.split("\n")
+    assert max(map(len, lines)) <= columns
+    assert "…" not in done.stdout
+    assert re.search(r"^model .* p0 .*valid", done.stdout, flags=re.MULTILINE)
     for name in bs.catalogue:
-        assert name in done.stdout
+        assert re.search(rf"^{name} .* (yes|no)", done.stdout, flags=re.MULTILINE)
+    assert ("█" in done.stdout) == (columns >= 80)
+
+
+@pytest.mark.parametrize("words", [("models",), ("presets",)])
+def test_the_lists_fit_the_terminal(words):
+    for columns in (40, 80):
+        lines = run(*words, columns=columns).stdout.split("\n")
+        assert max(map(len, lines)) <= columns
+    narrow = run(*words, columns=40).stdout
+    assert ("kinematics" in narrow) or ("clearance" in narrow)
+
+
+def test_a_terminal_without_greek_gets_ascii():
+    done = run("press", EXAMPLE, "--all", encoding="ascii")
+    assert done.returncode == 0
+    assert "#" in done.stdout
+    assert "outside e <= 10o" in done.stdout
+    assert run("models", encoding="ascii").returncode == 0
+    answer = run("press", EXAMPLE, "--json", "--model", "bonded-layer", encoding="ascii")
+    assert json.loads(answer.stdout)["joint"]["name"] == "hip, Heß & Forsbach 2021, Fig. 3"
+    refused = run("press", EXAMPLE, "--force", "3 ħ", encoding="ascii")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert "is not a force" in refused.stderr
+
+
+def test_a_massive_socket_is_called_so():
+    done = run("press", "tilting-pad-pivot", "--force", "3 kN", "--model", "hertz")
+    assert "massive" in done.stdout
+    assert "inf mm" not in done.stdout
+
+
+@pytest.mark.parametrize("load", ["--force=-0", "--indentation=-0.0", "--half-angle=-0"])
+def test_minus_nothing_is_nothing(load):
+    assert "-0" not in re.sub(r"hip-28", "", run("press", "hip-28", load, "--model", "hertz").stdout)
+    assert "-0" not in run("press", "hip-28", load, "--model", "hertz", "--json").stdout
 
 
 def test_json():
@@ -115,9 +155,16 @@ def test_figure(tmp_path, ending):
         (["press", "hip-29", "--force", "1"], "did you mean 'hip-"),
         (["press", "hip-28"], "a load is needed: --force, --indentation or --half-angle"),
         (["press", EXAMPLE, "--force", "3 kg"], "force = '3 kg' is not a force, such as '3 kN'"),
-        (["press", EXAMPLE, "--force", "-3"], "force = -3 is not allowed"),
+        (["press", EXAMPLE, "--force", "-3"], "force = '-3' is not allowed: a force (N) is 0 or more and finite"),
         (["press", EXAMPLE, "--force", "1", "--indentation", "1"], "one load is needed, got force, indentation"),
-        (["press", EXAMPLE, "--half-angle", "95"], "half_angle = 1.65806 is not allowed"),
+        (
+            ["press", EXAMPLE, "--half-angle", "95"],
+            "half_angle = '95' is not allowed: a half angle (deg) is 0 or more and below 90",
+        ),
+        (["press", EXAMPLE, "--indentation=-2 um"], "indentation = '-2 um' is not allowed"),
+        (["press", *NUMBERS, "--clearance=-100um"], "clearance = '-100um' is not allowed: a radial clearance (mm) is"),
+        (["press", *NUMBERS, "--ball-young=-1GPa", "--ball-poisson=0"], "ball.young = '-1GPa' is not allowed"),
+        (["press", "", "--force", "1"], "the joint's name is empty"),
         (["press", EXAMPLE, "--model", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
         (["press", EXAMPLE, "--figure", "a.jpg"], "figure 'a.jpg' must end in .png, .svg, .pdf"),
         (["press", EXAMPLE, "--figure", "/no/such/folder/a.png"], "No such file or directory"),
@@ -126,7 +173,7 @@ def test_figure(tmp_path, ending):
         (["press", ".", "--force", "1"], "is a folder; a joint file is needed"),
         (["press", *NUMBERS[:4], *NUMBERS[6:]], "liner_thickness is missing"),
         (["press", *NUMBERS[:6], "--force", "1"], "the liner needs a material, or young and poisson"),
-        (["press", *NUMBERS[:8], "--poisson", "0.7", "--force", "1"], "poisson = 0.7 is not allowed"),
+        (["press", *NUMBERS[:8], "--poisson", "0.7", "--force", "1"], "liner.poisson = '0.7' is not allowed"),
         (
             ["press", *NUMBERS[:8], "--poisson", "0.5", "--force", "1", "--model", "bonded-layer"],
             "bonded-layer has no answer for ν = 0.5: the modulus is unbounded",
@@ -152,12 +199,60 @@ def test_a_file_with_a_mistake(tmp_path):
     assert done.stderr == "ballsocket: joint.toml: 'clearence' in [joint] is not known; did you mean 'clearance'?\n"
 
 
-def test_a_numerical_failure_is_3_and_the_others_are_shown():
-    done = run("press", EXAMPLE, "--force", "1e12", "--model", "bartel", "--model", "hess-forsbach")
-    assert done.returncode == 3
-    assert "no answer from bartel" in done.stderr
-    assert "the model does not reach this load" in done.stdout
+UNREACHED = "the model does not reach this load"
+
+
+def test_a_model_without_an_answer_beside_others_is_a_note(tmp_path):
+    words = ["press", EXAMPLE, "--force", "1e12", "--model", "bartel", "--model", "hess-forsbach"]
+    done = run(*words, "--figure", str(tmp_path / "a.svg"))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"bartel: {UNREACHED}" in done.stdout
     assert "hess-forsbach" in done.stdout
+    assert (tmp_path / "a.svg").stat().st_size > 5_000
+    notes = {result["model"]: result["notes"] for result in json.loads(run(*words, "--json").stdout)["results"]}
+    assert notes["bartel"] == [UNREACHED]
+
+
+def test_every_model_at_a_half_angle_is_done():
+    done = run("press", "hip-28", "--half-angle", "30", "--all")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"cosine-limit: {UNREACHED}" in done.stdout
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]])
+def test_no_answer_at_all_is_3_and_no_figure(form, tmp_path):
+    path = tmp_path / "a.png"
+    done = run("press", EXAMPLE, "--force", "1e12", "--model", "bartel", "--figure", str(path), *form)
+    assert done.returncode == 3
+    assert done.stderr == "ballsocket: no answer from bartel (see the notes)\n"
+    assert UNREACHED in done.stdout
+    assert not path.exists()
+
+
+def test_an_iteration_that_did_not_converge_is_3(monkeypatch, capsys):
+    def unsettled(*_, **load):
+        contact = bs.HessForsbach().press(bs.joints["hip-28"], **load)
+        return replace(contact, indentation=float("nan"), status=bs.Status.NOT_CONVERGED)
+
+    model = SimpleNamespace(press=unsettled, name="unsettled")
+    monkeypatch.setattr(sys, "argv", ["ballsocket", "press", "hip-28", "--force=1", "--all"])
+    monkeypatch.setitem(bs.catalogue, "unsettled", model)
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == 3
+    assert "no convergence of unsettled" in capsys.readouterr().err
+
+
+def test_numbers_beyond_floating_point_are_no_crash():
+    numbers = ["--ball-radius", "1e308", "--clearance", "0.1", "--liner-thickness", "6", "--liner", "uhmwpe"]
+    done = run("press", *numbers, "--force", "1")
+    assert done.returncode in (0, 3)
+    assert "Traceback" not in done.stderr
+
+
+def test_a_figure_of_no_load_warns_of_nothing(tmp_path):
+    done = run("press", "hip-28", "--force", "0", "--figure", str(tmp_path / "a.png"))
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_models_presets_cite_version_help():

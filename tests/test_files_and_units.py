@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.files import parse_joint
-from ballsocket.units import parse
+from ballsocket.files import _LOADS, _NUMBERS, parse_joint
+from ballsocket.units import _KINDS, parse
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "hip.toml"
 HIP = """
@@ -39,7 +39,6 @@ material = "UHMWPE"
         ("45°", "angle", math.pi / 4),
         (45, "angle", math.pi / 4),
         ("0.5 rad", "angle", 0.5),
-        ("0.05 J/m**2", "adhesion", 5e-5),
         ("0.4", "number", 0.4),
     ],
 )
@@ -112,7 +111,11 @@ def test_numbers_win_over_the_material():
         ("[joint]", "[ball]", "hip: 'ball_radius' in .ball. is not known"),
         ("UHMWPE", "UHMPE", "hip: liner material 'UHMPE' is not known; did you mean 'uhmwpe'?"),
         ('material = "UHMWPE"', "young = 1000", "hip: the liner needs a material, .* missing: poisson"),
-        ('"100 um"', '"-100 um"', "hip: clearance = -0.1 is not allowed"),
+        ('"100 um"', '"-100 um"', "hip: clearance = '-100 um' is not allowed: a radial clearance"),
+        ('material = "UHMWPE"', "young = '-1 GPa'\npoisson = 0.3", "hip: liner.young = '-1 GPa' is not allowed"),
+        ("[joint]", "[load]\nhalf_angle = 95\n[joint]", "hip: half_angle = 95 is not allowed: .* .deg. .* below 90$"),
+        ("[joint]", "[load]\nforce = '-3 kN'\n[joint]", "hip: force = '-3 kN' is not allowed: a force .N. is 0 or"),
+        ('clearance = "100 um"', "socket_radius = 17", "hip: clearance = -0.9 is not allowed"),
         ('"6.75 mm"', '"6.75 s"', "hip: liner_thickness = '6.75 s' is not a length, such as '16 mm'"),
         ("ball_radius = 17.9", "", "hip: two of ball_radius, socket_radius, clearance are needed, got clearance"),
         ("ball_radius = 17.9", "ball_radius = 17.9\nsocket_radius = 18", "needed, got ball_radius, socket_radius, cl"),
@@ -126,6 +129,17 @@ def test_numbers_win_over_the_material():
 def test_a_file_that_is_wrong_is_told_how(old, new, message):
     with pytest.raises(ValueError, match=message):
         parse_joint(HIP.replace(old, new, 1).encode(), "hip")
+
+
+def test_the_rules_for_angles_are_told_in_degrees():
+    """The words that `as_given` puts into degrees are those of the rule."""
+    with pytest.raises(ValueError, match=r"a half angle \(rad\) is 0 or more and below pi/2"):
+        bs.Hertz().press(bs.joints["hip-28"], half_angle=2.0)
+
+
+def test_no_kind_of_quantity_without_a_word_for_it():
+    assert set(_LOADS.values()) | set(_NUMBERS.values()) | {"length"} == set(_KINDS)
+    assert str(parse("it", "-0 mm", "length")) == "0.0"
 
 
 def test_files_that_are_no_joint_files(tmp_path):

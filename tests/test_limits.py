@@ -45,9 +45,13 @@ def test_small_clearance_comes_close_to_the_cosine_limit():
 
 
 def test_without_clearance_the_half_angle_does_not_tell_the_load():
-    contact = bs.HessForsbach().press(hip(clearance=0.0), half_angle=np.array([0.0, 0.5]))
-    np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OK])
-    np.testing.assert_array_equal(contact.force, [0.0, 0.0])
+    for model in (bs.HessForsbach(), bs.Bartel(), bs.LiuReconstruction(), bs.AdhesiveSocket(work_of_adhesion=0.0)):
+        contact = model.press(hip(clearance=0.0), half_angle=np.array([0.0, 0.5]))
+        np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.NOT_REACHED])
+        np.testing.assert_array_equal(contact.force, [0.0, np.nan])
+    line = bs.PinInHole().press(hip(clearance=0.0), half_angle=np.array([0.0, 0.5]))
+    np.testing.assert_array_equal(line.status, [bs.Status.OK, bs.Status.NOT_REACHED])
+    np.testing.assert_array_equal(line.line_load, [0.0, np.nan])
 
 
 @pytest.mark.parametrize("modulus", [bs.hess_forsbach, bs.spherical_vessel, bs.bonded_layer], ids=str)
@@ -182,3 +186,18 @@ def test_moduli_of_ones_own():
         bs.AdhesiveSocket(work_of_adhesion=-1.0)
     with pytest.raises(ValueError, match="coefficient = 0 is not allowed"):
         bs.LiuReconstruction(coefficient=0.0)
+
+
+def test_a_plane_layer_too_thin_to_compute_is_refused_and_costs_its_neighbours_nothing():
+    with pytest.raises(ValueError, match="plane-layer has no answer for R2/L = 1800: .* ask bonded-layer"):
+        bs.PlaneLayer().press(hip(liner_thickness=0.01), force=1.0)
+    contact = bs.PlaneLayer().press(hip(liner_thickness=np.array([6.75, 1e-3])), force=100.0)
+    np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OUTSIDE_DOMAIN])
+    assert contact.max_pressure[0] == pytest.approx(bs.PlaneLayer().press(HIP, force=100.0).max_pressure, rel=1e-9)
+
+
+@pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+def test_numbers_beyond_floating_point_are_infinite_or_missing_and_never_raise(model):
+    contact = model.press(hip(ball_radius=1e200, liner_thickness=1e200), force=1.0)
+    repr(contact)
+    contact.summary()

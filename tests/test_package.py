@@ -1,15 +1,20 @@
 """The package as it is shipped: light to import, every example runs, every figure is a figure of its result."""
 
+import os
+import re
 import runpy
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.figures import press_figure
+from ballsocket.describe import COLUMNS
+from ballsocket.figures import press_figure, save
+from ballsocket.sources import bibliography
 
 from .joints import HIP
 
@@ -33,6 +38,101 @@ def test_everything_offered_is_there():
 def test_examples_run(path, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(path), run_name="__main__")
+
+
+def test_the_readme_shows_what_the_command_prints():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    shown = re.search(r"^```text\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL).group(1)
+    command = re.search(r"^pip install .* && ballsocket (press .*)$", text, flags=re.MULTILINE).group(1)
+    done = subprocess.run(
+        [sys.executable, "-m", "ballsocket", *command.split()],
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
+        cwd=ROOT,
+        env={**os.environ, "COLUMNS": "100", "PYTHONIOENCODING": "utf-8"},
+    )
+    assert [line.rstrip() for line in done.stdout.splitlines()] == shown.splitlines()
+
+
+def test_the_readme_and_the_catalogue_list_the_same_models():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    listed = re.findall(r"`([\w-]+)`", "".join(re.findall(r"^\|([^|]+)\|", text, flags=re.MULTILINE)))
+    assert set(listed) == {*bs.catalogue, "PinInHole"}
+
+
+def keys(*used):
+    return re.findall(r"^@\w+\{(\w+),$", bs.cite(*used), flags=re.MULTILINE)
+
+
+def test_presets_cite_the_publications_their_source_names():
+    for preset in (*bs.materials.values(), *bs.joints.values()):
+        assert keys(preset)
+    assert keys(bs.ALUMINA) == ["nistsrd150", "kutz2009"]
+    assert set(keys(bs.joints["hip-28"])) == {"plank2007", "hess2021", "dipuccio2015"}
+    named = bs.Material(young=1.0, poisson=0.3, source="Smith & Johnson 1985; Hertz 18820; Kirk & Reedy 1988, p. 3")
+    assert keys(named) == ["kirk1988"]
+
+
+def test_a_comparison_cites_all_its_models():
+    answers = bs.compare(HIP, force=3000.0)
+    assert {source.key for source in answers.sources} == {s.key for m in bs.catalogue.values() for s in m.sources}
+    assert {"hertz1882", "steuermann1939", "ciavarella2018", "bartel1985"} <= set(keys(answers))
+    some = bs.compare(HIP, force=3000.0, models={"hertz": bs.Hertz()})
+    assert "steuermann1939" not in keys(some)
+
+
+@pytest.mark.parametrize("thing", ["hertz", 3, None, [], bs.Hertz, bs.HessForsbach, bs.Joint])
+def test_what_cannot_be_cited_is_refused(thing):
+    with pytest.raises(TypeError, match="models, contacts, comparisons, materials and joints can be cited, not "):
+        bs.cite(bs.Hertz(), thing)
+
+
+def test_a_source_that_names_no_publication_is_refused_alone_and_passed_over_inside():
+    own = bs.Material(young=1000.0, poisson=0.4, source="our lab")
+    hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=own)
+    for thing in (own, hip):
+        with pytest.raises(TypeError, match="no known publication is named in the source of"):
+            bs.cite(thing)
+    assert keys(bs.Hertz().press(hip, force=1.0)) == ["hertz1882", "hess2021"]
+
+
+def test_every_publication_is_cited_by_something():
+    models = (*bs.catalogue.values(), bs.PinInHole())
+    unused = set(bibliography()) - set(keys(*models, *bs.materials.values(), *bs.joints.values()))
+    assert unused == set()
+
+
+def test_a_comparison_says_why():
+    answers = bs.compare(HIP, force=3000.0)
+    reason = "hertz, steuermann: outside ε ≤ 10°: a half-space ignores that the surfaces curve"
+    assert reason in repr(answers)
+    assert "hertz, steuermann: outside ε ≤ 10°" in answers._repr_html_()
+    assert [note for note in answers.notes() if note.startswith("hertz, steuermann: outside ε")]
+    assert repr(answers).split("\n")[-len(answers.notes()) :] == answers.notes()
+
+
+def test_one_list_of_columns():
+    assert list(bs.Hertz().press(HIP, force=1.0).summary())[1:-2] == [column.name for column in COLUMNS]
+    nothing = bs.compare(bs.joints["tilting-pad-pivot"], force=1.0, models={"bonded-layer": bs.BondedLayer()})
+    assert list(nothing.summary()["results"][0])[1:-2] == [column.name for column in COLUMNS]
+
+
+def test_a_figure_that_cannot_be_drawn_leaves_no_file(tmp_path):
+    def fail(*_, **__):
+        raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        save(SimpleNamespace(savefig=fail), tmp_path / "a.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_figure_of_a_massive_socket_says_so():
+    pivot = bs.joints["tilting-pad-pivot"]
+    contact = bs.Hertz().press(pivot, force=3000.0)
+    title = press_figure({"hertz": contact}, {"hertz": contact}).get_suptitle()
+    assert "massive socket of 210 GPa" in title
+    assert "inf" not in title
 
 
 def test_figure_draws_the_result():

@@ -1,6 +1,7 @@
 """Material, Joint, presets, Contact: checked once, printed well, cited."""
 
 import json
+import pickle
 from dataclasses import FrozenInstanceError
 
 import numpy as np
@@ -160,3 +161,79 @@ def test_every_source_is_in_the_bibliography():
             assert source.short
             assert "\\" not in str(source)
     assert bs.HessForsbach().sources[0].doi == "10.3390/app112311170"
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        *(1 + 2j, np.array([1.0, 2.0j]), [[1.0, 2.0], [3.0]], ["1", "2"], np.True_, np.array([True]), np.float16(3.0)),
+        *(None, np.ma.masked_array([1.0, 2.0], mask=[True, False]), np.array(["3 kN"])),
+    ],
+    ids=repr,
+)
+def test_what_is_no_real_number_is_refused_in_one_sentence(value):
+    with pytest.raises(TypeError, match="clearance must be a number or an array of real numbers in mm"):
+        bs.Joint(**(GOOD | {"clearance": value}))
+
+
+def test_an_integer_beyond_floating_point_is_refused():
+    with pytest.raises(ValueError, match="force is not allowed: the integer is too large"):
+        bs.HessForsbach().press(HIP, force=10**400)
+
+
+def test_a_plain_contact_keeps_its_joint():
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
+    assert contact.joint is HIP
+    assert type(contact.joint.ball_radius) is float
+
+
+def test_ratios_without_load():
+    contact = bs.HessForsbach().press(HIP, force=0.0)
+    assert contact.conformity == np.inf
+    assert contact.foundation_modulus == pytest.approx(bs.hess_forsbach(HIP))
+    assert bs.Hertz().press(HIP, force=0.0).foundation_modulus == np.inf
+
+
+def test_friction_and_displacement_are_checked():
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
+    with pytest.raises(ValueError, match="coefficient = -0.1 is not allowed"):
+        contact.friction_torque(-0.1)
+    with pytest.raises(ValueError, match=r"displacement\[1\] = nan is not allowed"):
+        contact.force_vector(np.array([0.0, np.nan, 0.1]))
+
+
+def test_a_modulus_asked_outside_its_domain_says_why():
+    joint = bs.Joint(**(GOOD | {"liner": bs.Material(young=1000.0, poisson=0.5)}))
+    with pytest.raises(ValueError, match=r"spherical-vessel has no answer for ν = 0\.5: the modulus is unbounded"):
+        bs.spherical_vessel(joint)
+
+
+@pytest.mark.parametrize(
+    "model", [*bs.catalogue.values(), bs.RadialFoundation(modulus=bs.polynomial(1, 2, 3))], ids=str
+)
+def test_models_and_contacts_travel_between_processes(model):
+    contact = model.press(HIP, force=3000.0)
+    again = pickle.loads(pickle.dumps(contact))
+    assert again.model == model
+    assert again.max_pressure == contact.max_pressure
+
+
+def test_parameters_of_models_broadcast():
+    sticky = bs.AdhesiveSocket(work_of_adhesion=[0.0, 1e-3])
+    contact = sticky.press(HIP, force=np.array([[100.0], [200.0]]))
+    assert contact.indentation.shape == (2, 2)
+    assert sticky.press(HIP, force=100.0).indentation.shape == (2,)
+    own = bs.RadialFoundation(modulus=bs.constant(np.array([200.0, 300.0])))
+    np.testing.assert_allclose(own.press(HIP, indentation=0.02).max_pressure, [4.0, 6.0])
+    for constants in ((0.0, 0.0, 0.0), (1.0, np.inf, 0.0)):
+        with pytest.raises(ValueError, match="Eq. .18."):
+            bs.polynomial(*constants)
+
+
+@pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+def test_nothing_pressed_is_nothing(model):
+    contact = model.press(HIP, force=[])
+    assert contact.indentation.shape == (0,)
+    assert contact.max_pressure.shape == (0,)
+    assert contact.valid.shape == (0,)
+    assert "no answer" in repr(contact)

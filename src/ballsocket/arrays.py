@@ -39,7 +39,18 @@ def namespace(*values: Array) -> Any:
 
 
 def sqrt(x: Array) -> Array:
-    return namespace(x).sqrt(x)
+    """√x. At 0 its derivative is taken as 0, so that a point without load does not make every derivative NaN."""
+    xp = namespace(x)
+    if xp is numpy:
+        return numpy.sqrt(x)
+    return xp.where(x == 0, 0.0 * x, xp.sqrt(where(x == 0, 1.0, x)))
+
+
+def power(x: Array, exponent: float) -> Array:
+    """x^exponent for a positive exponent, with the derivative at 0 as in `sqrt`."""
+    if namespace(x) is numpy:
+        return x**exponent
+    return where(x == 0, 0.0 * x, where(x == 0, 1.0, x) ** exponent)
 
 
 def exp(x: Array) -> Array:
@@ -86,7 +97,7 @@ def isfinite(x: Array) -> Array:
     return namespace(x).isfinite(x)
 
 
-def positive(x: Array) -> Array:
+def divisor(x: Array) -> Array:
     """`x`, and 1 where it is not above zero: a divisor for quotients whose numerator is zero there."""
     return where(x > 0, x, 1.0)
 
@@ -112,7 +123,7 @@ def known(x: Array) -> numpy.ndarray | None:
 def truth(condition: Array) -> bool | None:
     """Whether all of `condition` holds; None where that cannot be known yet (inside `jax.jit`, `vmap`)."""
     try:
-        return bool(namespace(condition).all(condition))
+        return condition if isinstance(condition, bool) else bool(namespace(condition).all(condition))
     except (TypeError, RuntimeError):  # JAX's and PyTorch's tracers refuse to be read
         return None
 
@@ -217,7 +228,7 @@ def increasing_root(
         value, slope = law(x)
         low = where(value <= target, x, low)
         high = where(value >= target, x, high)
-        newton = x - (value - target) / positive(slope)
+        newton = x - (value - target) / divisor(slope)
         safe = (slope > 0) & (newton >= low) & (newton <= high)
         after = where(safe, newton, low + (high - low) / 2)
         return after, low, high, xp.abs(after - x) > tolerance * xp.abs(after)
@@ -226,7 +237,7 @@ def increasing_root(
     x = frozen(x)
     for _ in range(2):  # each step at the root keeps its value and doubles the order of the derivatives that are right
         value, slope = law(x)
-        x = x - where(slope > 0, (value - target) / positive(slope), 0.0)
+        x = x - where(slope > 0, (value - target) / divisor(slope), 0.0)
     return x
 
 

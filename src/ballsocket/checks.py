@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy
+
 from .arrays import Array, is_plain, namespace, truth
 
 
@@ -35,14 +37,45 @@ def _first_bad(value: Array, good: Array) -> str:
 
 def numeric(name: str, value: Any) -> Array:
     """`value` if it is a number or an array; TypeError with a way out if it is not."""
-    if isinstance(value, bool) or not (is_plain(value) or isinstance(value, list | tuple) or hasattr(value, "dtype")):
-        raise TypeError(
-            f"{name} must be a number or an array in mm, N, MPa or rad, got {value!r}"
-            + ("; text with units belongs in a joint file or on the command line" if isinstance(value, str) else "")
-        )
     if isinstance(value, list | tuple):
-        return namespace().asarray(value, dtype=float)
+        value = _array_of(name, value)
+    if is_plain(value) and not isinstance(value, bool):
+        return _in_range(name, value)
+    if not hasattr(value, "dtype") or isinstance(value, numpy.ma.MaskedArray) or not _is_real(value):
+        raise TypeError(_refusal(name, value))
     return value
+
+
+def _in_range(name: str, value: float) -> float:
+    try:
+        float(value)
+    except OverflowError as error:
+        raise ValueError(f"{name} is not allowed: the integer is too large for a floating-point number") from error
+    return value
+
+
+def _array_of(name: str, value: Any) -> numpy.ndarray:
+    try:
+        listed = numpy.asarray(value)
+    except (ValueError, OverflowError) as error:  # rows of different lengths
+        raise TypeError(_refusal(name, value)) from error
+    return listed.astype(float) if listed.dtype.kind in "iuf" else listed
+
+
+def _is_real(value: Any) -> bool:
+    """Whether `value` is an array of integers, or of floating-point numbers of single or double precision."""
+    xp = namespace(value)
+    if xp.isdtype(value.dtype, "integral"):
+        return True
+    return bool(xp.isdtype(value.dtype, "real floating")) and xp.finfo(value.dtype).bits >= 32
+
+
+def _refusal(name: str, value: Any) -> str:
+    shown = f"an array of {value.dtype}" if getattr(value, "shape", ()) else f"{value!r}"
+    if isinstance(value, numpy.ma.MaskedArray):
+        shown = "a masked array"
+    hint = "; text with units belongs in a joint file or on the command line" if isinstance(value, str) else ""
+    return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {shown[:80]}{hint}"
 
 
 def one_load(**loads: Any) -> tuple[str, Any]:

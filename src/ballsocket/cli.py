@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import codecs
 import json
 import sys
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,9 +16,11 @@ import ballsocket as bs
 
 from . import figures, tables
 from .compare import Comparison
+from .contact import Contact
 from .files import JointFile, joint_of, nearest, read_joint, read_load
 from .models.base import Model
 from .presets import joints
+from .validity import Status
 
 app = typer.Typer(
     name="ballsocket",
@@ -30,6 +34,7 @@ app = typer.Typer(
 UsageError: Any = typer.BadParameter.__base__  # typer brings a click of its own, and does not export this
 DONE, MISUSE, FAILURE = 0, 2, 3
 DEFAULT_MODEL = "hess-forsbach"
+_IN_ASCII = {"≤": "<=", "≥": ">=", "°": "o", "µ": "u", "ε": "e", "ν": "v", "²": "2", "ß": "ss"}
 
 
 def _version(wanted: bool) -> None:
@@ -70,7 +75,7 @@ def press(
 ) -> None:
     """Press a ball into its socket and see what every model makes of it.
 
-    Exit status: 0 done, 2 misuse, 3 a numerical failure.
+    Exit status: 0 done, 2 misuse, 3 an iteration that did not converge, or no answer from any model.
     """
     words = {
         "joint": {"ball_radius": ball_radius, "clearance": clearance, "liner_thickness": liner_thickness},
@@ -80,13 +85,7 @@ def press(
     described = {table: _given(part) for table, part in words.items() if _given(part)}
     load = read_load(_given({"force": force, "indentation": indentation, "half_angle": half_angle}))
     chosen = _chosen(model or [], every)
-    if joint is not None and described:
-        raise ValueError("give a joint file or the joint's numbers, not both")
-    if joint is None and not described:
-        raise ValueError(
-            "a joint is needed: a file, a preset's name, or --ball-radius --clearance --liner-thickness ..."
-        )
-    file = _named_joint(joint) if joint is not None else joint_of(described)
+    file = _joint_file(joint, described)
     load = load or file.load
     if not load:
         raise ValueError("a load is needed: --force, --indentation or --half-angle")
@@ -98,12 +97,12 @@ def press(
     if figure is not None:
         _draw(comparison, figure)
     if as_json:
-        typer.echo(json.dumps(comparison.summary(), indent=2, ensure_ascii=False, allow_nan=False))
+        typer.echo(json.dumps(comparison.summary(), indent=2, allow_nan=False))
     else:
         tables.print_press(comparison)
-    failed = [name for name, contact in comparison.items() if contact.status.failed]
-    if failed:
-        typer.echo(f"ballsocket: no answer from {', '.join(failed)} (see the notes)", err=True)
+    failure = _failure(comparison)
+    if failure:
+        typer.echo(f"ballsocket: {failure}", err=True)
         raise typer.Exit(FAILURE)
 
 
@@ -135,7 +134,19 @@ def _given(words: dict[str, str | None]) -> dict[str, str]:
     return {name: word for name, word in words.items() if word is not None}
 
 
+def _joint_file(name: str | None, described: dict[str, dict[str, str]]) -> JointFile:
+    if name is not None and described:
+        raise ValueError("give a joint file or the joint's numbers, not both")
+    if name is None and not described:
+        raise ValueError(
+            "a joint is needed: a file, a preset's name, or --ball-radius --clearance --liner-thickness ..."
+        )
+    return joint_of(described) if name is None else _named_joint(name)
+
+
 def _named_joint(name: str) -> JointFile:
+    if not name:
+        raise ValueError("the joint's name is empty")
     path = Path(name)
     if path.is_dir():
         raise ValueError(f"{name!r} is a folder; a joint file is needed")
@@ -155,18 +166,48 @@ def _chosen(names: list[str], every: bool) -> dict[str, Model]:
     return {name: bs.catalogue[name] for name in names or [DEFAULT_MODEL]}
 
 
+def _failure(comparison: Comparison) -> str:
+    """What went wrong as a whole, or an empty text: a model without an answer is a note while another one has one."""
+    unsettled = [name for name, contact in comparison.items() if contact.status == Status.NOT_CONVERGED]
+    if unsettled:
+        return f"no convergence of {', '.join(unsettled)} (see the notes)"
+    names = ", ".join([*comparison, *comparison.missing])
+    return "" if _answered(comparison) else f"no answer from {names} (see the notes)"
+
+
+def _answered(comparison: Comparison) -> dict[str, Contact]:
+    return {name: contact for name, contact in comparison.items() if not contact.status.failed}
+
+
 def _draw(comparison: Comparison, path: Path) -> None:
-    shown = {name: contact for name, contact in comparison.items() if not contact.status.failed}
+    """Draw what has an answer; without any there is no figure."""
+    shown = _answered(comparison)
     if not shown:
-        raise ValueError("no model has an answer to draw")
+        return
     deepest = 1.15 * max(contact.indentation for contact in shown.values())
     steps = deepest * numpy.linspace(0.0, 1.0, 121) ** 2
     curves = {name: bs.catalogue[name].press(comparison.joint, indentation=steps) for name in shown}
     figures.save(figures.press_figure(shown, curves), path)
 
 
+def _degrade(error: UnicodeError) -> tuple[str, int]:
+    """What stands for characters that the terminal's encoding lacks."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(_IN_ASCII.get(char, "?") for char in error.object[error.start : error.end]), error.end
+
+
+def _write_in_any_encoding() -> None:
+    codecs.register_error("degrade", _degrade)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="degrade")
+
+
 def main() -> None:
     """The command `ballsocket`: one line on stderr for misuse, no tracebacks for what a user can mend."""
+    _write_in_any_encoding()
+    status = MISUSE
     try:
         sys.exit(app(standalone_mode=False) or DONE)
     except typer.Abort:
@@ -174,8 +215,10 @@ def main() -> None:
     except UsageError as error:
         message = error.format_message()
     except OSError as error:
-        message = f"{error.filename or 'file'}: {error.strerror or error}"
+        message = f"{error.filename or 'output'}: {error.strerror or error}"
     except ValueError as error:
         message = str(error)
+    except (ArithmeticError, MemoryError) as error:
+        message, status = f"these numbers are too large or too small to calculate with ({error})", FAILURE
     print("ballsocket: " + " ".join(message.split()), file=sys.stderr)
-    sys.exit(MISUSE)
+    sys.exit(status)

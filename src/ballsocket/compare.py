@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
-from math import degrees
 from typing import Any
 
-from . import arrays, describe
 from .arrays import Array
 from .checks import one_load
 from .contact import Contact
-from .describe import QUANTITIES
+from .describe import COLUMNS, count, number_text
 from .joint import Joint
 from .models import catalogue
 from .models.base import Model
+from .sources import Source
 from .validity import OutsideDomainError
 from .version import __version__
 
@@ -24,7 +23,7 @@ from .version import __version__
 class Comparison(Mapping[str, Contact]):
     """Contacts by the name of the model, and for the models that have no answer the reason.
 
-    Prints as a table; for plain numbers one row a model.
+    Prints as a table of one row a model, with the reasons why models are not valid here.
     """
 
     joint: Joint
@@ -42,39 +41,52 @@ class Comparison(Mapping[str, Contact]):
     def __len__(self) -> int:
         return len(self.contacts)
 
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """Where the formulas of all models that answered come from."""
+        listed = [source for contact in self.contacts.values() for source in getattr(contact.model, "sources", ())]
+        return tuple(dict.fromkeys(listed))
+
+    def notes(self) -> list[str]:
+        """Why models are outside their validity or have no answer: each reason once, with its models."""
+        holders: dict[str, list[str]] = {}
+        for name, contact in self.contacts.items():
+            for note in contact.notes:
+                holders.setdefault(note, []).append(name)
+        return [f"{', '.join(names)}: {note}" for note, names in holders.items()] + list(self.missing.values())
+
     def rows(self) -> list[tuple[str, ...]]:
         """Text for a table: model, force, indentation, half angle, max pressure, area, stiffness, valid."""
-        rows = []
-        for name, contact in self.contacts.items():
-            angle = arrays.to_numpy(contact.half_angle) * degrees(1.0)
-            values = (contact.force, contact.indentation, angle, contact.max_pressure, contact.area, contact.stiffness)
-            rows.append((name, *(_text(value) for value in values), describe.count(contact.valid)))
-        return rows
+        return [
+            (name, *(number_text(column.of(contact), 5, "-") for column in _SHOWN), count(contact.valid))
+            for name, contact in self.contacts.items()
+        ]
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON: version, joint and results, in mm, N, MPa, degrees."""
-        results = [contact.summary() for contact in self.contacts.values()]
-        for name, reason in self.missing.items():
-            results.append({"model": name, **dict.fromkeys(QUANTITIES), "valid": False, "notes": [reason]})
-        return {"version": __version__, "joint": self.joint.summary(), "results": results}
+        answers = [contact.summary() for contact in self.contacts.values()]
+        gaps = dict.fromkeys(column.name for column in COLUMNS)
+        missing = [{"model": name, **gaps, "valid": False, "notes": [why]} for name, why in self.missing.items()]
+        return {"version": __version__, "joint": self.joint.summary(), "results": [*answers, *missing]}
 
     def __repr__(self) -> str:
-        table = [HEAD, *self.rows()]
-        widths = [max(len(row[i]) for row in table) for i in range(len(HEAD))]
+        table = [_HEAD, *self.rows()]
+        widths = [max(len(row[i]) for row in table) for i in range(len(_HEAD))]
         lines = [
             "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(pairs))
             for pairs in (list(zip(row, widths, strict=True)) for row in table)
         ]
-        return "\n".join([str(self.joint), *lines, *self.missing.values()])
+        return "\n".join([str(self.joint), *lines, *self.notes()])
 
     def _repr_html_(self) -> str:
-        cells = "".join(f"<th>{escape(text)}</th>" for text in HEAD)
+        cells = "".join(f"<th>{escape(text)}</th>" for text in _HEAD)
         rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in self.rows())
-        notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.missing.values())
+        notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.notes())
         return f"<div>{escape(str(self.joint))}</div><table><tr>{cells}</tr>{rows}</table>{notes}"
 
 
-HEAD = ("model", "F [N]", "d [mm]", "ε [°]", "p0 [MPa]", "A [mm²]", "dF/dd [N/mm]", "valid")
+_SHOWN = COLUMNS[:6]
+_HEAD = ("model", *(f"{column.symbol} [{column.unit}]" for column in _SHOWN), "valid")
 
 
 def compare(
@@ -121,10 +133,3 @@ def compare(
         except OutsideDomainError as error:
             missing[name] = str(error)
     return Comparison(joint, contacts, missing)
-
-
-def _text(value: Array) -> str:
-    listed = arrays.to_numpy(value)
-    if listed.size == 1:
-        return "-" if listed != listed else f"{listed.item():.5g}"
-    return f"{float(listed.min()):.4g}..{float(listed.max()):.4g}"

@@ -1,4 +1,4 @@
-"""The same formulas, compiled: a radial foundation by force over large arrays at the speed of memory.
+"""The same formulas, compiled: a radial foundation by force over large arrays in one pass.
 
 Needs numba (`pip install 'ballsocket[fast]'`). Nothing is written twice: numba is taught what the few functions of
 `ballsocket.arrays` mean for one number, and then compiles the formulas of `models.kinematics` and `models.modulus`
@@ -23,10 +23,12 @@ from .arrays import Array
 from .contact import Contact
 from .joint import Joint
 from .models import kinematics
-from .models.base import Answer, Model, checked_load, inside_domain, prepared
+from .models.base import Answer, Model, checked_load, prepared
 from .models.foundation import RadialFoundation
+from .models.kinematics import Kinematics
+from .models.modulus import Formula, eq_18
 from .sources import Source
-from .validity import Range, Status
+from .validity import Range, Status, inside
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +53,14 @@ class Compiled(Model):
     """
 
     model: RadialFoundation
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.model, RadialFoundation):
+            raise TypeError(f"model must be a RadialFoundation, such as HessForsbach(), got {self.model!r}")
+
+    @property
+    def parameters(self) -> tuple[Array, ...]:
+        return self.model.parameters
 
     @property
     def name(self) -> str:
@@ -83,7 +93,8 @@ class Compiled(Model):
         kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
         numbers = (*joint.numbers(), given)
         large = [number for number in numbers if not arrays.is_plain(number)]
-        if kind != "force" or not large or not all(_is_float64(number) for number in large):
+        simple = all(arrays.is_plain(number) for number in self.parameters)
+        if kind != "force" or not simple or not large or not all(_is_float64(number) for number in large):
             return super().press(joint, force=force, indentation=indentation, half_angle=half_angle)
         return self._pass(joint, given)
 
@@ -92,17 +103,18 @@ class Compiled(Model):
 
     def _pass(self, joint: Joint, force: Array) -> Contact:
         _, whole, load = prepared(joint, force)
-        inside = inside_domain(self, whole)
+        points = inside(self.domain, whole, self.name)
         shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*whole.numbers(), load)))
         inputs = [_flat(number, shape) for number in (*whole.numbers()[:5], load)]
         outputs = [numpy.empty(math.prod(shape)) for _ in range(3)]
         codes = numpy.empty(math.prod(shape), dtype=numpy.int8)
-        _kernel(self.model)(*inputs, *outputs, codes)
+        constants = tuple(float(number) for number in self.parameters)
+        _kernel(self.model.modulus.formula, self.model.kinematics)(*inputs, *outputs, codes, *constants)
         d, p0, angle = (output.reshape(shape) for output in outputs)
         status = codes.reshape(shape)
         if self.domain:
-            status = numpy.where(inside, status, numpy.int8(Status.OUTSIDE_DOMAIN))
-            d, p0, angle = (numpy.where(inside, part, numpy.nan) for part in (d, p0, angle))
+            status = numpy.where(points, status, numpy.int8(Status.OUTSIDE_DOMAIN))
+            d, p0, angle = (numpy.where(points, part, numpy.nan) for part in (d, p0, angle))
         contact = Contact(
             model=self,
             laws=self.model,
@@ -144,19 +156,19 @@ def _pick_compiled(part: Any, i: Any) -> Callable[..., Any]:
 
 
 @cache
-def _kernel(model: RadialFoundation) -> Any:
-    """The compiled pass of one model, for whichever mix of numbers and arrays it is called with."""
-    modulus = _compilable(model.modulus.formula)
-    indentation = _compilable(model.kinematics.indentation)
-    force_law = _compilable(model.kinematics.force)
-    versine = _compilable(model.kinematics.versine)
+def _kernel(formula: Formula, motion: Kinematics) -> Any:
+    """The compiled pass of one kind of model, for whichever mix of numbers and arrays it is called with."""
+    modulus = _compilable(formula)
+    indentation = _compilable(motion.indentation)
+    force_law = _compilable(motion.force)
+    versine = _compilable(motion.versine)
     converged, failed = numpy.int8(Status.OK), numpy.int8(Status.NOT_REACHED)
 
-    def run(R1, c, L, E, nu, F, d_out, p0_out, angle_out, status):  # type: ignore[no-untyped-def]
+    def run(R1, c, L, E, nu, F, d_out, p0_out, angle_out, status, *constants):  # type: ignore[no-untyped-def]
         for i in range(d_out.size):
             clearance, load = _pick(c, i), _pick(F, i)
             R2 = _pick(R1, i) + clearance
-            K = modulus(R2, _pick(L, i), _pick(E, i), _pick(nu, i))
+            K = modulus(R2, _pick(L, i), _pick(E, i), _pick(nu, i), *constants)
             d = indentation(R2, clearance, K, load)
             good = abs(force_law(R2, clearance, K, d) - load) <= 1e-12 * load
             d = d if good else math.nan
@@ -216,7 +228,8 @@ def _angle_polynomial(versine: float) -> float:
 
 
 for _formula in (
-    arrays.positive,
+    eq_18,
+    arrays.divisor,
     kinematics.linear_indentation,
     kinematics.linear_force,
     kinematics.circular_force,

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi
+from math import cos, inf, pi, sin
 from typing import Any, Protocol
 
 import numpy
 
 from . import arrays, describe
 from .arrays import Array
-from .checks import numeric
+from .checks import numeric, require
 from .joint import Joint
 from .validity import Range, Status
 
@@ -87,7 +87,8 @@ class Contact:
     def area(self) -> Array:
         """Contact area on the ball, A = 2π R1² (1 - cos ε) in mm², Eq. (19)."""
         half_sine = arrays.sin(arrays.clip(self.half_angle, 0.0, pi) / 2)
-        return self._plain(4 * pi * self.joint.ball_radius**2 * half_sine**2)
+        with numpy.errstate(all="ignore"):
+            return self._plain(4 * pi * self._numbers.ball_radius**2 * half_sine**2)
 
     @property
     def indentation_ratio(self) -> Array:
@@ -102,7 +103,8 @@ class Contact:
     @property
     def conformity(self) -> Array:
         """c/d: clearance over indentation; 0 is a ball of the socket's own radius."""
-        return self.joint.clearance / arrays.positive(self.indentation)
+        quotient = self.joint.clearance / arrays.divisor(self.indentation)
+        return self._plain(arrays.where(self.indentation > 0, quotient, numpy.inf))
 
     def pressure(self, angle: Array) -> Array:
         """Contact pressure in MPa at polar angles (rad) from the load axis; 0 outside the contact.
@@ -119,7 +121,7 @@ class Contact:
         Parameters
         ----------
         coefficient : float or array
-            Coefficient of friction.
+            Coefficient of friction, zero or more.
         axis_angle : float
             Angle (rad) between the axis of rotation and the load: π/2 is flexion under an axial load, 0 is spin
             about the load axis.
@@ -127,15 +129,25 @@ class Contact:
         Returns
         -------
         float or array
-            μ R1 ∫ p sin(angle between axis and radius) dA: at most μ R1 times `pressure_integral`.
+            μ R1 ∫ p sin(angle between axis and radius) dA over the spherical contact: at most μ R1 times
+            `pressure_integral` (for the plane models, whose area is a flat circle, up to its curvature).
+
+        Raises
+        ------
+        ValueError
+            A coefficient that is negative or not finite.
         """
+        coefficient = numeric("coefficient", coefficient)
+        allowed = "a coefficient of friction is 0 or more and finite"
+        require("coefficient", coefficient, (coefficient >= 0) & (coefficient < inf), allowed)
 
         def ring(x: float) -> Array:
-            angle = self.half_angle * x
-            return self.pressure(angle) * _mean_lever(angle, axis_angle) * arrays.sin(angle)
+            angle = self.half_angle * sin(pi / 2 * x)  # tames a square root at the edge
+            width = self.half_angle * (pi / 2 * cos(pi / 2 * x))
+            return self.pressure(angle) * _mean_lever(angle, axis_angle) * arrays.sin(angle) * width
 
-        integral = 2 * pi * self.joint.socket_radius**2 * self.half_angle * arrays.integral(ring, 32)
-        return self._plain(coefficient * self.joint.ball_radius * integral)
+        lever = coefficient * self._numbers.ball_radius
+        return self._plain(lever * 2 * pi * self._numbers.socket_radius**2 * arrays.integral(ring, 24))
 
     def force_vector(self, displacement: Array) -> Array:
         """Force in N on the ball when its centre sits at `displacement` (mm) from the centre of the socket.
@@ -153,13 +165,14 @@ class Contact:
         Raises
         ------
         ValueError
-            A displacement whose last axis is not of length 3.
+            A displacement whose last axis is not of length 3, or that is not finite.
         """
         displacement = numeric("displacement", displacement)
         if arrays.is_plain(displacement) or displacement.shape[-1:] != (3,):
             shape = getattr(displacement, "shape", ())
             raise ValueError(f"displacement of shape {shape} is not allowed: its last axis holds x, y, z (mm)")
         _, displacement = arrays.common(self.indentation, displacement)
+        require("displacement", displacement, arrays.isfinite(displacement), "a displacement (mm) is finite")
         return self.model.force_vector(self.joint, displacement)
 
     @cached_property
@@ -178,7 +191,7 @@ class Contact:
         for status in list(Status)[1:]:
             notes += self._note(self.status != int(status), status.sentence)
         for limit in self.model.validity:
-            notes += self._note(limit.holds(self) | self._failed, f"outside {limit}: {limit.why}")
+            notes += self._note(limit.holds(self) | self._failed, limit.sentence)
         return tuple(notes)
 
     def _note(self, good: Array, sentence: str) -> list[str]:
@@ -197,11 +210,16 @@ class Contact:
 
     def _answer(self, law: Callable[[Joint, Array], Array]) -> Array:
         with numpy.errstate(all="ignore"):  # a point without an answer has a status, not a warning
-            return self._plain(law(self.joint, self.indentation))
+            return self._plain(law(self._numbers, self.indentation))
+
+    @cached_property
+    def _numbers(self) -> Joint:
+        """The joint for formulas: NumPy numbers in place of plain ones, which raise where those become infinite."""
+        return self.joint.with_numbers(arrays.common(*self.joint.numbers())) if self._is_plain else self.joint
 
     def _plain(self, value: Array) -> Array:
         """A contact pressed with plain numbers answers in plain numbers."""
-        if self._is_plain and getattr(value, "shape", ()) == ():
+        if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:
             return float(value)
         if hasattr(self.indentation, "shape"):
             return arrays.broadcast(value, self.indentation)

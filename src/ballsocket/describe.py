@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from html import escape
 from math import degrees
 from typing import Any
@@ -11,24 +12,45 @@ import numpy
 from . import arrays
 from .arrays import Array
 
-# name in JSON, attribute, unit
-_COLUMNS = (
-    ("force", "force", "N"),
-    ("indentation", "indentation", "mm"),
-    ("half_angle_deg", "half_angle", "deg"),
-    ("max_pressure", "max_pressure", "MPa"),
-    ("area", "area", "mm²"),
-    ("stiffness", "stiffness", "N/mm"),
-    ("energy", "energy", "N mm"),
-    ("foundation_modulus", "foundation_modulus", "MPa/mm"),
+
+@dataclass(frozen=True)
+class Column:
+    """A quantity of a contact as people and programs read it.
+
+    `name` and `unit` are those of JSON, `symbol` is the head of a table, `factor` goes from the unit inside to `unit`.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    factor: float = 1.0
+
+    @property
+    def attribute(self) -> str:
+        """What a contact calls it."""
+        return self.name.removesuffix("_deg")
+
+    def of(self, contact: Any) -> Array:
+        """The contact's values in `unit`; -0 is 0."""
+        return getattr(contact, self.attribute) * self.factor + 0.0
+
+
+COLUMNS = (
+    Column("force", "F", "N"),
+    Column("indentation", "d", "mm"),
+    Column("half_angle_deg", "ε", "°", degrees(1.0)),
+    Column("max_pressure", "p0", "MPa"),
+    Column("area", "A", "mm²"),
+    Column("stiffness", "dF/dd", "N/mm"),
+    Column("energy", "U", "N mm"),
+    Column("foundation_modulus", "K", "MPa/mm"),
 )
-QUANTITIES = tuple(name for name, _, _ in _COLUMNS)
-"""The names of a contact's numbers in JSON."""
+"""Every quantity that is printed, in the order in which it is printed."""
 
 
 def summary(contact: Any) -> dict[str, Any]:
     """One dictionary for JSON."""
-    numbers = {name: arrays.to_list(value) for name, value, _ in _quantities(contact)}
+    numbers = {column.name: arrays.to_list(column.of(contact)) for column in COLUMNS}
     valid = arrays.to_list(contact.valid)
     return {"model": contact.model.name, **numbers, "valid": valid, "notes": list(contact.notes)}
 
@@ -61,22 +83,17 @@ def count(valid: Array) -> str:
     return ("yes" if listed.item() else "no") if listed.size == 1 else f"{int(listed.sum())} of {listed.size}"
 
 
-def _quantities(contact: Any) -> list[tuple[str, Array, str]]:
-    """Name, value and unit of each column, angles in degrees."""
-    values = [(name, getattr(contact, attribute), unit) for name, attribute, unit in _COLUMNS]
-    return [(name, value * degrees(1.0) if unit == "deg" else value, unit) for name, value, unit in values]
+def number_text(value: Array, digits: int, gap: str) -> str:
+    """One number, or the range of many; `gap` where there is no number at all."""
+    listed = arrays.to_numpy(value)
+    known = listed[~numpy.isnan(listed)]
+    if not known.size:
+        return gap
+    low, high = f"{known.min():.{digits}g}", f"{known.max():.{digits}g}"
+    return low if low == high else f"{low} to {high}"
 
 
 def _rows(contact: Any) -> list[tuple[str, str, str]]:
-    rows = [
-        (name.removesuffix("_deg"), _range_text(arrays.to_numpy(value)), unit)
-        for name, value, unit in _quantities(contact)
-    ]
+    digits = 6 if arrays.to_numpy(contact.indentation).size == 1 else 5
+    rows = [(column.attribute, number_text(column.of(contact), digits, "no answer"), column.unit) for column in COLUMNS]
     return [*rows, ("valid", count(contact.valid), "")]
-
-
-def _range_text(value: numpy.ndarray) -> str:
-    if value.size == 1:
-        return f"{value.item():.6g}"
-    known = value[numpy.isfinite(value)]
-    return f"{known.min():.5g} to {known.max():.5g}" if known.size else "no answer"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from io import BytesIO
+from math import isinf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -53,8 +55,8 @@ def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact])
         left.set_ylim(bottom=0.0)
     left.set_xticks(range(0, 91, 15))
     _finish(right, "indentation d [µm]", "force F [kN]")
-    right.set_xlim(0.0, 1.12e3 * max(contact.indentation for contact in contacts.values()))
-    right.set_ylim(0.0, 1.6e-3 * max(contact.force for contact in contacts.values()))
+    right.set_xlim(0.0, 1.12e3 * max(contact.indentation for contact in contacts.values()) or 1.0)
+    right.set_ylim(0.0, 1.6e-3 * max(contact.force for contact in contacts.values()) or 1.0)
     columns = min(len(contacts), 4)
     figure.legend(loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
     figure.suptitle(_title(next(iter(contacts.values()))), fontsize=10)
@@ -70,7 +72,9 @@ def check_format(path: Path) -> None:
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as PNG, SVG or PDF, by the ending of `path`."""
     check_format(path)
-    figure.savefig(path, format=path.suffix.lower().lstrip("."), dpi=160)
+    drawn = BytesIO()  # so that a figure that cannot be drawn leaves no half of a file
+    figure.savefig(drawn, format=path.suffix.lower().lstrip("."), dpi=160)
+    path.write_bytes(drawn.getvalue())
 
 
 def _style(index: int, valid: bool) -> dict[str, Any]:
@@ -96,10 +100,12 @@ def _finish(axes: Axes, x: str, y: str) -> None:
 
 def _title(contact: Contact) -> str:
     joint = contact.joint
+    thickness = float(joint.liner_thickness)
+    lined = "massive socket" if isinf(thickness) else f"liner {thickness:g} mm"
     ball = "rigid ball" if joint.ball is None else f"ball {float(joint.ball.young) / 1e3:g} GPa"
     return (
         f"R1 {float(joint.ball_radius):g} mm, clearance {float(joint.clearance):g} mm, "
-        f"liner {float(joint.liner_thickness):g} mm of {float(joint.liner.young) / 1e3:g} GPa, "
+        f"{lined} of {float(joint.liner.young) / 1e3:g} GPa, "
         f"ν {float(joint.liner.poisson):g}; {ball}; ● at {_load(contact)}"
     )
 

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from .joint import Joint, Material
+from .models.base import checked_load
 from .presets import materials
-from .units import parse
+from .units import as_given, parse
 
 _MAX_BYTES = 100_000
 _LENGTHS = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
@@ -22,6 +23,7 @@ _TABLES = {
     "ball": ("material", "young", "poisson"),
     "load": ("force", "indentation", "half_angle"),
 }
+_NUMBERS = {"young": "modulus", "poisson": "number"}
 _LOADS = {"force": "force", "indentation": "length", "half_angle": "angle"}
 
 
@@ -80,8 +82,8 @@ def joint_of(table: Mapping[str, Any]) -> JointFile:
     for name in ("name", "source"):
         if not isinstance(table.get(name, ""), str):
             raise ValueError(f"{name} = {table[name]!r} must be text")
-    joint = Joint(
-        **_lengths(table.get("joint", {})),
+    joint = _joint(
+        table.get("joint", {}),
         liner=_material("liner", table.get("liner", {})),
         ball=_material("ball", table["ball"]) if "ball" in table else None,
         name=table.get("name", ""),
@@ -94,11 +96,19 @@ def read_load(table: Mapping[str, Any]) -> dict[str, float]:
     """At most one of force, indentation, half_angle, as the keyword of a press."""
     if len(table) > 1:
         raise ValueError(f"one load is needed, got {', '.join(table)}")
-    return {name: parse(name, value, _LOADS[name]) for name, value in table.items()}
+    load = {name: parse(name, value, _LOADS[name]) for name, value in table.items()}
+    with as_given(table):
+        return dict([checked_load(**load)]) if load else {}
 
 
-def _lengths(table: Mapping[str, Any]) -> dict[str, float]:
-    lengths = {name: parse(name, value, "length") for name, value in table.items()}
+def _joint(table: Mapping[str, Any], **words: Any) -> Joint:
+    lengths = _lengths(table)
+    with as_given(table):
+        return Joint(**lengths, **words)
+
+
+def _lengths(table: Mapping[str, Any]) -> dict[str, Any]:
+    lengths: dict[str, Any] = {name: parse(name, value, "length") for name, value in table.items()}
     if "liner_thickness" not in lengths:
         raise ValueError("liner_thickness is missing; inf is a massive socket")
     given = [name for name in _LENGTHS[:3] if name in lengths]
@@ -121,17 +131,15 @@ def _difference(larger: float, smaller: float) -> float:
 
 def _material(name: str, table: Mapping[str, Any]) -> Material:
     """A material from a table with `material` (by name) and/or `young` and `poisson`."""
-    young = parse(f"{name}.young", table["young"], "modulus") if "young" in table else None
-    poisson = parse(f"{name}.poisson", table["poisson"], "number") if "poisson" in table else None
-    if "material" in table:
-        preset = _named_material(name, table["material"])
-        young = preset.young if young is None else young
-        poisson = preset.poisson if poisson is None else poisson
-        return replace(preset, young=young, poisson=poisson)
-    missing = [key for key, value in (("young", young), ("poisson", poisson)) if value is None]
-    if missing:
+    numbers: dict[str, Any] = {
+        key: parse(f"{name}.{key}", table[key], kind) for key, kind in _NUMBERS.items() if key in table
+    }
+    missing = [key for key in _NUMBERS if key not in numbers]
+    if missing and "material" not in table:
         raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
-    return Material(young=young, poisson=poisson)
+    preset = _named_material(name, table["material"]) if "material" in table else None
+    with as_given(table, f"{name}."):
+        return replace(preset, **numbers) if preset else Material(**numbers)
 
 
 def _named_material(name: str, chosen: Any) -> Material:

@@ -178,7 +178,7 @@ class Joint:
         head = f"{self.name}: " if self.name else ""
         return (
             f"{head}R1 {_text(self.ball_radius)} mm, clearance {_text(self.clearance)} mm, "
-            f"liner {_text(self.liner_thickness)} mm of {self.liner}; ball {ball}"
+            f"{_thickness(self.liner_thickness)} of {self.liner}; ball {ball}"
         )
 
 
@@ -196,6 +196,11 @@ def unchecked(cls: Any, **fields: Any) -> Any:
 def _set(made: Any, **fields: Any) -> None:
     for name, value in fields.items():
         object.__setattr__(made, name, value)
+
+
+def _thickness(value: Array) -> str:
+    text = _text(value)
+    return "massive socket" if text == "inf" else f"liner {text} mm"
 
 
 def _text(value: Array) -> str:

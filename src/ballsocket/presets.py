@@ -25,16 +25,16 @@ POM = Material(
     young=2850.0,
     poisson=0.35,
     name="POM",
-    source="E: Hostaform C 9021 data sheet (ISO 527, short term; 1300 MPa after 1000 h); nu: representative",
+    source="E: Ticona 2008, Hostaform C 9021 data sheet (ISO 527; 1300 MPa after 1000 h); nu: representative",
 )
 STEEL = Material(young=230000.0, poisson=0.3, name="steel head", source=f"{_PAPER}; high for a stainless steel")
-STRUCTURAL_STEEL = Material(young=210000.0, poisson=0.3, name="structural steel", source="EN 1993-1-1:2005, 3.2.6")
+STRUCTURAL_STEEL = Material(young=210000.0, poisson=0.3, name="structural steel", source="CEN 2005, EN 1993-1-1, 3.2.6")
 COCR = Material(young=230000.0, poisson=0.3, name="CoCr", source=_REVIEW)
 ALUMINA = Material(
     young=380000.0,
     poisson=0.23,
     name="alumina",
-    source="E: Kutz, Biomedical Engineering and Design Handbook 1, Table 15.1; nu: NIST SRD 150, doi 10.18434/T42G62",
+    source="E: Kutz 2009, Biomed. Eng. and Design Handbook 1, Table 15.1; nu: NIST SRD 150, doi 10.18434/T42G62",
 )
 ALUMINA_COMPOSITE = Material(
     young=350000.0, poisson=0.26, name="zirconia-toughened alumina", source=f"BIOLOX delta: {_REVIEW}"

@@ -29,7 +29,8 @@ class Source:
     def short(self) -> str:
         """Authors and year."""
         entry = bibliography()[self.key]
-        names = [author.split(",")[0] for author in _field(entry, "author").split(" and ")]
+        people = _field(entry, "author") or _field(entry, "editor")
+        names = [person.split(",")[0] for person in people.split(" and ")]
         authors = f"{names[0]} et al." if len(names) > 2 else " & ".join(names)
         return f"{authors} {_field(entry, 'year')}"
 
@@ -50,12 +51,19 @@ def cite(*used: Any) -> str:
     Parameters
     ----------
     *used
-        Models, contacts, moduli, materials or joints: anything with `sources`, or made by something that has them.
+        Models, moduli, contacts, comparisons, materials or joints. The `source` of a material or a joint is text:
+        of it, the publications in the project's bibliography are cited that it names by authors and year, or by DOI.
 
     Returns
     -------
     str
         BibTeX entries in the order of first use, none twice.
+
+    Raises
+    ------
+    TypeError
+        Something that has no sources, or a material or joint whose source text names no known publication; inside a
+        contact such text is passed over.
 
     Examples
     --------
@@ -67,15 +75,36 @@ def cite(*used: Any) -> str:
     return "\n\n".join(bibliography()[key] for key in keys)
 
 
-def _keys(used: Any) -> Iterator[str]:
+def _keys(used: Any) -> list[str]:
     if isinstance(used, Source):
-        yield used.key
-        return
-    for source in getattr(used, "sources", ()):
-        yield source.key
+        return [used.key]
+    if isinstance(used, type) or not any(hasattr(used, mark) for mark in ("sources", "source", "model")):
+        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_shown(used)}")
+    keys = list(_found(used))
+    if not keys and hasattr(used, "source"):
+        raise TypeError(f"no known publication is named in the source of {used}: {used.source!r}")
+    return keys
+
+
+def _found(used: Any) -> Iterator[str]:
+    yield from (source.key for source in getattr(used, "sources", ()))
+    yield from _named_in(str(getattr(used, "source", "")))
     for part in ("model", "joint", "liner", "ball"):
         if getattr(used, part, None) is not None:
-            yield from _keys(getattr(used, part))
+            yield from _found(getattr(used, part))
+
+
+def _named_in(text: str) -> Iterator[str]:
+    """The publications that a text names, such as "Plank et al. 2007"."""
+    for key in bibliography() if text else ():
+        source = Source(key)
+        if (source.doi and source.doi in text) or re.search(rf"(?<!& )\b{re.escape(source.short)}\b", text):
+            yield key
+
+
+def _shown(used: Any) -> str:
+    name = getattr(used, "__name__", "")
+    return f"{name} itself; is {name}() meant?" if name and callable(used) else f"{used!r:.60}"
 
 
 def _field(entry: str, name: str) -> str:

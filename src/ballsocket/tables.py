@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from math import degrees, pi
+import textwrap
+from collections.abc import Iterable, Sequence
+from math import pi
 from typing import Any
 
 import numpy
@@ -13,97 +14,134 @@ from rich.text import Text
 
 from .compare import Comparison
 from .contact import Contact
+from .describe import COLUMNS, Column, number_text
+from .joint import Joint, Material
 from .presets import joints, materials
 
 _BARS = " ▁▂▃▄▅▆▇█"
-
-
-# head, unit, attribute, factor, least width of the terminal that shows it
-_COLUMNS = (
-    ("F", "N", "force", 1.0, 0),
-    ("d", "µm", "indentation", 1e3, 0),
-    ("ε", "°", "half_angle", degrees(1.0), 0),
-    ("p0", "MPa", "max_pressure", 1.0, 0),
-    ("area", "mm²", "area", 1.0, 0),
-    ("dF/dd", "kN/mm", "stiffness", 1e-3, 80),
-    ("U", "N mm", "energy", 1.0, 95),
-    ("K", "MPa/mm", "foundation_modulus", 1.0, 95),
-)
+_BARS_ASCII = " .:-=+*#@"
+_UNITS = {"indentation": ("µm", 1e3), "stiffness": ("kN/mm", 1e-3)}  # handier here than those of JSON
+_NARROW = 72
+_PROFILE = "profile"
+# what a narrow terminal does without, first to last
+_DROPPED = ("foundation_modulus", "energy", "stiffness", "area", _PROFILE, "indentation", "force", "half_angle_deg")
 
 
 def print_press(comparison: Comparison) -> None:
     """The comparison as a table, each model with its pressure profile from the pole to 90 degrees."""
-    console = Console(highlight=False)
-    columns = [column for column in _COLUMNS if console.width >= column[-1]]
-    highest = max((_number(contact.max_pressure) for contact in comparison.values()), default=0.0)
+    console = _console()
+    _print_folded(console, str(comparison.joint), "bold")
+    console.print(_fitting(comparison, console))
+    for reason in comparison.notes():
+        _print_folded(console, reason, "dim")
+
+
+def _console() -> Console:
+    return Console(highlight=False)
+
+
+def _print_folded(console: Console, text: str, style: str) -> None:
+    folded = textwrap.fill(text, max(console.width, 20), subsequent_indent="    ", break_on_hyphens=False)
+    console.print(Text(folded, style=style), soft_wrap=True)
+
+
+def _fitting(comparison: Comparison, console: Console) -> Table:
+    """The table with as many columns as the terminal is wide enough for."""
+    unbounded = console.options.update(width=10_000)
+    bars = _BARS if console.encoding.startswith("utf") else _BARS_ASCII
+    for count in range(len(_DROPPED) + 1):
+        table = _press_table(comparison, _DROPPED[:count], bars)
+        if console.measure(table, options=unbounded).maximum <= console.width:
+            break
+    return table
+
+
+def _press_table(comparison: Comparison, dropped: Sequence[str], bars: str) -> Table:
+    columns = [column for column in COLUMNS if column.name not in dropped]
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
     table.add_column("model", no_wrap=True)
-    for head, *_ in columns:
-        table.add_column(head, justify="right", no_wrap=True)
-    table.add_column(" p, 0° to 90°", no_wrap=True)
+    for column in columns:
+        table.add_column(column.symbol, justify="right", no_wrap=True)
+    if _PROFILE not in dropped:
+        table.add_column(" p, 0° to 90°", no_wrap=True)
     table.add_column("valid", justify="center", no_wrap=True)
-    table.add_row("", *(Text(unit, style="dim") for _, unit, *_ in columns))
+    table.add_row("", *(Text(_shown_unit(column)[0], style="dim") for column in columns))
+    profiles = {} if _PROFILE in dropped else _profiles(comparison, bars)
     for name, contact in comparison.items():
-        style = "" if contact.valid else "yellow"
-        numbers = (getattr(contact, attribute) * factor for _, _, attribute, factor, _ in columns)
-        cells = [Text("-" if number != number else f"{number:.4g}", style=style) for number in numbers]
-        mark = Text("yes", style="green") if contact.valid else Text("no", style="yellow")
-        table.add_row(
-            Text(name, style=style), *cells, Text(" " + _profile(contact, highest), style=style or "cyan"), mark
-        )
+        table.add_row(*_cells(name, contact, columns, [profiles[name]] if profiles else []))
     for name in comparison.missing:
-        table.add_row(Text(name, style="dim"), *["-"] * len(columns), "", Text("no", style="red"))
-    console.print(Text(str(comparison.joint), style="bold"), soft_wrap=True)
-    console.print(table)
-    for reason in notes(comparison):
-        console.print(Text(reason, style="dim"), soft_wrap=True)
+        gaps = [*["-"] * len(columns), *[""] * (_PROFILE not in dropped)]
+        table.add_row(Text(name, style="dim"), *gaps, Text("no", style="red"))
+    return table
 
 
-def notes(comparison: Comparison) -> list[str]:
-    """Why models are outside their validity or have no answer: each reason once, with the models it holds for."""
-    holders: dict[str, list[str]] = {}
-    for name, contact in comparison.items():
-        for note in contact.notes:
-            holders.setdefault(note, []).append(name)
-    return [f"{', '.join(names)}: {note}" for note, names in holders.items()] + list(comparison.missing.values())
+def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequence[str]) -> list[Text]:
+    style = "" if contact.valid else "yellow"
+    numbers = [number_text(column.of(contact) * _shown_unit(column)[1], 4, "-") for column in columns]
+    bars = [Text(f" {bar}", style=style or "cyan") for bar in profile]
+    mark = Text("yes", style="green") if contact.valid else Text("no", style="yellow")
+    return [*(Text(text, style=style) for text in (name, *numbers)), *bars, mark]
 
 
-def _profile(contact: Contact, highest: float) -> str:
-    if not highest > 0 or contact.status.failed:
-        return ""
-    share = numpy.asarray(contact.pressure(numpy.linspace(0.0, pi / 2, 12))) / highest
-    return "".join(_BARS[round(float(level) * 8)] for level in numpy.clip(share, 0.0, 1.0))
+def _shown_unit(column: Column) -> tuple[str, float]:
+    return _UNITS.get(column.name, (column.unit, 1.0))
 
 
-def _number(value: Any) -> float:
-    return 0.0 if value != value else float(value)
+def _profiles(comparison: Comparison, bars: str) -> dict[str, str]:
+    """For every model its pressure from the pole to 90 degrees as a row of bars, all to one scale."""
+    angle = numpy.linspace(0.0, pi / 2, 12)
+    pressures = {name: _pressure(contact, angle) for name, contact in comparison.items()}
+    highest = max((pressure.max() for pressure in pressures.values()), default=0.0)
+    return {name: _bars(pressure / highest if highest > 0 else 0 * angle, bars) for name, pressure in pressures.items()}
+
+
+def _pressure(contact: Contact, angle: numpy.ndarray) -> numpy.ndarray:
+    return 0 * angle if contact.status.failed else numpy.nan_to_num(contact.pressure(angle), posinf=0.0)
+
+
+def _bars(share: numpy.ndarray, bars: str) -> str:
+    return "".join(bars[round(float(level) * 8)] for level in numpy.clip(share, 0.0, 1.0)).rstrip()
 
 
 def print_models(models: Iterable[Any]) -> None:
     """The catalogue with validity and sources."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 1, 0))
-    for head in ("model", "what it is", "trusted for", "source"):
-        table.add_column(head, overflow="fold")
-    for model in models:
-        trusted = "\n".join(str(limit) for limit in model.validity)
-        places: dict[str, list[str]] = {}
-        for source in model.sources:
-            places.setdefault(source.short, []).extend([source.place] if source.place else [])
-        sources = "\n".join(", ".join([short, *place]) for short, place in places.items())
-        table.add_row(Text(model.name, style="bold"), model.title, trusted, sources)
-    Console(highlight=False).print(table)
+    rows = [(model.name, model.title, "\n".join(map(str, model.validity)), _sources(model)) for model in models]
+    _print_rows(("model", "what it is", "trusted for", "source"), rows, gap=1)
 
 
 def print_presets() -> None:
     """Materials and joints with the sources of their numbers."""
-    console = Console(highlight=False)
-    for title, rows in (("materials", materials), ("joints", joints)):
-        table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-        table.add_column(title, no_wrap=True)
-        table.add_column("numbers", overflow="fold")
-        table.add_column("source", overflow="fold", style="dim")
-        for name, row in rows.items():
-            text = str(row).removeprefix(f"{row.name}: ").removeprefix(f"{row.name} ")
-            table.add_row(name, text, row.source)
-        console.print(table)
-        console.print()
+    for title, presets in (("materials", materials), ("joints", joints)):
+        rows = [(name, _numbers(preset), preset.source) for name, preset in presets.items()]
+        _print_rows((title, "numbers", "source"), rows, gap=0)
+        _console().print()
+
+
+def _sources(model: Any) -> str:
+    """A line for each publication, with all its places."""
+    places: dict[str, list[str]] = {}
+    for source in model.sources:
+        places.setdefault(source.short, []).extend([source.place] if source.place else [])
+    return "\n".join(", ".join([short, *place]) for short, place in places.items())
+
+
+def _numbers(preset: Material | Joint) -> str:
+    text = str(preset).removeprefix(preset.name)
+    return text.removeprefix(": ") if isinstance(preset, Joint) else text.strip(" ()")
+
+
+def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], gap: int) -> None:
+    """A table with `gap` empty lines between rows; a paragraph for each row where the terminal is narrow."""
+    console = _console()
+    if console.width < _NARROW:
+        for name, *texts in rows:
+            console.print(Text(name, style="bold"))
+            for text in texts:
+                _print_folded(console, f"  {text.replace(chr(10), '; ')}", "")
+        return
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, gap, 0))
+    for head in heads:
+        table.add_column(head, overflow="fold", no_wrap=head == heads[0])
+    for name, *texts in rows:
+        table.add_row(Text(name, style="bold"), *map(Text, texts))
+    console.print(table)

@@ -6,23 +6,27 @@ A bare number is taken as mm, N, MPa or degrees.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from math import radians
 from typing import Any
 
-_UNITS = {"length": "mm", "force": "N", "modulus": "MPa", "angle": "deg", "adhesion": "N/mm", "number": ""}
+_UNITS = {"length": "mm", "force": "N", "modulus": "MPa", "angle": "deg", "number": ""}
 _KINDS = {
     "length": "a length, such as '16 mm'",
     "force": "a force, such as '3 kN'",
     "modulus": "a modulus, such as '1 GPa'",
     "angle": "an angle, such as '40 deg'",
-    "adhesion": "a work of adhesion, such as '0.05 J/m**2'",
     "number": "a number, such as 0.4",
 }
 
 _FACTOR = r"[A-Za-z\u00b5\u03bc\u00b0]+(?:\s*(?:\*\*|\^)\s*-?\d)?"
 # a number and a product or quotient of units: pint alone would also evaluate any arithmetic put before it
 _QUANTITY = re.compile(rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*({_FACTOR}(?:\s*[*/]\s*{_FACTOR})*)", re.ASCII)
+
+
+_REFUSED = re.compile(r"(?P<name>\w+) = \S+ is not allowed: (?P<rule>.*)")
 
 
 def parse(name: str, value: Any, kind: str) -> float:
@@ -34,7 +38,7 @@ def parse(name: str, value: Any, kind: str) -> float:
         What it is, for the message.
     value : float, int or str
         A bare number, or text such as "16 mm", "3 kN", "1 GPa", "40 deg", "inf".
-    kind : {"length", "force", "modulus", "angle", "adhesion", "number"}
+    kind : {"length", "force", "modulus", "angle", "number"}
 
     Raises
     ------
@@ -50,8 +54,22 @@ def parse(name: str, value: Any, kind: str) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(_refusal(name, value, kind))
-    number = _number(name, value, kind)
+    number = _number(name, value, kind) + 0.0  # no -0
     return radians(number) if kind == "angle" else number
+
+
+@contextmanager
+def as_given(given: Mapping[str, Any], prefix: str = "") -> Iterator[None]:
+    """Inside, the refusal of a number ("clearance = -0.1 is not allowed: ...") shows it as it was given."""
+    try:
+        yield
+    except ValueError as error:
+        found = _REFUSED.fullmatch(str(error))
+        if found is None or found["name"] not in given:
+            raise
+        rule = found["rule"].replace("(rad)", "(deg)").replace("pi/2", "90")
+        shown = _shown(given[found["name"]])
+        raise ValueError(f"{prefix}{found['name']} = {shown} is not allowed: {rule}") from error
 
 
 def _number(name: str, value: float | str, kind: str) -> float:
@@ -69,7 +87,7 @@ def _quantity(name: str, text: str, kind: str) -> float:
 
     found = _QUANTITY.fullmatch(text.strip())
     if found is None:
-        raise ValueError(_refusal(name, text if len(text) < 60 else text[:40] + "...", kind))
+        raise ValueError(_refusal(name, text, kind))
     number, unit = found.groups()
     try:
         return float(_registry().Quantity(float(number), unit).to(_UNITS[kind]).magnitude)
@@ -85,4 +103,9 @@ def _registry() -> Any:
 
 
 def _refusal(name: str, value: Any, kind: str) -> str:
-    return f"{name} = {value!r} is not {_KINDS[kind]}"
+    return f"{name} = {_shown(value)} is not {_KINDS[kind]}"
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) < 60 else f"{text[:40]}..."

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from enum import IntEnum
 from math import degrees, inf
 from operator import attrgetter
+from types import SimpleNamespace
 from typing import Any
 
-from .arrays import Array
+from .arrays import Array, to_numpy, truth
 
 
 class Status(IntEnum):
@@ -71,6 +72,16 @@ class Range:
         value = self.of(contact)
         return (value > self.low) & (value < self.high)
 
+    @property
+    def sentence(self) -> str:
+        """What a contact outside the range is told."""
+        return f"outside {self}: {self.why}"
+
+    def value_text(self, joint: Any) -> str:
+        """The quantity of a joint in words."""
+        value = to_numpy(self.of(SimpleNamespace(joint=joint))).ravel()
+        return f"{self.symbol} = {value[0]:g}" + (f" (and {value.size - 1} more)" if value.size > 1 else "")
+
     def __str__(self) -> str:
         scale, unit = (degrees(1.0), "°") if self.quantity == "half_angle" else (1.0, "")
         low, high = f"{self.low * scale:.4g}{unit}", f"{self.high * scale:.4g}{unit}"
@@ -79,6 +90,35 @@ class Range:
         if self.high == inf:
             return f"{self.symbol} ≥ {low}"
         return f"{self.symbol} {low} to {high}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Nowhere(Range):
+    """A range that nothing lies in: an answer for comparison, not to be trusted anywhere."""
+
+    quantity: str | Callable[[Any], Array] = "indentation"
+    symbol: str = ""
+
+    def holds(self, contact: Any) -> Array:
+        return self.of(contact) != self.of(contact)
+
+    def __str__(self) -> str:
+        return "nothing"
+
+    @property
+    def sentence(self) -> str:
+        return f"not to be trusted anywhere: {self.why}"
+
+
+def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
+    """Where all of a model's (or modulus') domain holds for a joint; OutsideDomainError where it does nowhere."""
+    points: Array = joint.ball_radius == joint.ball_radius
+    for limit in domain:
+        holds = limit.strictly_holds(SimpleNamespace(joint=joint))
+        if truth(holds ^ True):
+            raise OutsideDomainError(f"{name} has no answer for {limit.value_text(joint)}: {limit.why}")
+        points = points & holds
+    return points
 
 
 SMALL_STRAIN = Range(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import inf, pi
 from typing import Any
 
-from ..arrays import Array, broadcast, clip, increasing_root, positive, sqrt, where
+from ..arrays import Array, broadcast, clip, divisor, increasing_root, sqrt, where
 from ..checks import numeric, require
 from ..joint import Joint
 from ..sources import Source
@@ -47,6 +47,11 @@ class AdhesiveSocket(ClosedForm):
     def __post_init__(self) -> None:
         w = numeric("work_of_adhesion", self.work_of_adhesion)
         require("work_of_adhesion", w, (w >= 0) & (w < inf), "a work of adhesion (N/mm) is 0 or more and finite")
+        object.__setattr__(self, "work_of_adhesion", w)
+
+    @property
+    def parameters(self) -> tuple[Array, ...]:
+        return (self.work_of_adhesion, *self.modulus.constants)
 
     @property
     def name(self) -> str:
@@ -71,12 +76,12 @@ class AdhesiveSocket(ClosedForm):
 
     def critical_stretch(self, joint: Joint) -> Array:
         """u_c = sqrt(2w/K) in mm."""
-        return sqrt(2 * self.work_of_adhesion / self.modulus(joint))
+        return sqrt(2 * self.work_of_adhesion / self.modulus.of(joint))
 
     def adhesion_number(self, joint: Joint) -> Array:
         """η = u_c/c."""
         c = joint.clearance
-        return where(c > 0, self.critical_stretch(joint) / positive(c), inf)
+        return where(c > 0, self.critical_stretch(joint) / divisor(c), inf)
 
     def pull_off(self, joint: Joint) -> Array:
         """Largest force in N that can pull the ball without freeing it, positive; NaN where η is 1 or more.
@@ -87,19 +92,20 @@ class AdhesiveSocket(ClosedForm):
         eta = where(eta < 1, eta, float("nan"))
         rest = 1 - eta * eta * (3 - 2 * eta)
         share = eta * eta * (3 - 2 * eta) / (1 + rest ** (1 / 3) + rest ** (2 / 3))
-        return pi * joint.socket_radius**2 * self.modulus(joint) * joint.clearance * share
+        pull = pi * joint.socket_radius**2 * self.modulus.of(joint) * joint.clearance * share
+        return float(pull) if isinstance(pull, float) else pull
 
     def _factor(self, joint: Joint) -> Array:
-        return 2 * pi * joint.socket_radius**2 * self.modulus(joint)
+        return 2 * pi * joint.socket_radius**2 * self.modulus.of(joint)
 
     def _cosine(self, joint: Joint, indentation: Array) -> Array:
         """k = cos ε; 0 where the hemisphere sticks."""
         c = joint.clearance
-        return clip((c - self.critical_stretch(joint)) / positive(c + indentation), 0.0, 1.0)
+        return clip((c - self.critical_stretch(joint)) / divisor(c + indentation), 0.0, 1.0)
 
     def _versine(self, joint: Joint, indentation: Array) -> Array:
         c = joint.clearance
-        return clip((indentation + self.critical_stretch(joint)) / positive(c + indentation), 0.0, 1.0)
+        return clip((indentation + self.critical_stretch(joint)) / divisor(c + indentation), 0.0, 1.0)
 
     def force(self, joint: Joint, indentation: Array) -> Array:
         # F = 2π R2² K [e (1 - k³)/3 - c (1 - k²)/2], with m = 1 - k taken out
@@ -110,19 +116,19 @@ class AdhesiveSocket(ClosedForm):
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
         # the edge moves: dF/de + dF/dk dk/de
         k, m = self._cosine(joint, indentation), self._versine(joint, indentation)
-        e = positive(joint.clearance + indentation)
+        e = divisor(joint.clearance + indentation)
         return self._factor(joint) * (m * (1 + k + k * k) / 3 - k * k * self.critical_stretch(joint) / e)
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
         # springs less surfaces, from d = 0 on
         c, d, u = joint.clearance, indentation, self.critical_stretch(joint)
-        e = positive(c + d)
-        partial = d * d * (d / e) / 3 - u * u * (d / e) * (1 - 2 * u / (3 * positive(c)))
+        e = divisor(c + d)
+        partial = d * d * (d / e) / 3 - u * u * (d / e) * (1 - 2 * u / (3 * divisor(c)))
         return self._factor(joint) / 2 * where(u < c, partial, d * (d - c) / 3)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
         # between the springs without adhesion (too strong) and with all of the hemisphere hanging on (too weak)
-        R2, c, K = joint.socket_radius, joint.clearance, self.modulus(joint)
+        R2, c, K = joint.socket_radius, joint.clearance, self.modulus.of(joint)
         low = linear_indentation(R2, c, K, force)
         high = 3 * force / self._factor(joint) + c / 2
         shape = (low, high, self.critical_stretch(joint))
@@ -135,13 +141,16 @@ class AdhesiveSocket(ClosedForm):
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         versine = versine_of(half_angle)
         d = (joint.clearance * versine - self.critical_stretch(joint)) / (1 - versine)
-        return where(d >= 0, d, float("nan"))
+        return where((d >= 0) & (joint.clearance > 0), d, float("nan"))
 
     def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        return self.modulus(joint) * indentation
+        return self.modulus.of(joint) * indentation
+
+    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
+        return self.modulus.of(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         """Negative (tension) towards the edge."""
         versine = versine_of(angle)
         u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
-        return where(versine <= self._versine(joint, indentation), self.modulus(joint) * u, 0.0)
+        return where(versine <= self._versine(joint, indentation), self.modulus.of(joint) * u, 0.0)

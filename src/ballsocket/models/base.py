@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import cos, pi, sin
-from types import SimpleNamespace
 
 import numpy
 
@@ -15,7 +14,7 @@ from ..checks import numeric, one_load, require
 from ..contact import Contact, Laws
 from ..joint import Joint
 from ..sources import Source
-from ..validity import OutsideDomainError, Range, Status
+from ..validity import Range, Status, inside
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,7 +40,8 @@ class Model(ABC):
     domain : tuple of Range
         Open ranges outside of which there is no formula.
     validity : tuple of Range
-        Closed ranges inside which the answer can be trusted.
+        Closed ranges inside which the answer can be trusted: peak pressure and indentation within about 15 % of the
+        elastic answer.
     """
 
     @property
@@ -63,6 +63,11 @@ class Model(ABC):
     @property
     @abstractmethod
     def validity(self) -> tuple[Range, ...]: ...
+
+    @property
+    def parameters(self) -> tuple[Array, ...]:
+        """Numbers of the model's own that may be arrays and broadcast against joint and load."""
+        return ()
 
     def press(
         self,
@@ -95,10 +100,11 @@ class Model(ABC):
             Not exactly one load; a load that is not allowed; no point at all inside the model's domain.
         """
         kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
-        plain, joint, load = prepared(joint, given)
-        inside = inside_domain(self, joint)
+        plain, whole, load = prepared(joint, given, *self.parameters)
+        points = inside(self.domain, whole, self.name)
         with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
-            return _finished(self, joint, kind, load, inside, self._solve(joint, kind, load), plain)
+            answer = self._solve(whole, kind, load)
+            return _finished(self, joint if plain else whole, kind, load, points, answer, plain)
 
     @abstractmethod
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
@@ -108,7 +114,7 @@ class Model(ABC):
         """Force (..., 3) in N on the ball whose centre is displaced by (..., 3) mm; see `Contact.force_vector`."""
         xp = arrays.namespace(displacement)
         square = xp.sum(displacement * displacement, axis=-1)
-        length = arrays.sqrt(arrays.positive(square))
+        length = arrays.sqrt(arrays.divisor(square))
         depth = length - joint.clearance
         touching = (square > 0) & (depth > 0)
         force = where(touching, self.press(joint, indentation=where(touching, depth, 0.0)).force, 0.0)
@@ -153,7 +159,8 @@ class ClosedForm(Model):
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
         """K = p0/d in MPa/mm, Eq. (16) of the paper."""
-        return self.max_pressure(joint, indentation) / arrays.positive(indentation)
+        quotient = self.max_pressure(joint, indentation) / arrays.divisor(indentation)
+        return where(indentation > 0, quotient, numpy.inf)  # a point contact: p0 ~ d^(1/2n), n >= 1
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
         """∫ p dA in N over the spherical contact, by quadrature."""
@@ -173,7 +180,7 @@ class ClosedForm(Model):
         """
         scale = joint.clearance + 1e-3 * joint.socket_radius
         known = arrays.log(self.force(joint, scale))
-        goal = arrays.log(arrays.positive(force)) - known
+        goal = arrays.log(arrays.divisor(force)) - known
         steep, flat = goal / 2.5, goal / 0.4
 
         def law(log_ratio: Array) -> tuple[Array, Array]:
@@ -222,32 +229,19 @@ def checked_load(**loads: Array | None) -> tuple[str, Array]:
     return kind, load
 
 
-def prepared(joint: Joint, load: Array) -> tuple[bool, Joint, Array]:
-    """Whether only plain numbers came in, and joint and load as arrays of one library and dtype."""
+def prepared(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
+    """Whether only plain numbers came in, and joint and load as arrays of one library and dtype.
+
+    A model's own `parameters` count for the library; they stay where they are.
+    """
     numbers = (*joint.numbers(), load)
-    plain = all(arrays.is_plain(number) for number in numbers)
-    *joint_numbers, load = arrays.common(*numbers)
-    return plain, joint.with_numbers(joint_numbers), load
-
-
-def inside_domain(model: Model, joint: Joint) -> Array:
-    """Where the model has a formula; OutsideDomainError (a ValueError) where it has none for any point."""
-    inside: Array = joint.ball_radius == joint.ball_radius
-    for limit in model.domain:
-        holds = limit.strictly_holds(SimpleNamespace(joint=joint))
-        if arrays.truth(~holds):
-            raise OutsideDomainError(f"{model.name} has no answer for {_value_text(limit, joint)}: {limit.why}")
-        inside = inside & holds
-    return inside
-
-
-def _value_text(limit: Range, joint: Joint) -> str:
-    value = arrays.to_numpy(limit.of(SimpleNamespace(joint=joint))).ravel()
-    return f"{limit.symbol} = {value[0]:g}" + (f" (and {value.size - 1} more)" if value.size > 1 else "")
+    plain = all(arrays.is_plain(number) for number in (*numbers, *parameters))
+    joint_numbers = arrays.common(*numbers, *parameters)[: len(numbers)]
+    return plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
 
 
 def _finished(
-    model: Model, joint: Joint, kind: str, load: Array, inside: Array, answer: Answer, plain: bool
+    model: Model, joint: Joint, kind: str, load: Array, points: Array, answer: Answer, plain: bool
 ) -> Contact:
     """The contact with its status: NaN where there is no answer."""
     xp = arrays.namespace(load)
@@ -260,7 +254,7 @@ def _finished(
         (answer.beyond_equator, Status.BEYOND_EQUATOR),
         (~answer.converged, Status.NOT_CONVERGED),
         (~found, Status.NOT_REACHED),
-        (~inside, Status.OUTSIDE_DOMAIN),
+        (~points, Status.OUTSIDE_DOMAIN),
     ):
         status = where(wrong, xp.asarray(int(code), dtype=xp.int8), status)
     answered = (status == int(Status.OK)) | (status == int(Status.BEYOND_EQUATOR))

@@ -9,7 +9,7 @@ from math import degrees, pi
 import numpy
 
 from .. import arrays
-from ..arrays import Array, asinh, atan, broadcast, clip, increasing_root, log, positive, sqrt, tan, where
+from ..arrays import Array, asinh, atan, broadcast, clip, divisor, increasing_root, log, sqrt, tan, where
 from ..checks import numeric, one_load, require
 from ..joint import Joint
 from ..sources import Source
@@ -73,10 +73,11 @@ class PinInHole:
             if kind == "line_load":
                 angle = 2 * atan(sqrt(_squared_tangent(stiffness, load)))
                 return _line_contact(self, joint, plain, load, angle)
-            return _line_contact(self, joint, plain, stiffness / _flexibility(tan(load / 2) ** 2), load)
+            reached = where((stiffness > 0) | (load == 0), stiffness / _flexibility(tan(load / 2) ** 2), numpy.nan)
+            return _line_contact(self, joint, plain, reached, load)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class LineContact:
     """What a pin does to its hole, per length: `line_load` in N/mm, `half_angle` in rad, `max_pressure` in MPa."""
 
@@ -106,24 +107,35 @@ class LineContact:
         rest = clip(square - y, 0.0, float("inf"))
         ends = 1 + square
         smooth = 2 / pi * sqrt(rest / ends) / (1 + y)
-        peak = asinh(sqrt(rest / (1 + y))) / (pi * positive(square) * ends)
+        peak = asinh(sqrt(rest / (1 + y))) / (pi * divisor(square) * ends)
         scaled = where((y < square) & (abs(angle) < pi), smooth + peak, 0.0)
         pressure = self.line_load / self.joint.socket_radius * scaled
         return float(pressure) if isinstance(self.line_load, float) and numpy.ndim(pressure) == 0 else pressure
 
-    def __str__(self) -> str:
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """In words: what has no answer, and what lies outside the model's validity."""
+        failed = self.status != int(Status.OK)
+        notes = [Status.NOT_REACHED.sentence] if numpy.any(arrays.to_numpy(failed)) else []
+        for limit in self.model.validity:
+            notes += [] if numpy.all(arrays.to_numpy(limit.holds(self))) else [limit.sentence]
+        return tuple(notes)
+
+    def __repr__(self) -> str:
         angle, peak = arrays.to_numpy(self.half_angle), arrays.to_numpy(self.max_pressure)
-        return f"{self.model.name}: half angle {angle * degrees(1.0)} deg, max pressure {peak} MPa"
+        lines = [f"{self.model.name} on {self.joint}", f"  line_load     {arrays.to_numpy(self.line_load)} N/mm"]
+        lines += [f"  half_angle    {angle * degrees(1.0)} deg", f"  max_pressure  {peak} MPa"]
+        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
 
 
 def _flexibility(s: Array) -> Array:
     """E1 c/Q at s = β²."""
-    return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * positive(s))
+    return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * divisor(s))
 
 
 def _squared_tangent(stiffness: Array, load: Array) -> Array:
     """β² that belongs to a line load, E1 c = stiffness."""
-    ratio = stiffness / positive(load)
+    ratio = stiffness / divisor(load)
 
     def law(s: Array) -> tuple[Array, Array]:
         value = log(1 + s) + 2 * s * s - 2 + pi * (s + s * s) * ratio
@@ -138,7 +150,7 @@ def _squared_tangent(stiffness: Array, load: Array) -> Array:
 def _line_contact(model: PinInHole, joint: Joint, plain: bool, load: Array, angle: Array) -> LineContact:
     load, angle = broadcast(load, angle), broadcast(angle, load)
     good = arrays.isfinite(load) & arrays.isfinite(angle)
-    status = where(good, int(Status.OK), int(Status.NOT_CONVERGED))
+    status = where(good, int(Status.OK), int(Status.NOT_REACHED))
     if plain:
         return LineContact(
             model=model, joint=joint, line_load=float(load), half_angle=float(angle), status=Status(int(status))

@@ -44,7 +44,8 @@ class RadialFoundation(ClosedForm):
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        return (*self.modulus.sources, *self.kinematics.sources)
+        kin = _RELATIVES.get((self.modulus.name, self.kinematics.name), ())
+        return (*self.modulus.sources, *self.kinematics.sources, *kin)
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -54,20 +55,26 @@ class RadialFoundation(ClosedForm):
     def validity(self) -> tuple[Range, ...]:
         return (*self.modulus.validity, *self.kinematics.validity, SMALL_STRAIN)
 
+    @property
+    def parameters(self) -> tuple[Array, ...]:
+        return self.modulus.constants
+
     def force(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus(joint), indentation)
+        return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation)
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.stiffness(joint.socket_radius, joint.clearance, self.modulus(joint), indentation)
+        return self.kinematics.stiffness(joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation)
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus(joint), indentation)
+        return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation)
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.pressure_integral(joint.socket_radius, joint.clearance, self.modulus(joint), indentation)
+        return self.kinematics.pressure_integral(
+            joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation
+        )
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        return self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus(joint), force)
+        return self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus.of(joint), force)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         versine = self.kinematics.versine(joint.socket_radius, joint.clearance, indentation)
@@ -77,15 +84,15 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
     def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        return self.modulus(joint) * indentation
+        return self.modulus.of(joint) * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        return self.modulus(joint) + 0.0 * indentation
+        return self.modulus.of(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         u = self.kinematics.displacement(joint.socket_radius, joint.clearance, indentation, versine_of(angle))
         inside = (u > 0) & (cos(angle) > 0)
-        return where(inside, self.modulus(joint) * u, 0.0)
+        return where(inside, self.modulus.of(joint) * u, 0.0)
 
 
 _NAMES = {
@@ -96,6 +103,13 @@ _NAMES = {
     ("bonded-layer", "linear"): "bonded-layer",
     ("bonded-layer", "exact"): "bonded-layer-exact",
 }
+
+
+_RELATIVES = {
+    ("spherical-vessel", "linear"): (Source("jin1994"),),
+    ("bonded-layer", "exact"): (Source("askari2018"),),
+}
+"""Published models of the same physics, beside the sources of modulus and kinematics."""
 
 
 def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like the models it stands beside

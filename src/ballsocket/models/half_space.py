@@ -5,11 +5,12 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from math import comb, factorial, inf, pi, radians
+from numbers import Integral
 
-from ..arrays import Array, clip, sqrt, where
+from ..arrays import Array, clip, power, sqrt, where
 from ..joint import Joint
 from ..sources import Source
-from ..validity import SMALL_STRAIN, Range
+from ..validity import SMALL_STRAIN, Nowhere, Range
 from .base import ClosedForm
 
 
@@ -51,7 +52,7 @@ class HalfSpace(ClosedForm):
         return kappa * joint.clearance / (2 * joint.ball_radius * R2) * R2 ** (2 - 2 * n)
 
     def _radius(self, joint: Joint, indentation: Array) -> Array:
-        return (indentation / self._profile(joint)) ** (1 / (2 * self.order))
+        return power(indentation / self._profile(joint), 1 / (2 * self.order))
 
     def force(self, joint: Joint, indentation: Array) -> Array:
         # F = 2 E* d a 2n/(2n + 1)
@@ -70,7 +71,7 @@ class HalfSpace(ClosedForm):
     def indentation(self, joint: Joint, force: Array) -> Array:
         n = self.order
         profile = self._profile(joint)
-        radius = (force * ((2 * n + 1) / (4 * n)) / (joint.effective_modulus * profile)) ** (1 / (2 * n + 1))
+        radius = power(force * ((2 * n + 1) / (4 * n)) / (joint.effective_modulus * profile), 1 / (2 * n + 1))
         return profile * radius ** (2 * n)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
@@ -135,7 +136,7 @@ class Steuermann(HalfSpace):
     ----------
     exponent : int
         n, 1 or more; 1 is Hertz. What n stands for a given socket is the user's choice, which is the model's
-        known weakness.
+        known weakness. The pressure is highest off the pole for n > 1; `max_pressure` stays that at the pole.
 
     References
     ----------
@@ -145,8 +146,15 @@ class Steuermann(HalfSpace):
     exponent: int = 2
 
     def __post_init__(self) -> None:
-        if not isinstance(self.exponent, int) or self.exponent < 1:
+        whole = isinstance(self.exponent, Integral) and not isinstance(self.exponent, bool)
+        if not whole or self.exponent < 1:
             raise ValueError(f"exponent = {self.exponent!r} is not allowed: a whole number of 1 or more")
+        object.__setattr__(self, "exponent", int(self.exponent))
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        other = Nowhere(why=f"a gap that grows like r^{2 * self.exponent} is not the gap of two spheres")
+        return super().validity if self.exponent == 1 else (other, *super().validity)
 
     @property
     def order(self) -> int:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, pi
 
-from ..arrays import Array, clip, integral, log, positive, sin, sqrt, where
+from ..arrays import Array, clip, divisor, integral, log, sin, sqrt, where
 from ..checks import require
 from ..joint import Joint
 from ..sources import Source
-from ..validity import SMALL_STRAIN, Range
+from ..validity import SMALL_STRAIN, Nowhere, Range
 from .base import ClosedForm
 from .kinematics import angle_of, linear_indentation_of_versine, linear_versine, versine_of
 
@@ -50,6 +50,7 @@ class LiuReconstruction(ClosedForm):
         same = "made for ball and socket of one material"
         massive = "made for a massive socket: the liner's thickness does not enter"
         return (
+            Nowhere(why="a reconstruction with a coefficient that was fitted to nothing"),
             Range(quantity="joint.modulus_ratio", symbol="E/E_ball", low=0.5, high=2.0, why=same),
             Range(quantity="joint.thickness_ratio", symbol="R2/L", high=1.0, why=massive),
             SMALL_STRAIN,
@@ -59,17 +60,17 @@ class LiuReconstruction(ClosedForm):
         return 4 * pi * self.coefficient / 3 * joint.effective_modulus * joint.socket_radius
 
     def force(self, joint: Joint, indentation: Array) -> Array:
-        return self._factor(joint) * indentation * (indentation / positive(joint.clearance + indentation))
+        return self._factor(joint) * indentation * (indentation / divisor(joint.clearance + indentation))
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        e = positive(joint.clearance + indentation)
+        e = divisor(joint.clearance + indentation)
         return self._factor(joint) * (indentation / e) * (1 + joint.clearance / e)
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
         # ∫ s²/(c + s) ds: by quadrature where the closed form cancels
         c, d = joint.clearance, indentation
-        closed = d * d / 2 - c * d + c * c * log(1 + d / positive(c))
-        series = integral(lambda x: x * x / positive(c + d * x), 24)
+        closed = d * d / 2 - c * d + c * c * log(1 + d / divisor(c))
+        series = integral(lambda x: x * x / divisor(c + d * x), 24)
         return self._factor(joint) * where(d < c, d * d * d * series, closed)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
@@ -85,16 +86,19 @@ class LiuReconstruction(ClosedForm):
 
     def _square_sine(self, joint: Joint, indentation: Array) -> Array:
         # sin² ε = d (2c + d)/(c + d)²
-        e = positive(joint.clearance + indentation)
+        e = divisor(joint.clearance + indentation)
         return indentation / e * (1 + joint.clearance / e)
 
     def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        return self.foundation_modulus(joint, indentation) * indentation
+
+    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
         # F = (2/3) π a² p0; F and a² share the factor d/(c + d)
         c, d = joint.clearance, indentation
-        share = d * (c + d) / positive(2 * c + d)
+        share = where(c + d > 0, (c + d) / divisor(2 * c + d), 1.0)
         return 1.5 * self._factor(joint) * share / (pi * joint.socket_radius**2)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        square = sin(angle) ** 2 / positive(self._square_sine(joint, indentation))
+        square = sin(angle) ** 2 / divisor(self._square_sine(joint, indentation))
         inside = (square < 1) & (angle < pi / 2) & (indentation > 0)
         return where(inside, self.max_pressure(joint, indentation) * sqrt(clip(1 - square, 0.0, 1.0)), 0.0)

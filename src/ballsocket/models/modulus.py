@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.resources import files
-from math import inf
+from math import inf, radians
 from typing import Any
 
 import numpy
@@ -15,10 +15,10 @@ from ..arrays import Array, clip
 from ..checks import numeric, require
 from ..joint import Joint
 from ..sources import Source
-from ..validity import RIGID_BALL, Range
+from ..validity import RIGID_BALL, Range, inside
 
-Formula = Callable[[Array, Array, Array, Array], Array]
-"""K of R2, L, E, ν."""
+Formula = Callable[..., Array]
+"""K of R2, L, E, ν and the modulus' own constants."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,12 +36,21 @@ class Modulus:
     name: str
     title: str
     formula: Formula
+    constants: tuple[Array, ...] = ()
     sources: tuple[Source, ...] = ()
     domain: tuple[Range, ...] = ()
     validity: tuple[Range, ...] = ()
 
     def __call__(self, joint: Joint) -> Array:
-        return self.formula(joint.socket_radius, joint.liner_thickness, joint.liner.young, joint.liner.poisson)
+        """K in MPa/mm; OutsideDomainError (a ValueError) where there is no formula for any point of the joint."""
+        inside(self.domain, joint, self.name)
+        with numpy.errstate(all="ignore"):
+            return self.of(joint)
+
+    def of(self, joint: Joint) -> Array:
+        """K in MPa/mm, unchecked."""
+        liner = joint.liner
+        return self.formula(joint.socket_radius, joint.liner_thickness, liner.young, liner.poisson, *self.constants)
 
     def __repr__(self) -> str:
         return self.name.replace("-", "_")
@@ -49,8 +58,9 @@ class Modulus:
 
 def vessel_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
     # Eq. (14), K_B, with 1 - κ³ = (1 - κ)(1 + κ + κ²) and 1 - κ = L/(R2 + L)
-    kappa = 1 / (1 + L / R2)
-    gap = 1 / (1 + R2 / L) * (1 + kappa * (1 + kappa))
+    ratio = R2 / L
+    kappa = ratio / (1 + ratio)
+    gap = (1 + kappa * (1 + kappa)) / (1 + ratio)
     return E / R2 * (2 * (1 - 2 * nu) + (1 + nu) * kappa**3) / ((1 + nu) * (1 - 2 * nu) * gap)
 
 
@@ -59,12 +69,26 @@ def layer_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
     return (1 - nu) / ((1 + nu) * (1 - 2 * nu)) * E / L
 
 
+def polynomial_formula(R2: Array, L: Array, E: Array, nu: Array, c1: Array, c2: Array, c3: Array) -> Array:
+    # Eq. (18)
+    ratio = R2 / L
+    return E / R2 * (c1 + ratio * (c2 + ratio * c3))
+
+
+def constant_formula(R2: Array, L: Array, E: Array, nu: Array, K: Array) -> Array:
+    return K + 0.0 * R2
+
+
 def _poisson(low: float, high: float, why: str) -> Range:
     return Range(quantity="joint.liner.poisson", symbol="ν", low=low, high=high, why=why)
 
 
 def _thickness_ratio(low: float, high: float, why: str) -> Range:
     return Range(quantity="joint.thickness_ratio", symbol="R2/L", low=low, high=high, why=why)
+
+
+def _contact_width(low: float, why: str) -> Range:
+    return Range(quantity="width_ratio", symbol="a/L", low=low, why=why)
 
 
 _COMPRESSIBLE = _poisson(-1.0, 0.5, "the modulus is unbounded for an incompressible liner (ν = 0.5)")
@@ -83,7 +107,8 @@ spherical_vessel = Modulus(
     sources=(Source("bartel1985"), Source("hess2021", "(14)")),
     domain=(_COMPRESSIBLE,),
     validity=(
-        _poisson(-1.0, 0.45, "stiffer than finite elements from about 0.45 on, without bound towards 0.5"),
+        _poisson(0.2, 0.4, "its pressure is 7 % high at 0.4, 20 % at 0.45 and without bound towards 0.5"),
+        _contact_width(0.7, "a contact narrower than the liner is thick feels a half-space, not a vessel"),
         RIGID_BALL,
     ),
 )
@@ -96,8 +121,8 @@ bonded_layer = Modulus(
     sources=(Source("johnson1985"), Source("hess2021", "(15)")),
     domain=(_COMPRESSIBLE, _FINITE_LAYER),
     validity=(
-        _poisson(-1.0, 0.45, "unbounded towards 0.5"),
-        Range(quantity="width_ratio", symbol="a/L", low=2.0, why="the layer must be thin against the contact radius"),
+        _poisson(0.2, 0.4, "its pressure is 10 % high at 0.4, 30 % at 0.45 and without bound towards 0.5"),
+        _contact_width(2.0, "the layer must be thin against the contact radius"),
         RIGID_BALL,
     ),
 )
@@ -110,17 +135,16 @@ def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
     Raises
     ------
     ValueError
-        A constant that is negative or NaN.
+        A constant that is negative, infinite or NaN; all of them zero.
     """
-    for name, value in (("c1", c1), ("c2", c2), ("c3", c3)):
-        require(name, numeric(name, value), value >= 0, "a constant of Eq. (18) is 0 or more")
-
-    def formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
-        ratio = R2 / L
-        return E / R2 * (c1 + ratio * (c2 + ratio * c3))
-
+    constants = tuple(numeric(name, value) for name, value in (("c1", c1), ("c2", c2), ("c3", c3)))
+    for name, value in zip(("c1", "c2", "c3"), constants, strict=True):
+        require(name, value, (value >= 0) & (value < inf), "a constant of Eq. (18) is 0 or more and finite")
+    total = sum(constants)
+    require("c1 + c2 + c3", total, total > 0, "one constant of Eq. (18) at least is above 0")
     title = f"Eq. (18) with constants {c1}, {c2}, {c3}" + (f" ({source})" if source else "")
-    return Modulus(name="polynomial", title=title, formula=formula, sources=(Source("hess2021", "(18)"),))
+    sources = (Source("hess2021", "(18)"),)
+    return Modulus(name="polynomial", title=title, formula=polynomial_formula, constants=constants, sources=sources)
 
 
 def constant(modulus: Array) -> Modulus:
@@ -134,10 +158,7 @@ def constant(modulus: Array) -> Modulus:
     value = numeric("modulus", modulus)
     require("modulus", value, (value > 0) & (value < inf), "a foundation modulus (MPa/mm) is above 0 and finite")
 
-    def formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
-        return value + 0.0 * R2
-
-    return Modulus(name="constant", title=f"{modulus} MPa/mm", formula=formula)
+    return Modulus(name="constant", title=f"{modulus} MPa/mm", formula=constant_formula, constants=(value,))
 
 
 def table_3() -> dict[str, Any]:
@@ -164,8 +185,12 @@ def _monotone_slopes(x: numpy.ndarray, y: numpy.ndarray) -> numpy.ndarray:
     return numpy.column_stack([ends[0], inner, ends[1]])
 
 
-def _table_formula() -> Formula:
-    """Eq. (18) with the constants of Table 3, monotone cubics in ν between its columns, constant outside."""
+Row = tuple[float, ...]
+
+
+def _cubics() -> tuple[Row, Row, Row, Any]:
+    """Table 3 as monotone cubics in ν: knots, widths, (C1, C2, C3) at the first knot, and for each interval the
+    coefficients of the part of it that is passed, of its square and of its cube, for each constant."""
     table = table_3()
     knots = numpy.array(table["poisson"])
     values = numpy.array([table["C1"], table["C2"], table["C3"]])
@@ -173,40 +198,51 @@ def _table_formula() -> Formula:
     slopes = _monotone_slopes(knots, values)
     second = (3 * rise - 2 * slopes[:, :-1] - slopes[:, 1:]) / width
     third = (slopes[:, :-1] + slopes[:, 1:] - 2 * rise) / width**2
-    start = tuple(map(float, values[:, 0]))
-    # the increment over each interval is a cubic in the part of the interval passed: no branch, any array
-    (a1, b1, c1), (a2, b2, c2), (a3, b3, c3), (a4, b4, c4) = (
-        tuple(tuple(map(float, part[:, i])) for part in (slopes, second, third)) for i in range(4)
-    )
-    x1, x2, x3, x4 = map(float, knots[:-1])
-    w1, w2, w3, w4 = map(float, width)
+    rows = [[_row(part[:, i]) for part in (slopes, second, third)] for i in range(len(width))]
+    return _row(knots), _row(width), _row(values[:, 0]), tuple(map(tuple, rows))
 
-    def formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
-        ratio = R2 / L
-        t1, t2, t3, t4 = clip(nu - x1, 0.0, w1), clip(nu - x2, 0.0, w2), clip(nu - x3, 0.0, w3), clip(nu - x4, 0.0, w4)
 
-        def eq_18(constants):  # type: ignore[no-untyped-def]
-            return constants[0] + ratio * (constants[1] + ratio * constants[2])
+def _row(values: numpy.ndarray) -> Row:
+    return tuple(map(float, values))
 
-        scaled = eq_18(start)
-        scaled = scaled + t1 * (eq_18(a1) + t1 * (eq_18(b1) + t1 * eq_18(c1)))
-        scaled = scaled + t2 * (eq_18(a2) + t2 * (eq_18(b2) + t2 * eq_18(c2)))
-        scaled = scaled + t3 * (eq_18(a3) + t3 * (eq_18(b3) + t3 * eq_18(c3)))
-        scaled = scaled + t4 * (eq_18(a4) + t4 * (eq_18(b4) + t4 * eq_18(c4)))
-        return E / R2 * scaled
 
-    return formula
+(_X1, _X2, _X3, _X4, _), (_W1, _W2, _W3, _W4), _START, _CUBICS = _cubics()
+(_A1, _B1, _C1), (_A2, _B2, _C2), (_A3, _B3, _C3), (_A4, _B4, _C4) = _CUBICS
+
+
+def eq_18(constants: Row, ratio: Array) -> Array:
+    return constants[0] + ratio * (constants[1] + ratio * constants[2])
+
+
+def table_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
+    # Eq. (18) with the constants of Table 3, constant outside its columns. The increment over each interval is a
+    # cubic in the part of it that is passed: no branch, any array
+    x = R2 / L
+    t1, t2 = clip(nu - _X1, 0.0, _W1), clip(nu - _X2, 0.0, _W2)
+    t3, t4 = clip(nu - _X3, 0.0, _W3), clip(nu - _X4, 0.0, _W4)
+    scaled = eq_18(_START, x)
+    scaled = scaled + t1 * (eq_18(_A1, x) + t1 * (eq_18(_B1, x) + t1 * eq_18(_C1, x)))
+    scaled = scaled + t2 * (eq_18(_A2, x) + t2 * (eq_18(_B2, x) + t2 * eq_18(_C2, x)))
+    scaled = scaled + t3 * (eq_18(_A3, x) + t3 * (eq_18(_B3, x) + t3 * eq_18(_C3, x)))
+    scaled = scaled + t4 * (eq_18(_A4, x) + t4 * (eq_18(_B4, x) + t4 * eq_18(_C4, x)))
+    return E / R2 * scaled
 
 
 hess_forsbach = Modulus(
     name="hess-forsbach",
     title="fitted to finite elements, Table 3",
-    formula=_table_formula(),
+    formula=table_formula,
     sources=(Source("hess2021", "(18), Table 3"),),
     validity=(
         _poisson(0.30, 0.49, "Table 3 ends there; its last column is kept beyond"),
         _thickness_ratio(0.73, 7.7, "Table 1: R1 11 to 23 mm, L 3 to 15 mm"),
         Range(quantity="joint.clearance_ratio", symbol="c/R2", high=0.018, why="Table 1: clearance up to 0.2 mm"),
+        Range(
+            quantity="half_angle",
+            symbol="ε",
+            low=radians(20.0),
+            why="fitted at 1 to 3 kN; near first touch the liner answers like a half-space, not like springs",
+        ),
         RIGID_BALL,
     ),
 )

@@ -9,7 +9,7 @@ from math import ceil, inf, pi, radians
 import numpy
 
 from .. import arrays
-from ..arrays import Array, broadcast, clip, cos, exp, gauss_legendre, integral, log, positive, sin, sqrt, where
+from ..arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, integral, log, sin, sqrt, where
 from ..joint import Joint
 from ..sources import Source
 from ..validity import RIGID_BALL, SMALL_STRAIN, Range
@@ -47,10 +47,12 @@ class PlaneLayer(Model):
     @property
     def domain(self) -> tuple[Range, ...]:
         flat = "the effective radius R1 R2/c is infinite without clearance"
+        thin = "a layer so thin would need very many points: ask bonded-layer"
         massive = "a layer of infinite thickness is a half-space: ask hertz"
         return (
             Range(quantity="joint.clearance", symbol="c", low=0.0, why=flat),
             Range(quantity="joint.liner_thickness", symbol="L", low=0.0, high=inf, why=massive),
+            Range(quantity="joint.thickness_ratio", symbol="R2/L", high=THINNEST, why=thin),
         )
 
     @property
@@ -159,7 +161,7 @@ class LayerSolution:
         kernel, k, transform = self._kernel, self._points[2], self._parts[0]
         wave = k * self.width[..., None]
         turn = wave * x[..., None]
-        sinc = where(turn > 1e-4, sin(turn) / positive(turn), 1 - turn * turn / 6)
+        sinc = where(turn > 1e-4, sin(turn) / divisor(turn), 1 - turn * turn / 6)
         mix = transform[..., 1] - self._scaled_indentation[..., None] * transform[..., 0]
         total = xp.sum(kernel * wave * wave * sinc * mix, axis=-1)
         return (2 / pi) * (2 + self.width * total)
@@ -196,14 +198,14 @@ class LayerSolution:
         return self.pressure(joint, indentation, 0.0)
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        return self.max_pressure(joint, indentation) / positive(indentation)
+        return self.max_pressure(joint, indentation) / divisor(indentation)
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
         return self.values[0]
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         # ∫ -H'(s)/sqrt(s² - r²) ds over r..a, with s² = r² + (a² - r²) y²
-        share = angle * joint.socket_radius / positive(self._radius)
+        share = angle * joint.socket_radius / divisor(self._radius)
         rest = clip(1 - share * share, 0.0, 1.0)
         total = integral(lambda y: self._steepness(sqrt(share * share + rest * y * y)), 32)
         scale = self._radius / (self._effective_radius * self._compliance)
@@ -211,6 +213,9 @@ class LayerSolution:
 
 
 _BLOCK = 4_000_000  # numbers in a block of waves: 32 MB
+
+THINNEST = 100.0
+"""R2/L up to which the quadrature is made."""
 
 TRACED_WIDTH = 8.0
 """The widest contact (a/L) that a call inside `jax.jit` or `jax.grad` is prepared for; wider ones have no answer."""
@@ -227,7 +232,7 @@ def _quadrature(widest: float) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndar
 def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
     """The solution at the width that belongs to the load (NaN where none below a half angle of π/2 does)."""
     shape = (load, *joint.numbers())
-    widest = broadcast(pi / 2 * joint.thickness_ratio, *shape)
+    widest = broadcast(pi / 2 * clip(joint.thickness_ratio, 0.0, THINNEST), *shape)
     numbers = arrays.known(widest)
     if numbers is None:
         widest = clip(widest, 0.0, TRACED_WIDTH)
@@ -238,7 +243,7 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
         width = where(width <= widest, width, float("nan"))
         return LayerSolution(joint=joint, width=width, widest=reach)
     which = 0 if kind == "force" else 1
-    goal = log(broadcast(positive(load), *shape))
+    goal = log(broadcast(divisor(load), *shape))
 
     def law(log_width: Array) -> tuple[Array, Array]:
         solution = LayerSolution(joint=joint, width=exp(log_width), widest=reach)
