@@ -1,5 +1,7 @@
 """The same answer in every array library, in the caller's dtype, with derivatives."""
 
+from dataclasses import replace
+
 import array_api_strict
 import numpy as np
 import pytest
@@ -21,6 +23,11 @@ NAMES = (
     "pressure_integral",
 )
 EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+DIFFERENTIABLE = pytest.mark.parametrize(
+    "model",
+    [model for model in bs.catalogue.values() if model.name != "exact"],
+    ids=[n for n in bs.catalogue if n != "exact"],
+)
 INPUTS = (3000.0, 17.9, 0.1, 6.75, 1000.0, 0.41, 230000.0, 0.3)  # 0.41: between the columns of Table 3
 
 
@@ -89,7 +96,7 @@ def test_libraries_do_not_mix():
         bs.Hertz().press(joint, force=array_api_strict.asarray([1.0]))
 
 
-@EVERY
+@DIFFERENTIABLE
 def test_jax_gradient_and_jit(model):
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
@@ -131,6 +138,37 @@ def test_jax_trees():
         np.testing.assert_allclose(many, bs.Bartel().press(HIP, force=np.array(FORCES[1:])).max_pressure, rtol=1e-12)
 
 
+BACKED = replace(
+    HIP,
+    backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM), bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)),
+)
+
+
+def test_a_backed_joint_is_a_jax_tree():
+    jax = pytest.importorskip("jax")
+    import ballsocket.pytrees  # noqa: F401 - registers the words
+
+    assert jax.tree_util.tree_leaves(BACKED) == list(BACKED.numbers())
+    slopes = jax.grad(lambda joint: joint.backing_ratio)(BACKED)
+    softest = slopes.backing[1].material
+    assert float(softest.young) == pytest.approx(-1000.0 / 2300.0**2)
+    assert float(slopes.backing[0].material.young) == 0.0
+    free = jax.jit(lambda joint: joint.backing_ratio)(replace(BACKED, support=bs.Support.FREE))
+    assert float(free) == np.inf
+    assert not bool(jax.jit(lambda joint: bs.Vessel().press(joint, force=3000.0).valid)(BACKED))
+
+
+def test_a_backing_of_arrays_is_validated_in_their_library():
+    torch = pytest.importorskip("torch")
+    for asarray in (np.asarray, array_api_strict.asarray, torch.tensor):
+        young = asarray([1e3, 1e5])
+        layer = bs.Layer(thickness=asarray([2.0, np.inf]), material=bs.Material(young=young, poisson=0.3))
+        for support, expected in ((bs.Support.FIXED, [False, True]), (bs.Support.FREE, [False, True])):
+            contact = bs.Vessel().press(replace(HIP, backing=(layer,), support=support), force=3000.0)
+            assert type(contact.max_pressure) is type(young)
+            assert np.asarray(contact.valid).tolist() == expected
+
+
 def central_differences_of_clearance():
     pressures = [
         bs.HessForsbach()
@@ -141,7 +179,7 @@ def central_differences_of_clearance():
     return (pressures[0] - pressures[1]) / 2e-6
 
 
-@EVERY
+@DIFFERENTIABLE
 def test_torch_gradient(model):
     torch = pytest.importorskip("torch")
     numbers = [torch.tensor(value, dtype=torch.float64, requires_grad=True) for value in INPUTS]
@@ -175,7 +213,7 @@ def test_second_derivatives_of_an_implicit_answer():
         assert float(second) == pytest.approx((slopes[0] - slopes[1]) / (2 * step), rel=1e-5)
 
 
-@EVERY
+@DIFFERENTIABLE
 def test_a_point_without_load_does_not_spoil_the_derivatives_of_the_others(model):
     """d/d(joint) of a sum over loads that contains a zero, and of pressures beyond the edge, is finite."""
     jax = pytest.importorskip("jax")
@@ -213,3 +251,9 @@ def test_a_plain_contact_is_asked_with_other_arrays():
     np.testing.assert_allclose(
         np.asarray(contact.force_vector(jax.numpy.asarray([0.0, 0.0, -0.14]))), pushed.numpy(), rtol=1e-4, atol=1e-2
     )
+
+
+def test_the_exact_solution_says_that_it_cannot_be_traced():
+    jax = pytest.importorskip("jax")
+    with pytest.raises(TypeError, match="exact cannot be traced by JAX: tabulated and refined can"):
+        jax.grad(lambda force: bs.Exact().press(HIP, force=force).max_pressure)(3000.0)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.files import _LOADS, _NUMBERS, parse_joint
+from ballsocket.files import _LOADS, _NUMBERS, joint_of, parse_joint
 from ballsocket.units import _KINDS, parse
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "hip.toml"
@@ -85,6 +85,91 @@ def test_the_example_is_the_papers_case():
     assert file.joint.liner.poisson == 0.4
     assert file.joint.ball == bs.STEEL
     assert file.load == {"force": 3000.0}
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLE.parent.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_example_presses(path):
+    file = bs.read_joint(path)
+    contact = bs.HessForsbach().press(file.joint, **file.load)
+    assert contact.valid, contact.notes
+
+
+def test_the_backing_of_the_metal_backed_hip():
+    joint = bs.read_joint(EXAMPLE.with_name("metal_backed_hip.toml")).joint
+    assert joint.backing == (bs.Layer(thickness=3.0, material=bs.TITANIUM),)
+    assert joint.support is bs.Support.FIXED
+
+
+BACKED = (
+    HIP.replace("[liner]", 'support = "free"\n[liner]')
+    + """
+[[backing]]
+thickness = "0.4 cm"
+material = "Titanium"
+[[backing]]
+thickness = 2
+young = "2 GPa"
+poisson = 0.35
+[[backing]]
+thickness = "inf"
+material = "cortical bone"
+young = "16 GPa"
+"""
+)
+
+
+def test_a_backing_is_listed_from_the_liner_outwards():
+    joint = parse_joint(BACKED.encode(), "hip").joint
+    shell, cement, bone = joint.backing
+    assert shell == bs.Layer(thickness=4.0, material=bs.TITANIUM)
+    assert cement == bs.Layer(thickness=2.0, material=bs.Material(young=2000.0, poisson=0.35))
+    assert (bone.thickness, bone.material.young, bone.material.poisson) == (math.inf, 16000.0, 0.3)
+    assert joint.support is bs.Support.FREE
+
+
+def test_a_backing_goes_through_a_file_and_json():
+    """What a summary says of a joint, written as a file, is the joint."""
+    joint = parse_joint(BACKED.encode(), "hip").joint
+    told = joint.summary()
+    layers = [{name: value for name, value in layer.items() if name != "name"} for layer in told["backing"]]
+    table = {
+        "joint": {name: told[name] for name in ("ball_radius", "clearance", "liner_thickness", "support")},
+        "liner": {"material": told["liner"]["name"]},
+        "backing": layers,
+    }
+    again = joint_of(table).joint
+    assert again.numbers() == joint.numbers()
+    assert again.summary() | {"backing": layers} == told | {"backing": layers}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"free"', '"loose"', "hip: support = 'loose' is not allowed: 'fixed' or 'free'"),
+        ('"free"', "true", "hip: support = True is not allowed: 'fixed' or 'free'"),
+        ("support", "suport", "hip: 'suport' in .joint. is not known; did you mean 'support'"),
+        ("[[backing]]", "[[baking]]", "hip: 'baking' at the top is not known; did you mean 'backing'"),
+        ("thickness = 2", "thicknes = 2", r"hip: 'thicknes' in backing\[1\] is not known; did you mean 'thickness'"),
+        ("thickness = 2", "", r"hip: backing\[1\].thickness is missing; inf is a massive body"),
+        ("thickness = 2", "thickness = '-2 mm'", r"hip: backing\[1\].thickness = '-2 mm' is not allowed: a thickness"),
+        ("thickness = 2", "thickness = '2 kg'", r"hip: backing\[1\].thickness = '2 kg' is not a length"),
+        ("thickness = 2", "thickness = 'inf'", r"hip: backing\[1\].thickness = inf is not allowed: only the outermost"),
+        ('"6.75 mm"', '"inf"', "hip: liner_thickness = 'inf' is not allowed: only the outermost layer"),
+        ("poisson = 0.35", "", r"hip: the backing\[1\] needs a material, .* missing: poisson"),
+        ("poisson = 0.35", "poisson = 0.7", r"hip: backing\[1\].poisson = 0.7 is not allowed: Poisson's ratio"),
+        ('"Titanium"', '"titanum"', r"hip: backing\[0\] material 'titanum' is not known; did you mean 'titanium'"),
+    ],
+)
+def test_a_backing_that_is_wrong_is_told_how(old, new, message):
+    with pytest.raises(ValueError, match=message):
+        parse_joint(BACKED.replace(old, new, 3 if old == "[[backing]]" else 1).encode(), "hip")
+
+
+def test_a_backing_is_an_array_of_tables():
+    for wrong in ("[backing]\nthickness = 2", "backing = 3", 'backing = ["titanium"]'):
+        text = f"{HIP}{wrong}" if wrong.startswith("[") else f"{wrong}\n{HIP}"
+        with pytest.raises(ValueError, match=r"hip: backing = .* must be an array of tables: \[\[backing\]\]"):
+            parse_joint(text.encode(), "hip")
 
 
 def test_two_of_three_radii_and_named_materials():

@@ -1,5 +1,6 @@
 """Modal compliance of sockets and balls: textbook limits, equilibrium, and 50-digit references."""
 
+from dataclasses import replace
 from itertools import pairwise
 from math import inf
 
@@ -8,7 +9,8 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elastic.modes import Ball, Shell, Socket, Support
+from ballsocket import Support
+from ballsocket.elastic.modes import Ball, Shell, Socket, ball_of, socket_of
 
 POISSON = [-0.5, 0.0, 0.3, 0.4, 0.49, 0.4999]
 RATIOS = [0.05, 0.5, 18 / 6.75, 10.0, 50.0]
@@ -362,6 +364,45 @@ def test_first_coefficient():
     expected = 0.2**2 / 1.2
     assert LINED.expansion(1) == pytest.approx(-expected)
     assert Ball(radius=17.9, young=1.0, poisson=0.4).expansion(1) == pytest.approx(expected)
+
+
+# of a joint
+
+
+LINED_HIP = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
+
+
+@pytest.mark.parametrize("support", Support)
+def test_the_socket_of_a_joint(support):
+    backing = [
+        bs.Layer(thickness=shell.thickness, material=bs.Material(young=shell.young, poisson=shell.poisson))
+        for shell in CUP.shells[1:]
+    ]
+    joint = replace(LINED_HIP, backing=backing, support=support)
+    assert socket_of(joint) == replace(CUP, support=support)
+    assert socket_of(LINED_HIP) == LINED
+
+
+@pytest.mark.parametrize("support", Support)
+def test_a_backing_of_the_liners_own_material_is_a_thicker_liner(support):
+    more = bs.Layer(thickness=3.25, material=bs.UHMWPE)
+    backed = replace(LINED_HIP, backing=(more,), support=support)
+    thicker = replace(LINED_HIP, liner_thickness=10.0, support=support)
+    n = np.arange(100)
+    np.testing.assert_allclose(socket_of(backed).compliance(n), socket_of(thicker).compliance(n), rtol=1e-12)
+    endless = replace(LINED_HIP, backing=(bs.Layer(thickness=inf, material=bs.UHMWPE),), support=support)
+    np.testing.assert_allclose(socket_of(endless).compliance(n), massive(LINER).compliance(n), rtol=1e-12)
+
+
+def test_the_ball_of_a_joint():
+    assert ball_of(LINED_HIP) == Ball(radius=17.9, young=230000.0, poisson=0.3)
+    assert ball_of(replace(LINED_HIP, ball=None)) is None
+
+
+def test_bodies_are_made_of_plain_floats():
+    joint = LINED_HIP.with_numbers(np.float64(number) for number in LINED_HIP.numbers())
+    for body in (*socket_of(joint).shells, ball_of(joint)):
+        assert all(type(value) is float for value in vars(body).values())
 
 
 # misuse

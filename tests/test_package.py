@@ -61,12 +61,16 @@ def test_the_readme_and_the_catalogue_list_the_same_models():
     assert set(listed) == {*bs.catalogue, "PinInHole"}
 
 
+UNSOURCED = {"titanium", "bone-cement", "cortical-bone", "cancellous-bone"}  # representative, and say so
+CITABLE = [*(bs.materials[name] for name in sorted(set(bs.materials) - UNSOURCED)), *bs.joints.values()]
+
+
 def keys(*used):
     return re.findall(r"^@\w+\{(\w+),$", bs.cite(*used), flags=re.MULTILINE)
 
 
 def test_presets_cite_the_publications_their_source_names():
-    for preset in (*bs.materials.values(), *bs.joints.values()):
+    for preset in CITABLE:
         assert keys(preset)
     assert keys(bs.ALUMINA) == ["nistsrd150", "kutz2009"]
     assert set(keys(bs.joints["hip-28"])) == {"plank2007", "hess2021", "dipuccio2015"}
@@ -99,7 +103,7 @@ def test_a_source_that_names_no_publication_is_refused_alone_and_passed_over_ins
 
 def test_every_publication_is_cited_by_something():
     models = (*bs.catalogue.values(), bs.PinInHole())
-    unused = set(bibliography()) - set(keys(*models, *bs.materials.values(), *bs.joints.values()))
+    unused = set(bibliography()) - set(keys(*models, *CITABLE))
     assert unused == set()
 
 

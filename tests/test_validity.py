@@ -1,6 +1,7 @@
 """What "valid" promises: two models that both say so agree, and agree with the elastic answer."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -56,6 +57,24 @@ def test_a_reconstruction_is_never_valid():
     contact = bs.LiuReconstruction().press(HIP, force=np.array([1.0, 3000.0]))
     assert not np.any(contact.valid)
     assert contact.notes[0].startswith("2 of 2: not to be trusted anywhere: a reconstruction")
+
+
+SPRINGS = (bs.HessForsbach(), bs.Vessel(), bs.BondedLayerExact())
+
+
+@pytest.mark.parametrize("model", [*SPRINGS, bs.PlaneLayer()], ids=str)
+def test_a_soft_backing_is_not_taken_for_a_rigid_one(model):
+    told = "outside E/E_backing ≤ 0.01: the model takes the liner's backing as rigid"
+
+    def notes(**changes) -> str:
+        return " ".join(model.press(replace(HIP, **changes), force=3000.0).notes)
+
+    shell, cement = (bs.Layer(thickness=3.0, material=material) for material in (bs.TITANIUM, bs.BONE_CEMENT))
+    assert told not in notes()
+    assert told not in notes(backing=(shell,))
+    for changes in ({"backing": (shell, cement)}, {"support": bs.Support.FREE}):
+        assert told in notes(**changes)
+        assert not model.press(replace(HIP, **changes), force=3000.0).valid
 
 
 def test_springs_are_not_trusted_at_first_touch():

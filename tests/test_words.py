@@ -2,7 +2,7 @@
 
 import json
 import pickle
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import pytest
@@ -58,6 +58,98 @@ def test_what_is_no_number_or_no_material_is_a_type_error():
         bs.Joint(**(GOOD | {"ball": 3.0}))
     with pytest.raises(TypeError):
         bs.Joint(16.0, 0.1, 6.0, bs.UHMWPE)
+
+
+SHELL = bs.Layer(thickness=4.0, material=bs.TITANIUM)
+CEMENT = bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)
+BONE = bs.Layer(thickness=np.inf, material=bs.CORTICAL_BONE)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"backing": SHELL}, "backing must be a tuple of Layers from the liner outwards, got Layer"),
+        ({"backing": (SHELL, 3.0)}, r"backing\[1\] must be a Layer, got 3\.0"),
+        ({"support": "free"}, "support must be Support.FIXED or Support.FREE, got 'free'"),
+    ],
+)
+def test_what_is_no_backing_is_a_type_error(changes, message):
+    with pytest.raises(TypeError, match=message):
+        bs.Joint(**(GOOD | changes))
+
+
+def test_a_layer_is_checked():
+    with pytest.raises(ValueError, match=r"thickness = 0 is not allowed: a thickness \(mm\) is above 0; inf is"):
+        bs.Layer(thickness=0.0, material=bs.TITANIUM)
+    with pytest.raises(TypeError, match="material must be a Material, got 'titanium'"):
+        bs.Layer(thickness=1.0, material="titanium")
+    with pytest.raises(TypeError, match="thickness must be a number or an array .* got '4 mm'"):
+        bs.Layer(thickness="4 mm", material=bs.TITANIUM)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"liner_thickness": np.inf, "backing": (SHELL,)}, "liner_thickness = inf is not allowed: only the outermost"),
+        (
+            {"liner_thickness": np.array([6.0, np.inf]), "backing": (SHELL,)},
+            r"liner_thickness\[1\] = inf is not",
+        ),
+        ({"backing": (SHELL, BONE, CEMENT)}, r"backing\[1\].thickness = inf is not allowed: only the outermost layer"),
+    ],
+)
+def test_only_the_outermost_layer_is_infinite(changes, message):
+    with pytest.raises(ValueError, match=message):
+        bs.Joint(**(GOOD | changes))
+
+
+def test_a_backing_is_part_of_the_joint():
+    joint = bs.Joint(**GOOD, ball=bs.COCR, backing=[SHELL, BONE], support=bs.Support.FREE)
+    assert joint.backing == (SHELL, BONE)
+    assert hash(joint) == hash(replace(joint))
+    assert joint.numbers()[5:] == (230000.0, 0.3, 4.0, 110000.0, 0.3, np.inf, 17000.0, 0.3)
+    assert joint.with_numbers(joint.numbers()) == joint
+    rigid = replace(joint, ball=None)
+    assert rigid.with_numbers(rigid.numbers()) == rigid
+    summary = json.loads(json.dumps(joint.summary(), allow_nan=False))
+    assert summary["backing"][0] == {"thickness": 4.0, "name": "titanium", "young": 110000.0, "poisson": 0.3}
+    assert summary["backing"][1]["thickness"] == "inf"
+    assert summary["support"] == "free"
+    plain = bs.Joint(**GOOD).summary()
+    assert (plain["backing"], plain["support"]) == ([], "fixed")
+
+
+def test_a_backing_is_told():
+    text = str(bs.Joint(**GOOD, backing=(SHELL, BONE), support=bs.Support.FREE))
+    behind = " on 4 mm of titanium (E 110000 MPa, nu 0.3) on a massive body of cortical bone (E 17000 MPa, nu 0.3)"
+    assert f"liner 6 mm of UHMWPE (E 1000 MPa, nu 0.4){behind}, free outside; ball rigid" in text
+    assert " on " not in str(bs.Joint(**GOOD))
+    assert "free" not in str(bs.Joint(**GOOD))
+
+
+def test_backing_ratio():
+    free = bs.Support.FREE
+    assert bs.Joint(**GOOD).backing_ratio == 0.0
+    assert bs.Joint(**GOOD, backing=(SHELL,)).backing_ratio == pytest.approx(1 / 110)
+    assert bs.Joint(**GOOD, backing=(SHELL, CEMENT, BONE)).backing_ratio == pytest.approx(1 / 2.3)
+    assert bs.Joint(**GOOD, support=free).backing_ratio == np.inf
+    assert bs.Joint(**GOOD, backing=(SHELL,), support=free).backing_ratio == np.inf
+    # a surface infinitely far away is at rest, free or not
+    assert bs.Joint(**GOOD, backing=(SHELL, BONE), support=free).backing_ratio == pytest.approx(1 / 17)
+    massive = GOOD | {"liner_thickness": np.array([6.0, np.inf])}
+    np.testing.assert_array_equal(bs.Joint(**massive, support=free).backing_ratio, [np.inf, 0.0])
+
+
+def test_numbers_of_a_backing_broadcast():
+    young = np.array([[1e3], [1e5]])
+    shell = bs.Layer(thickness=np.array([1.0, 2.0, 3.0]), material=bs.Material(young=young, poisson=0.3))
+    joint = bs.Joint(**GOOD, backing=(shell, CEMENT))
+    for model in (bs.HessForsbach(), bs.Hertz(), bs.PlaneLayer()):
+        contact = model.press(joint, force=3000.0)
+        assert contact.max_pressure.shape == contact.valid.shape == (2, 3)
+    np.testing.assert_allclose(joint.backing_ratio, [[1.0], [1 / 2.3]])
+    assert joint.summary()["backing"][0]["young"] == [[1e3], [1e5]]
+    assert "<array 3> mm of E <array 2x1> MPa" in str(joint)
 
 
 def test_words_are_frozen_values():

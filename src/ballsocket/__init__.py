@@ -8,11 +8,13 @@
 Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 """
 
+from .all_models import catalogue
 from .compare import compare
 from .contact import Contact
+from .elastic.axisymmetric import Exact
+from .elastic.gaps import CircularGap, LinearGap
 from .files import read_joint
-from .joint import Joint, Material
-from .models import catalogue
+from .joint import Joint, Layer, Material, Support
 from .models.adhesion import AdhesiveSocket
 from .models.base import ClosedForm, Model
 from .models.cylinder import PinInHole
@@ -33,11 +35,15 @@ from .models.plane_layer import PlaneLayer
 from .presets import (
     ALUMINA,
     ALUMINA_COMPOSITE,
+    BONE_CEMENT,
+    CANCELLOUS_BONE,
     COCR,
+    CORTICAL_BONE,
     CROSSLINKED_PE,
     POM,
     STEEL,
     STRUCTURAL_STEEL,
+    TITANIUM,
     UHMWPE,
     joints,
     materials,
@@ -49,22 +55,30 @@ from .version import __version__ as __version__
 __all__ = [
     "ALUMINA",
     "ALUMINA_COMPOSITE",
+    "BONE_CEMENT",
+    "CANCELLOUS_BONE",
     "COCR",
+    "CORTICAL_BONE",
     "CROSSLINKED_PE",
     "POM",
     "STEEL",
     "STRUCTURAL_STEEL",
+    "TITANIUM",
     "UHMWPE",
     "AdhesiveSocket",
     "Bartel",
     "BondedLayer",
     "BondedLayerExact",
+    "CircularGap",
     "ClosedForm",
     "Contact",
     "CosineLimit",
+    "Exact",
     "Hertz",
     "HessForsbach",
     "Joint",
+    "Layer",
+    "LinearGap",
     "LiuReconstruction",
     "Material",
     "Model",
@@ -74,6 +88,7 @@ __all__ = [
     "Range",
     "Status",
     "Steuermann",
+    "Support",
     "Vessel",
     "bonded_layer",
     "catalogue",

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+from .all_models import catalogue
 from .arrays import Array
 from .checks import one_load
 from .contact import Contact
 from .describe import COLUMNS, count, number_text
 from .joint import Joint
-from .models import catalogue
 from .models.base import Model
 from .sources import Source
 from .validity import OutsideDomainError

@@ -104,7 +104,7 @@ class Contact:
     def conformity(self) -> Array:
         """c/d: clearance over indentation; 0 is a ball of the socket's own radius."""
         quotient = self.joint.clearance / arrays.divisor(self.indentation)
-        return self._plain(arrays.where(self.indentation > 0, quotient, numpy.inf))
+        return self._plain(arrays.where(self.indentation == 0, numpy.inf, quotient))
 
     def pressure(self, angle: Array) -> Array:
         """Contact pressure in MPa at polar angles (rad) from the load axis; 0 outside the contact.

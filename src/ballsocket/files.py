@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from .joint import Joint, Material
+from .joint import Joint, Layer, Material, Support
 from .models.base import checked_load
 from .presets import materials
 from .units import as_given, parse
@@ -17,12 +17,13 @@ from .units import as_given, parse
 _MAX_BYTES = 100_000
 _LENGTHS = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
 _TABLES = {
-    "": ("name", "source", "joint", "liner", "ball", "load"),
-    "joint": _LENGTHS,
+    "": ("name", "source", "joint", "liner", "ball", "backing", "load"),
+    "joint": (*_LENGTHS, "support"),
     "liner": ("material", "young", "poisson"),
     "ball": ("material", "young", "poisson"),
     "load": ("force", "indentation", "half_angle"),
 }
+_LAYER = ("thickness", "material", "young", "poisson")
 _NUMBERS = {"young": "modulus", "poisson": "number"}
 _LOADS = {"force": "force", "indentation": "length", "half_angle": "angle"}
 
@@ -40,8 +41,10 @@ def read_joint(path: str | Path) -> JointFile:
 
     The file is TOML: a table `joint` with `liner_thickness` and two of `ball_radius`, `socket_radius`, `clearance`;
     tables `liner` and (for a ball that is not rigid) `ball`, each with a `material` by name or `young` and `poisson`,
-    or both, where the numbers win; a table `load` with one of `force`, `indentation`, `half_angle`. Values are text
-    with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N, MPa, degrees.
+    or both, where the numbers win; a table `load` with one of `force`, `indentation`, `half_angle`. What is behind the
+    liner is rigid, or is an array of tables `[[backing]]` from the liner outwards, each with a `thickness` and a
+    material as above; `support` in the table `joint` says whether its outermost surface is "fixed" (without a word) or
+    "free". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N, MPa, degrees.
 
     Raises
     ------
@@ -86,6 +89,7 @@ def joint_of(table: Mapping[str, Any]) -> JointFile:
         table.get("joint", {}),
         liner=_material("liner", table.get("liner", {})),
         ball=_material("ball", table["ball"]) if "ball" in table else None,
+        backing=_backing(table.get("backing", [])),
         name=table.get("name", ""),
         source=table.get("source", ""),
     )
@@ -102,9 +106,33 @@ def read_load(table: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _joint(table: Mapping[str, Any], **words: Any) -> Joint:
-    lengths = _lengths(table)
+    lengths = _lengths({name: value for name, value in table.items() if name != "support"})
+    support = _support(table.get("support", Support.FIXED.value))
     with as_given(table):
-        return Joint(**lengths, **words)
+        return Joint(**lengths, support=support, **words)
+
+
+def _support(chosen: Any) -> Support:
+    known = [support.value for support in Support]
+    if chosen not in known:
+        raise ValueError(f"support = {chosen!r} is not allowed: {' or '.join(map(repr, known))}")
+    return Support(chosen)
+
+
+def _backing(tables: Any) -> tuple[Layer, ...]:
+    if not (isinstance(tables, list | tuple) and all(isinstance(table, Mapping) for table in tables)):
+        raise ValueError(f"backing = {tables!r} must be an array of tables: [[backing]] before each layer")
+    return tuple(_layer(f"backing[{number}]", table) for number, table in enumerate(tables))
+
+
+def _layer(name: str, table: Mapping[str, Any]) -> Layer:
+    check_names(table, _LAYER, f"in {name}")
+    if "thickness" not in table:
+        raise ValueError(f"{name}.thickness is missing; inf is a massive body")
+    thickness = parse(f"{name}.thickness", table["thickness"], "length")
+    material = _material(name, table)
+    with as_given(table, f"{name}."):
+        return Layer(thickness=thickness, material=material)
 
 
 def _lengths(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,12 +1,15 @@
-"""The words of the problem: a material, and a ball in a lined socket."""
+"""The words of the problem: a material, a layer, and a ball in a lined socket."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
+from functools import reduce
+from itertools import chain
 from math import inf
 from typing import Any
 
-from .arrays import Array, to_list
+from .arrays import Array, is_plain, to_list, where
 from .checks import numeric, require
 
 
@@ -55,9 +58,60 @@ class Material:
         return f"{self.name} ({numbers})" if self.name else numbers
 
 
+class Support(Enum):
+    """What holds the outermost surface of a socket."""
+
+    FIXED = "fixed"
+    FREE = "free"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layer:
+    """A layer behind the liner: a metal shell, cement, bone.
+
+    Parameters
+    ----------
+    thickness : float or array
+        In mm, positive; `inf` is a massive body.
+    material : Material
+
+    Raises
+    ------
+    ValueError
+        A thickness that is not allowed, named with its value.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> print(Layer(thickness=3.0, material=bs.TITANIUM))
+    3 mm of titanium (E 110000 MPa, nu 0.3)
+    """
+
+    thickness: Array
+    material: Material
+
+    def __post_init__(self) -> None:
+        thickness = numeric("thickness", self.thickness)
+        require("thickness", thickness, thickness > 0, "a thickness (mm) is above 0; inf is a massive body")
+        if not isinstance(self.material, Material):
+            raise TypeError(f"material must be a Material, got {self.material!r}")
+        _set(self, thickness=thickness)
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON."""
+        return {"thickness": to_list(self.thickness), **self.material.summary()}
+
+    def __str__(self) -> str:
+        text = _text(self.thickness)
+        return f"a massive body of {self.material}" if text == "inf" else f"{text} mm of {self.material}"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """A ball in a socket of nearly its own radius, lined with an elastic layer on a much stiffer backing.
+    """A ball in a socket of nearly its own radius, lined with an elastic layer.
+
+    What is behind the liner is rigid, unless `backing` or `support` say otherwise. Models that take it as rigid all
+    the same say so in their validity.
 
     Every number may be an array; arrays broadcast against each other and against the loads.
 
@@ -73,6 +127,12 @@ class Joint:
         What the socket is lined with.
     ball : Material or None
         None is a rigid ball. Models that take the ball as rigid say so in their validity.
+    backing : tuple of Layer
+        The layers behind the liner, from the liner outwards, bonded to it and to each other. Only the outermost layer
+        of all may be infinite.
+    support : Support
+        The outermost surface, of the liner if there is no backing: FIXED (default) or FREE of traction. That of an
+        infinite layer is at rest either way.
     name, source : str
         What it is called, and where the numbers come from.
 
@@ -94,6 +154,8 @@ class Joint:
     liner_thickness: Array
     liner: Material
     ball: Material | None = None
+    backing: tuple[Layer, ...] = ()
+    support: Support = Support.FIXED
     name: str = ""
     source: str = ""
 
@@ -113,7 +175,17 @@ class Joint:
             raise TypeError(f"liner must be a Material, got {self.liner!r}")
         if not (self.ball is None or isinstance(self.ball, Material)):
             raise TypeError(f"ball must be a Material, or None for a rigid ball, got {self.ball!r}")
-        _set(self, ball_radius=radius, clearance=clearance, liner_thickness=thickness)
+        if not isinstance(self.support, Support):
+            raise TypeError(f"support must be Support.FIXED or Support.FREE, got {self.support!r}")
+        backing = _checked_backing(self.backing)
+        _set(self, ball_radius=radius, clearance=clearance, liner_thickness=thickness, backing=backing)
+        for name, inner in self._thicknesses()[:-1]:
+            require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
+
+    def _thicknesses(self) -> list[tuple[str, Array]]:
+        """Of the liner and the layers behind it, with their names."""
+        layers = [(f"backing[{number}].thickness", layer.thickness) for number, layer in enumerate(self.backing)]
+        return [("liner_thickness", self.liner_thickness), *layers]
 
     @property
     def socket_radius(self) -> Array:
@@ -136,6 +208,21 @@ class Joint:
         return 0.0 * self.liner.young if self.ball is None else self.liner.young / self.ball.young
 
     @property
+    def backing_ratio(self) -> Array:
+        """Young's modulus of the liner over that of the softest layer behind it.
+
+        0 for a rigid backing: none at all, on a fixed support. `inf` where the outermost surface is free.
+        """
+        rigid = 0.0 * self.liner.young
+        softest = reduce(_larger, (self.liner.young / layer.material.young for layer in self.backing), rigid)
+        if self.support is Support.FIXED:
+            return softest
+        _, outermost = self._thicknesses()[-1]
+        if is_plain(outermost):
+            return softest if outermost == inf else inf + softest
+        return where(outermost < inf, inf, softest)
+
+    @property
     def effective_modulus(self) -> Array:
         """E* in MPa: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 of ball and liner."""
         compliance = (1 - self.liner.poisson**2) / self.liner.young
@@ -147,18 +234,23 @@ class Joint:
         """Every number of the joint, in a fixed order (see `with_numbers`)."""
         ball = () if self.ball is None else (self.ball.young, self.ball.poisson)
         own = (self.ball_radius, self.clearance, self.liner_thickness)
-        return (*own, self.liner.young, self.liner.poisson, *ball)
+        behind = ((layer.thickness, layer.material.young, layer.material.poisson) for layer in self.backing)
+        return (*own, self.liner.young, self.liner.poisson, *ball, *chain.from_iterable(behind))
 
     def with_numbers(self, numbers: Any) -> Joint:
         """The same joint with other numbers, in the order of `numbers()`. Nothing is checked."""
-        radius, clearance, thickness, young, poisson, *ball = numbers
+        radius, clearance, thickness, young, poisson, *others = numbers
+        behind = others if self.ball is None else others[2:]
+        triples = zip(self.backing, behind[::3], behind[1::3], behind[2::3], strict=True)
         return unchecked(
             Joint,
             ball_radius=radius,
             clearance=clearance,
             liner_thickness=thickness,
             liner=_with(self.liner, young, poisson),
-            ball=_with(self.ball, *ball) if self.ball is not None else None,
+            ball=_with(self.ball, *others[:2]) if self.ball is not None else None,
+            backing=tuple(_layer_with(layer, *three) for layer, *three in triples),
+            support=self.support,
             name=self.name,
             source=self.source,
         )
@@ -171,23 +263,44 @@ class Joint:
             **{name: to_list(getattr(self, name)) for name in lengths},
             "liner": self.liner.summary(),
             "ball": None if self.ball is None else self.ball.summary(),
+            "backing": [layer.summary() for layer in self.backing],
+            "support": self.support.value,
         }
 
     def __str__(self) -> str:
         ball = "rigid" if self.ball is None else str(self.ball)
         head = f"{self.name}: " if self.name else ""
+        behind = "".join(f" on {layer}" for layer in self.backing)
+        free = ", free outside" if self.support is Support.FREE else ""
         return (
             f"{head}R1 {_text(self.ball_radius)} mm, clearance {_text(self.clearance)} mm, "
-            f"{_thickness(self.liner_thickness)} of {self.liner}; ball {ball}"
+            f"{_thickness(self.liner_thickness)} of {self.liner}{behind}{free}; ball {ball}"
         )
+
+
+def _checked_backing(backing: Any) -> tuple[Layer, ...]:
+    if not isinstance(backing, list | tuple):
+        raise TypeError(f"backing must be a tuple of Layers from the liner outwards, got {backing!r}")
+    for number, layer in enumerate(backing):
+        if not isinstance(layer, Layer):
+            raise TypeError(f"backing[{number}] must be a Layer, got {layer!r}")
+    return tuple(backing)
+
+
+def _larger(one: Array, other: Array) -> Array:
+    return max(one, other) if is_plain(one) and is_plain(other) else where(one > other, one, other)
 
 
 def _with(material: Material, young: Array, poisson: Array) -> Material:
     return unchecked(Material, young=young, poisson=poisson, name=material.name, source=material.source)
 
 
+def _layer_with(layer: Layer, thickness: Array, young: Array, poisson: Array) -> Layer:
+    return unchecked(Layer, thickness=thickness, material=_with(layer.material, young, poisson))
+
+
 def unchecked(cls: Any, **fields: Any) -> Any:
-    """A material or joint from numbers that have been checked before, or are not known yet."""
+    """A material, layer or joint from numbers that have been checked before, or are not known yet."""
     made = object.__new__(cls)
     _set(made, **fields)
     return made

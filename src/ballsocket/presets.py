@@ -39,6 +39,14 @@ ALUMINA = Material(
 ALUMINA_COMPOSITE = Material(
     young=350000.0, poisson=0.26, name="zirconia-toughened alumina", source=f"BIOLOX delta: {_REVIEW}"
 )
+TITANIUM = Material(young=110000.0, poisson=0.3, name="titanium", source="representative of Ti-6Al-4V")
+BONE_CEMENT = Material(young=2300.0, poisson=0.33, name="bone cement", source="representative of PMMA, 2-2.5 GPa")
+CORTICAL_BONE = Material(
+    young=17000.0, poisson=0.3, name="cortical bone", source="representative; anisotropic, and varies from site to site"
+)
+CANCELLOUS_BONE = Material(
+    young=500.0, poisson=0.2, name="cancellous bone", source="representative; varies widely with its density"
+)
 
 materials: dict[str, Material] = {
     "uhmwpe": UHMWPE,
@@ -49,6 +57,10 @@ materials: dict[str, Material] = {
     "cocr": COCR,
     "alumina": ALUMINA,
     "alumina-composite": ALUMINA_COMPOSITE,
+    "titanium": TITANIUM,
+    "bone-cement": BONE_CEMENT,
+    "cortical-bone": CORTICAL_BONE,
+    "cancellous-bone": CANCELLOUS_BONE,
 }
 """Materials by the name that files and the command line use."""
 

@@ -1,4 +1,4 @@
-"""Teach JAX that materials, joints and contacts are trees of numbers.
+"""Teach JAX that materials, layers, joints and contacts are trees of numbers.
 
     import ballsocket.pytrees
 
@@ -13,7 +13,7 @@ from typing import Any
 from jax.tree_util import register_pytree_node
 
 from .contact import Contact
-from .joint import Joint, Material, unchecked
+from .joint import Joint, Layer, Material, unchecked
 from .models.plane_layer import LayerSolution
 
 Parts = tuple[Any, ...]
@@ -45,6 +45,11 @@ def _unflatten_contact(fixed: Parts, parts: Parts) -> Contact:
 
 
 _register(Material, ("young", "poisson"), ("name", "source"))
-_register(Joint, ("ball_radius", "clearance", "liner_thickness", "liner", "ball"), ("name", "source"))
+_register(Layer, ("thickness", "material"), ())
+_register(
+    Joint,
+    ("ball_radius", "clearance", "liner_thickness", "liner", "ball", "backing"),
+    ("support", "name", "source"),
+)
 _register(LayerSolution, ("joint", "width"), ("widest",))
 register_pytree_node(Contact, _flatten_contact, _unflatten_contact)

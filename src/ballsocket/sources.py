@@ -89,7 +89,9 @@ def _keys(used: Any) -> list[str]:
 def _found(used: Any) -> Iterator[str]:
     yield from (source.key for source in getattr(used, "sources", ()))
     yield from _named_in(str(getattr(used, "source", "")))
-    for part in ("model", "joint", "liner", "ball"):
+    for layer in getattr(used, "backing", ()):
+        yield from _found(layer)
+    for part in ("model", "joint", "liner", "ball", "material"):
         if getattr(used, part, None) is not None:
             yield from _found(getattr(used, part))
 

@@ -127,3 +127,9 @@ SMALL_STRAIN = Range(
 RIGID_BALL = Range(
     quantity="joint.modulus_ratio", symbol="E/E_ball", high=0.02, why="the model takes the ball as rigid"
 )
+RIGID_BACKING = Range(
+    quantity="joint.backing_ratio",
+    symbol="E/E_backing",
+    high=0.01,
+    why="the model takes the liner's backing as rigid",
+)

@@ -1,4 +1,4 @@
-"""The catalogue: every model that answers to `press`, by name."""
+"""The closed forms, and the plane layer: what answers to `press` without a solver."""
 
 from .adhesion import AdhesiveSocket
 from .base import Model
@@ -7,7 +7,7 @@ from .half_space import Hertz, Steuermann
 from .liu import LiuReconstruction
 from .plane_layer import PlaneLayer
 
-_ALL: tuple[Model, ...] = (
+every: tuple[Model, ...] = (
     HessForsbach(),
     Vessel(),
     Bartel(),
@@ -20,6 +20,3 @@ _ALL: tuple[Model, ...] = (
     LiuReconstruction(),
     AdhesiveSocket(),
 )
-
-catalogue: dict[str, Model] = {model.name: model for model in _ALL}
-"""Name -> model: what `--model` and files call them."""

@@ -42,7 +42,13 @@ class Model(ABC):
     validity : tuple of Range
         Closed ranges inside which the answer can be trusted: peak pressure and indentation within about 15 % of the
         elastic answer.
+    contact_type : type
+        What `press` answers with: `Contact`, or a kind of it that knows more.
     """
+
+    @property
+    def contact_type(self) -> type[Contact]:
+        return Contact
 
     @property
     @abstractmethod
@@ -160,7 +166,7 @@ class ClosedForm(Model):
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
         """K = p0/d in MPa/mm, Eq. (16) of the paper."""
         quotient = self.max_pressure(joint, indentation) / arrays.divisor(indentation)
-        return where(indentation > 0, quotient, numpy.inf)  # a point contact: p0 ~ d^(1/2n), n >= 1
+        return where(indentation == 0, numpy.inf, quotient)  # a point contact: p0 ~ d^(1/2n), n >= 1
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
         """∫ p dA in N over the spherical contact, by quadrature."""
@@ -261,4 +267,4 @@ def _finished(
     F, d = where(answered | (kind == "force"), F, xp.nan), where(answered | (kind == "indentation"), d, xp.nan)
     if plain:
         F, d, status = float(F), float(d), Status(int(status))
-    return Contact(model=model, laws=answer.laws, joint=joint, force=F, indentation=d, status=status)
+    return model.contact_type(model=model, laws=answer.laws, joint=joint, force=F, indentation=d, status=status)

@@ -15,7 +15,7 @@ from ..arrays import Array, clip
 from ..checks import numeric, require
 from ..joint import Joint
 from ..sources import Source
-from ..validity import RIGID_BALL, Range, inside
+from ..validity import RIGID_BACKING, RIGID_BALL, Range, inside
 
 Formula = Callable[..., Array]
 """K of R2, L, E, ν and the modulus' own constants."""
@@ -110,6 +110,7 @@ spherical_vessel = Modulus(
         _poisson(0.2, 0.4, "its pressure is 7 % high at 0.4, 20 % at 0.45 and without bound towards 0.5"),
         _contact_width(0.7, "a contact narrower than the liner is thick feels a half-space, not a vessel"),
         RIGID_BALL,
+        RIGID_BACKING,
     ),
 )
 """K_B of Bartel et al. 1985: exact for uniform pressure all around, Eq. (14) of the paper."""
@@ -124,6 +125,7 @@ bonded_layer = Modulus(
         _poisson(0.2, 0.4, "its pressure is 10 % high at 0.4, 30 % at 0.45 and without bound towards 0.5"),
         _contact_width(2.0, "the layer must be thin against the contact radius"),
         RIGID_BALL,
+        RIGID_BACKING,
     ),
 )
 """K_BL of uniaxial compression between bonded faces, Eq. (15) of the paper."""
@@ -244,6 +246,7 @@ hess_forsbach = Modulus(
             why="fitted at 1 to 3 kN; near first touch the liner answers like a half-space, not like springs",
         ),
         RIGID_BALL,
+        RIGID_BACKING,
     ),
 )
 """The paper's fit (18), with monotone cubic interpolation in ν between the columns of Table 3."""

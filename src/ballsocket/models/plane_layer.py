@@ -12,7 +12,7 @@ from .. import arrays
 from ..arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, integral, log, sin, sqrt, where
 from ..joint import Joint
 from ..sources import Source
-from ..validity import RIGID_BALL, SMALL_STRAIN, Range
+from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Range
 from .base import Answer, Model
 
 
@@ -58,7 +58,8 @@ class PlaneLayer(Model):
     @property
     def validity(self) -> tuple[Range, ...]:
         why = "the plane layer has no curvature: p0 is 23 % low at 45° (R2 18, L 6.75)"
-        return (Range(quantity="half_angle", symbol="ε", high=radians(20.0), why=why), RIGID_BALL, SMALL_STRAIN)
+        narrow = Range(quantity="half_angle", symbol="ε", high=radians(20.0), why=why)
+        return (narrow, RIGID_BALL, RIGID_BACKING, SMALL_STRAIN)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         solution = _solution(joint, kind, load)
@@ -198,7 +199,7 @@ class LayerSolution:
         return self.pressure(joint, indentation, 0.0)
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        return self.max_pressure(joint, indentation) / divisor(indentation)
+        return where(indentation == 0, inf, self.max_pressure(joint, indentation) / divisor(indentation))
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
         return self.values[0]

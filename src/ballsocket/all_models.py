@@ -1,0 +1,10 @@
+"""The catalogue: every model that answers to `press`, by name."""
+
+from __future__ import annotations
+
+from .elastic.axisymmetric import Exact
+from .models import every
+from .models.base import Model
+
+catalogue: dict[str, Model] = {model.name: model for model in (Exact(), *every)}
+"""Name -> model: what `--model` and files call them."""

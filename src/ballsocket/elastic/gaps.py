@@ -1,0 +1,112 @@
+"""How far a rigid ball asks the socket's surface to give way, and what that is in Abel space.
+
+A displacement u(φ) has the transform A[u](t) = d/dt ∫ u sin φ dφ / sqrt(2 (cos φ - cos t)) over [0, t], which turns
+P_n(cos φ) into cos((n + ½) t). d is the indentation, c the clearance, e = c + d, w = 1 - cos φ; angles in rad, lengths
+in mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sin
+from typing import ClassVar
+
+import numpy
+
+from ..arrays import gauss_legendre
+
+Array = numpy.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinearGap:
+    """u = d cos φ - c (1 - cos φ), Eq. (6) of Heß & Forsbach 2021."""
+
+    clearance: float
+    socket_radius: float
+    steps: ClassVar[int] = 1  # of Newton's method from d = 0: u is linear in d
+    conservative: ClassVar[bool] = True  # ∂u/∂d = cos φ: the work of F is that of the pressure
+
+    def displacement(self, angle: Array, d: Array) -> Array:
+        """u(φ)."""
+        return d - (self.clearance + d) * 2 * numpy.sin(angle / 2) ** 2
+
+    def transform(self, t: Array, d: Array) -> Array:
+        """A[u](t)."""
+        return d * numpy.cos(1.5 * t) - 2 * self.clearance * numpy.sin(t) * numpy.sin(t / 2)
+
+    def slope(self, t: Array, d: Array) -> Array:
+        """d A[u]/dt."""
+        half = t / 2
+        turn = 2 * numpy.cos(t) * numpy.sin(half) + numpy.sin(t) * numpy.cos(half)
+        return -1.5 * d * numpy.sin(1.5 * t) - self.clearance * turn
+
+    def deepening(self, t: Array, d: Array) -> Array:
+        """A[∂u/∂d](t)."""
+        return numpy.cos(1.5 * t) + 0.0 * d
+
+
+@dataclass(frozen=True, kw_only=True)
+class CircularGap:
+    """u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5): the circle that the ball is."""
+
+    clearance: float
+    socket_radius: float
+    steps: ClassVar[int] = 7
+    conservative: ClassVar[bool] = False
+
+    def displacement(self, angle: Array, d: Array) -> Array:
+        """u(φ)."""
+        return self._parts(2 * numpy.sin(angle / 2) ** 2, d)[0]
+
+    def transform(self, t: Array, d: Array) -> Array:
+        """A[u](t)."""
+        return _transform(t, lambda w: self._parts(w, d)[:2])
+
+    def slope(self, t: Array, d: Array) -> Array:
+        """d A[u]/dt."""
+        return _transform_slope(t, lambda w: self._parts(w, d))
+
+    def deepening(self, t: Array, d: Array) -> Array:
+        """A[∂u/∂d](t)."""
+        return _transform(t, lambda w: self._deepening(w, d))
+
+    def _parts(self, w: Array, d: Array) -> tuple[Array, Array, Array]:
+        """u and its first two derivatives in w; NaN where the ball does not reach."""
+        R1, e = self.socket_radius - self.clearance, self.clearance + d
+        dropped = e * e * w * (2 - w)
+        root = numpy.sqrt(R1 * R1 - dropped)
+        tilt = e * e * (1 - w) / root
+        return d - e * w - dropped / (R1 + root), -e - tilt, (e * e - tilt * tilt) / root
+
+    def _deepening(self, w: Array, d: Array) -> tuple[Array, Array]:
+        """∂u/∂d and its derivative in w."""
+        R1, e = self.socket_radius - self.clearance, self.clearance + d
+        sine = w * (2 - w)
+        root = numpy.sqrt(R1 * R1 - e * e * sine)
+        return 1 - w - e * sine / root, -1 - e * (1 - w) * (2 * R1 * R1 - e * e * sine) / root**3
+
+
+Gap = LinearGap | CircularGap
+
+_NODES, _WEIGHTS = gauss_legendre(24)
+_TURNS = tuple((sin(pi / 2 * x), pi / 2 * weight) for x, weight in zip(_NODES, _WEIGHTS, strict=True))
+
+
+def _transform(t: Array, parts) -> Array:  # type: ignore[no-untyped-def]
+    """A[u] = cos(t/2) ∫ u sin θ dθ + 2 sin(t/2) sin t ∫ u' sin³ θ dθ over [0, π/2], with w = (1 - cos t) sin² θ."""
+    total = numpy.zeros(())
+    for sine, weight in _TURNS:
+        u, u1 = parts(2 * numpy.sin(t / 2) ** 2 * sine**2)
+        total = total + weight * sine * (numpy.cos(t / 2) * u + 2 * numpy.sin(t / 2) * numpy.sin(t) * sine**2 * u1)
+    return total
+
+
+def _transform_slope(t: Array, parts) -> Array:  # type: ignore[no-untyped-def]
+    half, total = numpy.sin(t / 2), numpy.zeros(())
+    for sine, weight in _TURNS:
+        u, u1, u2 = parts(2 * half**2 * sine**2)
+        first = 2 * numpy.cos(t / 2) * numpy.sin(t) + 2 * half * numpy.cos(t)
+        second = 2 * half * numpy.sin(t) ** 2 * sine**2
+        total = total + weight * sine * (-half / 2 * u + sine**2 * (first * u1 + second * u2))
+    return total

@@ -1,0 +1,128 @@
+"""What a contact does to the socket: displacement of its surface, stresses inside, by the sum of modes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log1p
+
+import numpy
+
+from .abel import State
+
+Array = numpy.ndarray
+
+_MOST = 2000
+_FEWEST = 200
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stress:
+    """Stresses in MPa, tension positive; r counts from the centre of the socket, φ from the load axis.
+
+    All arrays have the shape that angle and depth broadcast to.
+    """
+
+    radial: Array
+    meridional: Array
+    hoop: Array
+    shear: Array
+
+    @property
+    def von_mises(self) -> Array:
+        """The von Mises stress in MPa."""
+        first, second = self.radial - self.meridional, self.meridional - self.hoop
+        third = self.hoop - self.radial
+        return numpy.sqrt((first**2 + second**2 + third**2) / 2 + 3 * self.shear**2)
+
+    @property
+    def principal(self) -> tuple[Array, Array, Array]:
+        """The principal stresses in MPa, the largest first."""
+        middle = (self.radial + self.meridional) / 2
+        reach = numpy.hypot((self.radial - self.meridional) / 2, self.shear)
+        three = numpy.sort(numpy.stack(numpy.broadcast_arrays(middle - reach, middle + reach, self.hoop)), axis=0)
+        return three[2], three[1], three[0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Peak:
+    """The largest von Mises stress (MPa), where: depth below the surface of the socket (mm), polar angle (rad)."""
+
+    von_mises: float
+    depth: float
+    angle: float
+
+
+def surface_displacement(state: State, angle: Array) -> Array:
+    """Radial displacement of the socket's surface in mm, outwards, of one contact; shape of `angle`."""
+    amplitudes = _tapered(state, _MOST) * state.kernel.socket.compliance(numpy.arange(_MOST))
+    return (amplitudes @ _legendre(angle.ravel(), _MOST)[0]).reshape(angle.shape)
+
+
+def stress(state: State, angle: Array, depth: Array) -> Stress:
+    """Stresses of one contact at polar angles (rad) and depths below the surface of the socket (mm)."""
+    angle, depth = numpy.broadcast_arrays(angle, depth)
+    socket = state.kernel.socket
+    depths, level = numpy.unique(depth.ravel(), return_inverse=True)
+    count = _modes_at(float(depths.min(initial=numpy.inf, where=depths > 0)), socket.radius)
+    count = _MOST if (depths == 0).any() else count
+    fields = socket.fields(numpy.arange(count), socket.radius + depths)
+    P, slope = _legendre(angle.ravel(), count)
+    modes = _tapered(state, count)
+
+    def total(field: Array, wave: Array) -> Array:
+        return numpy.einsum("n,np,np->p", modes, field[:, level.ravel()], wave).reshape(angle.shape)
+
+    sine, cosine = numpy.sin(angle.ravel()), numpy.cos(angle.ravel())
+    tilt = total(fields.sigma_cot, -cosine * slope)
+    return Stress(
+        radial=total(fields.sigma_rr, P),
+        meridional=total(fields.sigma_phiphi, P) - tilt,
+        hoop=total(fields.sigma_thetatheta, P) + tilt,
+        shear=total(fields.sigma_rphi, -sine * slope),
+    )
+
+
+def peak(state: State, thickness: float) -> Peak:
+    """The largest von Mises stress of one contact in a liner of that thickness, at the surface or below."""
+    angles = float(state.half_angle[0]) * numpy.linspace(0.0, 1.3, 27)
+    deepest = min(thickness, 3 * state.gap.socket_radius * float(numpy.sin(state.half_angle[0])))
+    depths = deepest * numpy.linspace(0.0, 1.0, 26)
+    for _ in range(4):
+        values = stress(state, angles[:, None], depths).von_mises
+        i, j = numpy.unravel_index(numpy.argmax(values), values.shape)
+        angles, depths = _around(angles, int(i)), _around(depths, int(j))
+        best = Peak(von_mises=float(values[i, j]), depth=float(depths[_HALF]), angle=float(angles[_HALF]))
+    return best
+
+
+_HALF = 4
+
+
+def _around(values: Array, i: int) -> Array:
+    """A finer row from the neighbour below to the neighbour above."""
+    low, high = values[max(i - 1, 0)], values[min(i + 1, len(values) - 1)]
+    below = numpy.linspace(low, values[i], _HALF + 1)
+    return numpy.append(below, numpy.linspace(values[i], high, _HALF + 1)[1:])
+
+
+def _modes_at(depth: float, radius: float) -> int:
+    """How many modes reach a depth: they fade like (1 + depth/radius)^-n."""
+    return int(numpy.clip(30 / log1p(depth / radius), _FEWEST, _MOST))
+
+
+def _tapered(state: State, count: int) -> Array:
+    """p_n of one contact, the last half let out gently so that the sum does not ring."""
+    n = numpy.arange(count)
+    taper = numpy.cos(numpy.pi * numpy.clip(n / count - 0.5, 0.0, 0.5)) ** 2
+    return state.modes(count)[0] * taper
+
+
+def _legendre(angle: Array, count: int) -> tuple[Array, Array]:
+    """P_n(cos φ) and dP_n/d(cos φ) for n below count, shape (count, angles)."""
+    x = numpy.cos(angle)
+    P, slope = numpy.empty((count, len(x))), numpy.empty((count, len(x)))
+    P[0], P[1], slope[0], slope[1] = 1.0, x, 0.0, 1.0
+    for n in range(2, count):
+        P[n] = ((2 * n - 1) * x * P[n - 1] - (n - 1) * P[n - 2]) / n
+        slope[n] = slope[n - 2] + (2 * n - 1) * P[n - 1]
+    return P, slope
