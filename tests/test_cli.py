@@ -91,12 +91,15 @@ def test_json():
     assert answer["version"] == bs.__version__
     assert answer["joint"]["socket_radius"] == pytest.approx(18.0)
     assert answer["joint"]["ball"]["young"] == 230000.0
-    assert [result["model"] for result in answer["results"]] == ["hess-forsbach", "bartel"]
+    assert [result["model"] for result in answer["results"]] == ["hess-forsbach", "bartel", "exact"]
     paper = answer["results"][0]
     assert set(paper) == {
         *("model", "force", "indentation", "half_angle_deg", "max_pressure", "area", "stiffness", "energy"),
-        *("foundation_modulus", "valid", "notes"),
+        *("foundation_modulus", "valid", "notes", "deviation"),
     }
+    assert answer["results"][2]["deviation"] is None
+    exact = bs.Exact().press(bs.read_joint(EXAMPLE).joint, force=3000.0)
+    assert paper["deviation"]["max_pressure"] == pytest.approx(paper["max_pressure"] / exact.max_pressure - 1)
     file = bs.read_joint(EXAMPLE)
     contact = bs.HessForsbach().press(file.joint, **file.load)
     assert paper["max_pressure"] == contact.max_pressure
@@ -206,7 +209,7 @@ def test_a_model_without_an_answer_beside_others_is_a_note(tmp_path):
     words = ["press", EXAMPLE, "--force", "1e12", "--model", "bartel", "--model", "hess-forsbach"]
     done = run(*words, "--figure", str(tmp_path / "a.svg"))
     assert (done.returncode, done.stderr) == (0, "")
-    assert f"bartel: {UNREACHED}" in done.stdout
+    assert f"bartel, exact: {UNREACHED}" in done.stdout
     assert "hess-forsbach" in done.stdout
     assert (tmp_path / "a.svg").stat().st_size > 5_000
     notes = {result["model"]: result["notes"] for result in json.loads(run(*words, "--json").stdout)["results"]}

@@ -9,6 +9,7 @@ Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 """
 
 from .all_models import catalogue
+from .calibrate import as_constant, as_corrected_vessel, as_polynomial, calibrate
 from .compare import compare
 from .contact import Contact
 from .elastic.axisymmetric import Exact
@@ -30,8 +31,9 @@ from .models.foundation import (
 from .models.half_space import Hertz, Steuermann
 from .models.kinematics import cosine_kinematics, exact_kinematics, linear_kinematics
 from .models.liu import LiuReconstruction
-from .models.modulus import bonded_layer, constant, hess_forsbach, polynomial, spherical_vessel
+from .models.modulus import bonded_layer, constant, corrected_vessel, hess_forsbach, polynomial, spherical_vessel
 from .models.plane_layer import PlaneLayer
+from .models.refined import Refined
 from .presets import (
     ALUMINA,
     ALUMINA_COMPOSITE,
@@ -86,15 +88,21 @@ __all__ = [
     "PlaneLayer",
     "RadialFoundation",
     "Range",
+    "Refined",
     "Status",
     "Steuermann",
     "Support",
     "Vessel",
+    "as_constant",
+    "as_corrected_vessel",
+    "as_polynomial",
     "bonded_layer",
+    "calibrate",
     "catalogue",
     "cite",
     "compare",
     "constant",
+    "corrected_vessel",
     "cosine_kinematics",
     "exact_kinematics",
     "hess_forsbach",

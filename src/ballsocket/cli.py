@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import codecs
+import dataclasses
 import json
 import sys
+from collections.abc import Iterable
 from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Any
@@ -15,11 +17,13 @@ import typer
 import ballsocket as bs
 
 from . import figures, tables
-from .compare import Comparison
+from .calibrate import FORCES, Form, refit_table_3
+from .compare import REFERENCE, Comparison
 from .contact import Contact
 from .files import JointFile, joint_of, nearest, read_joint, read_load
 from .models.base import Model
 from .presets import joints
+from .units import parse
 from .validity import Status
 
 app = typer.Typer(
@@ -73,7 +77,7 @@ def press(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")] = False,
     figure: Annotated[Path | None, typer.Option(help="Write a figure: .png, .svg or .pdf")] = None,
 ) -> None:
-    """Press a ball into its socket and see what every model makes of it.
+    """Press a ball into its socket and see what models make of it, beside the exact answer.
 
     Exit status: 0 done, 2 misuse, 3 an iteration that did not converge, or no answer from any model.
     """
@@ -91,19 +95,60 @@ def press(
         raise ValueError("a load is needed: --force, --indentation or --half-angle")
     if figure is not None:
         figures.check_format(figure)
-    comparison = bs.compare(file.joint, models=chosen, **load)
-    if not comparison.contacts:
-        raise ValueError("; ".join(comparison.missing.values()))
+    comparison = bs.compare(file.joint, models={**chosen, REFERENCE: bs.catalogue[REFERENCE]}, **load)
+    if not set(comparison) & set(chosen):
+        raise ValueError("; ".join(why for name, why in comparison.missing.items() if name in chosen))
     if figure is not None:
         _draw(comparison, figure)
     if as_json:
-        typer.echo(json.dumps(comparison.summary(), indent=2, allow_nan=False))
+        _echo_json(comparison.summary())
     else:
         tables.print_press(comparison)
-    failure = _failure(comparison)
+    failure = _failure(comparison, chosen)
     if failure:
         typer.echo(f"ballsocket: {failure}", err=True)
         raise typer.Exit(FAILURE)
+
+
+_FORMS: dict[str, Form] = {
+    "constant": bs.as_constant,
+    "polynomial": bs.as_polynomial,
+    "corrected-vessel": bs.as_corrected_vessel,
+}
+
+
+@app.command()
+def calibrate(
+    joint: Annotated[str | None, typer.Argument(help="A joint file or a preset's name; none refits Table 3.")] = None,
+    force: Annotated[list[str] | None, typer.Option(help="A load, '2 kN'; repeat. Default 1, 2 and 3 kN.")] = None,
+    thickness: Annotated[list[str] | None, typer.Option(help="A liner thickness, '5 mm'; repeat for a family.")] = None,
+    form: Annotated[str, typer.Option(help="constant, polynomial (Eq. 18) or corrected-vessel")] = "constant",
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")] = False,
+) -> None:
+    """Fit the closed form's foundation modulus to the exact answer: for one joint, or as the paper did (Table 3)."""
+    if joint is None:
+        columns = refit_table_3()
+        if as_json:
+            _echo_json({"version": bs.__version__, "table_3": [column.summary() for column in columns]})
+        else:
+            tables.print_table_3(columns)
+        return
+    if form not in _FORMS:
+        raise ValueError(f"form {form!r} is not known{nearest(form, _FORMS)}")
+    given = _named_joint(joint).joint
+    if thickness:
+        lengths = [parse("thickness", text, "length") for text in thickness]
+        given = dataclasses.replace(given, liner_thickness=numpy.array(lengths))
+    loads = [parse("force", text, "force") for text in force or []] or FORCES
+    fit = bs.calibrate(given, force=loads, form=_FORMS[form])
+    if as_json:
+        _echo_json({"version": bs.__version__, "joint": given.summary(), **fit.summary()})
+    else:
+        tables.print_calibration(fit)
+
+
+def _echo_json(answer: dict[str, Any]) -> None:
+    typer.echo(json.dumps(answer, indent=2, allow_nan=False))
 
 
 @app.command()
@@ -166,13 +211,12 @@ def _chosen(names: list[str], every: bool) -> dict[str, Model]:
     return {name: bs.catalogue[name] for name in names or [DEFAULT_MODEL]}
 
 
-def _failure(comparison: Comparison) -> str:
+def _failure(comparison: Comparison, chosen: Iterable[str]) -> str:
     """What went wrong as a whole, or an empty text: a model without an answer is a note while another one has one."""
     unsettled = [name for name, contact in comparison.items() if contact.status == Status.NOT_CONVERGED]
     if unsettled:
         return f"no convergence of {', '.join(unsettled)} (see the notes)"
-    names = ", ".join([*comparison, *comparison.missing])
-    return "" if _answered(comparison) else f"no answer from {names} (see the notes)"
+    return "" if set(_answered(comparison)) & set(chosen) else f"no answer from {', '.join(chosen)} (see the notes)"
 
 
 def _answered(comparison: Comparison) -> dict[str, Contact]:

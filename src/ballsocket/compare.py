@@ -8,7 +8,7 @@ from html import escape
 from typing import Any
 
 from .all_models import catalogue
-from .arrays import Array
+from .arrays import Array, divisor, to_list, where
 from .checks import one_load
 from .contact import Contact
 from .describe import COLUMNS, count, number_text
@@ -55,6 +55,14 @@ class Comparison(Mapping[str, Contact]):
                 holders.setdefault(note, []).append(name)
         return [f"{', '.join(names)}: {note}" for note, names in holders.items()] + list(self.missing.values())
 
+    def deviation(self, name: str) -> dict[str, Array] | None:
+        """How far a model is from the exact answer, relative, for each column; None without an exact answer."""
+        exact = self.contacts.get(REFERENCE)
+        if exact is None or name == REFERENCE or name not in self.contacts:
+            return None
+        contact = self.contacts[name]
+        return {column.name: _relative(column.of(contact), column.of(exact)) for column in COLUMNS}
+
     def rows(self) -> list[tuple[str, ...]]:
         """Text for a table: model, force, indentation, half angle, max pressure, area, stiffness, valid."""
         return [
@@ -64,9 +72,12 @@ class Comparison(Mapping[str, Contact]):
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON: version, joint and results, in mm, N, MPa, degrees."""
-        answers = [contact.summary() for contact in self.contacts.values()]
+        answers = [{**self[name].summary(), "deviation": _listed(self.deviation(name))} for name in self]
         gaps = dict.fromkeys(column.name for column in COLUMNS)
-        missing = [{"model": name, **gaps, "valid": False, "notes": [why]} for name, why in self.missing.items()]
+        missing = [
+            {"model": name, **gaps, "valid": False, "notes": [why], "deviation": None}
+            for name, why in self.missing.items()
+        ]
         return {"version": __version__, "joint": self.joint.summary(), "results": [*answers, *missing]}
 
     def __repr__(self) -> str:
@@ -83,6 +94,18 @@ class Comparison(Mapping[str, Contact]):
         rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in self.rows())
         notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.notes())
         return f"<div>{escape(str(self.joint))}</div><table><tr>{cells}</tr>{rows}</table>{notes}"
+
+
+REFERENCE = "exact"
+"""The model that the others are measured by."""
+
+
+def _relative(value: Array, truth: Array) -> Array:
+    return where(truth == value, 0.0, value / divisor(truth) - 1)
+
+
+def _listed(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
+    return None if deviation is None else {name: to_list(value) for name, value in deviation.items()}
 
 
 _SHOWN = COLUMNS[:6]

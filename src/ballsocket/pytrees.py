@@ -15,6 +15,7 @@ from jax.tree_util import register_pytree_node
 from .contact import Contact
 from .joint import Joint, Layer, Material, unchecked
 from .models.plane_layer import LayerSolution
+from .models.refined import RefinedSolution
 
 Parts = tuple[Any, ...]
 
@@ -52,4 +53,5 @@ _register(
     ("support", "name", "source"),
 )
 _register(LayerSolution, ("joint", "width"), ("widest",))
+_register(RefinedSolution, ("joint", "edge"), ())
 register_pytree_node(Contact, _flatten_contact, _unflatten_contact)

@@ -12,7 +12,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from .compare import Comparison
+from .calibrate import RATIOS, Calibration
+from .calibrate import Column as TableColumn
+from .compare import REFERENCE, Comparison
 from .contact import Contact
 from .describe import COLUMNS, Column, number_text
 from .joint import Joint, Material
@@ -23,8 +25,19 @@ _BARS_ASCII = " .:-=+*#@"
 _UNITS = {"indentation": ("µm", 1e3), "stiffness": ("kN/mm", 1e-3)}  # handier here than those of JSON
 _NARROW = 72
 _PROFILE = "profile"
+_APART = "deviation"
 # what a narrow terminal does without, first to last
-_DROPPED = ("foundation_modulus", "energy", "stiffness", "area", _PROFILE, "indentation", "force", "half_angle_deg")
+_DROPPED = (
+    "foundation_modulus",
+    "energy",
+    "stiffness",
+    "area",
+    _PROFILE,
+    _APART,
+    "indentation",
+    "force",
+    "half_angle_deg",
+)
 
 
 def print_press(comparison: Comparison) -> None:
@@ -60,27 +73,48 @@ def _press_table(comparison: Comparison, dropped: Sequence[str], bars: str) -> T
     columns = [column for column in COLUMNS if column.name not in dropped]
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
     table.add_column("model", no_wrap=True)
-    for column in columns:
-        table.add_column(column.symbol, justify="right", no_wrap=True)
+    apart = () if _APART in dropped else _compared(comparison)
+    for head in (*(column.symbol for column in columns), *(f"Δ{column.symbol}" for column in apart)):
+        table.add_column(head, justify="right", no_wrap=True)
     if _PROFILE not in dropped:
         table.add_column(" p, 0° to 90°", no_wrap=True)
     table.add_column("valid", justify="center", no_wrap=True)
-    table.add_row("", *(Text(_shown_unit(column)[0], style="dim") for column in columns))
+    units = (*(_shown_unit(column)[0] for column in columns), *("%" for _ in apart))
+    table.add_row("", *(Text(unit, style="dim") for unit in units))
     profiles = {} if _PROFILE in dropped else _profiles(comparison, bars)
     for name, contact in comparison.items():
-        table.add_row(*_cells(name, contact, columns, [profiles[name]] if profiles else []))
+        away = _percents(comparison.deviation(name), apart)
+        table.add_row(*_cells(name, contact, columns, away, [profiles[name]] if profiles else []))
     for name in comparison.missing:
-        gaps = [*["-"] * len(columns), *[""] * (_PROFILE not in dropped)]
+        gaps = [*["-"] * len(columns), *[""] * (len(apart) + (_PROFILE not in dropped))]
         table.add_row(Text(name, style="dim"), *gaps, Text("no", style="red"))
     return table
 
 
-def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequence[str]) -> list[Text]:
+def _compared(comparison: Comparison) -> tuple[Column, ...]:
+    """What is measured against the exact answer: what the load leaves open, and the peak pressure."""
+    if comparison.get(REFERENCE) is None or len(comparison) == 1:
+        return ()
+    by_depth = len({contact.indentation for contact in comparison.values()}) == 1
+    first = "force" if by_depth else "indentation"
+    return tuple(column for column in COLUMNS if column.name in (first, "max_pressure"))
+
+
+def _percents(deviation: dict[str, Any] | None, columns: Sequence[Column]) -> list[str]:
+    if deviation is None:
+        return [""] * len(columns)
+    shares = [100 * float(deviation[column.name]) for column in columns]
+    return ["-" if share != share else f"{share:+.1f}" for share in shares]
+
+
+def _cells(
+    name: str, contact: Contact, columns: Sequence[Column], away: Sequence[str], profile: Sequence[str]
+) -> list[Text]:
     style = "" if contact.valid else "yellow"
     numbers = [number_text(column.of(contact) * _shown_unit(column)[1], 4, "-") for column in columns]
     bars = [Text(f" {bar}", style=style or "cyan") for bar in profile]
     mark = Text("yes", style="green") if contact.valid else Text("no", style="yellow")
-    return [*(Text(text, style=style) for text in (name, *numbers)), *bars, mark]
+    return [*(Text(text, style=style) for text in (name, *numbers, *away)), *bars, mark]
 
 
 def _shown_unit(column: Column) -> tuple[str, float]:
@@ -101,6 +135,51 @@ def _pressure(contact: Contact, angle: numpy.ndarray) -> numpy.ndarray:
 
 def _bars(share: numpy.ndarray, bars: str) -> str:
     return "".join(bars[round(float(level) * 8)] for level in numpy.clip(share, 0.0, 1.0)).rstrip()
+
+
+def print_calibration(fit: Calibration) -> None:
+    """A fitted modulus with its residual and the error of the closed form that takes it."""
+    console = _console()
+    _print_folded(console, str(fit.joint), "bold")
+    low, high = float(fit.force.min()), float(fit.force.max())
+    constants = ", ".join(f"{number:.6g}" for number in fit.modulus.constants)
+    rows = [
+        (f"{fit.modulus.name}", constants),
+        ("K = p0/d of the reference", number_text(fit.wanted, 5, "-") + " MPa/mm"),
+        (f"spread over {low:g} to {high:g} N", f"{100 * fit.spread:.2f} %"),
+        ("largest residual of the fit", f"{100 * float(numpy.max(abs(fit.residual))):.2f} %"),
+        *(
+            (f"closed form, worst error in {name.replace('_', ' ')}", f"{100 * error:.2f} %")
+            for name, error in fit.error.items()
+        ),
+    ]
+    for name, text in rows:
+        console.print(f"  {name:<46} {text}")
+
+
+def print_table_3(columns: Sequence[TableColumn]) -> None:
+    """Table 3 of the paper beside the same fit to the exact answer."""
+    console = _console()
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for head in ("", *(f"ν {column.poisson:g}" for column in columns)):
+        table.add_column(head, justify="right" if head else "left", no_wrap=True)
+    for i, name in enumerate(("C1", "C2", "C3")):
+        table.add_row(f"{name}, paper", *(f"{column.paper[i]:.2f}" for column in columns))
+        table.add_row(f"{name}, exact", *(f"{column.ours[i]:.2f}" for column in columns))
+    thick = RATIOS < 4.5
+    for head, part in ((f"paper's K, R2/L to {RATIOS[thick][-1]:g}", thick), (f"to {RATIOS[-1]:g}", RATIOS > 0)):
+        worst = (max(column.difference[part], key=abs) for column in columns)
+        table.add_row(f"{head}: off by", *(f"{100 * share:+.1f} %" for share in worst))
+    residuals = (float(numpy.max(abs(column.calibration.residual))) for column in columns)
+    table.add_row("our fit: largest residual", *(f"{100 * share:.1f} %" for share in residuals))
+    table.add_row("K over 1 to 3 kN: spread", *(f"{100 * column.calibration.spread:.1f} %" for column in columns))
+    for name in ("indentation", "max_pressure", "half_angle", "force"):
+        errors = (100 * column.calibration.error[name] for column in columns)
+        table.add_row(f"closed form: {name.replace('_', ' ')}", *(f"{error:.1f} %" for error in errors))
+    console.print("Table 3 of Heß & Forsbach 2021: K R2/E = C1 + C2 (R2/L) + C3 (R2/L)²", style="bold")
+    console.print(table)
+    text = f"{len(RATIOS)} joints of 24 mm outer radius, clearance 0.1 mm, steel on 1 GPa; mean of p0/d at 1, 2, 3 kN."
+    _print_folded(console, text, "dim")
 
 
 def print_models(models: Iterable[Any]) -> None:

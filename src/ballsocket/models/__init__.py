@@ -6,8 +6,10 @@ from .foundation import Bartel, BondedLayer, BondedLayerExact, CosineLimit, Hess
 from .half_space import Hertz, Steuermann
 from .liu import LiuReconstruction
 from .plane_layer import PlaneLayer
+from .refined import Refined
 
 every: tuple[Model, ...] = (
+    Refined(),
     HessForsbach(),
     Vessel(),
     Bartel(),

@@ -75,6 +75,12 @@ def polynomial_formula(R2: Array, L: Array, E: Array, nu: Array, c1: Array, c2: 
     return E / R2 * (c1 + ratio * (c2 + ratio * c3))
 
 
+def corrected_vessel_formula(R2: Array, L: Array, E: Array, nu: Array, a0: Array, a1: Array, a2: Array) -> Array:
+    ratio = R2 / L
+    kappa = ratio / (1 + ratio)
+    return vessel_formula(R2, L, E, nu) * (a0 + kappa * (a1 + kappa * a2))
+
+
 def constant_formula(R2: Array, L: Array, E: Array, nu: Array, K: Array) -> Array:
     return K + 0.0 * R2
 
@@ -147,6 +153,34 @@ def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
     title = f"Eq. (18) with constants {c1}, {c2}, {c3}" + (f" ({source})" if source else "")
     sources = (Source("hess2021", "(18)"),)
     return Modulus(name="polynomial", title=title, formula=polynomial_formula, constants=constants, sources=sources)
+
+
+def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Modulus:
+    """K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L): the vessel corrected for a pressure that is not uniform.
+
+    The idea is Imado's (2005), the factor one's own: fit it with `calibrate`.
+
+    Raises
+    ------
+    ValueError
+        A constant that is not finite; a factor that is not above 0 for all κ from 0 to 1.
+    """
+    constants = tuple(numeric(name, value) for name, value in (("a0", a0), ("a1", a1), ("a2", a2)))
+    for name, value in zip(("a0", "a1", "a2"), constants, strict=True):
+        require(name, value, abs(value) < inf, "a constant of the factor is finite")
+    for kappa in (i / 20 for i in range(21)):
+        factor = constants[0] + kappa * (constants[1] + kappa * constants[2])
+        require(f"factor at κ = {kappa:g}", factor, factor > 0, "the factor on K_B is above 0")
+    title = f"spherical vessel times {a0} + {a1} κ + {a2} κ²" + (f" ({source})" if source else "")
+    return Modulus(
+        name="corrected-vessel",
+        title=title,
+        formula=corrected_vessel_formula,
+        constants=constants,
+        sources=spherical_vessel.sources,
+        domain=spherical_vessel.domain,
+        validity=(RIGID_BALL, RIGID_BACKING),
+    )
 
 
 def constant(modulus: Array) -> Modulus:
