@@ -138,13 +138,16 @@ class RefinedSolution:
         scale = self.joint.liner.young * self.joint.socket_radius * self.joint.clearance**2
         return self._or_zero(scale * integral(work, 24))
 
+    @property
+    def _modulus(self) -> Array:
+        """K = p0/d in MPa/mm."""
+        return self.joint.liner.young / (self.joint.socket_radius * self._state.compliance.value)
+
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        stiff = self.joint.liner.young / (self.joint.socket_radius * self._state.compliance.value)
-        return where(indentation == 0, inf, where(self.edge > 0, stiff, nan))
+        return where(indentation == 0, inf, where(self.edge > 0, self._modulus, nan))
 
     def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        stiff = self.joint.liner.young / (self.joint.socket_radius * self._state.compliance.value)
-        return self._or_zero(stiff * indentation)
+        return self._or_zero(self._modulus * indentation)
 
     @property
     def _edge_share(self) -> Array:
@@ -171,12 +174,19 @@ class RefinedSolution:
 class State(NamedTuple):
     """A contact of half angle ε in scaled numbers, with their slopes."""
 
-    indentation: Dual
-    """d/c, negative where the fit would be more than perfect."""
+    share: Dual
+    """S = sin²(ε/2)."""
+    gap: Dual
+    """cos ε - λ: 0 where the fit is perfect, d infinite."""
     compliance: Dual
     """χ = d E/(p0 R2)."""
     secant: Dual
     """F/(E R2 d)."""
+
+    @property
+    def indentation(self) -> Dual:
+        """d/c, from cos ε = (c + λ d)/(c + d)."""
+        return 2 * self.share / self.gap
 
 
 def state(joint: Joint, half_angle: Array) -> State:
@@ -185,11 +195,8 @@ def state(joint: Joint, half_angle: Array) -> State:
     log_c = compliance(Dual(k, -k), joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius).log()
     S = Dual(sin(half_angle / 2) ** 2, half_angle * sin(half_angle) / 2)
     chi, edge, m = _shape([Dual(log_c.value[i, ...], log_c.slope[i, ...]) for i in range(4)], S)
-    return State(
-        indentation=2 * S / (1 - 2 * S - edge),  # cos ε = (c + λ d)/(c + d)
-        compliance=chi,
-        secant=4 * pi * S / chi * (1 - 2 * S / (m + 2)) / (m + 1),  # the force of p0 (1 - y)^m
-    )
+    force = 4 * pi * S * (1 - 2 * S / (m + 2)) / (m + 1)  # of p0 (1 - y)^m, over p0 R2²
+    return State(share=S, gap=1 - 2 * S - edge, compliance=chi, secant=force / chi)
 
 
 def _waves(like: Array) -> Array:
@@ -395,23 +402,26 @@ def _given(joint: Joint, half_angle: Array) -> Array:
     return where((edge == 0) | ((edge <= WIDEST) & (d > 0)), edge, nan)
 
 
-def _found(joint: Joint, kind: str, load: Array) -> Array:
-    """The half angle that belongs to F or d, NaN where it is too wide."""
+def _found(joint: Joint, kind: str, given: Array) -> Array:
+    """The half angle that belongs to F or d, NaN where it is too wide.
+
+    Solved for ln x/(1 + x), x = d/c or F/(E R2 c), which passes through the perfect fit without a pole.
+    """
     by_force = kind == "force"
     scale = joint.clearance * (joint.liner.young * joint.socket_radius if by_force else 1.0)
-    scaled = broadcast(divisor(load) / scale, load, *joint.numbers())
+    load = broadcast(divisor(given) / scale, given, *joint.numbers())
 
     def law(log_angle: Array) -> tuple[Array, Array]:
         at = state(joint, arrays.exp(log_angle))
-        here = at.indentation * at.secant if by_force else at.indentation
-        safe = divisor(here.value)
-        fits = here.value > 0  # beyond the perfect fit d, and with it F, comes back from minus infinity
-        return where(fits, arrays.log(safe), inf), where(fits, here.slope / safe, 0.0)
+        rise = 2 * at.share * (at.secant if by_force else 1.0)  # the load is rise/gap
+        value = (rise / (rise + at.gap)).log()
+        return value.value, value.slope
 
-    # as in Hertz F = (4/3) E* R2 c ε³ and d = c ε², but never wide
-    power, bend = (3.0, 3.0) if by_force else (2.0, 2.0)
-    start = arrays.log(scaled / (1 + scaled / bend)) / power
+    # F ~ ε³ and d ~ ε² as in Hertz, but never wide
+    start = arrays.log(load / (2.5 + load / 3)) / 3 if by_force else arrays.log(load / (1 + load / 2)) / 2
     high = 0.0 * start + log(WIDEST)
-    root = arrays.increasing_root(law, arrays.log(scaled), start - 6.0, high, start)
-    edge = where(root <= high, arrays.exp(root), nan)
-    return where(load > 0, edge, 0.0 * edge)
+    most = law(high)[0]
+    goal = arrays.log(load / (1 + load))
+    root = arrays.increasing_root(law, where(goal < most, goal, most), start - 6.0, high, start)
+    edge = where(goal < most, arrays.exp(root), nan)
+    return where(given > 0, edge, 0.0 * given)
