@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.models.refined import Dual, compliance
+from ballsocket.models.dual import Dual
+from ballsocket.models.spectrum import compliance
 
 from .joints import HIP, random_joint
 
