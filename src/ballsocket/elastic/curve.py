@@ -8,6 +8,7 @@ from math import radians
 
 import numpy
 
+from ..models.by_joint import Piece
 from .abel import State
 from .gaps import Gap
 from .kernel import Kernel, grid
@@ -24,29 +25,7 @@ _CLOSE = 1e-12
 _SAFETY = 3.0
 _END = 1.03 * LIMIT
 _ANGLES = numpy.radians([0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85])
-QUANTITIES = ("force", "indentation", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
 _LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Piece:
-    """Contacts of one joint.
-
-    `state` has those that are `touching` (a mask of the loads); of these `reached` marks the ones inside the widest
-    contact, and `error` is the relative error of each.
-    """
-
-    load: Array
-    touching: Array
-    state: State
-    reached: Array
-    error: dict[str, Array]
-
-    def spread(self, values: Array) -> Array:
-        """Values of the touching contacts in the order of the loads: 0 without a load, NaN where none was reached."""
-        whole = numpy.zeros((*values.shape[:-1], len(self.load)))
-        whole[..., self.touching] = numpy.where(self.reached, values, numpy.nan)
-        return whole
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
