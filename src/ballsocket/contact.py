@@ -96,6 +96,12 @@ class Contact:
         return self.indentation / self.joint.liner_thickness
 
     @property
+    def depth_ratio(self) -> Array:
+        """d over liner thickness or socket radius, whichever is less: how large strains are."""
+        R2, L = self.joint.socket_radius, self.joint.liner_thickness
+        return self.indentation / arrays.where(L < R2, L, R2)
+
+    @property
     def width_ratio(self) -> Array:
         """R2 sin ε / L: contact radius over liner thickness."""
         return arrays.sin(self.half_angle) * self.joint.thickness_ratio
@@ -210,7 +216,10 @@ class Contact:
 
     def _answer(self, law: Callable[[Joint, Array], Array]) -> Array:
         with numpy.errstate(all="ignore"):  # a point without an answer has a status, not a warning
-            return self._plain(law(self._numbers, self.indentation))
+            value = law(self._numbers, self.indentation)
+            if arrays.truth(self._failed ^ True) is not True:
+                value = arrays.where(self._failed, numpy.nan, value)
+            return self._plain(value)
 
     @cached_property
     def _numbers(self) -> Joint:

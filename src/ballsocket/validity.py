@@ -122,7 +122,7 @@ def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
 
 
 SMALL_STRAIN = Range(
-    quantity="indentation_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"
+    quantity="depth_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"
 )
 RIGID_BALL = Range(
     quantity="joint.modulus_ratio", symbol="E/E_ball", high=0.02, why="the model takes the ball as rigid"

@@ -22,7 +22,7 @@ from math import ceil, pi
 import numpy
 
 from ..arrays import gauss_legendre
-from .gaps import Gap
+from ..gaps import Gap
 from .kernel import Grid, Kernel
 
 Array = numpy.ndarray
@@ -78,7 +78,10 @@ class State:
         d = numpy.zeros_like(self.half_angle)[:, None]
         for _ in range(self.gap.steps):
             miss, slope = (side(self._targets, d) for side in (self.gap.transform, self.gap.deepening))
-            d = d - (self._at_edge(miss) / self._at_edge(slope))[:, None]
+            step = (self._at_edge(miss) / self._at_edge(slope))[:, None]
+            d = d - step
+            if not numpy.any(abs(step) > 1e-13 * abs(d)):
+                break
         return d[:, 0]
 
     @cached_property
@@ -148,12 +151,11 @@ class State:
         return (self.indentation * self.force - self.gap.clearance * spread) / 2
 
     def _work(self) -> Array:
-        nodes, weights = gauss_legendre(16)
-        total = numpy.zeros_like(self.half_angle)
-        for node, weight in zip(nodes, weights, strict=True):
-            part = State(kernel=self.kernel, gap=self.gap, grid=self.grid, half_angle=node * self.half_angle)
-            total += weight * self.half_angle * part.force * part.widening
-        return total
+        nodes, weights = (numpy.array(part) for part in gauss_legendre(16))
+        angles = (nodes[:, None] * self.half_angle).ravel()
+        parts = State(kernel=self.kernel, gap=self.gap, grid=self.grid, half_angle=angles)
+        power = (parts.force * parts.widening).reshape(len(nodes), -1)
+        return self.half_angle * (weights @ power)
 
     @cached_property
     def _expansion(self) -> Array:

@@ -8,6 +8,7 @@ from functools import lru_cache
 from .. import arrays
 from ..checks import require
 from ..contact import Contact
+from ..gaps import CircularGap, LinearGap
 from ..joint import Joint
 from ..models.base import Answer, Model
 from ..models.by_joint import taken_apart
@@ -15,7 +16,6 @@ from ..sources import Source
 from ..validity import SMALL_STRAIN, Range
 from .contact import ElasticContact
 from .curve import Curve
-from .gaps import CircularGap, LinearGap
 from .kernel import Kernel
 from .modes import ball_of, socket_of
 

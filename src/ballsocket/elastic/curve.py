@@ -8,9 +8,9 @@ from math import radians
 
 import numpy
 
+from ..gaps import Gap
 from ..models.by_joint import Piece
 from .abel import State
-from .gaps import Gap
 from .kernel import Kernel, grid
 
 Array = numpy.ndarray
@@ -19,12 +19,13 @@ LIMIT = radians(85.0)
 """The widest contact that is solved."""
 
 _GRIDS = (14, 20, 28, 40, 56, 80)
-_COARSE = 8
+_COARSE = 10
 _STEPS = 8
 _CLOSE = 1e-12
 _SAFETY = 3.0
 _END = 1.03 * LIMIT
-_ANGLES = numpy.radians([0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85])
+_DEGREES = (0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85)
+_ANGLES = numpy.append(numpy.radians(_DEGREES), _END)
 _LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
 
 
@@ -42,12 +43,13 @@ class Curve:
         given = load[touching]
         angle = given if kind == "half_angle" else self._guess(kind, given)
         for points in _GRIDS:
-            state, miss = self._solved(kind, given, _bounded(angle), points)
-            error = {name: error + miss for name, error in _errors(kind, state).items()}
-            reached = (state.half_angle <= LIMIT) & (angle <= _END)
+            state, miss = self._solved(kind, given, self._bounded(angle), points)
+            reached = (state.half_angle <= LIMIT) & (state.half_angle < self._end) & _sound(state)
+            floor = miss + self.kernel.tolerance
+            error = {name: error + floor for name, error in _errors(kind, state).items()}
             if not any(numpy.any(part[reached] > self.tolerance) for part in error.values()):
                 break
-            angle = numpy.where(angle <= _END, state.half_angle, angle)
+            angle = numpy.where(angle <= self._end, state.half_angle, angle)
         return Piece(load=load, touching=touching, state=state, reached=reached, error=error)
 
     def _state(self, angle: Array, points: int) -> State:
@@ -63,16 +65,45 @@ class Curve:
             if not numpy.any(abs(miss) > _CLOSE):
                 break
             step = numpy.clip(miss / _steepness(kind, state), -0.5, 0.5)
-            state = self._state(_bounded(state.half_angle * numpy.exp(-step)), points)
+            state = self._state(self._bounded(state.half_angle * numpy.exp(-step)), points)
         return state, abs(miss)
+
+    def _bounded(self, angle: Array) -> Array:
+        """Angles up to where contacts are still computed to see that they are too wide; so is what is no number."""
+        return numpy.where(angle < self._end, angle, self._end)
+
+    @cached_property
+    def _end(self) -> float:
+        """A little beyond the widest contact that is solved, or just before the ball fits perfectly, if that is less.
+
+        At the perfect fit the indentation is infinite, and beyond it there is no contact.
+        """
+        sound = _sound(self._first_look)
+        if sound.all():
+            return _END
+        first = int(numpy.argmin(sound))
+        low, high = (_ANGLES[first - 1] if first else 0.0), _ANGLES[first]
+        for _ in range(16):
+            middle = (low + high) / 2
+            low, high = (middle, high) if _sound(self._state(numpy.array([middle]), _GRIDS[0])).all() else (low, middle)
+        return float(low)
+
+    @cached_property
+    def _first_look(self) -> State:
+        return self._state(_ANGLES, _COARSE)
 
     @cached_property
     def _coarse(self) -> State:
-        return self._state(_ANGLES, _COARSE)
+        """A few contacts, all of them sound."""
+        if self._end == _END:
+            return self._first_look
+        inside = _ANGLES[self._end > _ANGLES]
+        room = self._end - inside[-1]
+        return self._state(numpy.append(inside, self._end - room * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE)
 
     def _guess(self, kind: str, given: Array) -> Array:
         """The half angle by cubics between a few coarse contacts; like a power of the load below the first."""
-        x, y = numpy.log(_LAWS[kind](self._coarse)), numpy.log(_ANGLES)
+        x, y = numpy.log(_LAWS[kind](self._coarse)), numpy.log(self._coarse.half_angle)
         slope = 1 / _steepness(kind, self._coarse)
         goal = numpy.log(given)
         i = numpy.clip(numpy.searchsorted(x, goal) - 1, 0, len(x) - 2)
@@ -86,9 +117,10 @@ class Curve:
         return numpy.exp(numpy.where(t < 0, y[0] + slope[0] * (goal - x[0]), inside))
 
 
-def _bounded(angle: Array) -> Array:
-    """Angles up to a little beyond the widest contact; what is no number counts as too wide."""
-    return numpy.where(angle < _END, angle, _END)
+def _sound(state: State) -> Array:
+    """Whether there is a contact: not beyond the perfect fit, nor where the ball does not reach."""
+    with numpy.errstate(invalid="ignore"):
+        return (state.indentation > 0) & (state.force > 0) & (state.max_pressure > 0)
 
 
 def _steepness(kind: str, state: State) -> Array:

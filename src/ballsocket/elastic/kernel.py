@@ -23,7 +23,9 @@ from .modes import Ball, Socket
 Array = numpy.ndarray
 
 _ORDER = 6
-_BLOCK = 20_000  # waves at a time: what stays in the cache
+_BLOCK = 5_000  # waves at a time: what stays in the cache
+_PANEL_STEP = 8
+_LONGEST_PANEL = 96
 _TERMS = 30  # of the power series of the closed forms, which converge like (x/2π)²
 
 
@@ -121,28 +123,23 @@ class Kernel:
         weights *= edge * grid.slope
         left, right = weights[..., : grid.points][..., ::-1], weights[..., grid.points :]
         even, odd = (left + right) / 2, (right - left) / 2
-        fine = self._fine(grid, float(half_angle.max(initial=0.0)))
-        size = max(1, _BLOCK // (fine.points * len(self.rest)))
+        size = max(1, _BLOCK // (grid.points * len(self.rest)))
         for first in range(0, len(half_angle), size):
             block = slice(first, first + size)
-            self._add_rest(half_angle[block, None], grid, fine, even[block], odd[block])
+            self._add_rest(half_angle[block, None], grid, even[block], odd[block])
         return even, odd
 
-    def _add_rest(self, edge: Array, grid: Grid, fine: Grid, even: Array, odd: Array) -> None:
-        """Adds the rest of the modes to the operators in place."""
-        even_waves, odd_waves = _waves(edge * grid.place, len(self.rest))
-        near = fine is grid
-        fine_waves = (even_waves[:, :-1], odd_waves[:, :-1]) if near else _waves(edge * fine.place[:-1], len(self.rest))
-        width = (fine.right[1] * fine.slope[fine.points :])[:, None]
-        strength = edge[..., None] * self.rest
-        even_width, odd_width = width * _even_between(grid, fine), width * _odd_between(grid, fine)
-        even += (even_waves * strength) @ (fine_waves[0].swapaxes(-1, -2) @ even_width)
-        odd += (odd_waves * strength) @ (fine_waves[1].swapaxes(-1, -2) @ odd_width)
+    def _add_rest(self, edge: Array, grid: Grid, even: Array, odd: Array) -> None:
+        """Adds the rest of the modes to the operators in place.
 
-    def _fine(self, given: Grid, half_angle: float) -> Grid:
-        """Points close enough for the waves of the rest, which are shorter than what the pressure needs."""
-        turns = len(self.rest) * half_angle * pi / 4
-        return given if turns < given.points / 2 else grid(10 * ceil((given.points / 2 + turns) / 10))
+        Their waves are shorter than what the pressure needs, so they are integrated at points of their own.
+        """
+        fine = _panels(grid.points / 2 + len(self.rest) * float(edge.max()) * pi / 4)
+        even_waves, odd_waves = _waves(edge * grid.place, len(self.rest))
+        fine_even, fine_odd = _waves(edge * fine.place, len(self.rest))
+        strength = edge[..., None] * self.rest
+        even += (even_waves * strength) @ (fine_even.swapaxes(-1, -2) @ _even_between(grid, fine))
+        odd += (odd_waves * strength) @ (fine_odd.swapaxes(-1, -2) @ _odd_between(grid, fine))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -228,23 +225,60 @@ def _waves(angle: Array, count: int) -> tuple[Array, Array]:
     return numpy.ascontiguousarray(waves.real), numpy.ascontiguousarray(waves.imag)
 
 
-@cache
-def _even_between(coarse: Grid, fine: Grid) -> Array:
-    """From an even function at the points of one grid to those of another."""
-    return _between(coarse, fine, 0)
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Panels:
+    """Gauss-Legendre points in equal panels of y from 0 to 1."""
+
+    panels: int
+    points: int
+
+    @cached_property
+    def nodes(self) -> tuple[Array, Array]:
+        """y and weights."""
+        x, w = numpy.polynomial.legendre.leggauss(self.points)
+        y = (numpy.arange(self.panels)[:, None] + (1 + x) / 2).ravel() / self.panels
+        return y, numpy.tile(w / (2 * self.panels), self.panels)
+
+    @property
+    def place(self) -> Array:
+        """t/ε."""
+        return numpy.sin(pi / 2 * self.nodes[0])
+
+    @property
+    def width(self) -> Array:
+        """Weights of integrals over t/ε."""
+        y, w = self.nodes
+        return pi / 2 * numpy.cos(pi / 2 * y) * w
+
+
+def _panels(points: float) -> _Panels:
+    """At least that many points, in steps so that few different sets are made."""
+    if points <= _LONGEST_PANEL:
+        return _panels_of(1, _PANEL_STEP * ceil(points / _PANEL_STEP))
+    return _panels_of(ceil(points / _LONGEST_PANEL), _LONGEST_PANEL)
 
 
 @cache
-def _odd_between(coarse: Grid, fine: Grid) -> Array:
-    return _between(coarse, fine, 1)
+def _panels_of(panels: int, points: int) -> _Panels:
+    return _Panels(panels=panels, points=points)
 
 
-def _between(coarse: Grid, fine: Grid, parity: int) -> Array:
-    size = coarse.points
-    (y, w), (z, _) = coarse.right, fine.right
-    degree = 2 * numpy.arange(size) + parity
-    P, Q = (numpy.polynomial.legendre.legvander(part, 2 * size)[:, degree] for part in (y, z))
-    return Q @ ((2 * degree[:, None] + 1) * (w[:, None] * P).T)
+@cache
+def _even_between(grid: Grid, fine: _Panels) -> Array:
+    """From an even function at the points of a grid to its weighted values at those of the panels."""
+    return _between(grid, fine, 0)
+
+
+@cache
+def _odd_between(grid: Grid, fine: _Panels) -> Array:
+    return _between(grid, fine, 1)
+
+
+def _between(grid: Grid, fine: _Panels, parity: int) -> Array:
+    y, w = grid.right
+    degree = 2 * numpy.arange(grid.points) + parity
+    P, Q = (numpy.polynomial.legendre.legvander(part, 2 * grid.points)[:, degree] for part in (y, fine.nodes[0]))
+    return fine.width[:, None] * (Q @ ((2 * degree[:, None] + 1) * (w[:, None] * P).T))
 
 
 def _terms(reach: float) -> int:

@@ -7,13 +7,14 @@ in mm.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi, sin
+from math import pi
 from typing import ClassVar
 
 import numpy
 
-from ..arrays import gauss_legendre
+from .arrays import gauss_legendre
 
 Array = numpy.ndarray
 
@@ -89,24 +90,33 @@ class CircularGap:
 
 Gap = LinearGap | CircularGap
 
-_NODES, _WEIGHTS = gauss_legendre(24)
-_TURNS = tuple((sin(pi / 2 * x), pi / 2 * weight) for x, weight in zip(_NODES, _WEIGHTS, strict=True))
+_NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(24))
+_SINES, _TURNS = numpy.sin(pi / 2 * _NODES), pi / 2 * _WEIGHTS
+
+Parts = Callable[[Array], tuple[Array, ...]]
+"""u and its derivatives in w, of w."""
 
 
-def _transform(t: Array, parts) -> Array:  # type: ignore[no-untyped-def]
+def _at_turns(t: Array, parts: Parts) -> tuple[Array, tuple[Array, ...]]:
+    """sin θ along a new first axis, and the parts at w = (1 - cos t) sin² θ."""
+    sine = _SINES.reshape(-1, *(1 for _ in numpy.shape(t)))
+    return sine, parts(2 * numpy.sin(t / 2) ** 2 * sine**2)
+
+
+def _mean(values: Array) -> Array:
+    """∫ values sin θ dθ over [0, π/2]."""
+    return numpy.tensordot(_TURNS * _SINES, values, axes=1)
+
+
+def _transform(t: Array, parts: Parts) -> Array:
     """A[u] = cos(t/2) ∫ u sin θ dθ + 2 sin(t/2) sin t ∫ u' sin³ θ dθ over [0, π/2], with w = (1 - cos t) sin² θ."""
-    total = numpy.zeros(())
-    for sine, weight in _TURNS:
-        u, u1 = parts(2 * numpy.sin(t / 2) ** 2 * sine**2)
-        total = total + weight * sine * (numpy.cos(t / 2) * u + 2 * numpy.sin(t / 2) * numpy.sin(t) * sine**2 * u1)
-    return total
+    sine, (u, u1) = _at_turns(t, parts)
+    return numpy.cos(t / 2) * _mean(u) + 2 * numpy.sin(t / 2) * numpy.sin(t) * _mean(sine**2 * u1)
 
 
-def _transform_slope(t: Array, parts) -> Array:  # type: ignore[no-untyped-def]
-    half, total = numpy.sin(t / 2), numpy.zeros(())
-    for sine, weight in _TURNS:
-        u, u1, u2 = parts(2 * half**2 * sine**2)
-        first = 2 * numpy.cos(t / 2) * numpy.sin(t) + 2 * half * numpy.cos(t)
-        second = 2 * half * numpy.sin(t) ** 2 * sine**2
-        total = total + weight * sine * (-half / 2 * u + sine**2 * (first * u1 + second * u2))
-    return total
+def _transform_slope(t: Array, parts: Parts) -> Array:
+    sine, (u, u1, u2) = _at_turns(t, parts)
+    half = numpy.sin(t / 2)
+    first = 2 * numpy.cos(t / 2) * numpy.sin(t) + 2 * half * numpy.cos(t)
+    second = 2 * half * numpy.sin(t) ** 2
+    return -half / 2 * _mean(u) + first * _mean(sine**2 * u1) + second * _mean(sine**4 * u2)
