@@ -100,16 +100,18 @@ def test_a_thin_compressible_liner_is_a_row_of_columns():
 
 
 def test_a_thin_incompressible_liner_is_squeezed_like_a_film():
-    """u = -(L³/3G) ∇²p: on a flat disc d = a²/(8 R*) more than columns, and F = π G a⁶ /(64 R* L³)-like growth."""
+    """u = -(L³/3G) ∇²p: d -> a²/(4 R*) and F -> π G a⁶/(32 R* L³) for L << a, with corrections in L/a."""
     nearly = bs.Material(young=1000.0, poisson=0.4999)
-    contacts = [
-        bs.Exact().press(
-            bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=thickness, liner=nearly),
-            half_angle=np.radians(30.0),
-        )
-        for thickness in (0.6, 1.2)
-    ]
-    assert contacts[0].force / contacts[1].force == pytest.approx(8.0, rel=0.4)  # ~ L^-3
+    angle, R, G = np.radians(10.0), 17.9 * 18.0 / 0.1, 1000.0 / (2 * 1.4999)
+    a = 18.0 * np.sin(angle)
+    depths, forces = [], []
+    for thickness in (0.4, 0.2):
+        liner = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=thickness, liner=nearly)
+        contact = bs.Exact().press(liner, half_angle=angle)
+        depths.append(contact.indentation * 4 * R / a**2)
+        forces.append(contact.force * 32 * R * thickness**3 / (np.pi * G * a**6))
+    assert 2 * depths[1] - depths[0] == pytest.approx(1.0, abs=0.08)
+    assert 2 * forces[1] - forces[0] == pytest.approx(1.0, abs=0.15)
 
 
 def test_uniform_pressure_finds_the_vessel():
@@ -209,7 +211,7 @@ def test_half_angles_beyond_85_degrees_are_not_reached():
 
 
 def test_what_cannot_be_solved_is_refused():
-    with pytest.raises(ValueError, match=r"exact has no answer for ν = 0\.5: a bonded liner of ν = 0\.5"):
+    with pytest.raises(ValueError, match=r"exact has no answer for ν = 0\.5: between fixed walls a liner of ν = 0\.5"):
         bs.Exact().press(
             bs.Joint(
                 ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.5)
@@ -228,6 +230,12 @@ def test_what_cannot_be_solved_is_refused():
         bs.Exact().press(RIGID, force=0.0).stress(0.0, 1.0)
     with pytest.raises(ValueError, match="depth = -1 is not allowed"):
         bs.Exact().press(RIGID, force=1.0).stress(0.0, -1.0)
+    with pytest.raises(ValueError, match="depth = 7 is not allowed: a depth .mm. lies between 0 and 6.75"):
+        bs.Exact().press(RIGID, force=1.0).stress(0.0, 7.0)
+    with pytest.raises(ValueError, match="half_angle = .* inside a contact of less than 1 degree ask hertz"):
+        bs.Exact().press(RIGID, force=1e-6).displacement(0.0)
+    with pytest.raises(TypeError, match="tolerance must be a number"):
+        bs.Exact(tolerance="a")
 
 
 def test_stress_at_the_surface_is_the_pressure():
@@ -283,3 +291,51 @@ def test_kernel_is_the_sum_of_its_modes():
         split = kernel._horner(k._logarithm, square) * np.log(x) + kernel._horner(k._modulus, square) * x
         split += kernel._horner(k._smooth, square) + np.sum(k.rest * np.cos((np.arange(len(k.rest)) + 0.5) * x))
         assert split[0] == pytest.approx(plain, rel=1e-7, abs=1e-9)
+
+
+def test_the_perfect_fit_ends_it():
+    """In a massive socket the ball fills its socket at 83.55°: larger loads approach it, larger angles are none."""
+    massive = bs.Joint(
+        ball_radius=18.0, clearance=0.1, liner_thickness=np.inf, liner=bs.Material(young=1000.0, poisson=0.3)
+    )
+    contact = bs.Exact().press(massive, half_angle=np.radians([82.75, 83.5, 84.0]))
+    np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OK, bs.Status.NOT_REACHED])
+    assert np.isnan(contact.max_pressure[2])
+    assert "less where the ball fills its socket before" in contact.notes[0]
+    for name in ("force", "indentation"):
+        back = bs.Exact().press(massive, **{name: getattr(contact, name)[:2]})
+        np.testing.assert_allclose(back.half_angle, contact.half_angle[:2], rtol=1e-9)
+
+
+def test_an_incompressible_liner_that_can_go_elsewhere_has_an_answer():
+    soft = bs.Material(young=1000.0, poisson=0.5)
+    backed = bs.Joint(
+        ball_radius=17.9,
+        clearance=0.1,
+        liner_thickness=6.75,
+        liner=soft,
+        backing=(bs.Layer(thickness=np.inf, material=bs.UHMWPE),),
+    )
+    massive = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=np.inf, liner=soft)
+    for joint_here in (backed, massive):
+        contact = bs.Exact().press(joint_here, force=1000.0)
+        assert contact.status is bs.Status.OK
+        assert contact.error["max_pressure"] < 1e-6
+
+
+def test_a_loose_ball_is_told_to_ask_for_the_circle():
+    loose = bs.Joint(ball_radius=17.0, clearance=1.0, liner_thickness=6.75, liner=bs.UHMWPE)
+    assert not bs.Exact().press(loose, force=3000.0).valid
+    assert bs.Exact(gap=bs.CircularGap).press(loose, force=3000.0).valid
+    wide = bs.Exact(gap=bs.CircularGap).press(loose, half_angle=np.radians([60.0, 80.0]))
+    np.testing.assert_array_equal(wide.status, [bs.Status.OK, bs.Status.NOT_REACHED])
+    assert np.isnan(wide.max_pressure[1])
+
+
+@pytest.mark.parametrize("gap", [bs.LinearGap, bs.CircularGap])
+def test_energy_is_the_work_and_stiffness_the_slope(gap):
+    d = np.array([0.005, 0.02, 0.04])
+    step = 1e-4 * d
+    above, here, below = (bs.Exact(gap=gap, tolerance=1e-9).press(HIP, indentation=x) for x in (d + step, d, d - step))
+    np.testing.assert_allclose((above.energy - below.energy) / (2 * step), here.force, rtol=1e-6)
+    np.testing.assert_allclose((above.force - below.force) / (2 * step), here.stiffness, rtol=1e-6)

@@ -34,6 +34,11 @@ def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
     """K R2/E = C1 + C2 (R2/L) + C3 (R2/L)², Eq. (18), by least squares of relative errors, constants 0 or more."""
     from scipy.optimize import nnls
 
+    thicknesses = numpy.unique(_values(joint.thickness_ratio)).size
+    if thicknesses < 3:
+        raise ValueError(
+            f"{thicknesses} thicknesses are not enough for the three constants of Eq. (18): give 3 or more"
+        )
     ratio, scaled = numpy.broadcast_arrays(_values(joint.thickness_ratio), wanted * _values(joint.socket_radius))
     scaled = scaled / _values(joint.liner.young)
     basis = numpy.stack([ratio.ravel() ** k for k in range(3)], axis=-1) / scaled.ravel()[:, None]

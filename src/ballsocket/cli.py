@@ -127,6 +127,10 @@ def calibrate(
 ) -> None:
     """Fit the closed form's foundation modulus to the exact answer: for one joint, or as the paper did (Table 3)."""
     if joint is None:
+        if force or thickness or form != "constant":
+            raise ValueError(
+                "--force, --thickness and --form need a joint; without one Table 3 is fitted as the paper did"
+            )
         columns = refit_table_3()
         if as_json:
             _echo_json({"version": bs.__version__, "table_3": [column.summary() for column in columns]})

@@ -24,6 +24,8 @@ class Answerer(Protocol):
     def name(self) -> str: ...
     @property
     def validity(self) -> tuple[Range, ...]: ...
+    @property
+    def reach(self) -> str: ...
     def force_vector(self, joint: Joint, displacement: Array) -> Array: ...
 
 
@@ -195,7 +197,8 @@ class Contact:
         """In words: what has no answer, and what lies outside the model's validity."""
         notes = []
         for status in list(Status)[1:]:
-            notes += self._note(self.status != int(status), status.sentence)
+            more = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
+            notes += self._note(self.status != int(status), status.sentence + more)
         for limit in self.model.validity:
             notes += self._note(limit.holds(self) | self._failed, limit.sentence)
         return tuple(notes)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from math import inf
+from typing import Any
 
 from .. import arrays
-from ..checks import require
+from ..checks import numeric, require
 from ..contact import Contact
 from ..gaps import CircularGap, LinearGap
-from ..joint import Joint
+from ..joint import Joint, Support
 from ..models.base import Answer, Model
 from ..models.by_joint import taken_apart
 from ..sources import Source
@@ -53,7 +55,10 @@ class Exact(Model):
     gap: type[LinearGap] | type[CircularGap] = LinearGap
 
     def __post_init__(self) -> None:
-        good = 1e-10 <= self.tolerance <= 1e-2
+        tolerance = numeric("tolerance", self.tolerance)
+        if not arrays.is_plain(tolerance):
+            raise TypeError(f"tolerance must be one number, got {self.tolerance!r}")
+        good = 1e-10 <= tolerance <= 1e-2
         require("tolerance", self.tolerance, good, "double precision keeps a relative tolerance of 1e-10 to 1e-2")
         if self.gap not in (LinearGap, CircularGap):
             raise TypeError(f"gap must be LinearGap or CircularGap, got {self.gap!r}")
@@ -78,16 +83,20 @@ class Exact(Model):
     @property
     def domain(self) -> tuple[Range, ...]:
         fit = "without clearance every load gives the same half angle, beyond 85°: ask cosine-limit"
-        incompressible = "a bonded liner of ν = 0.5 does not give way to a uniform pressure: 0.4999 is solved"
+        locked = "between fixed walls a liner of ν = 0.5 does not give way to a uniform pressure: 0.4999 is solved"
         return (
             Range(quantity="joint.clearance", symbol="c", low=0.0, why=fit),
-            Range(quantity="joint.liner.poisson", symbol="ν", low=-1.0, high=0.49991, why=incompressible),
+            Range(quantity=_locking, symbol="ν", low=-1.0, high=0.49991, why=locked),
             Range(quantity="joint.thickness_ratio", symbol="R2/L", high=200.0, why="so thin a liner is not solved"),
         )
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        return (SMALL_STRAIN,)
+        return (_CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
+
+    @property
+    def reach(self) -> str:
+        return "half angles up to 85°, less where the ball fills its socket before"
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         solution = taken_apart(self, joint, load, lambda one, loads: _curve(self, one).press(kind, loads))
@@ -99,6 +108,23 @@ class Exact(Model):
             converged=solution.worst <= max(self.tolerance, 10 * arrays.rounding(load)),
             beyond_equator=indentation < 0,
         )
+
+
+_CLOSE_FIT = Range(
+    quantity="joint.clearance_ratio",
+    symbol="c/R2",
+    high=0.02,
+    why="Eq. (6) neglects sin²φ, 1 % of p0 here: ask Exact(gap=CircularGap)",
+)
+
+
+def _locking(contact: Any) -> Array:
+    """Poisson's ratio of a liner between the ball and a rigid wall; less than that of one that can go elsewhere."""
+    joint = contact.joint
+    nu = joint.liner.poisson
+    if joint.backing or joint.support is Support.FREE:
+        return arrays.clip(nu, -1.0, 0.4999)
+    return arrays.where(joint.liner_thickness < inf, nu, arrays.clip(nu, -1.0, 0.4999))
 
 
 @lru_cache(maxsize=256)

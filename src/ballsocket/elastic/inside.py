@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log1p
+from math import log1p, radians
 
 import numpy
 
@@ -11,8 +11,11 @@ from .abel import State
 
 Array = numpy.ndarray
 
-_MOST = 2000
-_FEWEST = 200
+NARROWEST = radians(1.0)
+"""The narrowest contact whose inside is summed."""
+
+_WAVES = 600  # n ε up to which modes are summed at the surface
+_FEWEST, _MOST = 2000, 35_000
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,31 +57,31 @@ class Peak:
 
 def surface_displacement(state: State, angle: Array) -> Array:
     """Radial displacement of the socket's surface in mm, outwards, of one contact; shape of `angle`."""
-    amplitudes = _tapered(state, _MOST) * state.kernel.socket.compliance(numpy.arange(_MOST))
-    return (amplitudes @ _legendre(angle.ravel(), _MOST)[0]).reshape(angle.shape)
+    count = _modes(state, 0.0)
+    amplitudes = _tapered(state, count) * state.kernel.socket.compliance(numpy.arange(count))
+    return (amplitudes @ _legendre(angle.ravel(), count)[0]).reshape(angle.shape)
 
 
 def stress(state: State, angle: Array, depth: Array) -> Stress:
     """Stresses of one contact at polar angles (rad) and depths below the surface of the socket (mm)."""
     angle, depth = numpy.broadcast_arrays(angle, depth)
-    socket = state.kernel.socket
+    angles, which = numpy.unique(angle.ravel(), return_inverse=True)
     depths, level = numpy.unique(depth.ravel(), return_inverse=True)
-    count = _modes_at(float(depths.min(initial=numpy.inf, where=depths > 0)), socket.radius)
-    count = _MOST if (depths == 0).any() else count
-    fields = socket.fields(numpy.arange(count), socket.radius + depths)
-    P, slope = _legendre(angle.ravel(), count)
+    count = _modes(state, float(depths[0]) if depths.size else 0.0)
+    fields = state.kernel.socket.fields(numpy.arange(count), state.gap.socket_radius + depths)
+    P, slope = _legendre(angles, count)
     modes = _tapered(state, count)
 
     def total(field: Array, wave: Array) -> Array:
-        return numpy.einsum("n,np,np->p", modes, field[:, level.ravel()], wave).reshape(angle.shape)
+        table = (modes[:, None] * field).T @ wave  # depths by angles
+        return table[level.ravel(), which.ravel()].reshape(angle.shape)
 
-    sine, cosine = numpy.sin(angle.ravel()), numpy.cos(angle.ravel())
-    tilt = total(fields.sigma_cot, -cosine * slope)
+    tilt = total(fields.sigma_cot, -numpy.cos(angles) * slope)
     return Stress(
         radial=total(fields.sigma_rr, P),
         meridional=total(fields.sigma_phiphi, P) - tilt,
         hoop=total(fields.sigma_thetatheta, P) + tilt,
-        shear=total(fields.sigma_rphi, -sine * slope),
+        shear=total(fields.sigma_rphi, -numpy.sin(angles) * slope),
     )
 
 
@@ -105,9 +108,11 @@ def _around(values: Array, i: int) -> Array:
     return numpy.append(below, numpy.linspace(values[i], high, _HALF + 1)[1:])
 
 
-def _modes_at(depth: float, radius: float) -> int:
-    """How many modes reach a depth: they fade like (1 + depth/radius)^-n."""
-    return int(numpy.clip(30 / log1p(depth / radius), _FEWEST, _MOST))
+def _modes(state: State, depth: float) -> int:
+    """How many modes are summed: enough waves over the contact, fewer where they fade like (1 + depth/R2)^-n."""
+    surface = numpy.clip(_WAVES / float(state.half_angle[0]), _FEWEST, _MOST)
+    fading = 35 / log1p(depth / state.gap.socket_radius) if depth > 0 else _MOST
+    return int(min(surface, max(fading, 200)))
 
 
 def _tapered(state: State, count: int) -> Array:

@@ -71,6 +71,11 @@ class Model(ABC):
     def validity(self) -> tuple[Range, ...]: ...
 
     @property
+    def reach(self) -> str:
+        """What loads have an answer, in words for those that have none; empty where there is nothing to say."""
+        return ""
+
+    @property
     def parameters(self) -> tuple[Array, ...]:
         """Numbers of the model's own that may be arrays and broadcast against joint and load."""
         return ()
