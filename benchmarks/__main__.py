@@ -14,6 +14,8 @@ BENCHMARKS = {
     "inverse": ("inverse", "ten million inverse solves of the paper's model: compiled, NumPy, JAX, SciPy"),
     "opensim": ("opensim_rival", "one force evaluation against OpenSim's ElasticFoundationForce"),
     "plane-layer": ("plane_layer", "one case of the numerical plane layer, alone and in a batch"),
+    "random-joints": ("random_joints", "a hundred thousand random joints through the exact solver, one by one"),
+    "exact": ("exact", "the exact answer: a first load, further loads, a curve, a sweep; and CalculiX"),
     "import": ("start", "how long a fresh interpreter takes to import the package and to answer a joint file"),
 }
 """Name: the module with a `measure()`, and one line on it."""
@@ -29,7 +31,7 @@ def main(words: Sequence[str] | None = None) -> int:
             return _unknown(name)
     if not given.names:
         for name, (_, title) in BENCHMARKS.items():
-            print(f"{name:<12} {title}")
+            print(f"{name:<14} {title}")
     for name in given.names:
         module, title = BENCHMARKS[name]
         found = import_module(f".{module}", __package__).measure()
