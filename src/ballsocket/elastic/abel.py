@@ -63,10 +63,14 @@ class State:
         return even, odd
 
     @cached_property
+    def _inverse(self) -> Array:
+        """Of the even equation at the points: it has three right-hand sides, one after the other."""
+        return numpy.linalg.inv(self._operators[0][:, :-1])
+
+    @cached_property
     def _edge_weights(self) -> Array:
         """From a right-hand side at the points to the integral at t = ε."""
-        even = self._operators[0]
-        return numpy.linalg.solve(even[:, :-1].swapaxes(-1, -2), even[:, -1, :, None])[..., 0]
+        return (self._operators[0][:, -1:] @ self._inverse)[:, 0]
 
     def _at_edge(self, side: Array) -> Array:
         """H(ε) of a right-hand side at the targets."""
@@ -100,9 +104,8 @@ class State:
     @cached_property
     def error(self) -> Array:
         """How far the two solutions disagree: H at the points against the integral of G, over the largest H."""
-        even = self._operators[0][:, :-1]
         side = self.gap.transform(self._places, self.indentation[:, None])
-        H = numpy.linalg.solve(even, side[..., None])[..., 0]
+        H = (self._inverse @ side[..., None])[..., 0]
         steps = self._G[0] * (self.grid.slope[self.grid.points :] * self.half_angle[:, None])
         return numpy.max(abs(H - steps @ self.grid.to_edge.T), axis=-1) / numpy.max(abs(H), axis=-1)
 
@@ -133,7 +136,7 @@ class State:
     @cached_property
     def stiffness(self) -> Array:
         """dF/dd in N/mm: since G does not jump at the edge, that of a punch which the contact does not outgrow."""
-        punch = numpy.linalg.solve(self._operators[0][:, :-1], self._deepening[:, :-1, None])[..., 0]
+        punch = (self._inverse @ self._deepening[:, :-1, None])[..., 0]
         total = numpy.sum(self._weights * numpy.cos(1.5 * self._places) * punch, axis=-1)
         return 2 * pi * self._area * total / self.kernel.compliance
 

@@ -21,7 +21,7 @@ LIMIT = radians(85.0)
 _GRIDS = (14, 20, 28, 40, 56, 80)
 _COARSE = 10
 _STEPS = 8
-_CLOSE = 1e-12
+_CLOSE = 1e-10
 _SAFETY = 3.0
 _END = 1.03 * LIMIT
 _DEGREES = (0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85)
@@ -101,10 +101,16 @@ class Curve:
         room = self._end - inside[-1]
         return self._state(numpy.append(inside, self._end - room * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE)
 
+    @cached_property
+    def _knots(self) -> dict[str, tuple[Array, Array, Array]]:
+        """ln(load), ln ε and their slope at the coarse contacts."""
+        coarse = self._coarse
+        y = numpy.log(coarse.half_angle)
+        return {kind: (numpy.log(law(coarse)), y, 1 / _steepness(kind, coarse)) for kind, law in _LAWS.items()}
+
     def _guess(self, kind: str, given: Array) -> Array:
         """The half angle by cubics between a few coarse contacts; like a power of the load below the first."""
-        x, y = numpy.log(_LAWS[kind](self._coarse)), numpy.log(self._coarse.half_angle)
-        slope = 1 / _steepness(kind, self._coarse)
+        x, y, slope = self._knots[kind]
         goal = numpy.log(given)
         i = numpy.clip(numpy.searchsorted(x, goal) - 1, 0, len(x) - 2)
         width, t = x[i + 1] - x[i], (goal - x[i]) / (x[i + 1] - x[i])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import inf, prod
 from types import SimpleNamespace
@@ -52,18 +52,29 @@ def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve) -> Pieced
     TypeError
         Numbers that are not known yet (inside `jax.jit`, `jax.grad`).
     """
-    numbers = [_values(model, number) for number in (*joint.numbers(), load)]
-    table = numpy.stack([part.ravel() for part in numpy.broadcast_arrays(*numbers)]).astype(float)
-    joints, which = numpy.unique(table[:-1], axis=1, return_inverse=True)
+    numbers = [_values(model, number) for number in joint.numbers()]
+    loads = _values(model, load)
+    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, loads)))
+    loads = numpy.broadcast_to(loads, shape).ravel().astype(float)
+    pieces = []
+    for column, place in _columns(numbers, shape):
+        one = joint.with_numbers(column)
+        if all(limit.strictly_holds(SimpleNamespace(joint=one)) for limit in model.domain):
+            pieces.append((place, solve(one, loads[place])))
+    return PiecedSolution(like=load, shape=shape, pieces=tuple(pieces))
+
+
+def _columns(numbers: list[numpy.ndarray], shape: tuple[int, ...]) -> Iterator[tuple[list[float], numpy.ndarray]]:
+    """Each joint's numbers, with the places in the flat shape where it stands."""
+    if all(number.size == 1 for number in numbers):
+        yield [float(number.item()) for number in numbers], numpy.arange(prod(shape))
+        return
+    table = numpy.stack([numpy.broadcast_to(number, shape).ravel() for number in numbers]).astype(float)
+    joints, which = numpy.unique(table, axis=1, return_inverse=True)
     order = numpy.argsort(which.ravel(), kind="stable")
     ends = numpy.cumsum(numpy.bincount(which.ravel(), minlength=joints.shape[1]))
-    pieces = []
     for column, place in zip(joints.T, numpy.split(order, ends[:-1]), strict=False):
-        one = joint.with_numbers(column.tolist())
-        if all(limit.strictly_holds(SimpleNamespace(joint=one)) for limit in model.domain):
-            pieces.append((place, solve(one, table[-1, place])))
-    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in numbers))
-    return PiecedSolution(like=load, shape=shape, pieces=tuple(pieces))
+        yield column.tolist(), place
 
 
 def _values(model: Model, number: Array) -> numpy.ndarray:
