@@ -16,6 +16,10 @@ BENCHMARKS = {
     "plane-layer": ("plane_layer", "one case of the numerical plane layer, alone and in a batch"),
     "random-joints": ("random_joints", "a hundred thousand random joints through the exact solver, one by one"),
     "exact": ("exact", "the exact answer: a first load, further loads, a curve, a sweep; and CalculiX"),
+    "tabulated": (
+        "tabulated",
+        "a million presses by force from the tables, beside the exact solver and the paper's model",
+    ),
     "import": ("start", "how long a fresh interpreter takes to import the package and to answer a joint file"),
 }
 """Name: the module with a `measure()`, and one line on it."""

@@ -13,7 +13,8 @@ from .calibrate import as_constant, as_corrected_vessel, as_polynomial, calibrat
 from .compare import compare
 from .contact import Contact
 from .elastic.axisymmetric import Exact
-from .elastic.gaps import CircularGap, LinearGap
+from .gaps import CircularGap, LinearGap
+from .elastic.table import Tabulated
 from .files import read_joint
 from .joint import Joint, Layer, Material, Support
 from .models.adhesion import AdhesiveSocket
@@ -92,6 +93,7 @@ __all__ = [
     "Status",
     "Steuermann",
     "Support",
+    "Tabulated",
     "Vessel",
     "as_constant",
     "as_corrected_vessel",

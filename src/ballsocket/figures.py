@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from . import arrays
+from .compare import REFERENCE
 from .contact import Contact
 
 if TYPE_CHECKING:
@@ -18,8 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Okabe & Ito's colours, safe for the colour-blind; the dashes keep the curves apart in grey
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#E69F00")
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#999999")
 _DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (2, 1.5)), (0, (7, 2, 1.5, 2)), (0, (4, 1.5, 1, 1.5, 1, 1.5)))
+_REFERENCE_STYLE = {"color": "black", "linestyle": "-", "linewidth": 2.6}
 FORMATS = ("png", "svg", "pdf")
 
 
@@ -36,14 +38,14 @@ def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact])
     Returns
     -------
     matplotlib.figure.Figure
-        Curves of models outside their validity are drawn thin.
+        The exact answer is black; curves of models outside their validity are drawn thin.
     """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10.0, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2)
     for index, (name, contact) in enumerate(contacts.items()):
-        style = _style(index, bool(contact.valid))
+        style = _REFERENCE_STYLE if name == REFERENCE else _style(index, bool(contact.valid))
         angle = _angles(contact)
         left.plot(numpy.degrees(angle), contact.pressure(angle), label=name, **style)
         curve = curves[name]

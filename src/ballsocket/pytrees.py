@@ -13,6 +13,7 @@ from typing import Any
 from jax.tree_util import register_pytree_node
 
 from .contact import Contact
+from .elastic.table import TableSolution
 from .joint import Joint, Layer, Material, unchecked
 from .models.plane_layer import LayerSolution
 from .models.refined import RefinedSolution
@@ -52,6 +53,7 @@ _register(
     ("ball_radius", "clearance", "liner_thickness", "liner", "ball", "backing"),
     ("support", "name", "source"),
 )
+_register(TableSolution, ("joint", "angle", "values"), ("file",))
 _register(LayerSolution, ("joint", "width"), ("widest",))
 _register(RefinedSolution, ("joint", "edge"), ())
 register_pytree_node(Contact, _flatten_contact, _unflatten_contact)
