@@ -1,4 +1,4 @@
-"""A million presses by force from the tables of the exact answer: one joint under many loads, and as many joints as loads.
+"""A million presses by force from the tables of the exact answer: one joint under many loads, and random joints.
 
 The aim is a million presses a second on one core. Beside it the exact solver, which answers a sample of the same
 problems, and the paper's closed form. Fair, because all run on the same inputs in NumPy on the same one core, each

@@ -13,9 +13,9 @@ from .calibrate import as_constant, as_corrected_vessel, as_polynomial, calibrat
 from .compare import compare
 from .contact import Contact
 from .elastic.axisymmetric import Exact
-from .gaps import CircularGap, LinearGap
 from .elastic.table import Tabulated
 from .files import read_joint
+from .gaps import CircularGap, LinearGap
 from .joint import Joint, Layer, Material, Support
 from .models.adhesion import AdhesiveSocket
 from .models.base import ClosedForm, Model

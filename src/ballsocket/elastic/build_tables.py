@@ -14,7 +14,6 @@ from typing import Any
 import numpy
 
 from ..gaps import LinearGap
-from ..gaps import LinearGap
 from ..joint import Joint, Material
 from . import table
 from .abel import State

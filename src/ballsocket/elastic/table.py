@@ -346,17 +346,17 @@ class Curves:
 
     def angle(self, kind: str, load: Array) -> Array:
         """ε > 0 that belongs to a load > 0; NaN beyond the tables."""
-        xp = arrays.namespace(load)
-        goal, end = ln(load), self.logarithm(kind, self.ratio**0 * LIMIT)[0]
+        xp, goal = arrays.namespace(load), ln(load)
+        start, end = self._start(kind, goal)
         power = 2.0 if kind == "force" else 0.7
         high = 0.0 * goal + _END
-        low, start = high - xp.abs(end - goal) / power, self._start(kind, goal)
+        low = high - xp.abs(end - goal) / power
 
         def law(x: Array) -> tuple[Array, Array]:
             return self.logarithm(kind, exp(x - _END) * LIMIT)
 
         start = where(start < low, low, where(start > high, high, start))
-        root = arrays.increasing_root(law, goal, low, high, start, steps=16, tolerance=1e-5)
+        root = arrays.increasing_root(law, goal, low, high, start, steps=16, tolerance=3e-3)
         return where(goal <= end + 4 * arrays.rounding(load), exp(root - _END) * LIMIT, float("nan"))
 
     def _knots(self, kind: str) -> tuple[Array, Array, Array]:
@@ -373,8 +373,8 @@ class Curves:
     def _known(self) -> dict[str, tuple[Array, Array, Array]]:
         return {}
 
-    def _start(self, kind: str, goal: Array) -> Array:
-        """The unknown by cubics between a few contacts; like a power of the load below the first."""
+    def _start(self, kind: str, goal: Array) -> tuple[Array, Array]:
+        """The unknown by cubics between a few contacts, like a power of the load below the first; and the last load."""
         xp = arrays.namespace(goal)
         if kind not in self._known:
             self._known[kind] = self._knots(kind)
@@ -392,7 +392,7 @@ class Curves:
         cubic = t * t * (3 - 2 * t) * rise + t * (1 - t) * (u * (1 - t) - v * t)
         below = u * t
         inside = where((cubic > 0) & (cubic < rise), cubic, t * rise)
-        return y + where(t < 0, below, inside) + _END
+        return y + where(t < 0, below, inside) + _END, loads[-1, :]
 
 
 _END = -1.0  # the unknown is ln ε, shifted so that it has this value at the widest contact and is zero nowhere
