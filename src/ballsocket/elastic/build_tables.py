@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import os
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from math import degrees, pi
@@ -32,6 +34,7 @@ _BALLS = (0.15, 0.27, 0.38)  # ν of the tabulated balls
 _SHARES = 5  # how soft they are
 _PROFILE = 11  # places along the contact
 _CLEARANCE = 0.005
+_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 _Numbers = tuple[float, float]
 
 
@@ -76,12 +79,28 @@ def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
     """
     path = Path(path)
     stored: dict[str, Array] = {}
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with _pool(workers) as pool:
         for name, kind in _KINDS.items():
             stored[name] = kind.fitted(pool.map)
     with path.open("wb") as stream:
         numpy.savez_compressed(stream, allow_pickle=False, **stored)
     return check(path, points=points, workers=workers)
+
+
+@contextmanager
+def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """Processes of one thread each: as many as there are, the sums inside are taken in the same order."""
+    before = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    try:
+        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+            yield pool
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
 
 
 # What is sampled: each takes ν, R2/L and answers with (places of the ball ..., functions, angles)
@@ -214,7 +233,7 @@ _KINDS = {
 def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> Accuracy:
     """The tables in a file against the equation: half angles 2 to 80 degrees, ν 0 to 0.499, R2/L 0.2 to 20."""
     rigid, elastic = random_contacts(points, seed=2021), random_contacts(max(points // 5, 1), seed=2022, elastic=True)
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with _pool(workers) as pool:
         known = [
             numpy.array(list(pool.map(_exact, zip(*numbers, strict=True), chunksize=50))).T
             for numbers in (rigid, elastic)
