@@ -61,7 +61,7 @@ class Refined(Model):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        why = "fitted there: within 1 % of the exact answer"
+        why = "fitted there: d, p0, F and ε within 1 % of the exact answer at a given half angle or force"
         return (
             Range(quantity="joint.liner.poisson", symbol="ν", low=0.3, high=0.48, why=why),
             Range(quantity="joint.thickness_ratio", symbol="R2/L", low=1.0, high=6.5, why=why),
