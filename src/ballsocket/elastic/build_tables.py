@@ -17,7 +17,7 @@ import numpy
 
 from ..gaps import LinearGap
 from ..joint import Joint, Material
-from . import table
+from . import chebyshev, table
 from .abel import State
 from .kernel import Kernel, grid
 from .modes import Ball, Shell, Socket
@@ -112,18 +112,18 @@ def places(count: int) -> Array:
 
 
 def _poisson_at(place: Array) -> Array:
-    near, far = (float(numpy.log(1 - 2 * end)) for end in table.POISSON[::-1])
+    near, far = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
     return (1 - numpy.exp((far + near - place * (far - near)) / 2)) / 2
 
 
 def _ratio_at(place: Array) -> Array:
-    low, high = (float(numpy.log(end + 0.2)) for end in table.THICKNESS_RATIO)
+    low, high = (float(numpy.log(end + 0.2)) for end in chebyshev.THICKNESS_RATIO)
     return numpy.exp((low + high + place * (high - low)) / 2) - 0.2
 
 
 def _share_at(place: float, poisson: float, ratio: float) -> float:
-    scale = table.ball_scale(poisson, ratio)
-    return float(scale * numpy.expm1((place + 1) / 2 * numpy.log1p(table.STIFFEST_SHARE / scale)))
+    scale = chebyshev.ball_scale(poisson, ratio)
+    return float(scale * numpy.expm1((place + 1) / 2 * numpy.log1p(chebyshev.STIFFEST_SHARE / scale)))
 
 
 def _state(liner: _Numbers, angle: Array, points: int, share: float = 0.0, ball_poisson: float = 0.3) -> State:
@@ -151,14 +151,14 @@ def _profile(state: State) -> Array:
 
 
 def _rigid(liner: _Numbers, *, what: Callable[[State], Array], angles: int, points: int) -> Array:
-    return what(_state(liner, table.angle_at(places(angles), liner[1]), points))
+    return what(_state(liner, chebyshev.angle_at(places(angles), liner[1]), points))
 
 
 def _ball(
     liner: _Numbers, *, what: Callable[[State], Array], angles: int, points: int, shares: int, balls: Sequence[float]
 ) -> Array:
     """What a ball of each softness and ν adds, over how soft it is."""
-    angle = table.angle_at(places(angles), liner[1])
+    angle = chebyshev.angle_at(places(angles), liner[1])
     rigid = what(_state(liner, angle, points))
 
     def added(place: float, ball_poisson: float) -> Array:
@@ -196,7 +196,7 @@ class _Kind:
 
 def _in_roundness(balls: tuple[float, ...], values: Array) -> Array:
     """Chebyshev coefficients in the roundness of the ball, from values (balls, ...)."""
-    basis = numpy.polynomial.chebyshev.chebvander(table.roundness(numpy.array(balls)), len(balls) - 1)
+    basis = numpy.polynomial.chebyshev.chebvander(chebyshev.roundness(numpy.array(balls)), len(balls) - 1)
     return numpy.tensordot(numpy.linalg.inv(basis), values, 1)
 
 
