@@ -36,7 +36,7 @@ def table(inputs: list[numpy.ndarray], chunk: int) -> Rows:
 
     from ballsocket.compiled import Compiled, _kernel
 
-    kernel: Any = _kernel(bs.HessForsbach())
+    kernel: Any = _kernel(bs.hess_forsbach.formula, bs.linear_kinematics)
     fast, joint, points = Compiled(model=bs.HessForsbach()), joint_of(inputs), inputs[0].size
     targets = [numpy.zeros(points) for _ in range(5)]
     passed = [*inputs, *targets[:3], numpy.zeros(points, dtype=numpy.int8)]
