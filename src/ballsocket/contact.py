@@ -14,7 +14,7 @@ from . import arrays, describe
 from .arrays import Array
 from .checks import numeric, require
 from .joint import Joint
-from .validity import Range, Status
+from .validity import Range, Status, missing
 
 
 class Answerer(Protocol):
@@ -211,7 +211,7 @@ class Contact:
 
     @property
     def _failed(self) -> Array:
-        return (self.status != int(Status.OK)) & (self.status != int(Status.BEYOND_EQUATOR))
+        return missing(self.status)
 
     @property
     def _is_plain(self) -> bool:

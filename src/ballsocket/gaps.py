@@ -90,6 +90,13 @@ class CircularGap:
 
 Gap = LinearGap | CircularGap
 
+
+def check_gap(gap: object) -> None:
+    """Raise TypeError unless it is one of the two gaps, as a type."""
+    if gap not in (LinearGap, CircularGap):
+        raise TypeError(f"gap must be LinearGap or CircularGap, got {gap!r}")
+
+
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(24))
 _SINES, _TURNS = numpy.sin(pi / 2 * _NODES), pi / 2 * _WEIGHTS
 

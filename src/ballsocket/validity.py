@@ -21,6 +21,7 @@ class Status(IntEnum):
     NOT_REACHED = 2
     NOT_CONVERGED = 3
     BEYOND_EQUATOR = 4
+    AT_RIM = 5
 
     @property
     def sentence(self) -> str:
@@ -32,12 +33,22 @@ class Status(IntEnum):
         return self in (Status.OUTSIDE_DOMAIN, Status.NOT_REACHED, Status.NOT_CONVERGED)
 
 
+def missing(status: Array) -> Array:
+    """Where a status says that the numbers are missing, point by point."""
+    bad = status != status
+    for one in Status:
+        if one.failed:
+            bad = bad | (status == int(one))
+    return bad
+
+
 _SENTENCES = {
     Status.OK: "done",
     Status.OUTSIDE_DOMAIN: "the model has no formula for this joint",
     Status.NOT_REACHED: "the model does not reach this load",
     Status.NOT_CONVERGED: "the iteration did not converge",
     Status.BEYOND_EQUATOR: "the contact circle would pass the socket's equator (half angle above 90 degrees)",
+    Status.AT_RIM: "the contact fills the socket and reaches its rim",
 }
 
 
@@ -121,6 +132,12 @@ def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     return points
 
 
+CLOSE_FIT = Range(
+    quantity="joint.clearance_ratio",
+    symbol="c/R2",
+    high=0.02,
+    why="Eq. (6) neglects sin²φ, 1 % of p0 here: ask with gap=CircularGap",
+)
 SMALL_STRAIN = Range(
     quantity="depth_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"
 )

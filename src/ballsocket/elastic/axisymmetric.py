@@ -10,12 +10,12 @@ from typing import Any
 from .. import arrays
 from ..checks import numeric, require
 from ..contact import Contact
-from ..gaps import CircularGap, LinearGap
+from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint, Support
 from ..models.base import Answer, Model
 from ..models.by_joint import taken_apart
 from ..sources import Source
-from ..validity import SMALL_STRAIN, Range
+from ..validity import CLOSE_FIT, SMALL_STRAIN, Range
 from .contact import ElasticContact
 from .curve import Curve
 from .kernel import Kernel
@@ -60,8 +60,7 @@ class Exact(Model):
             raise TypeError(f"tolerance must be one number, got {self.tolerance!r}")
         good = 1e-10 <= tolerance <= 1e-2
         require("tolerance", self.tolerance, good, "double precision keeps a relative tolerance of 1e-10 to 1e-2")
-        if self.gap not in (LinearGap, CircularGap):
-            raise TypeError(f"gap must be LinearGap or CircularGap, got {self.gap!r}")
+        check_gap(self.gap)
 
     @property
     def contact_type(self) -> type[Contact]:
@@ -92,7 +91,7 @@ class Exact(Model):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        return (_CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
+        return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
 
     @property
     def reach(self) -> str:
@@ -108,14 +107,6 @@ class Exact(Model):
             converged=solution.worst <= max(self.tolerance, 10 * arrays.rounding(load)),
             beyond_equator=indentation < 0,
         )
-
-
-_CLOSE_FIT = Range(
-    quantity="joint.clearance_ratio",
-    symbol="c/R2",
-    high=0.02,
-    why="Eq. (6) neglects sin²φ, 1 % of p0 here: ask Exact(gap=CircularGap)",
-)
 
 
 def _locking(contact: Any) -> Array:

@@ -4,28 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy
 
 from .. import arrays
 from ..arrays import Array
 from ..checks import numeric, require
-from ..contact import Contact
+from ..models.by_joint import SolvedContact
+from ..stress import Peak, Stress
 from .abel import State
-from .inside import NARROWEST, Peak, Stress, peak, stress, surface_displacement
+from .inside import NARROWEST, peak, stress, surface_displacement
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
-class ElasticContact(Contact):
-    """A `Contact` with error estimates, and for a single contact displacements and stresses in the socket."""
-
-    laws: Any
-
-    @cached_property
-    def error(self) -> dict[str, Array]:
-        """Estimated relative error of each quantity, by name, from the solution itself."""
-        return {name: self._plain(error) for name, error in self.laws.error.items()}
+class ElasticContact(SolvedContact):
+    """A contact that knows, where it is a single one, displacements and stresses in the socket."""
 
     def displacement(self, angle: Array) -> Array:
         """Radial displacement in mm of the socket's surface at polar angles (rad), inside and outside the contact.
@@ -74,21 +67,8 @@ class ElasticContact(Contact):
         return peak(self._single, float(self.joint.liner_thickness))
 
     @property
-    def _pressed(self) -> bool:
-        return bool(arrays.to_numpy(self.indentation > 0).all())
-
-    @property
     def _single(self) -> State:
-        if int(numpy.prod(self.laws.shape)) != 1:
-            raise ValueError(f"displacements and stresses are for one contact, not {self.laws.shape}: press it alone")
-        if not self._pressed:
-            raise ValueError("displacements and stresses need a contact under load")
-        state: State = self.laws.pieces[0][1].state
+        state: State = self.single_state
         width = float(state.half_angle[0])
         require("half_angle", width, width >= NARROWEST, "inside a contact of less than 1 degree ask hertz")
         return state
-
-    def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON, with the error estimates."""
-        error = {name: arrays.to_list(value) for name, value in self.error.items()}
-        return {**super().summary(), "error": error}

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import log1p, radians
 
 import numpy
 
+from ..stress import Peak, Stress
 from .abel import State
 
 Array = numpy.ndarray
@@ -16,43 +16,6 @@ NARROWEST = radians(1.0)
 
 _WAVES = 600  # n ε up to which modes are summed at the surface
 _FEWEST, _MOST = 2000, 35_000
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Stress:
-    """Stresses in MPa, tension positive; r counts from the centre of the socket, φ from the load axis.
-
-    All arrays have the shape that angle and depth broadcast to.
-    """
-
-    radial: Array
-    meridional: Array
-    hoop: Array
-    shear: Array
-
-    @property
-    def von_mises(self) -> Array:
-        """The von Mises stress in MPa."""
-        first, second = self.radial - self.meridional, self.meridional - self.hoop
-        third = self.hoop - self.radial
-        return numpy.sqrt((first**2 + second**2 + third**2) / 2 + 3 * self.shear**2)
-
-    @property
-    def principal(self) -> tuple[Array, Array, Array]:
-        """The principal stresses in MPa, the largest first."""
-        middle = (self.radial + self.meridional) / 2
-        reach = numpy.hypot((self.radial - self.meridional) / 2, self.shear)
-        three = numpy.sort(numpy.stack(numpy.broadcast_arrays(middle - reach, middle + reach, self.hoop)), axis=0)
-        return three[2], three[1], three[0]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Peak:
-    """The largest von Mises stress (MPa), where: depth below the surface of the socket (mm), polar angle (rad)."""
-
-    von_mises: float
-    depth: float
-    angle: float
 
 
 def surface_displacement(state: State, angle: Array) -> Array:

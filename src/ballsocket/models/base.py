@@ -14,7 +14,7 @@ from ..checks import numeric, one_load, require
 from ..contact import Contact, Laws
 from ..joint import Joint
 from ..sources import Source
-from ..validity import Range, Status, inside
+from ..validity import Range, Status, inside, missing
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -26,6 +26,7 @@ class Answer:
     indentation: Array
     converged: Array
     beyond_equator: Array
+    at_rim: Array | None = None
 
 
 class Model(ABC):
@@ -263,12 +264,13 @@ def _finished(
     status = xp.zeros_like(xp.astype(F > 0, xp.int8))
     for wrong, code in (
         (answer.beyond_equator, Status.BEYOND_EQUATOR),
+        (F != F if answer.at_rim is None else answer.at_rim, Status.AT_RIM),
         (~answer.converged, Status.NOT_CONVERGED),
         (~found, Status.NOT_REACHED),
         (~points, Status.OUTSIDE_DOMAIN),
     ):
         status = where(wrong, xp.asarray(int(code), dtype=xp.int8), status)
-    answered = (status == int(Status.OK)) | (status == int(Status.BEYOND_EQUATOR))
+    answered = ~missing(status)
     F, d = where(answered | (kind == "force"), F, xp.nan), where(answered | (kind == "indentation"), d, xp.nan)
     if plain:
         F, d, status = float(F), float(d), Status(int(status))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, prod
 from types import SimpleNamespace
 from typing import Any
@@ -12,6 +13,7 @@ import numpy
 
 from .. import arrays
 from ..arrays import Array
+from ..contact import Contact
 from ..joint import Joint
 from .base import Model
 
@@ -158,3 +160,35 @@ class PiecedSolution:
         return self._own(
             self._flat(lambda place, piece: piece.state.pressure(rows[:, place[piece.touching]]), rows=len(rows)), front
         )
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class SolvedContact(Contact):
+    """A `Contact` whose model solved it joint by joint, and estimated how well."""
+
+    laws: PiecedSolution
+
+    @cached_property
+    def error(self) -> dict[str, Array]:
+        """Estimated relative error of each quantity, by name, from the solution itself."""
+        return {name: self._plain(error) for name, error in self.laws.error.items()}
+
+    @property
+    def single_state(self) -> Any:
+        """The solver's own answer, of one contact under load.
+
+        Raises
+        ------
+        ValueError
+            More than one contact, or one without load or answer.
+        """
+        if prod(self.laws.shape) != 1:
+            raise ValueError(f"displacements and stresses are for one contact, not {self.laws.shape}: press it alone")
+        if not bool(arrays.to_numpy(self.indentation > 0).all()):
+            raise ValueError("displacements and stresses need a contact under load")
+        return self.laws.pieces[0][1].state
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON, with the error estimates."""
+        error = {name: arrays.to_list(value) for name, value in self.error.items()}
+        return {**super().summary(), "error": error}

@@ -1,0 +1,69 @@
+"""The answer of the finite elements: a contact that knows its own error, its mesh, and the inside of both bodies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from ..joint import Joint
+from ..models.by_joint import SolvedContact
+from ..stress import Peak
+from .curve import Solved
+from .memory import MeshSize, mesh_size
+from .section import Section, section
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class MeshedContact(SolvedContact):
+    """A contact that knows, where it is a single one, its mesh, displacements and stresses.
+
+    Attributes
+    ----------
+    error : dict
+        By name the relative error of each quantity at the given load, estimated from two meshes; NaN from one.
+    """
+
+    model: Any
+
+    @cached_property
+    def section(self) -> Section:
+        """Displacements and stresses in both bodies, by part: `section["liner"].stress.von_mises`.
+
+        Raises
+        ------
+        ValueError
+            More than one contact, or one without load or answer.
+        """
+        return section(self._plain_joint, self.model.cup, self._solved)
+
+    @property
+    def peak_stress(self) -> Peak:
+        """The largest von Mises stress in the liner, with its depth and polar angle, at the nodes of the mesh."""
+        return self.section.peak_stress
+
+    @property
+    def rim_displacement(self) -> tuple[float, float]:
+        """Of the bore's end in mm: away from the load axis, and up against the load."""
+        return self.section.rim_displacement
+
+    @property
+    def mesh(self) -> MeshSize:
+        """Elements and nodes of both bodies, and the elements' size at the contact, of a single contact."""
+        return mesh_size(self._plain_joint, self.model.cup, self._solved.pair.resolution)
+
+    @property
+    def _plain_joint(self) -> Joint:
+        return self.joint.with_numbers([float(number) for number in self.joint.numbers()])
+
+    @property
+    def _solved(self) -> Solved:
+        solved: Solved | None = self.single_state.solved[0]
+        if solved is None:
+            raise ValueError("displacements and stresses need a contact that has an answer")
+        return solved
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON, with the error estimates and, of a single contact, the size of its mesh."""
+        single = self.laws.shape == () and self.indentation > 0
+        return {**super().summary(), **({"mesh": self.mesh.summary()} if single else {})}

@@ -1,0 +1,237 @@
+"""All contacts of one joint: loads find their half angles, each on a mesh that is made for contacts of its width."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from operator import attrgetter
+
+import numpy
+from scipy.optimize import brentq
+
+from ..arrays import gauss_legendre
+from ..gaps import Gap
+from ..models.by_joint import QUANTITIES, Piece
+from .cap import Cap, cap
+from .pair import Pair
+from .rim import Brimful
+
+Array = numpy.ndarray
+Solved = Cap | Brimful
+
+FINE, COARSE = 0, 1
+"""The two meshes."""
+
+_ROOM = 1.12
+"""How much wider or narrower than its class a contact may come out on another mesh."""
+
+_ORDER, _SAFETY = 2, 1.25
+_EDGE = 1.0
+_TENSION, _OVERLAP = 1e-3, 1e-3
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class States:
+    """Solved contacts side by side, each quantity one number a contact; None and NaN where there is none."""
+
+    solved: tuple[Solved | None, ...]
+
+    def __getattr__(self, name: str) -> Array:
+        if name not in QUANTITIES:
+            raise AttributeError(name)
+        return self._each(_LAWS.get(name, attrgetter(name)))
+
+    def _each(self, law: Callable[[Solved], float]) -> Array:
+        return numpy.array([numpy.nan if one is None else law(one) for one in self.solved])
+
+    @property
+    def at_rim(self) -> Array:
+        """1 where the contact fills its socket."""
+        return self._each(lambda one: float(isinstance(one, Brimful)))
+
+    @property
+    def unsound(self) -> Array:
+        """1 where something pulls or overlaps: the contact is not the round patch that was assumed."""
+        return self._each(lambda one: float(one.tension > _TENSION or one.overlap > _OVERLAP))
+
+    @property
+    def edge_element(self) -> Array:
+        """Length of the elements at the edge over the half angle."""
+        return self._each(lambda one: one.edge_element / one.half_angle)
+
+    def pressure(self, angle: Array) -> Array:
+        """p(φ) in MPa at angles (anything, loads)."""
+        columns = [
+            numpy.full(len(angle), numpy.nan) if one is None else one.pressure(angle[:, i])
+            for i, one in enumerate(self.solved)
+        ]
+        return numpy.stack(columns, axis=-1) if columns else numpy.zeros_like(angle)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Curve:
+    """Force, indentation and half angle of one joint.
+
+    Parameters
+    ----------
+    pairs : function (number of the class, FINE or COARSE) -> Pair
+        The meshes.
+    classes : tuple of float
+        Half angles in rad, descending, the first one the widest of all: a class lies between each and the next.
+    gap : Gap
+    ends_at_rim : bool
+        Whether deeper contacts fill the socket; otherwise they are not solved.
+    meshes : int
+        1 leaves the errors unknown, 2 estimates them.
+    """
+
+    pairs: Callable[[int, int], Pair]
+    classes: tuple[float, ...]
+    gap: Gap
+    ends_at_rim: bool
+    meshes: int
+
+    def press(self, kind: str, load: Array) -> Piece:
+        """The contacts that belong to loads of one kind: "force", "indentation" or "half_angle"."""
+        touching = load > 0
+        given = load[touching].tolist()
+        numbers = [self._class(kind, one) for one in given]
+        fine, *coarse = (
+            States(solved=tuple(self._contact(kind, *one, mesh) for one in zip(given, numbers, strict=True)))
+            for mesh in (FINE, COARSE)[: self.meshes]
+        )
+        reached = numpy.isfinite(fine.indentation) & numpy.isfinite(fine.force)
+        error = _errors(fine, coarse[0]) if coarse else dict.fromkeys(QUANTITIES, numpy.full(len(given), numpy.nan))
+        return Piece(load=load, touching=touching, state=fine, reached=reached, error=error)
+
+    def _class(self, kind: str, load: float) -> int:
+        """The class of a load: the first whose narrowest contact gives less. Decided on the coarse mesh."""
+        last = len(self.classes) - 2
+        if kind == "half_angle":
+            return min(sum(load <= angle for angle in self.classes[1:]), last)
+        return next((number for number in range(last) if _miss(kind, load, self._narrowest(number)) < 0), last)
+
+    def _narrowest(self, number: int) -> Cap:
+        if number not in self._bounds:
+            self._bounds[number] = cap(self.pairs(number, COARSE), self.gap, self.classes[number + 1])
+        return self._bounds[number]
+
+    @cached_property
+    def _bounds(self) -> dict[int, Cap]:
+        return {}
+
+    def _contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
+        pair, widest = self.pairs(number, mesh), min(_ROOM * self.classes[number], self.classes[0])
+        if kind == "half_angle":
+            return _at(load, pair, self.gap) if self.classes[-1] / _ROOM <= load <= widest else None
+        if number == 0 and self.ends_at_rim and _miss(kind, load, cap(pair, self.gap, widest)) < 0:
+            return _brimful(kind, load, pair, self.gap)
+        return _found(kind, load, pair, self.gap, (self.classes[number + 1] / _ROOM, widest))
+
+
+def _at(half_angle: float, pair: Pair, gap: Gap) -> Cap | None:
+    """The contact of a half angle; None beyond the perfect fit."""
+    one = cap(pair, gap, half_angle)
+    return one if one.indentation > 0 and one.force > 0 else None
+
+
+def _miss(kind: str, load: float, one: Cap) -> float:
+    """Grows with the half angle and changes its sign where the load is right; 1 beyond the perfect fit."""
+    if not one.indentation > 0 or not getattr(one, kind) > 0:
+        return 1.0
+    return float(1 - (load / getattr(one, kind)) ** 0.25)
+
+
+def _found(kind: str, load: float, pair: Pair, gap: Gap, bounds: tuple[float, float]) -> Cap | None:
+    """The contact whose half angle gives the load; None where it lies outside the bounds."""
+
+    def miss(angle: float) -> float:
+        return _miss(kind, load, cap(pair, gap, angle))
+
+    low, high = bounds
+    if miss(high) < 0 or miss(low) > 0:
+        return None
+    return cap(pair, gap, brentq(miss, low, high, xtol=1e-13, rtol=1e-13))
+
+
+def _brimful(kind: str, load: float, pair: Pair, gap: Gap) -> Brimful:
+    """The contact that fills the socket under a load; its force grows with the indentation.
+
+    By the secant method, which is one step for the linear gap.
+    """
+    here = Brimful(pair=pair, gap=gap, indentation=load if kind == "indentation" else 1e-3 * pair.radius)
+    if kind == "indentation":
+        return here
+    step = 1e-3 * here.indentation
+    for _ in range(gap.steps + 3):
+        ahead = replace(here, indentation=here.indentation + step)
+        slope = (ahead.force - here.force) / step
+        here, step = ahead, (load - ahead.force) / slope
+        if abs(step) <= 1e-13 * here.indentation:
+            break
+    return replace(here, indentation=here.indentation + step)
+
+
+_SPREAD = 0.02 * numpy.arange(-3, 4)
+
+
+def _stiffness(one: Solved) -> float:
+    """dF/dd in N/mm: the slope of a cubic through ln F over ln d of contacts around this one."""
+    if isinstance(one, Brimful):
+        return one.stiffness
+    angles = numpy.minimum(one.half_angle * (1 + _SPREAD), one.pair.angle[-1])
+    beside = [cap(one.pair, one.gap, float(angle)) for angle in numpy.unique(angles)]
+    d, F = (numpy.array([getattr(other, name) for other in beside]) for name in ("indentation", "force"))
+    sound = (d > 0) & (F > 0)
+    fit = numpy.polynomial.Polynomial.fit(numpy.log(d[sound] / one.indentation), numpy.log(F[sound] / one.force), 3)
+    return float(fit.deriv()(0.0)) * one.force / one.indentation
+
+
+_NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(8))
+_START = 0.35
+
+
+def _energy(one: Solved) -> float:
+    """Work of the load in N mm: the strain energy, where the gap makes that the same."""
+    if one.gap.conservative:
+        return one.strain_energy
+    if isinstance(one, Brimful):
+        return _work_up_to(one.pair, one.gap, one.half_angle) + _work_beyond(one)
+    return _work_up_to(one.pair, one.gap, one.half_angle)
+
+
+def _work_up_to(pair: Pair, gap: Gap, half_angle: float) -> float:
+    """∫ F dd over the half angle, from where F is a power of d."""
+    first = cap(pair, gap, _START * half_angle)
+    exponent = first.indentation * _stiffness(first) / first.force
+    work = first.force * first.indentation / (exponent + 1)
+    for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+        here = cap(pair, gap, (_START + (1 - _START) * node) * half_angle)
+        step = 1e-4 * half_angle
+        wider, narrower = (replace(here, half_angle=here.half_angle + sign * step) for sign in (0.5, -0.5))
+        widening = (wider.indentation - narrower.indentation) / step
+        work += weight * (1 - _START) * half_angle * here.force * widening
+    return work
+
+
+def _work_beyond(one: Brimful) -> float:
+    """∫ F dd from where the contact reaches the rim."""
+    start = cap(one.pair, one.gap, one.half_angle).indentation
+    depth = one.indentation - start
+    forces = [replace(one, indentation=start + depth * node).force for node in _NODES]
+    return float(depth * (_WEIGHTS @ forces))
+
+
+_LAWS: dict[str, Callable[[Solved], float]] = {"stiffness": _stiffness, "energy": _energy}
+
+
+def _errors(fine: States, coarse: States) -> dict[str, Array]:
+    """Relative errors of the fine solution by Richardson's extrapolation, with some safety.
+
+    Both edges may by chance be off by the same, so that of the half angle is at least what the elements there allow.
+    """
+    apart = {name: abs(getattr(coarse, name) / getattr(fine, name) - 1) for name in QUANTITIES}
+    errors = {name: _SAFETY * value / (2**_ORDER - 1) for name, value in apart.items()}
+    errors["half_angle"] = numpy.maximum(errors["half_angle"], _EDGE * fine.edge_element**2)
+    return errors

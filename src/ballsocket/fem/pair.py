@@ -1,0 +1,114 @@
+"""Ball and socket on their common surface: shapes of the pressure, and what they do to both bodies.
+
+The pressure is linear between the corners of the socket's elements. It is integrated on the sphere itself, between the
+corners of both bodies, so that their meshes need not match.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+
+import numpy
+from scipy.linalg import cholesky
+
+from ..arrays import gauss_legendre
+from .bodies import Resolution
+
+Array = numpy.ndarray
+
+_NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(5))
+_SAME = 1e-9  # rad: corners of two meshes that are one
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Surface:
+    """A body's contact surface: the angles of its nodes in rad, and normal displacements in mm by forces in N."""
+
+    angle: Array
+    order: int
+    compliance: Array
+
+    @property
+    def corners(self) -> Array:
+        """Where its elements end."""
+        return self.angle[:: self.order]
+
+    def shapes(self, angle: Array) -> Array:
+        """Shape functions of the nodes at angles: (angles, nodes)."""
+        return lagrange(self.corners, self.order, angle)
+
+
+def lagrange(corners: Array, order: int, angle: Array) -> Array:
+    """Polynomials of this degree between corners, one a node, at angles: (angles, nodes)."""
+    element = numpy.clip(numpy.searchsorted(corners, angle) - 1, 0, len(corners) - 2)
+    t = (angle - corners[element]) / (corners[element + 1] - corners[element])
+    parts = [1 - t, t] if order == 1 else [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)]
+    shapes = numpy.zeros((len(angle), order * (len(corners) - 1) + 1))
+    for i, part in enumerate(parts):
+        shapes[numpy.arange(len(angle)), order * element + i] = part
+    return shapes
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pair:
+    """The socket's surface and the ball's (a rigid one has none) on a sphere of this radius (mm), up to an angle."""
+
+    surfaces: tuple[Surface, ...]
+    radius: float
+    reach: float
+    resolution: Resolution
+
+    @cached_property
+    def angle(self) -> Array:
+        """Where the pressure is known: the corners of the socket's elements, up to the reach."""
+        corners = self.surfaces[0].corners
+        return corners[corners <= self.reach + _SAME]
+
+    @cached_property
+    def corners(self) -> Array:
+        """Of both bodies."""
+        every = numpy.sort(numpy.concatenate([surface.corners for surface in self.surfaces]))
+        every = every[every <= self.angle[-1] + _SAME]
+        return every[numpy.append(True, numpy.diff(every) > _SAME)]
+
+    def area(self, angle: Array) -> Array:
+        """dA/dφ in mm²/rad."""
+        return 2 * pi * self.radius**2 * numpy.sin(angle)
+
+    @cached_property
+    def points(self) -> tuple[Array, Array]:
+        """Angles and weights of ∫ dA, by Gauss-Legendre between the corners."""
+        width = numpy.diff(self.corners)[:, None]
+        angle = (self.corners[:-1, None] + width * _NODES).ravel()
+        return angle, self.area(angle) * (width * _WEIGHTS).ravel()
+
+    @cached_property
+    def _hats(self) -> Array:
+        return lagrange(self.angle, 1, self.points[0])
+
+    def weighted(self, values: Array) -> Array:
+        """∫ φ_i values dA of the pressure's shapes φ_i, from values at the points."""
+        return self._hats.T @ (self.points[1] * values)
+
+    @cached_property
+    def displaced(self) -> tuple[Array, ...]:
+        """Normal displacements of each surface's nodes by each shape of the pressure: (nodes, shapes)."""
+        return tuple(surface.compliance @ forces for surface, forces in zip(self.surfaces, self.forces, strict=True))
+
+    @cached_property
+    def forces(self) -> tuple[Array, ...]:
+        """Forces on each surface's nodes by each shape of the pressure: (nodes, shapes)."""
+        angle, weights = self.points
+        return tuple(surface.shapes(angle).T @ (weights[:, None] * self._hats) for surface in self.surfaces)
+
+    @cached_property
+    def matrix(self) -> Array:
+        """∫ φ_i (displacement by φ_j) dA, summed over both bodies, in mm³/MPa; symmetric, positive definite."""
+        return sum(forces.T @ displaced for forces, displaced in zip(self.forces, self.displaced, strict=True))
+
+    @cached_property
+    def factor(self) -> Array:
+        """The matrix' Cholesky factor: its leading blocks are the leading blocks' own, so it serves every contact."""
+        return cholesky(self.matrix, lower=True)

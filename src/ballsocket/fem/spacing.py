@@ -1,0 +1,100 @@
+"""How finely ball and socket are meshed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from math import inf
+
+from ..arrays import is_plain
+from ..checks import numeric, require
+from .bodies import Resolution
+
+_CLASSES = 12
+_FEWEST = 8  # elements in the narrowest contact of a uniform mesh
+
+
+class Element(Enum):
+    """Quadrilaterals with displacements of this degree along their sides; neither locks near ν = ½."""
+
+    BILINEAR = 1
+    BIQUADRATIC = 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Adapted:
+    """Elements as small as the contact asks for, larger away from it.
+
+    Contacts are sorted into classes, each half as wide as the one before and with a mesh of its own, so that a contact
+    spans between half of `elements` and all of them.
+
+    Parameters
+    ----------
+    elements : int
+        Along the widest contact of each class, from the pole to its edge; an even number from 16 on. Default 48.
+    growth : float
+        How much longer each element of the coarse mesh is than its neighbour, away from the contact; 1 to 2.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+    """
+
+    elements: int = 48
+    growth: float = 1.3
+
+    def __post_init__(self) -> None:
+        good = isinstance(self.elements, int) and self.elements >= 16 and self.elements % 2 == 0
+        require("elements", self.elements, good, "elements along a contact are an even number from 16 on")
+        _check_growth(self.growth)
+
+    def classes(self, reach: float, radius: float) -> tuple[float, ...]:
+        """Half angles in rad, descending: a class lies between each and the next."""
+        return tuple(reach / 2**number for number in range(_CLASSES + 1))
+
+    def coarse(self, widest: float, radius: float, order: int) -> Resolution:
+        """The coarse mesh of a class; the fine one halves it."""
+        return Resolution(size=2 * widest / self.elements, reach=1.2 * widest, growth=self.growth, order=order)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Uniform:
+    """Elements of one size along both surfaces, whatever the contact.
+
+    Parameters
+    ----------
+    size : float
+        In mm. 0.05 mm is that of Heß & Forsbach (2021).
+    growth : float
+        How much deeper each element of the coarse mesh is than the one above it, away from the contact; 1 to 2.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+    """
+
+    size: float
+    growth: float = 1.03
+
+    def __post_init__(self) -> None:
+        if not is_plain(numeric("size", self.size)):
+            raise TypeError(f"size must be one number, got {self.size!r}")
+        require("size", self.size, 0 < self.size < inf, "an element's size (mm) is above 0 and finite")
+        _check_growth(self.growth)
+
+    def classes(self, reach: float, radius: float) -> tuple[float, ...]:
+        """One class, from a few elements to the widest contact."""
+        return (reach, min(_FEWEST * self.size / radius, reach / 2))
+
+    def coarse(self, widest: float, radius: float, order: int) -> Resolution:
+        """The coarse mesh; the fine one halves it."""
+        return Resolution(size=2 * self.size / radius, reach=inf, growth=self.growth, order=order)
+
+
+def _check_growth(growth: float) -> None:
+    require("growth", growth, 1 <= growth <= 2, "elements grow by a factor of 1 to 2")
+
+
+Spacing = Adapted | Uniform

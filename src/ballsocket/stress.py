@@ -1,0 +1,46 @@
+"""Stresses inside a body, in the directions of its sphere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy
+
+Array = numpy.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stress:
+    """Stresses in MPa, tension positive; r counts from the centre of the socket, φ from the load axis.
+
+    All arrays have the shape that angle and depth broadcast to.
+    """
+
+    radial: Array
+    meridional: Array
+    hoop: Array
+    shear: Array
+
+    @property
+    def von_mises(self) -> Array:
+        """The von Mises stress in MPa."""
+        first, second = self.radial - self.meridional, self.meridional - self.hoop
+        third = self.hoop - self.radial
+        return numpy.sqrt((first**2 + second**2 + third**2) / 2 + 3 * self.shear**2)
+
+    @property
+    def principal(self) -> tuple[Array, Array, Array]:
+        """The principal stresses in MPa, the largest first."""
+        middle = (self.radial + self.meridional) / 2
+        reach = numpy.hypot((self.radial - self.meridional) / 2, self.shear)
+        three = numpy.sort(numpy.stack(numpy.broadcast_arrays(middle - reach, middle + reach, self.hoop)), axis=0)
+        return three[2], three[1], three[0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Peak:
+    """The largest von Mises stress (MPa), where: depth below the surface of the socket (mm), polar angle (rad)."""
+
+    von_mises: float
+    depth: float
+    angle: float
