@@ -28,7 +28,7 @@ class LinearGap:
     steps: ClassVar[int] = 1  # of Newton's method from d = 0: u is linear in d
     conservative: ClassVar[bool] = True  # ∂u/∂d = cos φ: the work of F is that of the pressure
 
-    def displacement(self, angle: Array, d: Array) -> Array:
+    def displacement(self, angle: Array, d: Array | float) -> Array:
         """u(φ)."""
         return d - (self.clearance + d) * 2 * numpy.sin(angle / 2) ** 2
 
@@ -56,7 +56,7 @@ class CircularGap:
     steps: ClassVar[int] = 7
     conservative: ClassVar[bool] = False
 
-    def displacement(self, angle: Array, d: Array) -> Array:
+    def displacement(self, angle: Array, d: Array | float) -> Array:
         """u(φ)."""
         return self._parts(2 * numpy.sin(angle / 2) ** 2, d)[0]
 
@@ -72,7 +72,7 @@ class CircularGap:
         """A[∂u/∂d](t)."""
         return _transform(t, lambda w: self._deepening(w, d))
 
-    def _parts(self, w: Array, d: Array) -> tuple[Array, Array, Array]:
+    def _parts(self, w: Array, d: Array | float) -> tuple[Array, Array, Array]:
         """u and its first two derivatives in w; NaN where the ball does not reach."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         dropped = e * e * w * (2 - w)

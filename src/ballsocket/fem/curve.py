@@ -173,23 +173,27 @@ def _brimful(kind: str, load: float, pair: Pair, gap: Gap) -> Brimful:
     return replace(here, indentation=here.indentation + step)
 
 
-_SPREAD = 0.02 * numpy.arange(-3, 4)
+_AROUND = 0.02 * numpy.arange(-3, 4)
+_UP_TO = numpy.linspace(-0.7, 0.0, 12)
+_NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(12))
 
 
-def _stiffness(one: Solved) -> float:
-    """dF/dd in N/mm: the slope of a cubic through ln F over ln d of contacts around this one."""
-    if isinstance(one, Brimful):
-        return one.stiffness
-    angles = numpy.minimum(one.half_angle * (1 + _SPREAD), one.pair.angle[-1])
+def _power_law(one: Solved, offsets: Array, degree: int) -> tuple[numpy.polynomial.Polynomial, float]:
+    """ln F by ln d of contacts narrower or wider by offsets, both counted from this one, and the least ln d."""
+    angles = numpy.minimum(one.half_angle * (1 + offsets), one.pair.angle[-1])
     beside = [cap(one.pair, one.gap, float(angle)) for angle in numpy.unique(angles)]
     d, F = (numpy.array([getattr(other, name) for other in beside]) for name in ("indentation", "force"))
     sound = (d > 0) & (F > 0)
-    fit = numpy.polynomial.Polynomial.fit(numpy.log(d[sound] / one.indentation), numpy.log(F[sound] / one.force), 3)
-    return float(fit.deriv()(0.0)) * one.force / one.indentation
+    x, y = numpy.log(d[sound] / one.indentation), numpy.log(F[sound] / one.force)
+    return numpy.polynomial.Polynomial.fit(x, y, degree), float(x.min())
 
 
-_NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(8))
-_START = 0.35
+def _stiffness(one: Solved) -> float:
+    """dF/dd in N/mm. Contacts on both sides are looked at, since the edge moves unevenly through the elements."""
+    if isinstance(one, Brimful):
+        return one.stiffness
+    law, _ = _power_law(one, _AROUND, 3)
+    return float(law.deriv()(0.0)) * one.force / one.indentation
 
 
 def _energy(one: Solved) -> float:
@@ -197,22 +201,16 @@ def _energy(one: Solved) -> float:
     if one.gap.conservative:
         return one.strain_energy
     if isinstance(one, Brimful):
-        return _work_up_to(one.pair, one.gap, one.half_angle) + _work_beyond(one)
-    return _work_up_to(one.pair, one.gap, one.half_angle)
+        return _work_up_to(cap(one.pair, one.gap, one.half_angle)) + _work_beyond(one)
+    return _work_up_to(one)
 
 
-def _work_up_to(pair: Pair, gap: Gap, half_angle: float) -> float:
-    """∫ F dd over the half angle, from where F is a power of d."""
-    first = cap(pair, gap, _START * half_angle)
-    exponent = first.indentation * _stiffness(first) / first.force
-    work = first.force * first.indentation / (exponent + 1)
-    for node, weight in zip(_NODES, _WEIGHTS, strict=True):
-        here = cap(pair, gap, (_START + (1 - _START) * node) * half_angle)
-        step = 1e-4 * half_angle
-        wider, narrower = (replace(here, half_angle=here.half_angle + sign * step) for sign in (0.5, -0.5))
-        widening = (wider.indentation - narrower.indentation) / step
-        work += weight * (1 - _START) * half_angle * here.force * widening
-    return work
+def _work_up_to(one: Cap) -> float:
+    """∫ F dd, from where F is a power of d."""
+    law, start = _power_law(one, _UP_TO, 6)
+    x = start * (1 - _NODES)  # ln d
+    narrow = numpy.exp(law(start) + start) / (law.deriv()(start) + 1)
+    return float(one.force * one.indentation * (narrow - start * (_WEIGHTS @ numpy.exp(law(x) + x))))
 
 
 def _work_beyond(one: Brimful) -> float:
