@@ -14,6 +14,9 @@ from .compare import compare
 from .contact import Contact
 from .elastic.axisymmetric import Exact
 from .elastic.table import Tabulated
+from .fem.cup import Cup, Interface
+from .fem.model import FiniteElement
+from .fem.spacing import Adapted, Element, Uniform
 from .files import read_joint
 from .gaps import CircularGap, LinearGap
 from .joint import Joint, Layer, Material, Support
@@ -68,6 +71,7 @@ __all__ = [
     "STRUCTURAL_STEEL",
     "TITANIUM",
     "UHMWPE",
+    "Adapted",
     "AdhesiveSocket",
     "Bartel",
     "BondedLayer",
@@ -76,9 +80,13 @@ __all__ = [
     "ClosedForm",
     "Contact",
     "CosineLimit",
+    "Cup",
+    "Element",
     "Exact",
+    "FiniteElement",
     "Hertz",
     "HessForsbach",
+    "Interface",
     "Joint",
     "Layer",
     "LinearGap",
@@ -94,6 +102,7 @@ __all__ = [
     "Steuermann",
     "Support",
     "Tabulated",
+    "Uniform",
     "Vessel",
     "as_constant",
     "as_corrected_vessel",

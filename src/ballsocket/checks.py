@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import Any
 
 import numpy
@@ -85,3 +86,10 @@ def one_load(**loads: Any) -> tuple[str, Any]:
         got = ", ".join(given) if given else "none"
         raise ValueError(f"exactly one of {', '.join(loads)} is needed, got {got}")
     return next(iter(given.items()))
+
+
+def needs(extra: str, *modules: str) -> None:
+    """Raise ImportError, with what to install, unless all modules of an extra are there."""
+    for module in modules:
+        if find_spec(module) is None:
+            raise ImportError(f"{module} is not installed: pip install 'ballsocket[{extra}]'", name=module)

@@ -6,9 +6,11 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
+from .fem.cup import Cup, Interface
 from .joint import Joint, Layer, Material, Support
 from .models.base import checked_load
 from .presets import materials
@@ -17,10 +19,11 @@ from .units import as_given, parse
 _MAX_BYTES = 100_000
 _LENGTHS = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
 _TABLES = {
-    "": ("name", "source", "joint", "liner", "ball", "backing", "load"),
+    "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
     "joint": (*_LENGTHS, "support"),
     "liner": ("material", "young", "poisson"),
     "ball": ("material", "young", "poisson"),
+    "cup": ("arc_of_cover", "chamfer", "interface"),
     "load": ("force", "indentation", "half_angle"),
 }
 _LAYER = ("thickness", "material", "young", "poisson")
@@ -30,10 +33,11 @@ _LOADS = {"force": "force", "indentation": "length", "half_angle": "angle"}
 
 @dataclass(frozen=True)
 class JointFile:
-    """What a joint file holds: the joint, and its load (empty, or one of force, indentation, half_angle)."""
+    """What a joint file holds: the joint, its load (empty, or one of force, indentation, half_angle), and its cup."""
 
     joint: Joint
     load: dict[str, float]
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
 
 
 def read_joint(path: str | Path) -> JointFile:
@@ -44,7 +48,8 @@ def read_joint(path: str | Path) -> JointFile:
     or both, where the numbers win; a table `load` with one of `force`, `indentation`, `half_angle`. What is behind the
     liner is rigid, or is an array of tables `[[backing]]` from the liner outwards, each with a `thickness` and a
     material as above; `support` in the table `joint` says whether its outermost surface is "fixed" (without a word) or
-    "free". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N, MPa, degrees.
+    "free". A table `cup` holds what only finite elements ask for: `arc_of_cover`, `chamfer`, and `interface`, "bonded" or
+    "sliding". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N, MPa, degrees.
 
     Raises
     ------
@@ -93,7 +98,7 @@ def joint_of(table: Mapping[str, Any]) -> JointFile:
         name=table.get("name", ""),
         source=table.get("source", ""),
     )
-    return JointFile(joint, read_load(table.get("load", {})))
+    return JointFile(joint, read_load(table.get("load", {})), read_cup(table.get("cup", {})))
 
 
 def read_load(table: Mapping[str, Any]) -> dict[str, float]:
@@ -105,18 +110,28 @@ def read_load(table: Mapping[str, Any]) -> dict[str, float]:
         return dict([checked_load(**load)]) if load else {}
 
 
+def read_cup(table: Mapping[str, Any]) -> Cup:
+    """A cup from `arc_of_cover`, `chamfer` and `interface`, none of which is needed."""
+    kinds = {"arc_of_cover": "angle", "chamfer": "length"}
+    numbers: dict[str, Any] = {name: parse(name, table[name], kind) for name, kind in kinds.items() if name in table}
+    interface = Interface(_one_of("interface", table.get("interface", Interface.BONDED.value), Interface))
+    with as_given(table):
+        return Cup(**numbers, interface=interface)
+
+
 def _joint(table: Mapping[str, Any], **words: Any) -> Joint:
     lengths = _lengths({name: value for name, value in table.items() if name != "support"})
-    support = _support(table.get("support", Support.FIXED.value))
+    support = Support(_one_of("support", table.get("support", Support.FIXED.value), Support))
     with as_given(table):
         return Joint(**lengths, support=support, **words)
 
 
-def _support(chosen: Any) -> Support:
-    known = [support.value for support in Support]
+def _one_of(name: str, chosen: Any, kind: type[Enum]) -> Any:
+    """`chosen`, if one of the kind has that value."""
+    known = [one.value for one in kind]
     if chosen not in known:
-        raise ValueError(f"support = {chosen!r} is not allowed: {' or '.join(map(repr, known))}")
-    return Support(chosen)
+        raise ValueError(f"{name} = {chosen!r} is not allowed: {' or '.join(map(repr, known))}")
+    return chosen
 
 
 def _backing(tables: Any) -> tuple[Layer, ...]:

@@ -1,4 +1,4 @@
-"""Ball and socket as elastic bodies, in units of the contact's radius and of the innermost Young's modulus.
+"""Ball and socket as elastic bodies with their supports.
 
 The ball is the half that faces the socket, held by its equator, which stays plane and is free along itself. The socket
 ends at its rim. Outside it is fixed; or free, and then it sits on its rim, which stays on its cone.
@@ -6,128 +6,19 @@ ends at its rim. Outside it is fixed; or free, and then it sits on its rim, whic
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
-from math import inf, pi
+from math import inf
 
 import numpy
 
-from ..joint import Joint, Support
+from ..joint import Support
 from .condense import Body
-from .cup import Cup, Interface
+from .cup import Interface
 from .elasticity import Elastic
-from .mesh import Block, bisected, block, graded, joined
+from .mesh import Block, block
+from .shapes import Resolution, SocketShape, ball_corners
 
 Array = numpy.ndarray
-
-_CORE = 0.02  # of the ball, left out around its centre
-_FAR = 1e4  # where a massive socket is held
-_WIDEST = pi / 12  # rad, of an element far from the contact
-_FAR_GROWTH = 1.4
-
-
-@dataclass(frozen=True, kw_only=True)
-class Resolution:
-    """How finely both bodies are meshed.
-
-    Attributes
-    ----------
-    size : float
-        Of the elements along the contact and across it, in rad.
-    reach : float
-        Up to which angle they are that small.
-    growth : float
-        How much longer each element is than the one before, away from the contact.
-    order : int
-        1 is bilinear, 2 biquadratic.
-    halvings : int
-        How often every element is then cut in four.
-    """
-
-    size: float
-    reach: float
-    growth: float
-    order: int
-    halvings: int = 0
-
-    def cut(self, corners: Array) -> Array:
-        """The corners with all halvings."""
-        for _ in range(self.halvings):
-            corners = bisected(corners)
-        return corners
-
-    def angles(self, end: float) -> Array:
-        """Corners along the angle, from the pole to the end."""
-        fine = min(self.reach, end)
-        near = numpy.linspace(0.0, fine, max(round(fine / self.size), 1) + 1)
-        if end - fine < self.size / 2:
-            return near * (end / fine)
-        return joined([near, graded(fine, end, self.size * self.growth, self.growth, _WIDEST)])
-
-
-@dataclass(frozen=True, kw_only=True)
-class SocketShape:
-    """A socket of inner radius 1 and a liner of Young's modulus 1.
-
-    Attributes
-    ----------
-    layers : tuple of (outer radius, Young's modulus, Poisson's ratio)
-        From the liner outwards.
-    rim, chamfer : float
-        Polar angle of the rim in rad; of its inner edge.
-    interface, support
-        What holds the liner on the next layer, and the outermost surface.
-    """
-
-    layers: tuple[tuple[float, float, float], ...]
-    rim: float
-    chamfer: float
-    interface: Interface
-    support: Support
-
-    @property
-    def reach(self) -> float:
-        """The angle at which the bore ends."""
-        return self.rim - self.chamfer
-
-    def corners(self, resolution: Resolution) -> tuple[Array, list[Array]]:
-        """Of the elements: angles, and the radii of each layer."""
-        angle = resolution.angles(self.reach)
-        if self.chamfer:
-            across = graded(self.reach, self.rim, min(resolution.size, self.chamfer / 2), 1.0, inf)
-            angle = joined([angle, across])
-        angle = resolution.cut(angle)
-        first, inner, radii = resolution.size, 1.0, []
-        for outer, _, _ in self.layers:
-            thickness = min(outer, _FAR) - inner
-            growth, longest = (_FAR_GROWTH, inf) if outer == inf else (resolution.growth, thickness / 3)
-            layer = graded(inner, inner + thickness, min(first, longest), growth, longest)
-            radii.append(resolution.cut(layer))
-            first, inner = (layer[-1] - layer[-2]) * growth, float(layer[-1])
-        return angle, [self._chamfered(angle, radii[0]), *radii[1:]]
-
-    def _chamfered(self, angle: Array, liner: Array) -> Array:
-        """The liner's radii, which follow the chamfer."""
-        if not self.chamfer:
-            return liner
-        cut = numpy.clip(angle - self.reach, 0.0, None)[:, None]
-        return liner + cut * (liner[-1] - liner) / (liner[-1] - liner[0])
-
-
-def socket_shape(joint: Joint, cup: Cup) -> SocketShape:
-    """The shape of a joint's socket, all numbers of the joint being plain."""
-    R2, outer, layers = float(joint.socket_radius), 1.0, []
-    every = [(joint.liner_thickness, joint.liner), *((layer.thickness, layer.material) for layer in joint.backing)]
-    for thickness, material in every:
-        outer += float(thickness) / R2
-        layers.append((outer, float(material.young) / float(joint.liner.young), float(material.poisson)))
-    return SocketShape(
-        layers=tuple(layers),
-        rim=cup.rim,
-        chamfer=cup.chamfer / R2,
-        interface=cup.interface,
-        support=joint.support,
-    )
 
 
 def socket_body(shape: SocketShape, resolution: Resolution) -> Body:
@@ -145,12 +36,6 @@ def socket_body(shape: SocketShape, resolution: Resolution) -> Body:
     young, poisson = (numpy.array([layer[i] for layer in shape.layers]) for i in (1, 2))
     bore = mesh.number[: int(numpy.searchsorted(mesh.angle, shape.reach + 1e-9)), 0]
     return Body(elastic=Elastic(block=mesh, young=young, poisson=poisson), held=held, contact=bore)
-
-
-def ball_corners(resolution: Resolution) -> tuple[Array, Array]:
-    """Corners of the ball's elements: angles, and radii from the inside out."""
-    radii = graded(1.0, _CORE, resolution.size, resolution.growth, 1 / 6)[::-1]
-    return resolution.cut(resolution.angles(pi / 2)), resolution.cut(radii)
 
 
 def ball_body(poisson: float, resolution: Resolution) -> Body:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..joint import Joint
 from ..models.by_joint import SolvedContact
 from ..stress import Peak
-from .curve import Solved
 from .memory import MeshSize, mesh_size
-from .section import Section, section
+
+if TYPE_CHECKING:
+    from .curve import Solved
+    from .section import Section
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -35,6 +37,8 @@ class MeshedContact(SolvedContact):
         ValueError
             More than one contact, or one without load or answer.
         """
+        from .section import section
+
         return section(self._plain_joint, self.model.cup, self._solved)
 
     @property

@@ -47,7 +47,7 @@ class Cup:
             if not is_plain(numeric(name, getattr(self, name))):
                 raise TypeError(f"{name} must be one number, got {getattr(self, name)!r}")
         arc, chamfer = self.arc_of_cover, self.chamfer
-        require("arc_of_cover", arc, LEAST <= arc <= MOST, "an arc of cover (rad) is 40 to 340 degrees")
+        require("arc_of_cover", arc, LEAST <= arc <= MOST, "an arc of cover is 40 to 340 degrees")
         require("chamfer", chamfer, 0 <= chamfer < inf, "a chamfer (mm) is 0 or more and finite")
         if not isinstance(self.interface, Interface):
             raise TypeError(f"interface must be Interface.BONDED or Interface.SLIDING, got {self.interface!r}")

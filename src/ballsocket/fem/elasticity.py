@@ -26,7 +26,7 @@ _SCALE = numpy.sqrt(numpy.array([2.0, 2.0, 1.0, 2.0]))[:, None]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Strains:
+class Gradients:
     """From the unknowns of elements to strains at their points.
 
     Attributes
@@ -35,21 +35,25 @@ class Strains:
         (ρ, z) of the points.
     strain : array (elements, points, 4, unknowns)
         ε_ρρ, ε_zz, γ_ρz and the hoop strain u_ρ/ρ.
-    swelling : array (elements, points, unknowns)
-        The change of volume, projected.
     volume : array (elements, points)
         What a weight of the unit square is worth in the volume of the whole ring.
     """
 
     place: Array
     strain: Array
-    swelling: Array
     volume: Array
 
     @property
     def trace(self) -> Array:
-        """The change of volume as it is, not projected."""
+        """The change of volume (elements, points, unknowns), not projected."""
         return self.strain[..., 0, :] + self.strain[..., 1, :] + self.strain[..., _HOOP, :]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Strains(Gradients):
+    """The same with the projected change of volume, `swelling`, of the shape of `trace`."""
+
+    swelling: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -121,7 +125,7 @@ class Elastic:
         swelling = self._polynomials(chosen, here.place) @ numpy.linalg.solve(mass, moments)
         return Strains(place=here.place, strain=here.strain, swelling=swelling, volume=here.volume)
 
-    def _moments(self, chosen: Array, whole: _Gradients, weights: Array) -> tuple[Array, Array]:
+    def _moments(self, chosen: Array, whole: Gradients, weights: Array) -> tuple[Array, Array]:
         Q = self._polynomials(chosen, whole.place)
         weighted = (Q * (whole.volume * weights)[..., None]).swapaxes(1, 2)
         return weighted @ whole.trace, weighted @ Q
@@ -136,7 +140,7 @@ class Elastic:
         size = abs(corners[:, 2] - corners[:, 0]).max(axis=0)[:, None]
         return numpy.concatenate([one, numpy.moveaxis((place - middle) / size, 0, -1)], axis=-1)
 
-    def _gradients(self, chosen: Array, points: Array) -> _Gradients:
+    def _gradients(self, chosen: Array, points: Array) -> Gradients:
         shapes, slopes = shape_functions(self.block.order, points)
         elements = self.block.elements[:, chosen]
         corners = self.block.nodes[:, elements]
@@ -154,18 +158,7 @@ class Elastic:
         polar = numpy.stack(
             [across * numpy.cos(phi) - along * numpy.sin(phi), across * numpy.sin(phi) + along * numpy.cos(phi)], -1
         )
-        return _Gradients(place=place, strain=polar.reshape(*polar.shape[:-2], -1), volume=2 * pi * place[0] * abs(det))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Gradients:
-    """At points: (ρ, z) (2, elements, points), strains of the unknowns, and what a weight of the square is worth."""
-
-    place: Array
-    strain: Array
-    volume: Array
-
-    trace = Strains.trace
+        return Gradients(place=place, strain=polar.reshape(*polar.shape[:-2], -1), volume=2 * pi * place[0] * abs(det))
 
 
 def shape_functions(order: int, points: Array) -> tuple[Array, Array]:

@@ -7,8 +7,8 @@ from math import log2
 from typing import Any
 
 from ..joint import Joint
-from .bodies import Resolution, ball_corners, socket_shape
 from .cup import Cup
+from .shapes import Resolution, ball_corners, socket_shape
 
 _GIB = 2**30
 

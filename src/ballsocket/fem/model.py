@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from functools import lru_cache
-from math import pi, radians
+from dataclasses import dataclass, field
 
 from .. import arrays
-from ..checks import require
+from ..checks import needs, require
 from ..contact import Contact
 from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint
@@ -16,18 +14,11 @@ from ..models.base import Answer, Model
 from ..models.by_joint import taken_apart
 from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range
-from .bodies import Resolution, ball_compliance, socket_compliance, socket_shape
 from .contact import MeshedContact
 from .cup import Cup
-from .curve import COARSE, Curve
-from .memory import check_memory, mesh_size
-from .pair import Pair, Surface
-from .spacing import Adapted, Element, Spacing, Uniform
+from .spacing import Adapted, Element, Spacing
 
 Array = arrays.Array
-
-LIMIT = radians(88.0)
-"""The widest contact where the socket reaches further."""
 
 
 def _silent(_: str) -> None: ...
@@ -115,7 +106,10 @@ class FiniteElement(Model):
         return "half angles from a few elements up to the rim, at most 88°, less where the ball fills its socket before"
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        solution = taken_apart(self, joint, load, lambda one, loads: _curve(self, one).press(kind, loads))
+        needs("fem", "skfem", "psutil")
+        from .solver import curve  # takes its time to import
+
+        solution = taken_apart(self, joint, load, lambda one, loads: curve(self, one).press(kind, loads))
         indentation = solution.indentation(joint, load)
         return Answer(
             laws=solution,
@@ -125,49 +119,3 @@ class FiniteElement(Model):
             beyond_equator=indentation < 0,
             at_rim=solution.spread(lambda piece: piece.state.at_rim) == 1,
         )
-
-
-@lru_cache(maxsize=32)
-def _curve(model: FiniteElement, joint: Joint) -> Curve:
-    """The curve of a joint of plain numbers; kept, since more loads on it are likely."""
-    _check(model, joint)
-    radius, bore = float(joint.socket_radius), socket_shape(joint, model.cup).reach
-    ends_at_rim = bore <= pi / 2 + 1e-12
-    widest = bore if ends_at_rim else LIMIT
-    classes = model.spacing.classes(widest, radius)
-
-    @lru_cache(maxsize=2 * len(classes))
-    def pair(number: int, mesh: int) -> Pair:
-        coarse = model.spacing.coarse(classes[number], radius, model.element.value)
-        resolution = coarse if mesh == COARSE else replace(coarse, halvings=1)
-        return _pair(model, joint, resolution, min(1.2 * classes[number], widest))
-
-    gap = model.gap(clearance=float(joint.clearance), socket_radius=radius)
-    return Curve(pairs=pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=model.meshes)
-
-
-def _check(model: FiniteElement, joint: Joint) -> None:
-    """Raise ValueError for a geometry that cannot be meshed."""
-    thicknesses = {"liner_thickness": joint.liner_thickness}
-    thicknesses |= {f"backing[{number}].thickness": layer.thickness for number, layer in enumerate(joint.backing)}
-    for name, thickness in thicknesses.items():
-        if isinstance(model.spacing, Uniform):
-            size = model.spacing.size
-            require(name, thickness, thickness >= 2 * size, f"elements of {size:g} mm need two of them in a layer")
-    chamfer, liner = model.cup.chamfer, float(joint.liner_thickness)
-    require("chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer leaves a tenth of the liner, which is {liner:g} mm")
-    bore = socket_shape(joint, model.cup).reach
-    require("chamfer", chamfer, bore > model.cup.rim / 2, "a chamfer leaves half of the bore")
-
-
-def _pair(model: FiniteElement, joint: Joint, resolution: Resolution, reach: float) -> Pair:
-    size = mesh_size(joint, model.cup, resolution)
-    check_memory(size, resolution.order)
-    model.progress(f"condensing {size.elements} elements, {size.nodes} nodes")
-    R1, R2, order = float(joint.ball_radius), float(joint.socket_radius), resolution.order
-    angle, compliance = socket_compliance(socket_shape(joint, model.cup), resolution)
-    surfaces = [Surface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.liner.young)))]
-    if joint.ball is not None:
-        angle, compliance = ball_compliance(float(joint.ball.poisson), resolution)
-        surfaces.append(Surface(angle=angle, order=order, compliance=compliance / (R1 * float(joint.ball.young))))
-    return Pair(surfaces=tuple(surfaces), radius=R2, reach=reach, resolution=resolution)

@@ -14,7 +14,7 @@ import numpy
 from scipy.linalg import cholesky
 
 from ..arrays import gauss_legendre
-from .bodies import Resolution
+from .shapes import Resolution
 
 Array = numpy.ndarray
 

@@ -10,11 +10,12 @@ import numpy
 
 from ..joint import Joint
 from ..stress import Peak, Stress
-from .bodies import ball_body, socket_body, socket_shape
+from .bodies import ball_body, socket_body
 from .condense import Body
 from .cup import Cup
 from .curve import Solved
 from .elasticity import shape_functions
+from .shapes import socket_shape
 
 Array = numpy.ndarray
 

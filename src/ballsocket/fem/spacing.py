@@ -8,7 +8,7 @@ from math import inf
 
 from ..arrays import is_plain
 from ..checks import numeric, require
-from .bodies import Resolution
+from .shapes import Resolution
 
 _CLASSES = 12
 _FEWEST = 8  # elements in the narrowest contact of a uniform mesh

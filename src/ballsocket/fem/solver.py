@@ -1,0 +1,69 @@
+"""From a joint and the settings of the finite elements to the curve of its contacts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from math import pi, radians
+from typing import TYPE_CHECKING
+
+from ..checks import require
+from ..joint import Joint
+from .bodies import ball_compliance, socket_compliance
+from .curve import COARSE, Curve
+from .memory import check_memory, mesh_size
+from .pair import Pair, Surface
+from .shapes import Resolution, socket_shape
+from .spacing import Uniform
+
+if TYPE_CHECKING:
+    from .model import FiniteElement as Settings
+
+LIMIT = radians(88.0)
+"""The widest contact where the socket reaches further."""
+
+
+@lru_cache(maxsize=32)
+def curve(model: Settings, joint: Joint) -> Curve:
+    """The curve of a joint of plain numbers; kept, since more loads on it are likely."""
+    _check(model, joint)
+    radius, bore = float(joint.socket_radius), socket_shape(joint, model.cup).reach
+    ends_at_rim = bore <= pi / 2 + 1e-12
+    widest = bore if ends_at_rim else LIMIT
+    classes = model.spacing.classes(widest, radius)
+
+    @lru_cache(maxsize=2 * len(classes))
+    def pair(number: int, mesh: int) -> Pair:
+        coarse = model.spacing.coarse(classes[number], radius, model.element.value)
+        resolution = coarse if mesh == COARSE else replace(coarse, halvings=1)
+        return _pair(model, joint, resolution, min(1.2 * classes[number], widest))
+
+    gap = model.gap(clearance=float(joint.clearance), socket_radius=radius)
+    return Curve(pairs=pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=model.meshes)
+
+
+def _check(model: Settings, joint: Joint) -> None:
+    """Raise ValueError for a geometry that cannot be meshed."""
+    thicknesses = {"liner_thickness": joint.liner_thickness}
+    thicknesses |= {f"backing[{number}].thickness": layer.thickness for number, layer in enumerate(joint.backing)}
+    for name, thickness in thicknesses.items():
+        if isinstance(model.spacing, Uniform):
+            size = model.spacing.size
+            require(name, thickness, thickness >= 2 * size, f"elements of {size:g} mm need two of them in a layer")
+    chamfer, liner = model.cup.chamfer, float(joint.liner_thickness)
+    require("chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer leaves a tenth of the liner, which is {liner:g} mm")
+    bore = socket_shape(joint, model.cup).reach
+    require("chamfer", chamfer, bore > model.cup.rim / 2, "a chamfer leaves half of the bore")
+
+
+def _pair(model: Settings, joint: Joint, resolution: Resolution, reach: float) -> Pair:
+    size = mesh_size(joint, model.cup, resolution)
+    check_memory(size, resolution.order)
+    model.progress(f"condensing {size.elements} elements, {size.nodes} nodes")
+    R1, R2, order = float(joint.ball_radius), float(joint.socket_radius), resolution.order
+    angle, compliance = socket_compliance(socket_shape(joint, model.cup), resolution)
+    surfaces = [Surface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.liner.young)))]
+    if joint.ball is not None:
+        angle, compliance = ball_compliance(float(joint.ball.poisson), resolution)
+        surfaces.append(Surface(angle=angle, order=order, compliance=compliance / (R1 * float(joint.ball.young))))
+    return Pair(surfaces=tuple(surfaces), radius=R2, reach=reach, resolution=resolution)
