@@ -51,12 +51,12 @@ def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact])
         curve = curves[name]
         right.plot(arrays.to_numpy(curve.indentation) * 1e3, arrays.to_numpy(curve.force) / 1e3, **style)
         right.plot(contact.indentation * 1e3, contact.force / 1e3, "o", color=style["color"], markersize=4.5)
-    _finish(left, "polar angle φ [°]", "contact pressure [MPa]")
+    finish(left, "polar angle φ [°]", "contact pressure [MPa]")
     left.set_xlim(0.0, 90.0)
     if left.dataLim.ymin > -0.02 * left.dataLim.ymax:
         left.set_ylim(bottom=0.0)
     left.set_xticks(range(0, 91, 15))
-    _finish(right, "indentation d [µm]", "force F [kN]")
+    finish(right, "indentation d [µm]", "force F [kN]")
     right.set_xlim(0.0, 1.12e3 * max(contact.indentation for contact in contacts.values()) or 1.0)
     right.set_ylim(0.0, 1.6e-3 * max(contact.force for contact in contacts.values()) or 1.0)
     columns = min(len(contacts), 4)
@@ -93,7 +93,8 @@ def _angles(contact: Contact) -> numpy.ndarray:
     return edge * numpy.append(numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 200)), 1.0 + 1e-6)
 
 
-def _finish(axes: Axes, x: str, y: str) -> None:
+def finish(axes: Axes, x: str, y: str) -> None:
+    """Labels, a light grid, and no frame."""
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.grid(color="0.9", linewidth=0.6)

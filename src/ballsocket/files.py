@@ -48,8 +48,9 @@ def read_joint(path: str | Path) -> JointFile:
     or both, where the numbers win; a table `load` with one of `force`, `indentation`, `half_angle`. What is behind the
     liner is rigid, or is an array of tables `[[backing]]` from the liner outwards, each with a `thickness` and a
     material as above; `support` in the table `joint` says whether its outermost surface is "fixed" (without a word) or
-    "free". A table `cup` holds what only finite elements ask for: `arc_of_cover`, `chamfer`, and `interface`, "bonded" or
-    "sliding". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N, MPa, degrees.
+    "free". A table `cup` holds what only finite elements ask for: `arc_of_cover`, `chamfer`, and `interface`, which is
+    "bonded" or "sliding". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N,
+    MPa, degrees.
 
     Raises
     ------

@@ -40,12 +40,12 @@ _DROPPED = (
 )
 
 
-def print_press(comparison: Comparison) -> None:
-    """The comparison as a table, each model with its pressure profile from the pole to 90 degrees."""
+def print_press(comparison: Comparison, remarks: Iterable[str] = ()) -> None:
+    """The comparison as a table, each model with its pressure profile from the pole to 90 degrees, and remarks."""
     console = _console()
     _print_folded(console, str(comparison.joint), "bold")
     console.print(_fitting(comparison, console))
-    for reason in comparison.notes():
+    for reason in (*remarks, *comparison.notes()):
         _print_folded(console, reason, "dim")
 
 

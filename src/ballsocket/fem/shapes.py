@@ -15,8 +15,6 @@ Array = numpy.ndarray
 
 _CORE = 0.02  # of the ball, left out around its centre
 _FAR = 1e4  # where a massive socket is held
-_WIDEST = pi / 12  # rad, of an element far from the contact
-_FAR_GROWTH = 1.4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +29,10 @@ class Resolution:
         Up to which angle they are that small.
     growth : float
         How much longer each element is than the one before, away from the contact.
+    widest : float
+        Longest element along the surface in rad.
+    deepest : float
+        Longest element across a layer, as a share of its thickness.
     order : int
         1 is bilinear, 2 biquadratic.
     halvings : int
@@ -40,6 +42,8 @@ class Resolution:
     size: float
     reach: float
     growth: float
+    widest: float
+    deepest: float
     order: int
     halvings: int = 0
 
@@ -55,7 +59,7 @@ class Resolution:
         near = numpy.linspace(0.0, fine, max(round(fine / self.size), 1) + 1)
         if end - fine < self.size / 2:
             return near * (end / fine)
-        return joined([near, graded(fine, end, self.size * self.growth, self.growth, _WIDEST)])
+        return joined([near, graded(fine, end, self.size * self.growth, self.growth, self.widest)])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,10 +97,10 @@ class SocketShape:
         first, inner, radii = resolution.size, 1.0, []
         for outer, _, _ in self.layers:
             thickness = min(outer, _FAR) - inner
-            growth, longest = (_FAR_GROWTH, inf) if outer == inf else (resolution.growth, thickness / 3)
-            layer = graded(inner, inner + thickness, min(first, longest), growth, longest)
+            longest = inf if outer == inf else thickness * resolution.deepest
+            layer = graded(inner, inner + thickness, min(first, longest), resolution.growth, longest)
             radii.append(resolution.cut(layer))
-            first, inner = (layer[-1] - layer[-2]) * growth, float(layer[-1])
+            first, inner = (layer[-1] - layer[-2]) * resolution.growth, float(layer[-1])
         return angle, [self._chamfered(angle, radii[0]), *radii[1:]]
 
     def _chamfered(self, angle: Array, liner: Array) -> Array:
@@ -125,5 +129,5 @@ def socket_shape(joint: Joint, cup: Cup) -> SocketShape:
 
 def ball_corners(resolution: Resolution) -> tuple[Array, Array]:
     """Corners of the ball's elements: angles, and radii from the inside out."""
-    radii = graded(1.0, _CORE, resolution.size, resolution.growth, 1 / 6)[::-1]
+    radii = graded(1.0, _CORE, resolution.size, resolution.growth, resolution.deepest / 2)[::-1]
     return resolution.cut(resolution.angles(pi / 2)), resolution.cut(radii)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from math import inf
+from math import inf, pi
 
 from ..arrays import is_plain
 from ..checks import numeric, require
 from .shapes import Resolution
 
 _CLASSES = 12
+_DEFAULT = 48
 _FEWEST = 8  # elements in the narrowest contact of a uniform mesh
 
 
@@ -33,7 +34,8 @@ class Adapted:
     elements : int
         Along the widest contact of each class, from the pole to its edge; an even number from 16 on. Default 48.
     growth : float
-        How much longer each element of the coarse mesh is than its neighbour, away from the contact; 1 to 2.
+        How much longer each element of the coarse mesh is than its neighbour, away from the contact; 1 to 2. This is
+        for 48 elements: with more of them neighbours differ less.
 
     Raises
     ------
@@ -41,7 +43,7 @@ class Adapted:
         A number that is not allowed, named with its value.
     """
 
-    elements: int = 48
+    elements: int = _DEFAULT
     growth: float = 1.3
 
     def __post_init__(self) -> None:
@@ -54,8 +56,16 @@ class Adapted:
         return tuple(reach / 2**number for number in range(_CLASSES + 1))
 
     def coarse(self, widest: float, radius: float, order: int) -> Resolution:
-        """The coarse mesh of a class; the fine one halves it."""
-        return Resolution(size=2 * widest / self.elements, reach=1.2 * widest, growth=self.growth, order=order)
+        """The coarse mesh of a class; the fine one halves it. All of it is coarser or finer with `elements`."""
+        share = _DEFAULT / self.elements
+        return Resolution(
+            size=2 * widest / self.elements,
+            reach=1.2 * widest,
+            growth=self.growth**share,
+            widest=share * pi / 12,
+            deepest=min(share / 3, 0.5),
+            order=order,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +100,8 @@ class Uniform:
 
     def coarse(self, widest: float, radius: float, order: int) -> Resolution:
         """The coarse mesh; the fine one halves it."""
-        return Resolution(size=2 * self.size / radius, reach=inf, growth=self.growth, order=order)
+        size = 2 * self.size / radius
+        return Resolution(size=size, reach=inf, growth=self.growth, widest=size, deepest=1 / 3, order=order)
 
 
 def _check_growth(growth: float) -> None:

@@ -24,9 +24,9 @@ def check_suffix(path: Path) -> None:
 def write_vtk(section: Section, path: Path) -> None:
     """Write meshes, displacements (mm) and stresses (MPa) of a section.
 
-    x is the distance from the load axis, y the height above the centre of the socket, in mm. Point data: `displacement`,
-    `von_mises`, and the stresses `radial`, `meridional`, `hoop` and `shear` in spherical directions; cell data: `part`,
-    0 for the first part. The file appears at once: an interrupted write leaves none.
+    x is the distance from the load axis, y the height above the centre of the socket, in mm. Point data are
+    `displacement`, `von_mises`, and `radial`, `meridional`, `hoop` and `shear`, stresses in spherical directions. Cell
+    data are `part`, 0 for the first. The file appears at once: an interrupted write leaves none.
 
     Raises
     ------

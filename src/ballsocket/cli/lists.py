@@ -1,0 +1,38 @@
+"""`models`, `presets` and `cite`: what there is, and where it comes from."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+import ballsocket as bs
+
+from .. import tables
+from ..all_models import judge
+from ..files import nearest
+from .root import app
+
+
+@app.command()
+def models() -> None:
+    """The catalogue: every model, where it can be trusted, and where it comes from."""
+    tables.print_models([*bs.catalogue.values(), judge, bs.PinInHole()])
+
+
+@app.command()
+def presets() -> None:
+    """Materials and joints by name, with the sources of their numbers."""
+    tables.print_presets()
+
+
+@app.command()
+def cite(
+    names: Annotated[list[str] | None, typer.Argument(help="Models by name; all of them if none is given.")] = None,
+) -> None:
+    """BibTeX of what a model is made of."""
+    citable: dict[str, Any] = {**bs.catalogue, judge.name: judge, "pin-in-hole": bs.PinInHole()}
+    for name in names or []:
+        if name not in citable:
+            raise ValueError(f"model {name!r} is not known{nearest(name, citable)}")
+    typer.echo(bs.cite(*(citable[name] for name in names or citable)))
