@@ -34,7 +34,7 @@ def curve(model: Settings, joint: Joint) -> Curve:
 
     @lru_cache(maxsize=2 * len(classes))
     def pair(number: int, mesh: int) -> Pair:
-        coarse = model.spacing.coarse(classes[number], radius, model.element.value)
+        coarse = model.spacing.coarse(classes[number], radius, float(joint.liner_thickness), model.element.value)
         resolution = coarse if mesh == COARSE else replace(coarse, halvings=1)
         return _pair(model, joint, resolution, min(1.2 * classes[number], widest))
 

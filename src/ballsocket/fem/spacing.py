@@ -27,7 +27,8 @@ class Adapted:
     """Elements as small as the contact asks for, larger away from it.
 
     Contacts are sorted into classes, each half as wide as the one before and with a mesh of its own, so that a contact
-    spans between half of `elements` and all of them.
+    spans between half of `elements` and all of them, more where the liner is thin: an element is at most a quarter of
+    its thickness.
 
     Parameters
     ----------
@@ -55,11 +56,11 @@ class Adapted:
         """Half angles in rad, descending: a class lies between each and the next."""
         return tuple(reach / 2**number for number in range(_CLASSES + 1))
 
-    def coarse(self, widest: float, radius: float, order: int) -> Resolution:
+    def coarse(self, widest: float, radius: float, thickness: float, order: int) -> Resolution:
         """The coarse mesh of a class; the fine one halves it. All of it is coarser or finer with `elements`."""
         share = _DEFAULT / self.elements
         return Resolution(
-            size=2 * widest / self.elements,
+            size=min(2 * widest / self.elements, share * thickness / (2 * radius)),
             reach=1.2 * widest,
             growth=self.growth**share,
             widest=share * pi / 12,
@@ -98,7 +99,7 @@ class Uniform:
         """One class, from a few elements to the widest contact."""
         return (reach, min(_FEWEST * self.size / radius, reach / 2))
 
-    def coarse(self, widest: float, radius: float, order: int) -> Resolution:
+    def coarse(self, widest: float, radius: float, thickness: float, order: int) -> Resolution:
         """The coarse mesh; the fine one halves it."""
         size = 2 * self.size / radius
         return Resolution(size=size, reach=inf, growth=self.growth, widest=size, deepest=1 / 3, order=order)
