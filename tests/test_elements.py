@@ -5,7 +5,6 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 from ballsocket.fem.bodies import ball_body, socket_body
-from ballsocket.fem.condense import Body
 from ballsocket.fem.cup import Interface
 from ballsocket.fem.elasticity import Elastic
 from ballsocket.fem.mesh import block, graded
@@ -24,7 +23,9 @@ def a_block(order, elements=6, poisson=0.3, end=np.pi / 2):
 def polar(elastic, across, along):
     """u_φ and u_r, unknown by unknown, of a displacement in ρ and z at the nodes."""
     phi = np.repeat(elastic.block.angle, elastic.block.radius.shape[1])
-    return np.stack([across * np.cos(phi) - along * np.sin(phi), across * np.sin(phi) + along * np.cos(phi)], -1).ravel()
+    return np.stack(
+        [across * np.cos(phi) - along * np.sin(phi), across * np.sin(phi) + along * np.cos(phi)], -1
+    ).ravel()
 
 
 @ORDERS
@@ -119,7 +120,11 @@ def test_the_condensed_compliance_is_that_of_the_whole_body(order, interface):
 
 def test_layers_that_slide_move_together_across_and_freely_along():
     shape = SocketShape(
-        layers=((1.3, 1.0, 0.4), (1.5, 20.0, 0.3)), rim=1.5, chamfer=0.0, interface=Interface.SLIDING, support=Support.FIXED
+        layers=((1.3, 1.0, 0.4), (1.5, 20.0, 0.3)),
+        rim=1.5,
+        chamfer=0.0,
+        interface=Interface.SLIDING,
+        support=Support.FIXED,
     )
     resolution = Resolution(size=0.1, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2)
     body = socket_body(shape, resolution)
@@ -147,7 +152,9 @@ def test_a_chamfer_takes_away_the_edge_and_nothing_else():
     shape = SocketShape(
         layers=((1.3, 1.0, 0.4),), rim=1.5, chamfer=0.1, interface=Interface.BONDED, support=Support.FIXED
     )
-    mesh = socket_body(shape, Resolution(size=0.1, reach=2.0, growth=1.2, widest=0.3, deepest=0.5, order=2)).elastic.block
+    mesh = socket_body(
+        shape, Resolution(size=0.1, reach=2.0, growth=1.2, widest=0.3, deepest=0.5, order=2)
+    ).elastic.block
     bore = mesh.radius[:, 0]
     np.testing.assert_allclose(bore[mesh.angle <= 1.4 + 1e-12], 1.0)
     assert bore[-1] == pytest.approx(1.1)

@@ -1,8 +1,8 @@
 """One contact of a given half angle: the pressure that closes the gap, and the indentation at which it ends just there.
 
-The pressure is that of the `Pair`, with hats φ_i up to the node φ_k, one or two elements before the edge. From there it
-falls like a square root, as it does in truth: p = p_k sqrt((ε - φ)/(ε - φ_k)). The gap is closed in the mean, weighted
-with each of these shapes. One more weight, the slope of the last shape in ε, which is singular at the edge like the
+The pressure is that of the `Pair`, with hats φ_i up to the node φ_k, three or four elements before the edge. From
+there it falls as it does in truth, with t = sqrt((ε - φ)/(ε - φ_k)) like p_k t + q (t - t³). The gap is closed in the
+mean, weighted with each of these shapes. One more weight, the slope of t in ε, which is singular at the edge like the
 pressure of a contact of the wrong size, belongs to no pressure and so says what the indentation must be. There is no
 penalty, and where all pressures are positive and no gap is negative the complementarity conditions of contact hold.
 """
@@ -29,18 +29,18 @@ _POLE = 0.35
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Cap:
-    """A contact of half angle ε (rad) on a pair; `last` is the node k from which the pressure falls like a root."""
+    """A contact of half angle ε (rad) on a pair; `last` is the node k from which the pressure falls to the edge."""
 
     pair: Pair
     gap: Gap
     half_angle: float
     last: int
 
-    # --- the last shape of the pressure: a rising hat and a falling root ---
+    # --- the last two shapes of the pressure: a hat that falls like t, and t - t³ ---
 
     @cached_property
     def _tail(self) -> tuple[Array, Array, Array, Array]:
-        """Angles, weights of ∫ dA, the last shape, and its slope in ε."""
+        """Angles, weights of ∫ dA, the last shapes (2, angles), and the slope of t in ε."""
         before, here = self.pair.angle[self.last - 1 : self.last + 1]
         rise = self._between(before, here)
         widths = numpy.diff(rise)[:, None]
@@ -52,7 +52,10 @@ class Cap:
         down = self.half_angle - width * t * t
         angle = numpy.concatenate([up, down])
         weights = numpy.concatenate([(widths * _WEIGHTS).ravel(), (steps * _WEIGHTS).ravel() * 2 * width * t])
-        shape = numpy.concatenate([(up - before) / (here - before), t])
+        zero = numpy.zeros_like(up)
+        shape = numpy.stack(
+            [numpy.concatenate([(up - before) / (here - before), t]), numpy.concatenate([zero, t - t**3])]
+        )
         slope = numpy.concatenate([numpy.zeros_like(up), (1 / t - t) / (2 * width)])
         return angle, weights * self.pair.area(angle), shape, slope
 
@@ -63,33 +66,33 @@ class Cap:
 
     @cached_property
     def _moments(self) -> tuple[Array, Array]:
-        """What the pressure's shapes do to the mean displacement under the last shape, and under its slope."""
+        """What all shapes as pressures do to the mean displacement: under the last two (2, shapes), under the slope."""
         angle, weights, shape, slope = self._tail
-        tail, edge = numpy.zeros(self.last + 1), numpy.zeros(self.last + 1)
+        tail, edge = numpy.zeros((2, self.last + 2)), numpy.zeros(self.last + 2)
         for surface, displaced in zip(self.pair.surfaces, self.pair.displaced, strict=True):
             shapes = surface.shapes(angle)
-            force, steep = shapes.T @ (weights * shape), shapes.T @ (weights * slope)
+            force, steep = shapes.T @ (weights * shape).T, shapes.T @ (weights * slope)
             moved = numpy.column_stack([displaced[:, : self.last], surface.compliance @ force])
-            tail += force @ moved
+            tail += force.T @ moved
             edge += steep @ moved
         return tail, edge
 
-    # --- pressures by right-hand sides: moments with the hats and the last shape ---
+    # --- pressures by right-hand sides: moments of a gap with all shapes ---
 
     @cached_property
-    def _borders(self) -> tuple[Array, Array, float]:
-        """The leading factor, the border's part of it, and the pivot of the last shape."""
+    def _borders(self) -> tuple[Array, Array, Array]:
+        """The leading factor, the borders' part of it, and the pivots of the last shapes."""
         tail, _ = self._moments
         L = self.pair.factor[: self.last, : self.last]
-        border = solve_triangular(L, tail[:-1], lower=True, check_finite=False)
-        return L, border, tail[-1] - border @ border
+        border = solve_triangular(L, tail[:, :-2].T, lower=True, check_finite=False)
+        return L, border, tail[:, -2:] - border.T @ border
 
     def _pressed(self, side: Array) -> Array:
-        """Pressures p_0 .. p_k that meet a right-hand side (shapes,)."""
+        """Pressures p_0 .. p_k and q that meet a right-hand side (shapes,)."""
         L, border, pivot = self._borders
-        inner = solve_triangular(L, side[:-1], lower=True, check_finite=False)
-        last = (side[-1] - border @ inner) / pivot
-        inner -= border * last
+        inner = solve_triangular(L, side[:-2], lower=True, check_finite=False)
+        last = numpy.linalg.solve(pivot, side[-2:] - border.T @ inner)
+        inner -= border @ last
         return numpy.append(solve_triangular(L, inner, lower=True, trans=1, check_finite=False), last)
 
     def _side(self, asked: Array, asked_tail: Array) -> Array:
@@ -103,7 +106,7 @@ class Cap:
         return self._pressed(self._moments[1])
 
     def _unclosed(self, asked: Array, asked_tail: Array) -> float:
-        """What is left of a gap in the mean weighted with the last shape's slope."""
+        """What is left of a gap in the mean weighted with the slope."""
         _, weights, _, slope = self._tail
         return float((weights * slope) @ asked_tail - self._undoing @ self._side(asked, asked_tail))
 
@@ -137,7 +140,7 @@ class Cap:
 
     @cached_property
     def pressures(self) -> Array:
-        """p_0 .. p_k in MPa."""
+        """p_0 .. p_k and q in MPa."""
         return self._pressed(self._side(*self._sides(self.indentation)))
 
     @property
@@ -158,7 +161,7 @@ class Cap:
     @property
     def tension(self) -> float:
         """The largest pull over the pressure at the pole; negative where everything presses."""
-        return float(-self.pressures.min() / self.max_pressure)
+        return float(-self.pressures[:-1].min() / self.max_pressure)
 
     @property
     def edge_element(self) -> float:
@@ -180,20 +183,20 @@ class Cap:
     def forces(self, surface: int) -> Array:
         """Normal forces on the nodes of one of the surfaces, in N."""
         angle, weights, shape, _ = self._tail
-        tail = self.pair.surfaces[surface].shapes(angle).T @ (weights * shape)
-        return self.pair.forces[surface][:, : self.last] @ self.pressures[:-1] + self.pressures[-1] * tail
+        tail = self.pair.surfaces[surface].shapes(angle).T @ (weights * shape).T
+        return self.pair.forces[surface][:, : self.last] @ self.pressures[:-2] + tail @ self.pressures[-2:]
 
     def pressure(self, angle: Array) -> Array:
         """p(φ) in MPa, 0 outside the contact."""
         nodes = self.pair.angle[: self.last + 1]
-        inside = numpy.interp(angle, nodes, numpy.append(self.max_pressure, self.pressures[1:]))
+        inside = numpy.interp(angle, nodes, numpy.append(self.max_pressure, self.pressures[1:-1]))
         t = numpy.sqrt(numpy.clip((self.half_angle - angle) / (self.half_angle - nodes[-1]), 0.0, 1.0))
-        return numpy.where(angle <= nodes[-1], inside, self.pressures[-1] * t)
+        return numpy.where(angle <= nodes[-1], inside, self.pressures[-2] * t + self.pressures[-1] * (t - t**3))
 
     @cached_property
     def max_pressure(self) -> float:
         """p0 in MPa: even around the pole, since the pole's own node stands for hardly any area."""
-        return pole(self.pair.angle[: self.last + 1], self.pressures, self.half_angle)
+        return pole(self.pair.angle[: self.last + 1], self.pressures[:-1], self.half_angle)
 
 
 def pole(angle: Array, pressures: Array, half_angle: float) -> float:
@@ -204,6 +207,6 @@ def pole(angle: Array, pressures: Array, half_angle: float) -> float:
 
 
 def cap(pair: Pair, gap: Gap, half_angle: float) -> Cap:
-    """The contact of a half angle, its last shape one to two elements wide."""
-    last = max(int(numpy.searchsorted(pair.angle, half_angle, side="right")) - 2, 1)
+    """The contact of a half angle, its last shapes three to four elements wide."""
+    last = max(int(numpy.searchsorted(pair.angle, half_angle, side="right")) - 4, 1)
     return Cap(pair=pair, gap=gap, half_angle=half_angle, last=last)

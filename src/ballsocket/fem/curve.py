@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from operator import attrgetter
 
 import numpy
@@ -23,6 +22,9 @@ Solved = Cap | Brimful
 FINE, COARSE = 0, 1
 """The two meshes."""
 
+_STRIDE = 4
+"""Classes whose contacts can be told apart on one coarse mesh."""
+
 _ROOM = 1.12
 """How much wider or narrower than its class a contact may come out on another mesh."""
 
@@ -30,7 +32,7 @@ _ORDER, _SAFETY = 2, 2.0
 _LEAST = {
     "force": 0.03,
     "indentation": 0.03,
-    "half_angle": 1.0,
+    "half_angle": 0.4,
     "max_pressure": 0.2,
     "stiffness": 0.2,
     "energy": 0.07,
@@ -117,28 +119,32 @@ class Curve:
         return Piece(load=load, touching=touching, state=fine, reached=reached, error=error)
 
     def _class(self, kind: str, load: float) -> int:
-        """The class of a load: the first whose narrowest contact gives less. Decided on the coarse mesh."""
+        """The class that a load belongs to, by its half angle on the coarse mesh of a class not far from it."""
         last = len(self.classes) - 2
         if kind == "half_angle":
             return min(sum(load <= angle for angle in self.classes[1:]), last)
-        return next((number for number in range(last) if _miss(kind, load, self._narrowest(number)) < 0), last)
-
-    def _narrowest(self, number: int) -> Cap:
-        if number not in self._bounds:
-            self._bounds[number] = cap(self.pairs(number, COARSE), self.gap, self.classes[number + 1])
-        return self._bounds[number]
-
-    @cached_property
-    def _bounds(self) -> dict[int, Cap]:
-        return {}
+        for start in range(0, last + 1, _STRIDE):
+            low, high = self.classes[min(start + _STRIDE, last + 1)], self.classes[start]
+            rough = _found(kind, load, self.pairs(start, COARSE), self.gap, (low, high))
+            if rough is not None:
+                return min(sum(rough.half_angle <= angle for angle in self.classes[1:]), last)
+            if _miss(kind, load, cap(self.pairs(start, COARSE), self.gap, high)) < 0:
+                return start
+        return last
 
     def _contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
         pair, widest = self.pairs(number, mesh), min(_ROOM * self.classes[number], self.classes[0])
         if kind == "half_angle":
             return _at(load, pair, self.gap) if self.classes[-1] / _ROOM <= load <= widest else None
-        if number == 0 and self.ends_at_rim and _miss(kind, load, cap(pair, self.gap, widest)) < 0:
+        if self._fills(kind, load, number, pair):
             return _brimful(kind, load, pair, self.gap)
         return _found(kind, load, pair, self.gap, (self.classes[number + 1] / _ROOM, widest))
+
+    def _fills(self, kind: str, load: float, number: int, pair: Pair) -> bool:
+        """Whether a load is too much for contacts that end before the rim."""
+        if number > 0 or not self.ends_at_rim:
+            return False
+        return _miss(kind, load, cap(pair, self.gap, self.classes[0])) < 0
 
 
 def _at(half_angle: float, pair: Pair, gap: Gap) -> Cap | None:

@@ -92,7 +92,9 @@ class FiniteElement(Model):
     @property
     def domain(self) -> tuple[Range, ...]:
         locked = "an incompressible liner has no bulk modulus: 0.4999 is solved"
+        fit = "without clearance every load has the same half angle: take a millionth of the radius"
         return (
+            Range(quantity="joint.clearance", symbol="c", low=0.0, why=fit),
             Range(quantity="joint.liner.poisson", symbol="ν", low=-1.0, high=0.49995, why=locked),
             Range(quantity="joint.thickness_ratio", symbol="R2/L", high=200.0, why="so thin a liner is not meshed"),
         )

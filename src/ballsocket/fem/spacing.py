@@ -10,9 +10,10 @@ from ..arrays import is_plain
 from ..checks import numeric, require
 from .shapes import Resolution
 
-_CLASSES = 12
-_DEFAULT = 48
-_FEWEST = 8  # elements in the narrowest contact of a uniform mesh
+_CLASSES = 24
+_RATIO = 2**-0.5  # of a class's narrowest contact to its widest
+_DEFAULT = 60
+_FEWEST = 16  # elements in the narrowest contact of a uniform mesh
 
 
 class Element(Enum):
@@ -26,17 +27,17 @@ class Element(Enum):
 class Adapted:
     """Elements as small as the contact asks for, larger away from it.
 
-    Contacts are sorted into classes, each half as wide as the one before and with a mesh of its own, so that a contact
-    spans between half of `elements` and all of them, more where the liner is thin: an element is at most a quarter of
-    its thickness.
+    Contacts are sorted into classes, each 0.7 times as wide as the one before and with a mesh of its own, so that a
+    contact spans between 0.7 times `elements` and all of them, more where the liner is thin: an element is at most a
+    quarter of its thickness.
 
     Parameters
     ----------
     elements : int
-        Along the widest contact of each class, from the pole to its edge; an even number from 16 on. Default 48.
+        Along the widest contact of each class, from the pole to its edge; an even number from 24 on. Default 60.
     growth : float
         How much longer each element of the coarse mesh is than its neighbour, away from the contact; 1 to 2. This is
-        for 48 elements: with more of them neighbours differ less.
+        for 60 elements: with more of them neighbours differ less.
 
     Raises
     ------
@@ -48,13 +49,13 @@ class Adapted:
     growth: float = 1.3
 
     def __post_init__(self) -> None:
-        good = isinstance(self.elements, int) and self.elements >= 16 and self.elements % 2 == 0
-        require("elements", self.elements, good, "elements along a contact are an even number from 16 on")
+        good = isinstance(self.elements, int) and self.elements >= 24 and self.elements % 2 == 0
+        require("elements", self.elements, good, "elements along a contact are an even number from 24 on")
         _check_growth(self.growth)
 
     def classes(self, reach: float, radius: float) -> tuple[float, ...]:
         """Half angles in rad, descending: a class lies between each and the next."""
-        return tuple(reach / 2**number for number in range(_CLASSES + 1))
+        return tuple(reach * _RATIO**number for number in range(_CLASSES + 1))
 
     def coarse(self, widest: float, radius: float, thickness: float, order: int) -> Resolution:
         """The coarse mesh of a class; the fine one halves it. All of it is coarser or finer with `elements`."""
