@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy
-from scipy.linalg import solve_triangular
 
 from ..arrays import gauss_legendre
 from ..gaps import Gap
@@ -81,19 +80,19 @@ class Cap:
 
     @cached_property
     def _borders(self) -> tuple[Array, Array, Array]:
-        """The leading factor, the borders' part of it, and the pivots of the last shapes."""
+        """The leading block of W, the borders in its terms, and the pivots of the last shapes."""
         tail, _ = self._moments
-        L = self.pair.factor[: self.last, : self.last]
-        border = solve_triangular(L, tail[:, :-2].T, lower=True, check_finite=False)
-        return L, border, tail[:, -2:] - border.T @ border
+        W = self.pair.whitening[: self.last, : self.last]
+        border = W @ tail[:, :-2].T
+        return W, border, tail[:, -2:] - border.T @ border
 
     def _pressed(self, side: Array) -> Array:
         """Pressures p_0 .. p_k and q that meet a right-hand side (shapes,)."""
-        L, border, pivot = self._borders
-        inner = solve_triangular(L, side[:-2], lower=True, check_finite=False)
+        W, border, pivot = self._borders
+        inner = W @ side[:-2]
         last = numpy.linalg.solve(pivot, side[-2:] - border.T @ inner)
         inner -= border @ last
-        return numpy.append(solve_triangular(L, inner, lower=True, trans=1, check_finite=False), last)
+        return numpy.append(W.T @ inner, last)
 
     def _side(self, asked: Array, asked_tail: Array) -> Array:
         """The right-hand side of a gap that is given at the pair's points and those of the tail."""

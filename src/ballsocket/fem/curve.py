@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from operator import attrgetter
 
 import numpy
-from scipy.optimize import brentq
 
 from ..arrays import gauss_legendre
 from ..gaps import Gap
 from ..models.by_joint import QUANTITIES, Piece
 from .cap import Cap, cap
+from .ladder import Ladder, is_contact
 from .pair import Pair
 from .rim import Brimful
 
@@ -123,53 +124,35 @@ class Curve:
         last = len(self.classes) - 2
         if kind == "half_angle":
             return min(sum(load <= angle for angle in self.classes[1:]), last)
-        for start in range(0, last + 1, _STRIDE):
-            low, high = self.classes[min(start + _STRIDE, last + 1)], self.classes[start]
-            rough = _found(kind, load, self.pairs(start, COARSE), self.gap, (low, high))
+        for start in range(0, last, _STRIDE):
+            ladder = self._ladder(start, COARSE)
+            rough = ladder.find(kind, load)
             if rough is not None:
                 return min(sum(rough.half_angle <= angle for angle in self.classes[1:]), last)
-            if _miss(kind, load, cap(self.pairs(start, COARSE), self.gap, high)) < 0:
+            if ladder.falls_short(kind, load):
                 return start
         return last
 
+    def _ladder(self, number: int, mesh: int) -> Ladder:
+        """The contacts on the mesh of a class, and of some narrower ones."""
+        if (number, mesh) not in self._ladders:
+            low = self.classes[min(number + _STRIDE, len(self.classes) - 1)] / _ROOM
+            high = min(_ROOM * self.classes[number], self.classes[0])
+            self._ladders[number, mesh] = Ladder(pair=self.pairs(number, mesh), gap=self.gap, low=low, high=high)
+        return self._ladders[number, mesh]
+
+    @cached_property
+    def _ladders(self) -> dict[tuple[int, int], Ladder]:
+        return {}
+
     def _contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
-        pair, widest = self.pairs(number, mesh), min(_ROOM * self.classes[number], self.classes[0])
+        ladder = self._ladder(number, mesh)
         if kind == "half_angle":
-            return _at(load, pair, self.gap) if self.classes[-1] / _ROOM <= load <= widest else None
-        if self._fills(kind, load, number, pair):
-            return _brimful(kind, load, pair, self.gap)
-        return _found(kind, load, pair, self.gap, (self.classes[number + 1] / _ROOM, widest))
-
-    def _fills(self, kind: str, load: float, number: int, pair: Pair) -> bool:
-        """Whether a load is too much for contacts that end before the rim."""
-        if number > 0 or not self.ends_at_rim:
-            return False
-        return _miss(kind, load, cap(pair, self.gap, self.classes[0])) < 0
-
-
-def _at(half_angle: float, pair: Pair, gap: Gap) -> Cap | None:
-    """The contact of a half angle; None beyond the perfect fit."""
-    one = cap(pair, gap, half_angle)
-    return one if one.indentation > 0 and one.force > 0 else None
-
-
-def _miss(kind: str, load: float, one: Cap) -> float:
-    """Grows with the half angle and changes its sign where the load is right; 1 beyond the perfect fit."""
-    if not one.indentation > 0 or not getattr(one, kind) > 0:
-        return 1.0
-    return float(1 - (load / getattr(one, kind)) ** 0.25)
-
-
-def _found(kind: str, load: float, pair: Pair, gap: Gap, bounds: tuple[float, float]) -> Cap | None:
-    """The contact whose half angle gives the load; None where it lies outside the bounds."""
-
-    def miss(angle: float) -> float:
-        return _miss(kind, load, cap(pair, gap, angle))
-
-    low, high = bounds
-    if miss(high) < 0 or miss(low) > 0:
-        return None
-    return cap(pair, gap, brentq(miss, low, high, xtol=1e-13, rtol=1e-13))
+            one = cap(ladder.pair, self.gap, load) if self.classes[-1] / _ROOM <= load <= ladder.high else None
+            return one if one is not None and is_contact(one) else None
+        if number == 0 and self.ends_at_rim and ladder.falls_short(kind, load):
+            return _brimful(kind, load, ladder.pair, self.gap)
+        return ladder.find(kind, load)
 
 
 def _brimful(kind: str, load: float, pair: Pair, gap: Gap) -> Brimful:

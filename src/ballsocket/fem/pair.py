@@ -11,7 +11,7 @@ from functools import cached_property
 from math import pi
 
 import numpy
-from scipy.linalg import cholesky
+from scipy.linalg import cholesky, solve_triangular
 
 from ..arrays import gauss_legendre
 from .shapes import Resolution
@@ -109,6 +109,7 @@ class Pair:
         return sum(forces.T @ displaced for forces, displaced in zip(self.forces, self.displaced, strict=True))
 
     @cached_property
-    def factor(self) -> Array:
-        """The matrix' Cholesky factor: its leading blocks are the leading blocks' own, so it serves every contact."""
-        return cholesky(self.matrix, lower=True)
+    def whitening(self) -> Array:
+        """The inverse W of the matrix' Cholesky factor, A⁻¹ = WᵀW; its leading blocks serve narrower contacts."""
+        factor = cholesky(self.matrix, lower=True)
+        return solve_triangular(factor, numpy.eye(len(factor)), lower=True)

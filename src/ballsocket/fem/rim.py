@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy
-from scipy.linalg import cho_solve
 
 from ..gaps import Gap
 from .cap import pole
@@ -32,7 +31,7 @@ class Brimful:
     def pressures(self) -> Array:
         """At the pair's angles, in MPa."""
         asked = self.pair.weighted(self.gap.displacement(self.pair.points[0], self.indentation))
-        return cho_solve((self.pair.factor, True), asked)
+        return self.pair.whitening.T @ (self.pair.whitening @ asked)
 
     def _total(self, values: Array) -> float:
         return float(self.pressures @ self.pair.weighted(values))

@@ -1,0 +1,84 @@
+"""Contacts of one pair found by their load, from a few that are known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
+
+from ..gaps import Gap
+from .cap import Cap, cap
+from .pair import Pair
+
+Array = numpy.ndarray
+
+_RUNGS = 10
+_STEPS = 8
+_CLOSE = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Ladder:
+    """The contacts of a pair between two half angles (rad)."""
+
+    pair: Pair
+    gap: Gap
+    low: float
+    high: float
+
+    @cached_property
+    def _rungs(self) -> list[Cap]:
+        """Contacts with a force; beyond the perfect fit there are none."""
+        angles = numpy.geomspace(self.low, self.high, _RUNGS)
+        angles[-1] = self.high
+        return [one for one in (cap(self.pair, self.gap, float(angle)) for angle in angles) if is_contact(one)]
+
+    @cached_property
+    def _curves(self) -> dict[str, PchipInterpolator]:
+        """ln ε by ln(load)."""
+        angles = numpy.log([one.half_angle for one in self._rungs])
+        return {
+            kind: PchipInterpolator(numpy.log([getattr(one, kind) for one in self._rungs]), angles)
+            for kind in ("force", "indentation")
+        }
+
+    def falls_short(self, kind: str, load: float) -> bool:
+        """Whether even the widest contact has less than the load."""
+        return len(self._rungs) == _RUNGS and bool(getattr(self._rungs[-1], kind) < load)
+
+    def find(self, kind: str, load: float) -> Cap | None:
+        """The contact under a load, "force" or "indentation"; None where it lies outside the ladder."""
+        if len(self._rungs) < 2 or load < getattr(self._rungs[0], kind) or self.falls_short(kind, load):
+            return None
+        if load > getattr(self._rungs[-1], kind):
+            return self._before_the_perfect_fit(kind, load)
+        return self._between(kind, load)
+
+    def _between(self, kind: str, load: float) -> Cap:
+        """By Newton's method in the logarithms, with the slope of the curve through the rungs."""
+        goal = numpy.log(load)
+        angle, rise = float(self._curves[kind](goal)), float(self._curves[kind](goal, 1))
+        for _ in range(_STEPS):
+            one = cap(self.pair, self.gap, float(numpy.exp(angle)))
+            miss = goal - float(numpy.log(getattr(one, kind)))
+            if abs(miss) < _CLOSE:
+                break
+            angle += miss * rise
+        return one
+
+    def _before_the_perfect_fit(self, kind: str, load: float) -> Cap | None:
+        """Where the load goes to infinity with the half angle short of the widest."""
+
+        def miss(angle: float) -> float:
+            one = cap(self.pair, self.gap, angle)
+            return float(1 - (load / getattr(one, kind)) ** 0.25) if is_contact(one) else 1.0
+
+        return cap(self.pair, self.gap, brentq(miss, self._rungs[-1].half_angle, self.high, xtol=1e-14, rtol=1e-14))
+
+
+def is_contact(one: Cap) -> bool:
+    """Whether anything presses: the contact is not wider than the perfect fit's."""
+    return bool(one.indentation > 0 and one.force > 0)
