@@ -16,8 +16,8 @@ from .pair import Pair
 Array = numpy.ndarray
 
 _RUNGS = 10
-_STEPS = 8
-_CLOSE = 1e-12
+_STEPS = 4
+_CLOSE = 1e-11
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,30 +53,31 @@ class Ladder:
         """The contact under a load, "force" or "indentation"; None where it lies outside the ladder."""
         if len(self._rungs) < 2 or load < getattr(self._rungs[0], kind) or self.falls_short(kind, load):
             return None
-        if load > getattr(self._rungs[-1], kind):
-            return self._before_the_perfect_fit(kind, load)
-        return self._between(kind, load)
+        above = sum(getattr(rung, kind) <= load for rung in self._rungs)
+        if above == len(self._rungs):  # the load goes to infinity with the half angle short of the widest
+            return self._bracketed(kind, load, self._rungs[-1].half_angle, self.high)
+        return self._quickly(kind, load) or self._bracketed(
+            kind, load, self._rungs[above - 1].half_angle, self._rungs[above].half_angle
+        )
 
-    def _between(self, kind: str, load: float) -> Cap:
-        """By Newton's method in the logarithms, with the slope of the curve through the rungs."""
+    def _quickly(self, kind: str, load: float) -> Cap | None:
+        """By Newton's method in the logarithms, with the slope of the curve through the rungs; None if that is slow."""
         goal = numpy.log(load)
         angle, rise = float(self._curves[kind](goal)), float(self._curves[kind](goal, 1))
         for _ in range(_STEPS):
-            one = cap(self.pair, self.gap, float(numpy.exp(angle)))
+            one = cap(self.pair, self.gap, min(float(numpy.exp(angle)), self.high))
             miss = goal - float(numpy.log(getattr(one, kind)))
             if abs(miss) < _CLOSE:
-                break
+                return one
             angle += miss * rise
-        return one
+        return None
 
-    def _before_the_perfect_fit(self, kind: str, load: float) -> Cap | None:
-        """Where the load goes to infinity with the half angle short of the widest."""
-
+    def _bracketed(self, kind: str, load: float, low: float, high: float) -> Cap:
         def miss(angle: float) -> float:
             one = cap(self.pair, self.gap, angle)
             return float(1 - (load / getattr(one, kind)) ** 0.25) if is_contact(one) else 1.0
 
-        return cap(self.pair, self.gap, brentq(miss, self._rungs[-1].half_angle, self.high, xtol=1e-14, rtol=1e-14))
+        return cap(self.pair, self.gap, brentq(miss, low, high, xtol=1e-14, rtol=1e-14))
 
 
 def is_contact(one: Cap) -> bool:
