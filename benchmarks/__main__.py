@@ -16,6 +16,7 @@ BENCHMARKS = {
     "plane-layer": ("plane_layer", "one case of the numerical plane layer, alone and in a batch"),
     "random-joints": ("random_joints", "a hundred thousand random joints through the exact solver, one by one"),
     "exact": ("exact", "the exact answer: a first load, further loads, a curve, a sweep; and CalculiX"),
+    "fem": ("fem", "the finite elements: default mesh, the paper's mesh, cost against size; and CalculiX"),
     "tabulated": (
         "tabulated",
         "a million presses by force from the tables, beside the exact solver and the paper's model",

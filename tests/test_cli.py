@@ -278,3 +278,65 @@ def test_a_closed_pipe_is_no_crash():
     command = f"{sys.executable} -m ballsocket models | head -1"
     done = subprocess.run(command, shell=True, capture_output=True, encoding="utf-8", timeout=60, check=False)
     assert "Traceback" not in done.stderr
+
+
+def test_press_by_finite_elements_shows_mesh_time_and_error_bars():
+    done = run("press", EXAMPLE, "--model", "fem", columns=160)
+    assert done.returncode == 0
+    assert done.stderr == ""
+    assert re.search(r"^fem +3000 +40\.07 +42\.4", done.stdout, flags=re.MULTILINE)
+    assert re.search(
+        r"^fem: \d+ elements, [\d.]+ mm at the contact, [\d.]+ s; d ±.* %, ε ±.* %, p0 ±", done.stdout, re.M
+    )
+    answer = json.loads(run("press", EXAMPLE, "--model", "fem", "--meshes", "1", "--json").stdout)["results"][0]
+    assert answer["model"] == "fem"
+    assert answer["error"]["indentation"] is None
+    assert answer["mesh"]["elements"] > 1000
+
+
+def test_press_by_finite_elements_with_a_cup_of_its_own(tmp_path):
+    file = tmp_path / "cup.toml"
+    file.write_text(Path(EXAMPLE).read_text(encoding="utf-8") + '\n[cup]\narc_of_cover = "100 deg"\nchamfer = "1 mm"\n')
+    files = ("--section", str(tmp_path / "cup.png"), "--vtk", str(tmp_path / "cup.vtu"))
+    done = run("press", str(file), "--model", "fem", "--force", "9 kN", *files, columns=160)
+    assert done.returncode == 0
+    assert "the contact fills the socket and reaches its rim" in done.stdout
+    assert (tmp_path / "cup.png").stat().st_size > 20_000
+    assert (tmp_path / "cup.vtu").stat().st_size > 20_000
+    wider = run("press", str(file), "--model", "fem", "--force", "9 kN", "--arc-of-cover", "180 deg", columns=160)
+    assert "reaches its rim" not in wider.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--arc-of-cover", "120 deg"), "--arc-of-cover is for the finite elements: add --model fem"),
+        (("--vtk", "a.vtu"), "--vtk is for the finite elements: add --model fem"),
+        (("--model", "fem", "--arc-of-cover", "2 mm"), "arc_of_cover = '2 mm' is not an angle, such as '40 deg'"),
+        (
+            ("--model", "fem", "--arc-of-cover", "20 deg"),
+            "arc_of_cover = '20 deg' is not allowed: an arc of cover is 40 to",
+        ),
+        (("--model", "fem", "--interface", "glued"), "interface = 'glued' is not allowed: 'bonded' or 'sliding'"),
+        (("--model", "fem", "--element", "triangle"), "element 'triangle' is not known"),
+        (
+            ("--model", "fem", "--element-size", "9 mm"),
+            "liner_thickness = 6.75 is not allowed: elements of 9 mm need two",
+        ),
+        (("--model", "fem", "--element-size", "0.0005 mm"), "GiB of memory"),
+        (("--model", "fem", "--vtk", "a.txt"), "'a.txt' must end in .vtu, .vtk"),
+        (("--model", "fem", "--section", "a.txt"), "must end in .png, .svg, .pdf"),
+        (
+            (
+                "--model",
+                "fme",
+            ),
+            "model 'fme' is not known; did you mean 'fem'?",
+        ),
+    ],
+)
+def test_the_finite_elements_refuse_in_one_sentence(words, message):
+    done = run("press", EXAMPLE, *words)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1

@@ -58,7 +58,7 @@ def test_the_readme_shows_what_the_command_prints():
 def test_the_readme_and_the_catalogue_list_the_same_models():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     listed = re.findall(r"`([\w-]+)`", "".join(re.findall(r"^\|([^|]+)\|", text, flags=re.MULTILINE)))
-    assert set(listed) == {*bs.catalogue, "PinInHole"}
+    assert set(listed) == {*bs.catalogue, "PinInHole", "fem"}
 
 
 UNSOURCED = {"titanium", "bone-cement", "cortical-bone", "cancellous-bone"}  # representative, and say so

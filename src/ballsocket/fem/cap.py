@@ -69,8 +69,8 @@ class Cap:
         angle, weights, shape, slope = self._tail
         tail, edge = numpy.zeros((2, self.last + 2)), numpy.zeros(self.last + 2)
         for surface, displaced in zip(self.pair.surfaces, self.pair.displaced, strict=True):
-            shapes = surface.shapes(angle)
-            force, steep = shapes.T @ (weights * shape).T, shapes.T @ (weights * slope)
+            force = numpy.stack([surface.gathered(angle, weights * one) for one in shape], axis=-1)
+            steep = surface.gathered(angle, weights * slope)
             moved = numpy.column_stack([displaced[:, : self.last], surface.compliance @ force])
             tail += force.T @ moved
             edge += steep @ moved
@@ -182,8 +182,8 @@ class Cap:
     def forces(self, surface: int) -> Array:
         """Normal forces on the nodes of one of the surfaces, in N."""
         angle, weights, shape, _ = self._tail
-        tail = self.pair.surfaces[surface].shapes(angle).T @ (weights * shape).T
-        return self.pair.forces[surface][:, : self.last] @ self.pressures[:-2] + tail @ self.pressures[-2:]
+        tail = self.pair.surfaces[surface].gathered(angle, weights * (self.pressures[-2:] @ shape))
+        return self.pair.forces[surface][:, : self.last] @ self.pressures[:-2] + tail
 
     def pressure(self, angle: Array) -> Array:
         """p(φ) in MPa, 0 outside the contact."""

@@ -126,9 +126,9 @@ class Curve:
             return min(sum(load <= angle for angle in self.classes[1:]), last)
         for start in range(0, last, _STRIDE):
             ladder = self._ladder(start, COARSE)
-            rough = ladder.find(kind, load)
+            rough = ladder.guess(kind, load)
             if rough is not None:
-                return min(sum(rough.half_angle <= angle for angle in self.classes[1:]), last)
+                return min(sum(rough <= angle for angle in self.classes[1:]), last)
             if ladder.falls_short(kind, load):
                 return start
         return last

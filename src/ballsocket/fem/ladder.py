@@ -17,7 +17,7 @@ Array = numpy.ndarray
 
 _RUNGS = 10
 _STEPS = 4
-_CLOSE = 1e-11
+_CLOSE = 1e-10
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -49,6 +49,12 @@ class Ladder:
         """Whether even the widest contact has less than the load."""
         return len(self._rungs) == _RUNGS and bool(getattr(self._rungs[-1], kind) < load)
 
+    def guess(self, kind: str, load: float) -> float | None:
+        """About the half angle under a load; None where it lies outside the rungs."""
+        if len(self._rungs) < 2 or not getattr(self._rungs[0], kind) <= load <= getattr(self._rungs[-1], kind):
+            return None
+        return float(numpy.exp(self._curves[kind](numpy.log(load))))
+
     def find(self, kind: str, load: float) -> Cap | None:
         """The contact under a load, "force" or "indentation"; None where it lies outside the ladder."""
         if len(self._rungs) < 2 or load < getattr(self._rungs[0], kind) or self.falls_short(kind, load):
@@ -61,16 +67,23 @@ class Ladder:
         )
 
     def _quickly(self, kind: str, load: float) -> Cap | None:
-        """By Newton's method in the logarithms, with the slope of the curve through the rungs; None if that is slow."""
+        """By the secant method in the logarithms, from the curve through the rungs; None if that is slow."""
         goal = numpy.log(load)
         angle, rise = float(self._curves[kind](goal)), float(self._curves[kind](goal, 1))
+        one, miss = self._missed(kind, goal, angle)
         for _ in range(_STEPS):
-            one = cap(self.pair, self.gap, min(float(numpy.exp(angle)), self.high))
-            miss = goal - float(numpy.log(getattr(one, kind)))
             if abs(miss) < _CLOSE:
                 return one
-            angle += miss * rise
+            step, before = miss * rise, miss
+            angle += step
+            one, miss = self._missed(kind, goal, angle)
+            rise = step / (before - miss) if miss != before else 0.0
         return None
+
+    def _missed(self, kind: str, goal: float, log_angle: float) -> tuple[Cap, float]:
+        """The contact of a half angle, and by how much the logarithm of its load falls short."""
+        one = cap(self.pair, self.gap, min(float(numpy.exp(log_angle)), self.high))
+        return one, goal - float(numpy.log(getattr(one, kind)))
 
     def _bracketed(self, kind: str, load: float, low: float, high: float) -> Cap:
         def miss(angle: float) -> float:

@@ -12,6 +12,7 @@ from math import pi
 
 import numpy
 from scipy.linalg import cholesky, solve_triangular
+from scipy.sparse import csr_array, dia_array
 
 from ..arrays import gauss_legendre
 from .shapes import Resolution
@@ -35,20 +36,29 @@ class Surface:
         """Where its elements end."""
         return self.angle[:: self.order]
 
-    def shapes(self, angle: Array) -> Array:
+    def shapes(self, angle: Array) -> csr_array:
         """Shape functions of the nodes at angles: (angles, nodes)."""
         return lagrange(self.corners, self.order, angle)
 
+    def gathered(self, angle: Array, values: Array) -> Array:
+        """Sums of values at angles, each shared among the nodes by their shape functions: (nodes,)."""
+        nodes, parts = _around(self.corners, self.order, angle)
+        return numpy.bincount(nodes.ravel(), weights=(parts * values[:, None]).ravel(), minlength=len(self.angle))
 
-def lagrange(corners: Array, order: int, angle: Array) -> Array:
-    """Polynomials of this degree between corners, one a node, at angles: (angles, nodes)."""
+
+def lagrange(corners: Array, order: int, angle: Array) -> csr_array:
+    """Polynomials of this degree between corners, one a node, at angles: (angles, nodes), few of them not zero."""
+    nodes, parts = _around(corners, order, angle)
+    ends = numpy.arange(len(angle) + 1) * (order + 1)
+    return csr_array((parts.ravel(), nodes.ravel(), ends), shape=(len(angle), order * (len(corners) - 1) + 1))
+
+
+def _around(corners: Array, order: int, angle: Array) -> tuple[Array, Array]:
+    """The nodes of the element at each angle, and their shape functions there: (angles, order + 1) each."""
     element = numpy.clip(numpy.searchsorted(corners, angle) - 1, 0, len(corners) - 2)
     t = (angle - corners[element]) / (corners[element + 1] - corners[element])
     parts = [1 - t, t] if order == 1 else [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)]
-    shapes = numpy.zeros((len(angle), order * (len(corners) - 1) + 1))
-    for i, part in enumerate(parts):
-        shapes[numpy.arange(len(angle)), order * element + i] = part
-    return shapes
+    return order * element[:, None] + numpy.arange(order + 1), numpy.stack(parts, axis=-1)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,12 +95,14 @@ class Pair:
         return angle, self.area(angle) * (width * _WEIGHTS).ravel()
 
     @cached_property
-    def _hats(self) -> Array:
-        return lagrange(self.angle, 1, self.points[0])
+    def _weighing(self) -> csr_array:
+        """The hats at the points times their weights: (shapes, points)."""
+        angle, weights = self.points
+        return csr_array(lagrange(self.angle, 1, angle).T @ dia_array((weights[None], [0]), shape=2 * weights.shape))
 
     def weighted(self, values: Array) -> Array:
         """∫ φ_i values dA of the pressure's shapes φ_i, from values at the points."""
-        return self._hats.T @ (self.points[1] * values)
+        return self._weighing @ values
 
     @cached_property
     def displaced(self) -> tuple[Array, ...]:
@@ -100,8 +112,7 @@ class Pair:
     @cached_property
     def forces(self) -> tuple[Array, ...]:
         """Forces on each surface's nodes by each shape of the pressure: (nodes, shapes)."""
-        angle, weights = self.points
-        return tuple(surface.shapes(angle).T @ (weights[:, None] * self._hats) for surface in self.surfaces)
+        return tuple((self._weighing @ surface.shapes(self.points[0])).toarray().T for surface in self.surfaces)
 
     @cached_property
     def matrix(self) -> Array:
