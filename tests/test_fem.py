@@ -208,7 +208,7 @@ def test_a_chamfer_far_from_the_contact_changes_nothing_and_ends_the_bore():
     filled = cut.press(HIP, force=2e5)
     assert filled.status is bs.Status.AT_RIM
     assert filled.half_angle == pytest.approx(np.pi / 2 - 3.0 / 18.0)
-    assert sharp.press(HIP, force=2e5).half_angle > filled.half_angle
+    assert sharp.press(HIP, force=2e5).status is bs.Status.OK
 
 
 # --- error bars, convergence ---
@@ -260,7 +260,7 @@ def test_error_bars_can_be_switched_off():
     assert one.indentation == two.indentation
     assert np.isnan(one.error["indentation"])
     assert 0 < two.error["indentation"] < 1e-3
-    assert two.error["force"] < 1e-12
+    assert two.error["force"] < 1e-9
     assert json.dumps(one.summary()["error"]["indentation"]) == "null"
 
 

@@ -41,7 +41,7 @@ _LEAST = {
 }
 """Errors that random contacts have shown against the exact answer, in squares of the element over the half angle."""
 
-_EXACT = 1e-10
+_EXACT = 1e-9
 _TENSION, _OVERLAP = 1e-3, 1e-3
 
 

@@ -50,9 +50,11 @@ class Ladder:
         return len(self._rungs) == _RUNGS and bool(getattr(self._rungs[-1], kind) < load)
 
     def guess(self, kind: str, load: float) -> float | None:
-        """About the half angle under a load; None where it lies outside the rungs."""
-        if len(self._rungs) < 2 or not getattr(self._rungs[0], kind) <= load <= getattr(self._rungs[-1], kind):
+        """About the half angle under a load; None where it lies outside the ladder."""
+        if len(self._rungs) < 2 or load < getattr(self._rungs[0], kind) or self.falls_short(kind, load):
             return None
+        if load > getattr(self._rungs[-1], kind):  # short of the perfect fit, that is of the next rung
+            return self._rungs[-1].half_angle * (self.high / self.low) ** (0.5 / (_RUNGS - 1))
         return float(numpy.exp(self._curves[kind](numpy.log(load))))
 
     def find(self, kind: str, load: float) -> Cap | None:
