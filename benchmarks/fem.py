@@ -1,8 +1,8 @@
 """The finite elements: the default mesh, the paper's mesh, cost against size; and CalculiX on the same meshes.
 
-The paper's mesh is that of R1 12 and L 8 mm with bilinear elements of 0.05 mm along both surfaces, about 67 000 of them.
-CalculiX (command `ccx`) gets exactly that mesh by `ballsocket deck` and the same indentations. It has contact by penalty
-on the deformed shape, at a thousandth of the size; the time is that of the process, both cores allowed.
+The paper's mesh is that of R1 12 and L 8 mm with bilinear elements of 0.05 mm along both surfaces, about 67 000 of
+them. CalculiX (command `ccx`) gets exactly that mesh by `ballsocket deck` and the same indentations. It has contact by
+penalty on the deformed shape, at a thousandth of the size; its time is that of the process, both cores allowed.
 """
 
 from __future__ import annotations
@@ -11,10 +11,12 @@ import os
 import resource
 from dataclasses import dataclass
 from multiprocessing import get_context
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy
+from matplotlib.figure import Figure
 
 import ballsocket as bs
 from ballsocket.fem import bodies, solver
@@ -26,6 +28,7 @@ PAPER = bs.Joint(ball_radius=12.0, clearance=0.1, liner_thickness=8.0, liner=bs.
 HIP = bs.joints["hess-forsbach"]
 CURVE = numpy.linspace(200.0, 4000.0, 20)
 SIZES = (0.8, 0.4, 0.2, 0.1, 0.05, 0.035)
+DRAWN = Path(__file__).parents[1] / "docs" / "fem_cost.png"
 REPEATS = 5
 """Of everything that takes less than a second."""
 
@@ -37,8 +40,8 @@ def measure() -> Report:
     """Each row in a process of its own, so that its memory is its own."""
     tables = [_alone(), _by_size()]
     notes = [
-        f"{os.cpu_count()} cores. A press includes mesh, condensation, force, indentation, half angle and peak pressure. "
-        "Memory is the largest of the process, Python and its libraries (about 0.1 GiB) included.",
+        f"{os.cpu_count()} cores. A press includes mesh, condensation, force, indentation, half angle and peak "
+        "pressure. Memory is the largest of the process, Python and its libraries (about 0.1 GiB) included.",
     ]
     return Report(tables, notes, ("scipy", "scikit-fem"))
 
@@ -123,6 +126,22 @@ def _by_size() -> Rows:
         table.add(f"{size:g}", elements, f"{seconds[0]:.3g}", f"{memory:.2f}")
         counts.append(elements)
         times.append(seconds[0])
-    exponent = numpy.polyfit(numpy.log(counts[-4:]), numpy.log(times[-4:]), 1)[0]
-    table.add("exponent of the last four", "", f"{exponent:.2f}", "")
+    line = numpy.polynomial.Polynomial.fit(numpy.log(counts[-4:]), numpy.log(times[-4:]), 1).convert()
+    table.add("exponent of the last four", "", f"{line.coef[1]:.2f}", "")
+    _draw(numpy.array(counts), numpy.array(times), line)
     return table
+
+
+def _draw(elements: numpy.ndarray, seconds: numpy.ndarray, line: numpy.polynomial.Polynomial) -> None:
+    """The cost as a figure for the docs."""
+    figure = Figure(figsize=(5.5, 3.6), layout="constrained")
+    axes = figure.subplots()
+    axes.loglog(elements, seconds, "o", color="#0072B2")
+    fitted = elements[-4:]
+    axes.loglog(fitted, numpy.exp(line(numpy.log(fitted))), color="0.4", label=f"(elements)$^{{{line.coef[1]:.2f}}}$")
+    axes.set_xlabel("bilinear elements")
+    axes.set_ylabel("one load on a new joint [s]")
+    axes.grid(color="0.9", linewidth=0.6, which="both")
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(frameon=False)
+    figure.savefig(DRAWN, dpi=150)

@@ -54,7 +54,8 @@ class MeshedContact(SolvedContact):
     @property
     def mesh(self) -> MeshSize:
         """Elements and nodes of both bodies, and the elements' size at the contact, of a single contact."""
-        return mesh_size(self._plain_joint, self.model.cup, self._solved.pair.resolution)
+        pair = self._solved.pair
+        return mesh_size(self._plain_joint, self.model.cup, pair.resolution, pair.ball_resolution)
 
     @property
     def _plain_joint(self) -> Joint:

@@ -27,12 +27,12 @@ class MeshSize:
         return asdict(self)
 
 
-def mesh_size(joint: Joint, cup: Cup, resolution: Resolution) -> MeshSize:
+def mesh_size(joint: Joint, cup: Cup, resolution: Resolution, ball_resolution: Resolution) -> MeshSize:
     """The size of a joint's meshes; nothing is built."""
     angle, radii = socket_shape(joint, cup).corners(resolution)
     counts = [(len(angle) - 1, sum(layer.shape[-1] - 1 for layer in radii))]
     if joint.ball is not None:
-        angles, across = ball_corners(resolution)
+        angles, across = ball_corners(ball_resolution)
         counts.append((len(angles) - 1, len(across) - 1))
     order = resolution.order
     nodes = [(order * along + 1) * (order * deep + 1) for along, deep in counts]

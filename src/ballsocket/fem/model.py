@@ -16,7 +16,7 @@ from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range
 from .contact import MeshedContact
 from .cup import Cup
-from .spacing import Adapted, Element, Spacing
+from .spacing import SPACINGS, Adapted, Element, Spacing
 
 Array = arrays.Array
 
@@ -36,8 +36,9 @@ class FiniteElement(Model):
     ----------
     cup : Cup
         Arc of cover, chamfer, and whether the liner is bonded to its backing. A hemisphere by default.
-    spacing : Adapted or Uniform
-        How fine the mesh is. By default as fine as the contact asks for.
+    spacing, ball_spacing : Adapted or Uniform
+        How fine the meshes of socket and ball are; they need not match. By default as fine as the contact asks for, and
+        the ball's (None) as the socket's.
     element : Element
         BIQUADRATIC (default) or BILINEAR.
     meshes : int
@@ -61,15 +62,18 @@ class FiniteElement(Model):
 
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
     spacing: Spacing = Adapted()  # noqa: RUF009 (frozen)
+    ball_spacing: Spacing | None = None
     element: Element = Element.BIQUADRATIC
     meshes: int = 2
     gap: type[LinearGap] | type[CircularGap] = LinearGap
     progress: Callable[[str], None] = field(default=_silent, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        for name, kind in (("cup", Cup), ("spacing", Spacing), ("element", Element)):
+        kinds = {"cup": (Cup,), "spacing": SPACINGS, "ball_spacing": (*SPACINGS, type(None)), "element": (Element,)}
+        for name, kind in kinds.items():
             if not isinstance(getattr(self, name), kind):
-                raise TypeError(f"{name} must be a {kind}, got {getattr(self, name)!r}")
+                known = " or ".join(one.__name__.replace("NoneType", "None") for one in kind)
+                raise TypeError(f"{name} must be {known}, got {getattr(self, name)!r}")
         require("meshes", self.meshes, self.meshes in (1, 2), "meshes are 1 (no error bars) or 2")
         check_gap(self.gap)
 

@@ -69,6 +69,7 @@ class Pair:
     radius: float
     reach: float
     resolution: Resolution
+    ball_resolution: Resolution
 
     @cached_property
     def angle(self) -> Array:

@@ -85,10 +85,10 @@ class Section:
 
 def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
     """The inside of one solved contact of a joint of plain numbers."""
-    resolution, R2 = solved.pair.resolution, float(joint.socket_radius)
+    pair, R2 = solved.pair, float(joint.socket_radius)
     names = ("liner", *(f"backing {number}" for number in range(1, len(joint.backing) + 1)))
     socket = _Loaded(
-        body=socket_body(socket_shape(joint, cup), resolution),
+        body=socket_body(socket_shape(joint, cup), pair.resolution),
         radius=R2,
         young=float(joint.liner.young),
         forces=solved.forces(0),
@@ -98,7 +98,7 @@ def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
     parts = list(socket.parts(names))
     if joint.ball is not None:
         ball = _Loaded(
-            body=ball_body(float(joint.ball.poisson), resolution),
+            body=ball_body(float(joint.ball.poisson), pair.ball_resolution),
             radius=float(joint.ball_radius),
             young=float(joint.ball.young),
             forces=-solved.forces(1),

@@ -14,7 +14,7 @@ from .curve import COARSE, Curve
 from .memory import check_memory, mesh_size
 from .pair import Pair, Surface
 from .shapes import Resolution, socket_shape
-from .spacing import Uniform
+from .spacing import Spacing, Uniform
 
 if TYPE_CHECKING:
     from .model import FiniteElement as Settings
@@ -32,11 +32,16 @@ def curve(model: Settings, joint: Joint) -> Curve:
     widest = bore if ends_at_rim else LIMIT
     classes = model.spacing.classes(widest, radius)
 
+    thickness, order = float(joint.liner_thickness), model.element.value
+
+    def resolution(spacing: Spacing, number: int, mesh: int) -> Resolution:
+        coarse = spacing.coarse(classes[number], radius, thickness, order)
+        return coarse if mesh == COARSE else replace(coarse, halvings=1)
+
     @lru_cache(maxsize=2 * len(classes))
     def pair(number: int, mesh: int) -> Pair:
-        coarse = model.spacing.coarse(classes[number], radius, float(joint.liner_thickness), model.element.value)
-        resolution = coarse if mesh == COARSE else replace(coarse, halvings=1)
-        return _pair(model, joint, resolution, min(1.2 * classes[number], widest))
+        socket, ball = (resolution(one, number, mesh) for one in (model.spacing, model.ball_spacing or model.spacing))
+        return _pair(model, joint, socket, ball, min(1.2 * classes[number], widest))
 
     gap = model.gap(clearance=float(joint.clearance), socket_radius=radius)
     return Curve(pairs=pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=model.meshes)
@@ -56,14 +61,16 @@ def _check(model: Settings, joint: Joint) -> None:
     require("chamfer", chamfer, bore > model.cup.rim / 2, "a chamfer leaves half of the bore")
 
 
-def _pair(model: Settings, joint: Joint, resolution: Resolution, reach: float) -> Pair:
-    size = mesh_size(joint, model.cup, resolution)
+def _pair(model: Settings, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float) -> Pair:
+    size = mesh_size(joint, model.cup, resolution, ball_resolution)
     check_memory(size, resolution.order)
     model.progress(f"condensing {size.elements} elements, {size.nodes} nodes")
     R1, R2, order = float(joint.ball_radius), float(joint.socket_radius), resolution.order
     angle, compliance = socket_compliance(socket_shape(joint, model.cup), resolution)
     surfaces = [Surface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.liner.young)))]
     if joint.ball is not None:
-        angle, compliance = ball_compliance(float(joint.ball.poisson), resolution)
+        angle, compliance = ball_compliance(float(joint.ball.poisson), ball_resolution)
         surfaces.append(Surface(angle=angle, order=order, compliance=compliance / (R1 * float(joint.ball.young))))
-    return Pair(surfaces=tuple(surfaces), radius=R2, reach=reach, resolution=resolution)
+    return Pair(
+        surfaces=tuple(surfaces), radius=R2, reach=reach, resolution=resolution, ball_resolution=ball_resolution
+    )

@@ -13,7 +13,7 @@ from .shapes import Resolution
 _CLASSES = 24
 _RATIO = 2**-0.5  # of a class's narrowest contact to its widest
 _DEFAULT = 60
-_FEWEST = 16  # elements in the narrowest contact of a uniform mesh
+_FEWEST = 12  # elements in the narrowest contact of a uniform mesh
 
 
 class Element(Enum):
@@ -111,3 +111,4 @@ def _check_growth(growth: float) -> None:
 
 
 Spacing = Adapted | Uniform
+SPACINGS = (Adapted, Uniform)
