@@ -11,10 +11,8 @@ the pole is worth its cost: without it the error is several times as large.
 from __future__ import annotations
 
 import os
-import re
 import shutil
 import subprocess
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, pi, radians, sin
@@ -23,11 +21,11 @@ from pathlib import Path
 import numpy
 
 import ballsocket as bs
+from ballsocket.fem.ccx import SECTORS, contact_pressures, printed
 
 SCALE = 1e-3
 RIM, GROWTH, WIDEST = 120.0, 1.3, 15.0  # degrees, of the liner's elements beyond the contact
 RING = 1.0  # mm of rigid ball
-_SECTORS = 180  # an axisymmetric element is calculated as two degrees of a ring
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,33 +68,22 @@ class Calculix:
     def answer(self) -> Steps:
         """What the last run wrote; NaN for a step that it did not reach."""
         whole = numpy.full((3, self.steps), numpy.nan)
-        for step, table in self._blocks("dat", r"^ total force.*and time +(\S+)$"):
-            whole[0, step] = -float(table.split()[1]) * _SECTORS / SCALE
-        for step, table in self._blocks("frd", r"^ +100CL +\d+ +(\S+)"):
-            whole[1:, step] = _profile(self.surface, table)
+        for step, forces in printed(self.folder / f"{self.name}.dat", "PUSHED").items():
+            whole[0, step] = -forces[0, 1] * SECTORS / SCALE
+        for step, pressures in contact_pressures(self.folder / f"{self.name}.frd").items():
+            whole[1:, step] = _profile(self.surface, pressures)
         return Steps(force=whole[0], max_pressure=whole[1], half_angle=whole[2])
 
-    def _blocks(self, suffix: str, head: str) -> Iterator[tuple[int, str]]:
-        """What follows each headline, with the step that its time says.
 
-        A step may end in a second increment of no length, at nearly the same time: the later one is meant.
-        """
-        parts = re.split(head, (self.folder / f"{self.name}.{suffix}").read_text(encoding="ascii"), flags=re.MULTILINE)
-        for time, table in zip(parts[1::2], parts[2::2], strict=True):
-            step = round(float(time))
-            if abs(float(time) - step) < 1e-4:
-                yield step - 1, table
-
-
-def _profile(surface: dict[int, float], table: str) -> tuple[float, float]:
+def _profile(surface: dict[int, float], pressures: dict[int, float]) -> tuple[float, float]:
     """Pole pressure and half angle from the contact pressures at the nodes of the surface, given with their angles.
 
     The pressures of a coarse mesh zigzag from node to node, most of all at the pole. So the pole pressure is that of
     a + b φ² + c φ⁴ through the inner two thirds without the pole's own elements. The half angle lies halfway between
     the last node under pressure and the next: no better than the mesh.
     """
-    rows = ((int(row[3:13]), float(row[49:61]) / SCALE) for row in table.splitlines() if row.startswith(" -1"))
-    angle, pressure = numpy.array(sorted((surface[node], value) for node, value in rows if node in surface)).T
+    known = surface.keys() & pressures.keys()
+    angle, pressure = numpy.array(sorted((surface[node], pressures[node] / SCALE) for node in known)).T
     last = int(numpy.flatnonzero(pressure > 0.01 * numpy.median(pressure[pressure > 0]))[-1])
     edge = float(angle[last] + angle[min(last + 1, len(angle) - 1)]) / 2
     inner = (angle > radians(2.6)) & (angle < 0.67 * edge)

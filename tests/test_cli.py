@@ -340,3 +340,18 @@ def test_the_finite_elements_refuse_in_one_sentence(words, message):
     assert done.returncode == 2
     assert message in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+def test_deck_writes_the_model_for_other_programs(tmp_path):
+    done = run("deck", EXAMPLE, "--out", str(tmp_path), "--steps", "2", "--force", "1 kN")
+    assert done.returncode == 0
+    assert re.search(r"ballsocket\.inp: \d+ elements, 2 steps", done.stdout.replace("\n", ""))
+    assert (tmp_path / "ballsocket.inp").read_text(encoding="ascii").count("*END STEP") == 2
+    for words, message in (
+        (("--steps", "0"), "--steps"),
+        (("--scale", "7"), "scale = 7 is not allowed"),
+        (("--force", "0"), "need a contact under load"),
+    ):
+        wrong = run("deck", EXAMPLE, "--out", str(tmp_path), *words)
+        assert wrong.returncode == 2
+        assert message in wrong.stderr

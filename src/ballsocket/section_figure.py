@@ -8,12 +8,13 @@ import numpy
 
 from .contact import Contact
 from .fem.contact import MeshedContact
-from .fem.section import Part
 from .figures import finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from .fem.section import Part
 
 _RIM = {4: (0, 1, 2, 3), 9: (0, 4, 1, 5, 2, 6, 3, 7)}
 """The nodes around an element, one after the other."""

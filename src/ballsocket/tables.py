@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy
 from rich.console import Console
@@ -19,6 +19,9 @@ from .contact import Contact
 from .describe import COLUMNS, Column, number_text
 from .joint import Joint, Material
 from .presets import joints, materials
+
+if TYPE_CHECKING:
+    from .fem.ccx import CcxAnswer
 
 _BARS = " ▁▂▃▄▅▆▇█"
 _BARS_ASCII = " .:-=+*#@"
@@ -180,6 +183,22 @@ def print_table_3(columns: Sequence[TableColumn]) -> None:
     console.print(table)
     text = f"{len(RATIOS)} joints of 24 mm outer radius, clearance 0.1 mm, steel on 1 GPa; mean of p0/d at 1, 2, 3 kN."
     _print_folded(console, text, "dim")
+
+
+def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
+    """Our own answer at each step of a deck beside CalculiX', with how far that lies above ours."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    heads = ("d", "F", "F ccx", "ΔF", "p0", "p0 ccx", "Δp0", "ε", "ε ccx", "Δε")
+    for head in heads:
+        table.add_column(head, justify="right", no_wrap=True)
+    table.add_row(*(Text(unit, style="dim") for unit in ("mm", "N", "N", "%", "MPa", "MPa", "%", "°", "°", "°")))
+    columns = (ours["indentation"], ours["force"], theirs.force, ours["max_pressure"], theirs.max_pressure)
+    angles = (ours["half_angle_deg"], numpy.degrees(theirs.half_angle))
+    for d, F, F_ccx, p, p_ccx, angle, angle_ccx in zip(*columns, *angles, strict=True):
+        forces = (f"{F:.1f}", f"{F_ccx:.1f}", f"{100 * (F_ccx / F - 1):+.2f}")
+        pressures = (f"{p:.3f}", f"{p_ccx:.3f}", f"{100 * (p_ccx / p - 1):+.2f}")
+        table.add_row(f"{d:.5f}", *forces, *pressures, f"{angle:.2f}", f"{angle_ccx:.2f}", f"{angle_ccx - angle:+.2f}")
+    _console().print(table)
 
 
 def print_models(models: Iterable[Any]) -> None:

@@ -19,7 +19,6 @@ from ..fem.contact import MeshedContact
 from ..fem.cup import Cup
 from ..fem.model import FiniteElement
 from ..fem.spacing import Adapted, Element, Spacing, Uniform
-from ..fem.vtk import check_suffix, write_vtk
 from ..figures import check_format, save
 from ..files import nearest, read_cup
 from ..units import parse
@@ -41,6 +40,8 @@ class Output:
         if self.section is not None:
             check_format(self.section)
         if self.vtk is not None:
+            from ..fem.vtk import check_suffix
+
             check_suffix(self.vtk)
 
     def write(self, contact: Contact, exact: Contact | None) -> None:
@@ -50,6 +51,8 @@ class Output:
         if self.section is not None:
             save(section_figure.section_figure(contact, exact), self.section)
         if self.vtk is not None:
+            from ..fem.vtk import write_vtk
+
             write_vtk(contact.section, self.vtk)
 
 
