@@ -297,6 +297,38 @@ def test_the_meshes_of_ball_and_socket_need_not_match(ball):
         assert getattr(one, name) == pytest.approx(getattr(other, name), rel=1e-3), name
 
 
+@pytest.mark.parametrize("element", bs.Element)
+def test_error_bars_hold_for_both_kinds_of_elements(element):
+    """Bilinear elements converge more slowly, and say so."""
+    loads = np.linspace(300.0, 3500.0, 16)
+    ours = bs.FiniteElement(cup=FULL, element=element).press(RIGID, force=loads)
+    exact = bs.Exact().press(RIGID, force=loads)
+    for name in ("indentation", "half_angle", "max_pressure"):
+        misses = abs(getattr(ours, name) / getattr(exact, name) - 1) / ours.error[name]
+        assert np.mean(misses > 1) <= 0.2, name
+        assert misses.max() < 4, name
+
+
+@pytest.mark.parametrize("clearance", [0.1, 3.0])
+def test_an_elastic_ball_narrow_in_a_massive_socket_is_hertz(clearance):
+    """The patch is that of the socket's radius on both bodies, however much smaller the ball is."""
+    soft = bs.Material(young=1000.0, poisson=0.4)
+    joint = bs.Joint(ball_radius=17.0, clearance=clearance, liner_thickness=np.inf, liner=soft, ball=soft)
+    model = bs.FiniteElement(cup=FULL, gap=bs.CircularGap, meshes=1)
+    ours, hertz = model.press(joint, force=0.01), bs.Hertz().press(joint, force=0.01)
+    assert ours.max_pressure == pytest.approx(hertz.max_pressure, rel=1e-3)
+    assert ours.indentation == pytest.approx(hertz.indentation, rel=1e-2)
+
+
+@pytest.mark.parametrize("clearance", [1e-4, 1e-6])
+def test_the_stiffness_near_the_perfect_fit_is_the_slope_of_the_force(clearance):
+    contact = bs.FiniteElement(meshes=1).press(
+        replace(HIP, clearance=clearance), force=np.array([2990.0, 3000.0, 3010.0])
+    )
+    slope = 20.0 / (contact.indentation[2] - contact.indentation[0])
+    assert contact.stiffness[1] == pytest.approx(slope, rel=1e-4)
+
+
 # --- the contract of all models, as far as elements keep it ---
 
 
@@ -364,6 +396,63 @@ def test_one_answer_does_not_depend_on_its_neighbours():
 
 
 # --- refusals ---
+
+
+@pytest.mark.parametrize("force", [3.0, 30.0, 300.0, 3000.0])
+@pytest.mark.parametrize("chamfer", [0.1, 1.0, 2.7])
+def test_chamfers_can_be_meshed_at_every_load(chamfer, force):
+    assert bs.FiniteElement(cup=bs.Cup(chamfer=chamfer), meshes=1).press(HIP, force=force).status is bs.Status.OK
+
+
+def test_a_ball_that_leaves_the_pole_has_no_answer_and_takes_no_other_along():
+    """A soft free shell closes around the ball: beyond some load the contact is no cap."""
+    shell = bs.Layer(thickness=3.0, material=bs.Material(young=1000.0, poisson=0.3))
+    joint = replace(HIP, liner_thickness=2.0, backing=(shell,), support=bs.Support.FREE)
+    contact = bs.FiniteElement(meshes=1).press(joint, force=np.array([10.0, 300.0, 3000.0]))
+    assert contact.status.tolist() == [0, 0, bs.Status.NOT_REACHED]
+    assert "leaves the pole" in contact.notes[0]
+
+
+def test_incompressible_bodies_are_refused_wherever_they_are():
+    rubber = bs.Material(young=1000.0, poisson=0.5)
+    for joint in (replace(HIP, ball=rubber), replace(HIP, backing=(bs.Layer(thickness=4.0, material=rubber),))):
+        with pytest.raises(ValueError, match="fem has no answer for ν = 0.5"):
+            bs.FiniteElement().press(joint, force=1.0)
+
+
+def test_the_largest_stress_is_not_that_of_a_sharp_corner():
+    cup = bs.Cup(arc_of_cover=np.radians(80.0))
+    peaks = [
+        bs.FiniteElement(cup=cup, spacing=bs.Adapted(elements=elements), meshes=1).press(HIP, force=2e4).peak_stress
+        for elements in (60, 120)
+    ]
+    assert peaks[0].von_mises == pytest.approx(peaks[1].von_mises, rel=1e-2)
+
+
+def test_an_answer_that_is_missing_has_a_summary():
+    summary = bs.FiniteElement(cup=FULL, meshes=1).press(HIP, indentation=1e6).summary()
+    assert summary["force"] is None
+    assert "mesh" not in summary
+
+
+def test_progress_is_told_to_those_who_listen_only():
+    from ballsocket.fem.progress import listening
+
+    joint, told = replace(HIP, ball_radius=10.0), []
+    with listening(told.append):
+        bs.FiniteElement(meshes=1).press(joint, force=10.0)
+    heard = len(told)
+    assert heard > 0
+    assert all("elements" in text for text in told)
+    bs.FiniteElement(meshes=1).press(joint, force=3000.0)
+    assert len(told) == heard
+
+
+def test_nothing_to_slide_on_is_refused():
+    with pytest.raises(ValueError, match="there is nothing behind the liner to slide on"):
+        bs.FiniteElement(cup=bs.Cup(interface=bs.Interface.SLIDING)).press(
+            replace(HIP, support=bs.Support.FREE), force=1.0
+        )
 
 
 @pytest.mark.parametrize(

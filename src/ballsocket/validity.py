@@ -22,6 +22,7 @@ class Status(IntEnum):
     NOT_CONVERGED = 3
     BEYOND_EQUATOR = 4
     AT_RIM = 5
+    NOT_ROUND = 6
 
     @property
     def sentence(self) -> str:
@@ -30,7 +31,7 @@ class Status(IntEnum):
     @property
     def failed(self) -> bool:
         """Whether the numbers are missing (NaN)."""
-        return self in (Status.OUTSIDE_DOMAIN, Status.NOT_REACHED, Status.NOT_CONVERGED)
+        return self in (Status.OUTSIDE_DOMAIN, Status.NOT_REACHED, Status.NOT_CONVERGED, Status.NOT_ROUND)
 
 
 def missing(status: Array) -> Array:
@@ -49,6 +50,7 @@ _SENTENCES = {
     Status.NOT_CONVERGED: "the iteration did not converge",
     Status.BEYOND_EQUATOR: "the contact circle would pass the socket's equator (half angle above 90 degrees)",
     Status.AT_RIM: "the contact fills the socket and reaches its rim",
+    Status.NOT_ROUND: "ball and socket do not touch in one round patch around the pole, as the model takes it",
 }
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
@@ -13,11 +12,13 @@ from rich.console import Console
 
 from .. import section_figure
 from ..all_models import judge
+from ..checks import require
 from ..contact import Contact
 from ..describe import COLUMNS
 from ..fem.contact import MeshedContact
 from ..fem.cup import Cup
 from ..fem.model import FiniteElement
+from ..fem.progress import listening
 from ..fem.spacing import Adapted, Element, Spacing, Uniform
 from ..figures import check_format, save
 from ..files import nearest, read_cup
@@ -47,6 +48,8 @@ class Output:
     def write(self, contact: Contact, exact: Contact | None) -> None:
         """Write what was asked for."""
         if not isinstance(contact, MeshedContact) or contact.status.failed or contact.indentation == 0:
+            if self.section is not None or self.vtk is not None:
+                Console(stderr=True).print("ballsocket: without a contact there is nothing to draw or write")
             return
         if self.section is not None:
             save(section_figure.section_figure(contact, exact), self.section)
@@ -77,7 +80,11 @@ def finite_elements(words: Words, cup: Cup) -> FiniteElement:
 
 
 def _spacing(size: str | None) -> Spacing:
-    return Adapted() if size is None else Uniform(size=parse("element_size", size, "length"))
+    if size is None:
+        return Adapted()
+    length = parse("element_size", size, "length")
+    require("element_size", length, length > 0, "an element's size (mm) is above 0")
+    return Uniform(size=length)
 
 
 def _element(name: str | None) -> Element:
@@ -87,18 +94,12 @@ def _element(name: str | None) -> Element:
     return Element.BIQUADRATIC if name is None else known[name]
 
 
-@contextmanager
-def shown(model: FiniteElement) -> Iterator[FiniteElement]:
-    """The model telling on stderr what it is doing, where somebody looks."""
-    with Console(stderr=True).status("finite elements") as status:
-        yield replace(model, progress=lambda text: status.update(f"finite elements: {text}"))
-
-
 def timed(model: FiniteElement, joint: Any, load: Mapping[str, float]) -> tuple[MeshedContact, float]:
-    """One contact, and the seconds that it took."""
+    """One contact, and the seconds that it took; on stderr is shown what is being done, where somebody looks."""
     start = perf_counter()
-    with shown(model) as told:
-        contact: Any = told.press(joint, **load)
+    status = Console(stderr=True).status("finite elements")
+    with status, listening(lambda text: status.update(f"finite elements: {text}")):
+        contact: Any = model.press(joint, **load)
         _ = [column.of(contact) for column in COLUMNS]
     return contact, perf_counter() - start
 

@@ -72,9 +72,9 @@ def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
         errors="replace",
     )
     answer = read(folder)
-    if done.returncode and numpy.isnan(answer.force).all():
+    if numpy.isnan(answer.force).all():
         words = [line.strip() for line in done.stdout.splitlines() if line.strip()][-_LINES:]
-        raise RuntimeError(f"ccx failed ({done.returncode}): {'; '.join(words)}")
+        raise RuntimeError(f"ccx ended with {done.returncode} before the first step did: {'; '.join(words)}")
     return answer
 
 

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from ..arrays import to_numpy
 from ..joint import Joint
 from ..models.by_joint import SolvedContact
 from ..stress import Peak
+from ..validity import Status
 from .memory import MeshSize, mesh_size
 
 if TYPE_CHECKING:
@@ -59,7 +61,7 @@ class MeshedContact(SolvedContact):
 
     @property
     def _plain_joint(self) -> Joint:
-        return self.joint.with_numbers([float(number) for number in self.joint.numbers()])
+        return self.joint.with_numbers([float(to_numpy(number).item()) for number in self.joint.numbers()])
 
     @property
     def _solved(self) -> Solved:
@@ -70,5 +72,5 @@ class MeshedContact(SolvedContact):
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON, with the error estimates and, of a single contact, the size of its mesh."""
-        single = self.laws.shape == () and self.indentation > 0
+        single = self.laws.shape == () and not Status(self.status).failed and self.indentation > 0
         return {**super().summary(), **({"mesh": self.mesh.summary()} if single else {})}

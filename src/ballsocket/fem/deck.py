@@ -131,9 +131,10 @@ class Deck:
     def write(self, folder: Path) -> Path:
         """Write `ballsocket.inp` and `expected.json` into a folder, which is made; gives the path of the former.
 
-        `expected.json` has the joint, the scale, the elements' type, our own answer of the real joint under "steps" (`indentation` in mm,
-        `force` in N, `max_pressure` in MPa, `half_angle_deg`; null where there is none), and the nodes of both surfaces
-        with their angles in rad, under "bore" and "round". Each file appears at once: an interrupted write leaves none.
+        `expected.json` has the joint, the scale, the elements' type; our own answer of the real joint under "steps"
+        (`indentation` in mm, `force` in N, `max_pressure` in MPa, `half_angle_deg`; null where there is none); and the
+        nodes of both surfaces with their angles in rad, under "bore" and "round". Each file appears at once: an
+        interrupted write leaves none.
 
         Raises
         ------
@@ -247,7 +248,7 @@ class Deck:
             for name, material in zip((*self._socket.names, *self._ball.names), materials, strict=True)
         }
         young, poisson = moduli["BALL"]
-        return {**moduli, "BALL": (young * float(joint.ball_radius) / self._ball.radius, poisson)}
+        return {**moduli, "BALL": (young * float(joint.socket_radius) / self._ball.radius, poisson)}
 
     # --- lines ---
 
@@ -268,7 +269,7 @@ class Deck:
             "divide forces, pressures and displacements by it. CalculiX prints a 180th of the force."
         )
         if self._joint.ball is not None:
-            yield "The ball's modulus is multiplied by R1 over its radius here: it gives way like one of radius R1."
+            yield "The ball's modulus is multiplied by R2 over its radius here: it gives way like one of radius R2."
         yield "Contact is without friction; its penalty takes less than 0.1 % from the force."
         yield (
             f"{self.steps} steps push the ball (set PUSHED) down by equal parts. Expected of the real joint: "

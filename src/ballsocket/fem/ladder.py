@@ -30,11 +30,27 @@ class Ladder:
     high: float
 
     @cached_property
-    def _rungs(self) -> list[Cap]:
-        """Contacts with a force; beyond the perfect fit there are none."""
+    def _climbed(self) -> tuple[list[Cap], bool]:
+        """Contacts, each with more force and indentation than the one before; whether then comes the perfect fit.
+
+        They may end earlier: where the rim gives way so much that a wider contact has less force, the ball leaves the
+        pole, and the contact is a cap no more.
+        """
         angles = numpy.geomspace(self.low, self.high, _RUNGS)
         angles[-1] = self.high
-        return [one for one in (cap(self.pair, self.gap, float(angle)) for angle in angles) if is_contact(one)]
+        rungs: list[Cap] = []
+        for angle in angles:
+            one = cap(self.pair, self.gap, float(angle))
+            if not is_contact(one):
+                return rungs, True
+            if rungs and not (one.force > rungs[-1].force and one.indentation > rungs[-1].indentation):
+                return rungs, False
+            rungs.append(one)
+        return rungs, False
+
+    @property
+    def _rungs(self) -> list[Cap]:
+        return self._climbed[0]
 
     @cached_property
     def _curves(self) -> dict[str, PchipInterpolator]:
@@ -62,8 +78,9 @@ class Ladder:
         if len(self._rungs) < 2 or load < getattr(self._rungs[0], kind) or self.falls_short(kind, load):
             return None
         above = sum(getattr(rung, kind) <= load for rung in self._rungs)
-        if above == len(self._rungs):  # the load goes to infinity with the half angle short of the widest
-            return self._bracketed(kind, load, self._rungs[-1].half_angle, self.high)
+        if above == len(self._rungs):
+            _, fits = self._climbed  # before the perfect fit the load goes to infinity
+            return self._bracketed(kind, load, self._rungs[-1].half_angle, self.high) if fits else None
         return self._quickly(kind, load) or self._bracketed(
             kind, load, self._rungs[above - 1].half_angle, self._rungs[above].half_angle
         )

@@ -125,10 +125,13 @@ def graded(start: float, end: float, first: float, growth: float, longest: float
     """Places from start to end: the first interval about as given, each next one longer, up to `longest`."""
     reach = abs(end - start)
     steps = [min(first, reach)]
-    while sum(steps) < reach * (1 - 1e-9):
+    total = steps[0]
+    while total < reach * (1 - 1e-9):
         steps.append(min(steps[-1] * growth, longest))
-    places = numpy.append(0.0, numpy.cumsum(steps)) * (reach / sum(steps))
-    return start + numpy.sign(end - start) * places
+        total += steps[-1]
+    places = start + numpy.sign(end - start) * numpy.append(0.0, numpy.cumsum(steps)) * (reach / total)
+    places[-1] = end
+    return places
 
 
 def joined(parts: list[Array]) -> Array:

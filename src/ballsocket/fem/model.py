@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Any
 
 from .. import arrays
 from ..checks import needs, require
@@ -19,9 +19,6 @@ from .cup import Cup
 from .spacing import SPACINGS, Adapted, Element, Spacing
 
 Array = arrays.Array
-
-
-def _silent(_: str) -> None: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,8 +42,6 @@ class FiniteElement(Model):
         2 (default) solves on a coarser mesh too and gives `contact.error`; 1 leaves that unknown, NaN.
     gap : type
         `LinearGap` (Eq. 6 of Heß & Forsbach 2021, default) or `CircularGap` (Eq. 5).
-    progress : function of str
-        Told in words what is about to be done. Silent by default.
 
     Raises
     ------
@@ -66,7 +61,6 @@ class FiniteElement(Model):
     element: Element = Element.BIQUADRATIC
     meshes: int = 2
     gap: type[LinearGap] | type[CircularGap] = LinearGap
-    progress: Callable[[str], None] = field(default=_silent, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         kinds = {"cup": (Cup,), "spacing": SPACINGS, "ball_spacing": (*SPACINGS, type(None)), "element": (Element,)}
@@ -95,11 +89,11 @@ class FiniteElement(Model):
 
     @property
     def domain(self) -> tuple[Range, ...]:
-        locked = "an incompressible liner has no bulk modulus: 0.4999 is solved"
+        locked = "an incompressible body has no bulk modulus: 0.4999 is solved"
         fit = "without clearance every load has the same half angle: take a millionth of the radius"
         return (
             Range(quantity="joint.clearance", symbol="c", low=0.0, why=fit),
-            Range(quantity="joint.liner.poisson", symbol="ν", low=-1.0, high=0.49995, why=locked),
+            Range(quantity=_largest_poisson, symbol="ν", low=-1.0, high=0.49995, why=locked),
             Range(quantity="joint.thickness_ratio", symbol="R2/L", high=200.0, why="so thin a liner is not meshed"),
         )
 
@@ -109,7 +103,10 @@ class FiniteElement(Model):
 
     @property
     def reach(self) -> str:
-        return "half angles from a few elements up to the rim, at most 88°, less where the ball fills its socket before"
+        return (
+            "half angles up to half the arc of cover, at most 88°, less where the ball fills its socket before or "
+            "leaves the pole, and not narrower than a few elements"
+        )
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         needs("fem", "skfem", "psutil")
@@ -121,7 +118,20 @@ class FiniteElement(Model):
             laws=solution,
             force=solution.force(joint, load),
             indentation=indentation,
-            converged=solution.spread(lambda piece: piece.state.unsound) != 1,
+            converged=indentation == indentation,
             beyond_equator=indentation < 0,
             at_rim=solution.spread(lambda piece: piece.state.at_rim) == 1,
+            not_round=solution.spread(lambda piece: piece.state.unsound) == 1,
         )
+
+
+def _largest_poisson(contact: Any) -> Array:
+    """Poisson's ratio of the least compressible body."""
+    joint = contact.joint
+    others = [layer.material.poisson for layer in joint.backing]
+    if joint.ball is not None:
+        others.append(joint.ball.poisson)
+    largest = joint.liner.poisson
+    for poisson in others:
+        largest = arrays.where(poisson > largest, poisson, largest)
+    return largest

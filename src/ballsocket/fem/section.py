@@ -19,6 +19,8 @@ from .shapes import socket_shape
 
 Array = numpy.ndarray
 
+_CORNER = 0.25  # of the liner's thickness
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Part:
@@ -65,9 +67,16 @@ class Section:
 
     @cached_property
     def peak_stress(self) -> Peak:
-        """The largest von Mises stress (MPa) in the liner, where: depth below the bore (mm), polar angle (rad)."""
+        """The largest von Mises stress (MPa) in the liner, where: depth below the bore (mm), polar angle (rad).
+
+        The corners of its rim are left out, where elasticity knows no bound.
+        """
         liner = self["liner"]
-        at = int(numpy.argmax(liner.stress.von_mises))
+        corner = numpy.isclose(liner.angle, liner.angle.max())
+        corners = liner.place[:, [numpy.flatnonzero(corner)[i] for i in (0, -1)]]
+        away = numpy.min(numpy.hypot(*(liner.place[..., None] - corners[:, None])), axis=-1)
+        thickness = liner.radius.max() - liner.radius.min()
+        at = int(numpy.argmax(numpy.where(away > _CORNER * thickness, liner.stress.von_mises, 0.0)))
         return Peak(
             von_mises=float(liner.stress.von_mises[at]),
             depth=float(liner.radius[at]) - self.socket_radius,
@@ -90,6 +99,7 @@ def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
     socket = _Loaded(
         body=socket_body(socket_shape(joint, cup), pair.resolution),
         radius=R2,
+        pressed=R2,
         young=float(joint.liner.young),
         forces=solved.forces(0),
         lift=0.0,
@@ -100,6 +110,7 @@ def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
         ball = _Loaded(
             body=ball_body(float(joint.ball.poisson), pair.ball_resolution),
             radius=float(joint.ball_radius),
+            pressed=R2,
             young=float(joint.ball.young),
             forces=-solved.forces(1),
             lift=-float(joint.clearance),
@@ -111,10 +122,14 @@ def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Loaded:
-    """A body of unit size with its real size, stiffness and load; `lift` moves its picture, `drop` all of it."""
+    """A body of unit size with its real stiffness and load, on a patch of the radius `pressed`.
+
+    `radius` is that of its picture, which `lift` moves; `drop` moves all of it.
+    """
 
     body: Body
     radius: float
+    pressed: float
     young: float
     forces: Array
     lift: float
@@ -123,13 +138,13 @@ class _Loaded:
     @cached_property
     def _moved(self) -> Array:
         """u_φ and u_r of the nodes over the radius, shape (nodes, 2)."""
-        return self.body.displacements(self.forces / (self.young * self.radius**2))
+        return self.body.displacements(self.forces / (self.young * self.pressed**2))
 
     def parts(self, names: tuple[str, ...]) -> Iterator[Part]:
         """The layers, from the inside out."""
         block = self.body.elastic.block
         phi = numpy.repeat(block.angle, block.radius.shape[1])
-        u_phi, u_r = self.radius * self._moved.T
+        u_phi, u_r = self.pressed * self._moved.T
         sine, cosine = numpy.sin(phi), numpy.cos(phi)
         moved = numpy.stack([u_phi * cosine + u_r * sine, u_phi * sine - u_r * cosine - self.drop])
         across, below = self.radius * block.nodes

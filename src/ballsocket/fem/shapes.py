@@ -58,7 +58,7 @@ class Resolution:
         fine = min(self.reach, end)
         near = numpy.linspace(0.0, fine, max(round(fine / self.size), 1) + 1)
         if end - fine < self.size / 2:
-            return near * (end / fine)
+            return numpy.linspace(0.0, end, len(near))
         return joined([near, graded(fine, end, self.size * self.growth, self.growth, self.widest)])
 
 

@@ -27,6 +27,7 @@ class Answer:
     converged: Array
     beyond_equator: Array
     at_rim: Array | None = None
+    not_round: Array | None = None
 
 
 class Model(ABC):
@@ -264,7 +265,11 @@ def _finished(
     status = xp.zeros_like(xp.astype(F > 0, xp.int8))
     for wrong, code in (
         (answer.beyond_equator, Status.BEYOND_EQUATOR),
-        (F != F if answer.at_rim is None else answer.at_rim, Status.AT_RIM),
+        *(
+            (mask, code)
+            for mask, code in ((answer.at_rim, Status.AT_RIM), (answer.not_round, Status.NOT_ROUND))
+            if mask is not None
+        ),
         (~answer.converged, Status.NOT_CONVERGED),
         (~found, Status.NOT_REACHED),
         (~points, Status.OUTSIDE_DOMAIN),
