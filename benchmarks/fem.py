@@ -26,7 +26,7 @@ from .timing import Spread
 
 HIP = bs.joints["hess-forsbach"]
 CURVE = numpy.linspace(200.0, 4000.0, 20)
-SIZES = (0.8, 0.4, 0.2, 0.1, 0.05, 0.035)
+SIZES = (0.6, 0.4, 0.2, 0.1, 0.05, 0.035)
 DRAWN = Path(__file__).parents[1] / "docs" / "fem_cost.png"
 REPEATS = 5
 """Of everything that takes less than a second."""

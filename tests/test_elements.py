@@ -136,6 +136,24 @@ def test_layers_that_slide_move_together_across_and_freely_along():
     assert abs(one[1:, 0] - other[1:, 0]).max() > 1e-3 * abs(one[:, 1]).max()
 
 
+def test_a_liner_that_slides_in_a_free_shell_moves_along_at_its_rim():
+    """The shell sits on its rim; the liner in it does not."""
+    shape = SocketShape(
+        layers=((1.3, 1.0, 0.4), (1.5, 20.0, 0.3)),
+        rim=1.5,
+        chamfer=0.0,
+        interface=Interface.SLIDING,
+        support=Support.FREE,
+    )
+    resolution = Resolution(size=0.1, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2)
+    body = socket_body(shape, resolution)
+    mesh = body.elastic.block
+    (inner,) = mesh.sliding
+    along = body.displacements(np.ones(len(body.contact)))[mesh.number[-1], 0]
+    assert np.all(along[: inner + 1] != 0)
+    np.testing.assert_array_equal(along[inner + 1 :], 0.0)
+
+
 def test_a_liner_of_the_shells_own_material_is_one_with_it():
     """Two bonded layers of one material are one layer."""
     resolution = Resolution(size=0.1, reach=0.8, growth=1.2, widest=0.3, deepest=0.25, order=2)

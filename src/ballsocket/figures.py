@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Okabe & Ito's colours, safe for the colour-blind; the dashes keep the curves apart in grey
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#999999")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#999999")
 _DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (2, 1.5)), (0, (7, 2, 1.5, 2)), (0, (4, 1.5, 1, 1.5, 1, 1.5)))
 _REFERENCE_STYLE = {"color": "black", "linestyle": "-", "linewidth": 2.0}
 FORMATS = ("png", "svg", "pdf")
@@ -81,8 +81,8 @@ def save(figure: Figure, path: Path) -> None:
 
 def _style(index: int, valid: bool) -> dict[str, Any]:
     return {
-        "color": _COLOURS[index % len(_COLOURS)],
-        "linestyle": _DASHES[(index + index // len(_COLOURS)) % len(_DASHES)],
+        "color": COLOURS[index % len(COLOURS)],
+        "linestyle": _DASHES[(index + index // len(COLOURS)) % len(_DASHES)],
         "linewidth": 2.0 if valid else 1.0,
     }
 

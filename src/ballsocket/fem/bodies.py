@@ -32,7 +32,8 @@ def socket_body(shape: SocketShape, resolution: Resolution) -> Body:
         held[2 * outside + 1] = True
         held[2 * outside] |= not (slides and len(radii) == 1)
     else:
-        held[2 * mesh.number[-1, mesh.place >= mesh.place[mesh.strips[mesh.layer == len(radii) - 1][0]]]] = True
+        outermost = mesh.strips[mesh.layer == len(radii) - 1][0]  # a liner that slides in it keeps its own rim free
+        held[2 * mesh.number[-1, outermost:]] = True
     young, poisson = (numpy.array([layer[i] for layer in shape.layers]) for i in (1, 2))
     bore = mesh.number[: int(numpy.searchsorted(mesh.angle, shape.reach + 1e-9)), 0]
     return Body(elastic=Elastic(block=mesh, young=young, poisson=poisson), held=held, contact=bore)
