@@ -1,0 +1,33 @@
+"""`reproduce`: the whole paper, from the geometry up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import Progress
+
+from ..paper.plan import full_plan, quick_plan
+from ..report import write_report
+from .root import app
+
+
+@app.command()
+def reproduce(
+    out: Annotated[Path, typer.Option(help="The folder to write into; made if it is not there.")] = Path("reproduced"),
+    quick: Annotated[bool, typer.Option("--quick", help="The exact solution alone, without finite elements.")] = False,
+) -> None:
+    """Compute every table, figure and claim of Heß & Forsbach 2021 again, and write a report with a verdict on each.
+
+    What is finished is kept: a run that was stopped goes on where it was.
+    """
+    plan = quick_plan() if quick else full_plan()
+    results = {}
+    with Progress(console=Console(stderr=True)) as progress:
+        task = progress.add_task("reproducing", total=len(plan.pieces))
+        for name, result in plan.run(out / "data"):
+            results[name] = result
+            progress.update(task, advance=1, description=name)
+    typer.echo(str(write_report(results, out)))

@@ -1,0 +1,60 @@
+"""The parameter sets of the paper's figures (doi 10.3390/app112311170): steel on 1 GPa, lengths in mm, loads in N."""
+
+from __future__ import annotations
+
+import numpy
+
+from ..joint import Joint, Material
+from ..presets import STEEL
+
+Array = numpy.ndarray
+
+POISSON = (0.30, 0.35, 0.40, 0.45, 0.49)
+"""Of Table 3 and Figure 2."""
+
+CLEARANCES = (0.05, 0.1, 0.15, 0.2)
+HEAD_RADII = (11.0, 14.0, 16.0, 20.0, 23.0)
+THICKNESSES = (3.0, 6.0, 9.0, 12.0)
+"""The paper names the ends of these series and not always what lies between (Figure 5)."""
+
+LOAD = 3000.0
+"""At which pressures and areas are shown."""
+
+LOADS = numpy.array([1000.0, 1500.0, 2000.0, 2500.0, 3000.0])
+"""Over which the foundation modulus is averaged."""
+
+OUTER_RADII = (16.0, 26.0)
+"""The limits of Table 1 for R2 + L, dotted in Figure 6."""
+
+
+def hip(poisson: Array | float = 0.4) -> Joint:
+    """Figures 3 and 4: R2 18, L 6.75, c 0.1."""
+    return joint(head_radius=17.9, liner_thickness=6.75, poisson=poisson)
+
+
+def joint(
+    *,
+    head_radius: Array | float = 16.0,
+    clearance: Array | float = 0.1,
+    liner_thickness: Array | float = 6.0,
+    poisson: Array | float = 0.4,
+) -> Joint:
+    """A joint of Figure 5, whose series start from R1 16, c 0.1, L 6 and ν 0.4."""
+    return Joint(
+        ball_radius=head_radius,
+        clearance=clearance,
+        liner_thickness=liner_thickness,
+        liner=Material(young=1000.0, poisson=poisson),
+        ball=STEEL,
+    )
+
+
+def by_ratio(ratio: Array, poisson: Array | float) -> Joint:
+    """Figure 2, right: joints by R2/L whose outer radius is 24 mm, in the middle of Table 1."""
+    socket = 24.0 * ratio / (1 + ratio)
+    return joint(head_radius=socket - 0.1, liner_thickness=24.0 - socket, poisson=poisson)
+
+
+def scaled_modulus(contact_pressure: Array, indentation: Array, socket_radius: Array) -> Array:
+    """K~ = p0 R2/(d E), Eq. (17), for the liner of 1000 MPa."""
+    return contact_pressure * socket_radius / (indentation * 1000.0)
