@@ -40,6 +40,7 @@ from .curve import Solved
 from .mesh import Block, block
 from .pair import Pair
 from .shapes import socket_shape
+from .solid import Solid, node_set
 
 Array = numpy.ndarray
 
@@ -49,9 +50,8 @@ NAME, EXPECTED = "ballsocket", "expected.json"
 _STIFFER = 2000.0
 _FALSE = 2e-3  # of the indentation
 _RING = 0.05  # of a rigid ball's radius, meshed
-_TYPES = {1: "CAX4", 2: "CAX8R"}
 _INSIDE, _OUTSIDE = "S4", "S2"
-_A_LINE, _WIDTH = 16, 100
+_WIDTH = 100
 _SAME = 1e-9  # rad
 
 
@@ -201,9 +201,9 @@ class Deck:
         return self.contact._plain_joint
 
     @cached_property
-    def _socket(self) -> _Solid:
+    def _socket(self) -> Solid:
         body = socket_body(socket_shape(self._joint, self.contact.model.cup), self._solved.pair.resolution)
-        return _Solid(
+        return Solid(
             names=("LINER", *(f"BACKING{number}" for number in range(1, len(self._joint.backing) + 1))),
             block=body.elastic.block,
             held=body.held.reshape(-1, 2).T,
@@ -212,11 +212,11 @@ class Deck:
         )
 
     @cached_property
-    def _ball(self) -> _Solid:
+    def _ball(self) -> Solid:
         """Where it first touches. It is as large as the scaled clearance leaves room for."""
         mesh, held, contact = self._ring() if self._joint.ball is None else self._half(self._joint.ball)
         clearance = self.scale * float(self._joint.clearance)
-        return _Solid(
+        return Solid(
             names=("BALL",),
             block=mesh,
             held=held,
@@ -282,8 +282,8 @@ class Deck:
             yield from body.node_lines()
         for body in (self._socket, self._ball):
             yield from body.element_lines()
-        yield from _set("BORE", self._socket.surface()["node"])
-        yield from _set("ROUND", self._ball.surface()["node"])
+        yield from node_set("BORE", self._socket.surface()["node"])
+        yield from node_set("ROUND", self._ball.surface()["node"])
 
     def _materials(self) -> Iterator[str]:
         for name, (young, poisson) in self._layers.items():
@@ -305,7 +305,7 @@ class Deck:
         socket, ball = self._socket, self._ball
         upright = [*socket.numbers(socket.on_axis & ~socket.fixed), *ball.numbers(ball.on_axis | ball.fixed)]
         seated, rolling = socket.held & ~socket.fixed & ~socket.on_axis
-        yield from _set("PUSHED", ball.numbers(ball.held[0] & (ball.fixed | ~ball.on_axis)))
+        yield from node_set("PUSHED", ball.numbers(ball.held[0] & (ball.fixed | ~ball.on_axis)))
         yield from self._polar(seated | rolling)
         for name, directions, nodes in (
             ("UPRIGHT", "1, 1", upright),
@@ -323,7 +323,7 @@ class Deck:
         polar[inner] = polar[outer] = True
         numbers = socket.numbers(polar & ~socket.on_axis)
         if numbers:
-            yield from _set("POLAR", numbers)
+            yield from node_set("POLAR", numbers)
             yield from ("*TRANSFORM, NSET=POLAR, TYPE=C", "0., 0., 0., 0., 0., 1.")
         if len(inner):
             yield "*EQUATION"
@@ -332,95 +332,9 @@ class Deck:
             yield from ("2", f"{socket.number[one]}, {direction}, 1., {socket.number[other]}, {direction}, -1.")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Solid:
-    """A body in the deck.
-
-    `names` are its layers; `held` (2, nodes) is along the angle and along the radius; `contact` are the nodes of its
-    surface; `radius` (mm) is that of the block's unit, and `drop` how far its centre lies below the socket's.
-    """
-
-    names: tuple[str, ...]
-    block: Block
-    held: Array
-    contact: Array
-    radius: float
-    drop: float = 0.0
-    nodes_before: int = 0
-    elements_before: int = 0
-
-    @cached_property
-    def _rims(self) -> Array:
-        """Nodes of each element (4 or 8, elements), without the middle."""
-        return self.block.elements[: 4 * self.block.order]
-
-    @cached_property
-    def number(self) -> Array:
-        """Of each node of the block in the deck, from 1 on; 0 for those in the middle of elements."""
-        used = numpy.zeros(self.block.number.size, dtype=bool)
-        used[self._rims] = True
-        return numpy.where(used, self.nodes_before + numpy.cumsum(used), 0)
-
-    @property
-    def nodes(self) -> int:
-        """How many it has."""
-        return int(numpy.count_nonzero(self.number))
-
-    def numbers(self, chosen: Array) -> list[int]:
-        """Of the chosen nodes (nodes,), a mask; those in the middle of elements have none."""
-        return self.number[chosen & (self.number > 0)].tolist()
-
-    @cached_property
-    def on_axis(self) -> Array:
-        """Whether each node lies on the load axis."""
-        on = numpy.zeros(self.block.number.size, dtype=bool)
-        on[self.block.number[0]] = True
-        return on
-
-    @property
-    def fixed(self) -> Array:
-        """Whether each node is held in both directions."""
-        return self.held[0] & self.held[1]
-
-    @property
-    def sliding(self) -> tuple[Array, Array]:
-        """Nodes inside and outside of where layers slide."""
-        columns = self.block.sliding
-        return self.block.number[:, columns].ravel(), self.block.number[:, columns + 1].ravel()
-
-    def surface(self) -> dict[str, list[Any]]:
-        """Numbers and angles of the nodes that may touch, from the pole on."""
-        return {"node": self.number[self.contact].tolist(), "angle": self.block.angle[: len(self.contact)].tolist()}
-
-    def touching(self, reach: float, *, strip: int, more: int = 0) -> Array:
-        """Numbers of the elements of a strip that begin before an angle, and of some more."""
-        corners, strips = self.block.angle[:: self.block.order], len(self.block.strips)
-        count = min(int(numpy.searchsorted(corners, reach - _SAME)) + more, len(corners) - 1)
-        return self.elements_before + 1 + numpy.arange(count) * strips + strip % strips
-
-    def node_lines(self) -> Iterator[str]:
-        """Twenty characters a number are all that CalculiX reads."""
-        across, below = self.radius * self.block.nodes
-        for node in numpy.flatnonzero(self.number):
-            yield f"{self.number[node]}, {across[node]:.14g}, {-below[node] - self.drop:.14g}"
-
-    def element_lines(self) -> Iterator[str]:
-        for layer, name in enumerate(self.names):
-            yield f"*ELEMENT, TYPE={_TYPES[self.block.order]}, ELSET={name}"
-            for element in numpy.flatnonzero(self.block.layers == layer):
-                nodes = self.number[self._rims[:, element]]
-                yield ", ".join(map(str, [self.elements_before + 1 + element, *nodes]))
-
-
-def _set(name: str, nodes: list[int]) -> Iterator[str]:
-    yield f"*NSET, NSET={name}"
-    for start in range(0, len(nodes), _A_LINE):
-        yield ", ".join(map(str, nodes[start : start + _A_LINE]))
-
-
 def _held(name: str, directions: str, nodes: list[int]) -> Iterator[str]:
     if nodes:
-        yield from _set(name, nodes)
+        yield from node_set(name, nodes)
         yield from ("*BOUNDARY", f"{name}, {directions}")
 
 

@@ -110,9 +110,17 @@ class FiniteElement(Model):
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         needs("fem", "skfem", "psutil")
-        from .solver import curve  # takes its time to import
+        from .solver import Settings, curve  # takes its time to import
 
-        solution = taken_apart(self, joint, load, lambda one, loads: curve(self, one).press(kind, loads))
+        settings = Settings(
+            cup=self.cup,
+            spacing=self.spacing,
+            ball_spacing=self.ball_spacing or self.spacing,
+            order=self.element.value,
+            meshes=self.meshes,
+            gap=self.gap,
+        )
+        solution = taken_apart(self, joint, load, lambda one, loads: curve(settings, one).press(kind, loads))
         indentation = solution.indentation(joint, load)
         return Answer(
             laws=solution,
