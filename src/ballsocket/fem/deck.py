@@ -40,7 +40,7 @@ from .curve import Solved
 from .mesh import Block, block
 from .pair import Pair
 from .shapes import socket_shape
-from .solid import Solid, node_set
+from .solid import TYPES, Solid, node_set
 
 Array = numpy.ndarray
 
@@ -181,7 +181,7 @@ class Deck:
             "ballsocket": __version__,
             "joint": self._joint.summary(),
             "scale": self.scale,
-            "element": _TYPES[self._solved.pair.resolution.order],
+            "element": TYPES[self._solved.pair.resolution.order],
             "steps": [
                 {name: None if numpy.isnan(value) else value for name, value in zip(self.expected, row, strict=True)}
                 for row in self._rows()

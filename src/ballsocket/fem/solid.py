@@ -13,7 +13,9 @@ from .mesh import Block
 
 Array = numpy.ndarray
 
-_TYPES = {1: "CAX4", 2: "CAX8R"}
+TYPES = {1: "CAX4", 2: "CAX8R"}
+"""What both programs call bilinear and biquadratic elements."""
+
 _A_LINE = 16  # numbers
 _SAME = 1e-9  # rad
 
@@ -93,7 +95,7 @@ class Solid:
     def element_lines(self) -> Iterator[str]:
         """A headline for each layer, and a line for each of its elements."""
         for layer, name in enumerate(self.names):
-            yield f"*ELEMENT, TYPE={_TYPES[self.block.order]}, ELSET={name}"
+            yield f"*ELEMENT, TYPE={TYPES[self.block.order]}, ELSET={name}"
             for element in numpy.flatnonzero(self.block.layers == layer):
                 nodes = self.number[self._rims[:, element]]
                 yield ", ".join(map(str, [self.elements_before + 1 + element, *nodes]))
