@@ -17,6 +17,7 @@ BENCHMARKS = {
     "random-joints": ("random_joints", "a hundred thousand random joints through the exact solver, one by one"),
     "exact": ("exact", "the exact answer: a first load, further loads, a curve, a sweep; and CalculiX"),
     "fem": ("fem", "the finite elements: default mesh, the paper's mesh, cost against size; and CalculiX"),
+    "papers-mesh": ("papers_mesh", "CalculiX and the finite elements on the paper's mesh: a quarter of an hour"),
     "tabulated": (
         "tabulated",
         "a million presses by force from the tables, beside the exact solver and the paper's model",
