@@ -39,8 +39,8 @@ def measure() -> Report:
     notes = [
         f"{os.cpu_count()} cores. A press includes mesh, condensation, force, indentation, half angle and peak "
         "pressure. Memory is the largest of the process, Python and its libraries (about 0.1 GiB) included.",
-        "At equal error: CalculiX 2.20, CAX8R, face-to-face penalty, a ball without unknowns, one thread; errors are the "
-        "worst of the steps against the exact answer.",
+        "At equal error: CalculiX 2.20, CAX8R, face-to-face penalty, a ball without unknowns, one thread; errors are "
+        "the worst of the steps against the exact answer.",
     ]
     return Report(tables, notes, ("scipy", "scikit-fem"))
 
