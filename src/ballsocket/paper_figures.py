@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from .figures import COLOURS, finish
+from .paper.cases import OUTER_RADII
 from .paper.curves import FIT, Figure, Line, Map, Panel
 
 if TYPE_CHECKING:
@@ -30,7 +31,6 @@ _STYLES: dict[str, dict[str, Any]] = {
     FIT: {"color": "0.5", "linestyle": ":", "linewidth": 1.6},
 }
 _COLUMNS = 2
-_OUTER = (16.0, 26.0)
 
 
 def draw(figure: Figure) -> Drawing:
@@ -98,7 +98,7 @@ def _draw_map(axes: Axes, each: Map) -> None:
     lines = axes.contour(each.x, each.y, values, levels=numpy.array(filled.levels)[::2], colors="white", linewidths=0.6)
     axes.clabel(lines, fontsize=7)
     radius = numpy.array(each.x)
-    for outer in _OUTER:
+    for outer in OUTER_RADII:
         axes.plot(radius, outer - radius, color="black", linestyle=":", linewidth=1.5)
     axes.set_ylim(each.y[0], each.y[-1])
     axes.set_xlabel(each.x_label)

@@ -8,10 +8,9 @@ from typing import Annotated
 import typer
 
 from .. import tables
-from ..files import read_load
 from . import elements
 from .root import app
-from .words import given, named_joint
+from .words import load_of, named_joint
 
 
 @app.command()
@@ -34,9 +33,7 @@ def deck(
 ) -> None:
     """Write the finite-element model of a joint as an input file for CalculiX or Abaqus, with the numbers to expect."""
     file = named_joint(joint)
-    load = read_load(given({"force": force, "indentation": indentation, "half_angle": half_angle})) or file.load
-    if not load:
-        raise ValueError("a load is needed: --force, --indentation or --half-angle")
+    load = load_of({"force": force, "indentation": indentation, "half_angle": half_angle}, file)
     words = {
         "arc_of_cover": arc_of_cover,
         "chamfer": chamfer,

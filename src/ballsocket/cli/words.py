@@ -8,7 +8,7 @@ from typing import Any
 
 import typer
 
-from ..files import JointFile, joint_of, nearest, read_joint
+from ..files import JointFile, joint_of, nearest, read_joint, read_load
 from ..presets import joints
 
 
@@ -20,6 +20,14 @@ def echo_json(answer: dict[str, Any]) -> None:
 def given(words: dict[str, str | None]) -> dict[str, str]:
     """The words that were given."""
     return {name: word for name, word in words.items() if word is not None}
+
+
+def load_of(words: dict[str, str | None], file: JointFile) -> dict[str, float]:
+    """The load in words, or that of the joint's file."""
+    load = read_load(given(words)) or file.load
+    if not load:
+        raise ValueError("a load is needed: --force, --indentation or --half-angle")
+    return load
 
 
 def joint_file(name: str | None, described: dict[str, dict[str, str]]) -> JointFile:

@@ -142,7 +142,7 @@ class Cap:
         """p_0 .. p_k and q in MPa."""
         return self._pressed(self._side(*self._sides(self.indentation)))
 
-    @property
+    @cached_property
     def force(self) -> float:
         """F in N."""
         return float(self.pressures @ self._side(*self._cosines))

@@ -29,9 +29,6 @@ _STRIDE = 4
 _ROOM = 1.12
 """How much wider or narrower than its class a contact may come out on another mesh."""
 
-_ORDERS = {1: 1, 2: 2}
-"""Of the error bars, by the elements' own."""
-
 _SAFETY = 2.0
 _LEAST = {
     "force": 0.03,
@@ -104,7 +101,7 @@ class Curve:
     meshes : int
         1 leaves the errors unknown, 2 estimates them.
     order : int
-        Of the elements.
+        Of the elements, and of the error bars.
     """
 
     pairs: Callable[[int, int], Pair]
@@ -253,6 +250,6 @@ def _errors(kind: str, fine: States, coarse: States, order: int) -> dict[str, Ar
     for name in QUANTITIES:
         apart = abs(getattr(coarse, name) / getattr(fine, name) - 1)
         least = _LEAST[name] * (3 if order == 1 else 1) * fine.edge_element**2
-        errors[name] = numpy.maximum(_SAFETY * apart / (2 ** _ORDERS[order] - 1), least)
+        errors[name] = numpy.maximum(_SAFETY * apart / (2**order - 1), least)
     errors[kind] = 0.0 * errors[kind]
     return errors

@@ -36,7 +36,7 @@ class Brimful:
     def _total(self, values: Array) -> float:
         return float(self.pressures @ self.pair.weighted(values))
 
-    @property
+    @cached_property
     def force(self) -> float:
         """F in N."""
         return self._total(numpy.cos(self.pair.points[0]))

@@ -52,7 +52,6 @@ def curve(settings: Settings, joint: Joint) -> Curve:
         coarse = spacing.coarse(classes[number], radius, thickness, order)
         return coarse if mesh == COARSE else replace(coarse, halvings=1)
 
-    @lru_cache(maxsize=2 * len(classes))
     def pair(number: int, mesh: int) -> Pair:
         socket, ball = (resolution(one, number, mesh) for one in (settings.spacing, settings.ball_spacing))
         return _pair(settings, joint, socket, ball, min(1.2 * classes[number], widest))
@@ -63,25 +62,27 @@ def curve(settings: Settings, joint: Joint) -> Curve:
 
 def _check(settings: Settings, joint: Joint) -> None:
     """Raise ValueError for a geometry that cannot be meshed."""
-    thicknesses = {"liner_thickness": joint.liner_thickness}
-    thicknesses |= {f"backing[{number}].thickness": layer.thickness for number, layer in enumerate(joint.backing)}
-    for name, thickness in thicknesses.items():
-        if isinstance(settings.spacing, Uniform):
-            size = settings.spacing.size
-            require(name, thickness, thickness >= 2 * size, f"elements of {size:g} mm need two of them in a layer")
+    bore = socket_shape(joint, settings.cup).reach
     if isinstance(settings.spacing, Uniform):
-        size, bore = settings.spacing.size, float(joint.socket_radius) * socket_shape(joint, settings.cup).reach
-        allowed = f"the bore is {bore:.4g} mm long: it takes {LEAST} to {MOST} elements"
-        require("size", size, bore / MOST <= size <= bore / LEAST, allowed)
+        _check_size(settings.spacing.size, joint, float(joint.socket_radius) * bore)
     if settings.cup.interface is Interface.SLIDING and not joint.backing:
         ground = joint.support is Support.FIXED and float(joint.liner_thickness) < inf
         if not ground:
             raise ValueError("interface = 'sliding' is not allowed: there is nothing behind the liner to slide on")
     chamfer, liner = settings.cup.chamfer, float(joint.liner_thickness)
     require("chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer leaves a tenth of the liner, which is {liner:g} mm")
-    bore = socket_shape(joint, settings.cup).reach
     require("chamfer", chamfer, chamfer == 0 or chamfer > 1e-3 * liner, "a chamfer is 0 or a thousandth of the liner")
     require("chamfer", chamfer, bore > settings.cup.rim / 2, "a chamfer leaves half of the bore")
+
+
+def _check_size(size: float, joint: Joint, bore: float) -> None:
+    """Raise ValueError for elements of one size that do not fit the layers, or a bore of that length in mm."""
+    thicknesses = {"liner_thickness": joint.liner_thickness}
+    thicknesses |= {f"backing[{number}].thickness": layer.thickness for number, layer in enumerate(joint.backing)}
+    for name, thickness in thicknesses.items():
+        require(name, thickness, thickness >= 2 * size, f"elements of {size:g} mm need two of them in a layer")
+    allowed = f"the bore is {bore:.4g} mm long: it takes {LEAST} to {MOST} elements"
+    require("size", size, bore / MOST <= size <= bore / LEAST, allowed)
 
 
 def _pair(settings: Settings, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float) -> Pair:
