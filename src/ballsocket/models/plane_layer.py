@@ -246,14 +246,15 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
     which = 0 if kind == "force" else 1
     goal = log(broadcast(divisor(load), *shape))
 
-    def law(log_width: Array) -> tuple[Array, Array]:
-        solution = LayerSolution(joint=joint, width=exp(log_width), widest=reach)
+    def law(narrowing: Array) -> tuple[Array, Array]:
+        width = widest * exp(-narrowing)
+        solution = LayerSolution(joint=joint, width=width, widest=reach)
         value, slope = solution.values[which], solution.slopes[which]
-        return log(value), slope * exp(log_width) * joint.liner_thickness / value
+        return -log(value), slope * width * joint.liner_thickness / value
 
-    end = log(widest)
-    missing = goal - law(end)[0]
-    steep, guess, flat = (end + missing / power for power in ((8.0, 3.4, 2.0) if which == 0 else (4.0, 1.6, 0.8)))
-    root = arrays.increasing_root(law, goal, flat, steep, guess, steps=24)
-    width = where(missing <= 0, exp(root), float("nan"))
+    # how much narrower than the widest: 0 where even that does not suffice, so that no search is wasted there
+    missing = -goal - law(0.0 * goal)[0]
+    steep, guess, flat = (clip(missing, 0.0, inf) / power for power in ((8.0, 3.4, 2.0) if which == 0 else (4.0, 1.6, 0.8)))
+    root = arrays.increasing_root(law, -goal, steep, flat, guess, steps=24)
+    width = where(missing >= 0, widest * exp(-root), float("nan"))
     return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=reach)
