@@ -64,7 +64,7 @@ class Accuracy:
         return {"model": self.model, "answered": self.answered, "valid": self.valid, "errors": errors}
 
 
-def paper_joints(count: int = 256) -> Joint:
+def paper_joints(count: int = 128) -> Joint:
     """Joints that fill the paper's ranges evenly, as arrays of shape (joints,): steel on 1 GPa.
 
     `count` points of Sobol's sequence, less those whose liner would be too thin or too thick; a power of two.

@@ -216,23 +216,31 @@ class Column:
 
 def refit_table_3(reference: Model | None = None) -> tuple[Column, ...]:
     """Table 3 fitted again, to `Exact()` unless told otherwise."""
+    return tuple(refit_column(poisson, reference) for poisson in table_3()["poisson"])
+
+
+def refit_column(poisson: float, reference: Model | None = None) -> Column:
+    """One column of Table 3, for one of its Poisson's ratios.
+
+    Raises
+    ------
+    ValueError
+        A Poisson's ratio that Table 3 does not have.
+    """
     published = table_3()
-    columns = []
-    for i, poisson in enumerate(published["poisson"]):
-        paper = _three(published[name][i] for name in ("C1", "C2", "C3"))
-        joint = paper_joint(poisson)
-        fit = calibrate(joint, form=as_polynomial, reference=reference)
-        theirs = _values(polynomial(*paper)(joint)) / fit.wanted - 1
-        columns.append(
-            Column(
-                poisson=poisson,
-                paper=paper,
-                ours=_three(fit.modulus.constants),
-                difference=theirs,
-                calibration=fit,
-            )
-        )
-    return tuple(columns)
+    if poisson not in published["poisson"]:
+        raise ValueError(f"poisson = {poisson!r} has no column in Table 3: {published['poisson']} have")
+    place = published["poisson"].index(poisson)
+    paper = _three(published[name][place] for name in ("C1", "C2", "C3"))
+    joint = paper_joint(poisson)
+    fit = calibrate(joint, form=as_polynomial, reference=reference)
+    return Column(
+        poisson=poisson,
+        paper=paper,
+        ours=_three(fit.modulus.constants),
+        difference=_values(polynomial(*paper)(joint)) / fit.wanted - 1,
+        calibration=fit,
+    )
 
 
 def _three(numbers: Iterable[Any]) -> tuple[float, float, float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from io import BytesIO
 from math import isinf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ import numpy
 from . import arrays
 from .compare import REFERENCE
 from .contact import Contact
+from .written import at_once
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -74,9 +74,8 @@ def check_format(path: Path) -> None:
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as PNG, SVG or PDF, by the ending of `path`."""
     check_format(path)
-    drawn = BytesIO()  # so that a figure that cannot be drawn leaves no half of a file
-    figure.savefig(drawn, format=path.suffix.lower().lstrip("."), dpi=160)
-    path.write_bytes(drawn.getvalue())
+    with at_once(path) as draft:
+        figure.savefig(draft, dpi=160)
 
 
 def _style(index: int, valid: bool) -> dict[str, Any]:

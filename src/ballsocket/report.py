@@ -3,64 +3,113 @@
 from __future__ import annotations
 
 import csv
+import json
 from base64 import b64encode
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
-from io import BytesIO, StringIO
+from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from . import paper_figures
-from .paper.curves import Figure
-from .version import __version__
+from . import accuracy_table, paper_figures, report_tables
+from .fingerprint import fingerprint
+from .paper.figure import Figure
+from .written import at_once, write_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
 
 _STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+:root { color-scheme: light; }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 66rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
 h1, h2 { line-height: 1.2; } h2 { margin-top: 2.5rem; border-bottom: 1px solid #ccc; }
-img { max-width: 100%; } figure { margin: 1rem 0; } figcaption { color: #555; }
+img { max-width: 100%; } figure { margin: 1rem 0; } figcaption, .quiet { color: #555; }
+.wide { overflow-x: auto; margin: 1rem 0; }
 table { border-collapse: collapse; font-size: 0.9rem; } td, th { padding: 0.25rem 0.7rem; text-align: right; }
-td:first-child, th:first-child, .text td { text-align: left; vertical-align: top; }
-tr { border-bottom: 1px solid #e5e5e5; }
+td:first-child, th:first-child, .text td, .text th { text-align: left; vertical-align: top; }
+.text td:first-child { min-width: 18rem; } .text td:nth-child(2) { white-space: nowrap; } small { color: #555; }
+tr { border-bottom: 1px solid #e5e5e5; } nav a { margin-right: 1rem; white-space: nowrap; }
 .holds { color: #00684f; font-weight: 600; } .nearly { color: #8a5a00; font-weight: 600; }
 .fails { color: #b3261e; font-weight: 600; }
 """
-_CLASSES = {"holds": "holds", "holds nearly": "nearly", "does not hold": "fails"}
 _LEDE = """<p>The tables, figures and checkable sentences of M. Heß and F. Forsbach, <i>An Analytical Model for
 Almost Conformal Spherical Contact Problems</i>, Appl. Sci. 2021, 11, 11170
 (<a href="https://doi.org/10.3390/app112311170">doi 10.3390/app112311170</a>), computed again from the
 geometry up.</p>"""
+_ACCURACY = """<p>Relative errors against the exact answer over joints that fill Table 1 evenly, ν 0.3 to 0.49, 500 to
+4000 N: median / 95th percentile / worst in %, and under each the joint that is worst (mm). A model is asked here
+whether it trusts itself or not; the last column says at how many of the contacts it does.</p>"""
 
 
-def write_report(results: Mapping[str, Any], folder: Path) -> Path:
-    """Write `report.html`, and beside it each figure as PNG and SVG and its numbers as CSV.
+def write_report(results: Mapping[str, Sequence[Any]], folder: Path) -> Path:
+    """Write `report.html` and beside it what is in it: figures as PNG, SVG and CSV, the accuracy as a table.
 
-    `results` are those of the pieces of a `Plan`, by name.
+    Parameters
+    ----------
+    results : mapping of str to sequence
+        Of a `Plan`: the results of the pieces of each part.
+    folder : Path
+        Must be there.
+
+    Returns
+    -------
+    Path
+        Of the page.
     """
-    figures = {name: Figure.of(result) for name, result in results.items() if name.startswith("figure")}
-    drawn = {name: _drawn(name, figure, folder) for name, figure in figures.items()}
-    parts = [_LEDE, _claims(results["claims"])]
-    parts += [_table_3(name, result) for name, result in results.items() if name.startswith("table_3")]
-    parts += [_figure(name, figure, drawn[name]) for name, figure in figures.items()]
-    parts.append(_accuracy(results["accuracy"]))
+    parts = {name: Figure.joined(map(Figure.of, pieces)) for name, pieces in results.items() if "figure" in name}
+    figures = "".join(_figure(name, figure, folder) for name, figure in parts.items())
+    sections = {
+        "claims": (f"What the paper says: {report_tables.tally(results['claims'])}", _claims(results["claims"])),
+        "elsewhere": ("What others found", report_tables.claims(results["elsewhere"])),
+        "given": ("Tables 1 and 2: what is given", report_tables.given()),
+        "table_3": ("Table 3, fitted again", report_tables.table_3(results["table_3"])),
+        "figures": ("Figures 2 to 6", figures),
+        "accuracy": ("How accurate is which model?", _accuracy(results["accuracy"][0], folder)),
+    }
+    links = "".join(f"<a href='#{name}'>{escape(title.split(':')[0])}</a>" for name, (title, _) in sections.items())
+    body = "".join(f"<h2 id='{name}'>{escape(title)}</h2>{text}" for name, (title, text) in sections.items())
     page = (
         f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>Heß &amp; Forsbach 2021, reproduced</title>"
         f"<meta name='viewport' content='width=device-width'><style>{_STYLE}</style></head><body>"
-        f"<h1>Heß &amp; Forsbach 2021, reproduced</h1>{''.join(parts)}<p>ballsocket {__version__}</p></body></html>"
+        f"<h1>Heß &amp; Forsbach 2021, reproduced</h1>{_LEDE}<nav>{links}</nav>{body}"
+        f"<p class='quiet'>ballsocket {fingerprint()}</p></body></html>"
     )
-    path = folder / "report.html"
-    path.write_text(page, encoding="utf-8")
-    return path
+    return write_text(folder / "report.html", page)
 
 
-def _drawn(name: str, figure: Figure, folder: Path) -> bytes:
-    """The figure as PNG; writes its files."""
-    drawing = paper_figures.draw(figure)
-    picture = BytesIO()
-    drawing.savefig(picture, format="png", dpi=140)
-    (folder / f"{name}.png").write_bytes(picture.getvalue())
-    drawing.savefig(folder / f"{name}.svg")
-    (folder / f"{name}.csv").write_text(_csv(figure), encoding="utf-8")
-    return picture.getvalue()
+def _claims(findings: Sequence[Mapping[str, Any]]) -> str:
+    return "<p>Each with the numbers behind it and the function that made them.</p>" + report_tables.claims(findings)
+
+
+def _figure(name: str, figure: Figure, folder: Path) -> str:
+    picture = _pictured(name, paper_figures.draw(figure), folder)
+    write_text(folder / f"{name}.csv", _csv(figure))
+    caption = f"{escape(figure.caption)} <a href='{name}.csv'>numbers</a>, <a href='{name}.svg'>SVG</a>"
+    return f"<h3 id='{name}'>{escape(figure.title)}</h3>{_shown(picture, figure.title, caption)}"
+
+
+def _accuracy(rows: Sequence[Mapping[str, Any]], folder: Path) -> str:
+    picture = _pictured("accuracy", paper_figures.heat_map(rows), folder)
+    write_text(folder / "accuracy.md", accuracy_table.markdown(rows))
+    write_text(folder / "accuracy.csv", accuracy_table.table(rows))
+    write_text(folder / "accuracy.json", json.dumps(rows, indent=1) + "\n")
+    return _ACCURACY + _shown(picture, "errors of every model", "") + report_tables.accuracy(rows)
+
+
+def _pictured(name: str, drawing: Drawing, folder: Path) -> bytes:
+    """The picture as PNG; it is written as SVG too."""
+    for suffix in ("png", "svg"):
+        with at_once(folder / f"{name}.{suffix}") as draft:
+            drawing.savefig(draft, dpi=140)
+    return (folder / f"{name}.png").read_bytes()
+
+
+def _shown(picture: bytes, title: str, caption: str) -> str:
+    code = b64encode(picture).decode("ascii")
+    return (
+        f"<figure><img alt='{escape(title)}' src='data:image/png;base64,{code}'>"
+        f"<figcaption>{caption}</figcaption></figure>"
+    )
 
 
 def _csv(figure: Figure) -> str:
@@ -77,60 +126,3 @@ def _csv(figure: Figure) -> str:
         for y, row in zip(each.y, each.z, strict=True):
             writer.writerows((each.title, "", "", x, y, z) for x, z in zip(each.x, row, strict=True) if z is not None)
     return text.getvalue()
-
-
-def _figure(name: str, figure: Figure, picture: bytes) -> str:
-    code = b64encode(picture).decode("ascii")
-    return (
-        f"<h2 id='{name}'>Figure {figure.number}</h2><figure><img alt='Figure {figure.number}' "
-        f"src='data:image/png;base64,{code}'><figcaption>{escape(figure.caption)}</figcaption></figure>"
-    )
-
-
-def _claims(findings: Iterable[Mapping[str, Any]]) -> str:
-    rows = []
-    for finding in findings:
-        numbers = "<br>".join(f"{escape(name)}: {value:.4g}" for name, value in finding["numbers"].items())
-        said = f"{escape(finding['sentence'])}<br><small>{escape(finding['where'])}</small>"
-        verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{finding['verdict']}</span>"
-        comment = f"<br><small>{escape(finding['comment'])}</small>" if finding["comment"] else ""
-        name = finding["name"].replace("-", "_").replace(".", "_")
-        code = f"<br><small><code>paper.claims.{escape(name)}</code></small>"
-        rows.append((said, numbers, verdict + comment + code))
-    return "<h2 id='claims'>The claims</h2>" + _table(("what the paper says", "numbers", "verdict"), rows, "text")
-
-
-def _table_3(name: str, columns: Sequence[Mapping[str, Any]]) -> str:
-    who = name.removeprefix("table_3_").replace("_", " ")
-    heads = ("", *(f"ν {column['poisson']:g}" for column in columns))
-    rows: list[tuple[str, ...]] = []
-    for i, constant in enumerate(("C1", "C2", "C3")):
-        rows.append((f"{constant}, paper", *(f"{column['paper'][i]:.2f}" for column in columns)))
-        rows.append((f"{constant}, {who}", *(f"{column['ours'][i]:.2f}" for column in columns)))
-    worst = (max(column["difference"], key=abs) for column in columns)
-    rows.append(("the paper's K against ours, worst", *(f"{100 * share:+.1f} %" for share in worst)))
-    for quantity in ("indentation", "max_pressure", "half_angle", "force"):
-        errors = (f"{100 * column['error'][quantity]:.1f} %" for column in columns)
-        rows.append((f"closed form with our K: {quantity.replace('_', ' ')}, worst", *errors))
-    return f"<h2 id='{name}'>Table 3, refitted to {escape(who)}</h2>" + _table(heads, rows, "")
-
-
-def _accuracy(rows: Iterable[Mapping[str, Any]]) -> str:
-    names = ("indentation", "max_pressure", "half_angle", "force")
-    heads = ("model", *(f"{name.replace('_', ' ')} [%]" for name in names), "trusts itself at")
-    cells = []
-    for row in rows:
-        errors = (row["errors"][name] for name in names)
-        spreads = (f"{100 * e['median']:.2g} / {100 * e['percentile_95']:.2g} / {100 * e['worst']:.2g}" for e in errors)
-        cells.append((escape(row["model"]), *spreads, f"{100 * row['valid']:.0f} %"))
-    lede = (
-        "<p>Relative errors against the exact answer over joints that fill Table 1 evenly, ν 0.3 to 0.49, 500 to "
-        "4000 N: median / 95th percentile / worst. The first three at given force, the force at given indentation.</p>"
-    )
-    return "<h2 id='accuracy'>How accurate is which model?</h2>" + lede + _table(heads, cells, "")
-
-
-def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], kind: str) -> str:
-    top = "".join(f"<th>{escape(head)}</th>" for head in heads)
-    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
-    return f"<table class='{kind}'><tr>{top}</tr>{body}</table>"

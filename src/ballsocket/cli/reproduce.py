@@ -24,10 +24,7 @@ def reproduce(
     What is finished is kept: a run that was stopped goes on where it was.
     """
     plan = quick_plan() if quick else full_plan()
-    results = {}
     with Progress(console=Console(stderr=True)) as progress:
-        task = progress.add_task("reproducing", total=len(plan.pieces))
-        for name, result in plan.run(out / "data"):
-            results[name] = result
-            progress.update(task, advance=1, description=name)
+        task = progress.add_task("reproducing", total=len(plan))
+        results = plan.results(out / "data", lambda name: progress.update(task, advance=1, description=name))
     typer.echo(str(write_report(results, out)))

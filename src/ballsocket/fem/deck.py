@@ -18,13 +18,11 @@ CAX8R has no such trouble.
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, prod
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from textwrap import wrap
 from typing import Any
 
@@ -34,6 +32,7 @@ from ..checks import require
 from ..gaps import LinearGap
 from ..joint import Joint, Material
 from ..version import __version__
+from ..written import write_text
 from .bodies import ball_body, socket_body
 from .contact import MeshedContact
 from .curve import Solved
@@ -143,8 +142,8 @@ class Deck:
         """
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        _write(folder / EXPECTED, json.dumps(self._record(), indent=1) + "\n")
-        return _write(folder / f"{NAME}.inp", self.text())
+        write_text(folder / EXPECTED, json.dumps(self._record(), indent=1) + "\n", encoding="ascii")
+        return write_text(folder / f"{NAME}.inp", self.text(), encoding="ascii")
 
     # --- what is expected ---
 
@@ -344,11 +343,3 @@ def _step(height: float) -> Iterator[str]:
     for surface in ("BORE", "ROUND"):
         yield from (f"*NODE PRINT, NSET={surface}, GLOBAL=YES", "U")
     yield from ("*CONTACT FILE", "CDIS, CSTR", "*END STEP")
-
-
-def _write(path: Path, text: str) -> Path:
-    with TemporaryDirectory(dir=path.parent) as folder:
-        whole = Path(folder) / path.name
-        whole.write_text(text, encoding="ascii")
-        os.replace(whole, path)
-    return path

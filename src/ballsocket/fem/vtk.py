@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy
 
 from ..checks import needs
+from ..written import at_once
 from .section import Section
 
 _CELLS = {4: "quad", 9: "quad9"}
@@ -56,10 +55,8 @@ def write_vtk(section: Section, path: Path) -> None:
         point_data={"displacement": _in_space(moved), **stresses},
         cell_data={"part": [numpy.full(part.elements.shape[1], i) for i, part in enumerate(section.parts)]},
     )
-    with TemporaryDirectory(dir=path.parent) as folder:
-        whole = Path(folder) / path.name
-        mesh.write(whole)
-        os.replace(whole, path)
+    with at_once(path) as draft:
+        mesh.write(draft)
 
 
 def _in_space(plane: numpy.ndarray) -> numpy.ndarray:

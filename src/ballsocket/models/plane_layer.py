@@ -254,7 +254,9 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
 
     # how much narrower than the widest: 0 where even that does not suffice, so that no search is wasted there
     missing = -goal - law(0.0 * goal)[0]
-    steep, guess, flat = (clip(missing, 0.0, inf) / power for power in ((8.0, 3.4, 2.0) if which == 0 else (4.0, 1.6, 0.8)))
+    steep, guess, flat = (
+        clip(missing, 0.0, inf) / power for power in ((8.0, 3.4, 2.0) if which == 0 else (4.0, 1.6, 0.8))
+    )
     root = arrays.increasing_root(law, -goal, steep, flat, guess, steps=24)
     width = where(missing >= 0, widest * exp(-root), float("nan"))
     return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=reach)

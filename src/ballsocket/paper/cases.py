@@ -49,6 +49,15 @@ def joint(
     )
 
 
+def series() -> dict[str, Joint]:
+    """The three series of Figure 5, each as one joint of arrays."""
+    return {
+        "clearance": joint(clearance=numpy.array(CLEARANCES)),
+        "head_radius": joint(head_radius=numpy.array(HEAD_RADII)),
+        "liner_thickness": joint(liner_thickness=numpy.array(THICKNESSES)),
+    }
+
+
 def by_ratio(ratio: Array, poisson: Array | float) -> Joint:
     """Figure 2, right: joints by R2/L whose outer radius is 24 mm, in the middle of Table 1."""
     socket = 24.0 * ratio / (1 + ratio)

@@ -1,81 +1,28 @@
-"""What Figures 2 to 6 of the paper show, as numbers: panels of curves, and maps."""
+"""What Figures 2 to 6 of the paper show, recomputed with any models: as the paper draws them, and with every model."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy
 
 from ..arrays import to_numpy
+from ..contact import Contact
 from ..joint import Joint
 from ..models.base import Model
 from ..models.modulus import hess_forsbach
 from . import cases
+from .figure import Figure, Line, Map, Panel
 
 Array = numpy.ndarray
 Models = Mapping[str, Model]
 """By the name under which they are drawn."""
 
 FIT = "Eq. (18), Table 3"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Line:
-    """One curve: `model` says who, `case` what is varied; numbers with the units of the panel's axes."""
-
-    model: str
-    case: str
-    x: list[float]
-    y: list[float]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Panel:
-    """One part of a figure."""
-
-    title: str
-    x: str
-    y: str
-    lines: list[Line]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Map:
-    """A quantity over two axes; `z` has a row for each y, None where there is nothing."""
-
-    title: str
-    x_label: str
-    y_label: str
-    x: list[float]
-    y: list[float]
-    z: list[list[float | None]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Figure:
-    """One figure of the paper: panels, or maps."""
-
-    number: int
-    caption: str
-    panels: list[Panel]
-    maps: list[Map]
-
-    def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
-        return asdict(self)
-
-    @classmethod
-    def of(cls, summary: Mapping[str, Any]) -> Figure:
-        """From its dictionary."""
-        panels = [Panel(**{**panel, "lines": [Line(**line) for line in panel["lines"]]}) for panel in summary["panels"]]
-        return cls(
-            number=summary["number"],
-            caption=summary["caption"],
-            panels=panels,
-            maps=[Map(**each) for each in summary["maps"]],
-        )
+REFERENCE = "exact"
+"""Deviations are taken from it."""
 
 
 def _line(model: str, case: str, x: Any, y: Any) -> Line:
@@ -85,40 +32,62 @@ def _line(model: str, case: str, x: Any, y: Any) -> Line:
 _FORCES = numpy.array([100.0, 200.0, 350.0, 500.0, 750.0, 1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0])
 _CLEARANCES = numpy.linspace(0.05, 0.2, 7)
 _RATIOS = numpy.array([0.8, 1.2, 1.8, 2.5, 3.3, 4.2, 5.2, 6.3, 7.5])
+_MODULUS = "p0 R2/(δ E)"
 
 
-def figure_2(references: Models) -> Figure:
-    """K~ = p0 R2/(d E) by force, clearance and R2/L for five ν, with the published fit."""
-    by_force, by_clearance, by_ratio = [], [], []
-    for poisson in cases.POISSON:
-        case = f"ν {poisson:g}"
-        hip = cases.hip(poisson)
-        wide = cases.joint(head_radius=18.0 - _CLEARANCES, clearance=_CLEARANCES, liner_thickness=6.75, poisson=poisson)
-        family = cases.by_ratio(_RATIOS, poisson)
-        for name, model in references.items():
-            by_force.append(_line(name, case, _FORCES, _scaled(model, hip, _FORCES)))
-            by_clearance.append(_line(name, case, _CLEARANCES, _scaled(model, wide, cases.LOADS[:, None]).mean(axis=0)))
-            by_ratio.append(_line(name, case, _RATIOS, _scaled(model, family, cases.LOADS[:, None]).mean(axis=0)))
-        ends = numpy.array([_FORCES[0], _FORCES[-1]])
-        by_force.append(_line(FIT, case, ends, _fitted(hip) + 0 * ends))
-        by_clearance.append(_line(FIT, case, _CLEARANCES, _fitted(wide) + 0 * _CLEARANCES))
-        by_ratio.append(_line(FIT, case, _RATIOS, _fitted(family)))
-    label = "dimensionless modulus p0 R2/(δ E)"
+def figure_2(poisson: float, references: Models) -> Figure:
+    """K~ = p0 R2/(d E) by force, clearance and R2/L for one ν, with the published fit."""
+    panels = _modulus_panels(poisson, references, f"ν {poisson:g}")
     return Figure(
-        number=2,
-        caption="Dimensionless foundation modulus by force (R2 18, L 6.75, c 0.1 mm), radial clearance and R2/L.",
-        panels=[
-            Panel(title="by force", x="normal force [N]", y=label, lines=by_force),
-            Panel(title="by clearance, mean of 1 to 3 kN", x="radial clearance [mm]", y=label, lines=by_clearance),
-            Panel(title="by R2/L, mean of 1 to 3 kN", x="R2/L", y=label, lines=by_ratio),
-        ],
-        maps=[],
+        title="Figure 2",
+        caption="Dimensionless foundation modulus by force (R2 18, L 6.75, ΔR 0.1 mm), by radial clearance, and by R2/L"
+        " (outer radius 24 mm), the latter two averaged over 1 to 3 kN.",
+        columns=3,
+        panels=[Panel(title=title, x=x, y=_MODULUS, lines=lines) for (title, x), lines in panels.items()],
     )
+
+
+def figure_2_models(poisson: float, models: Models) -> Figure:
+    """The same for one ν with every model: what each of them takes for the modulus."""
+    panels = _modulus_panels(poisson, models, "")
+    return Figure(
+        title="Figure 2, with every model",
+        caption="The dimensionless modulus p0 R2/(δ E) of every model, one row for each Poisson's ratio.",
+        columns=3,
+        panels=[
+            Panel(title=f"ν {poisson:g}, {title}", x=x, y=_MODULUS, lines=lines) for (title, x), lines in panels.items()
+        ],
+    )
+
+
+def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str, str], list[Line]]:
+    """Title and axis of each panel, and its lines."""
+    hip = cases.hip(poisson)
+    wide = cases.joint(head_radius=18.0 - _CLEARANCES, clearance=_CLEARANCES, liner_thickness=6.75, poisson=poisson)
+    family = cases.by_ratio(_RATIOS, poisson)
+    by_force, by_clearance, by_ratio = [], [], []
+    for name, model in models.items():
+        by_force.append(_line(name, case, _FORCES, _scaled(model, hip, _FORCES)))
+        by_clearance.append(_line(name, case, _CLEARANCES, _mean_modulus(model, wide)))
+        by_ratio.append(_line(name, case, _RATIOS, _mean_modulus(model, family)))
+    ends = numpy.array([_FORCES[0], _FORCES[-1]])
+    by_force.append(_line(FIT, case, ends, _fitted(hip) + 0 * ends))
+    by_clearance.append(_line(FIT, case, _CLEARANCES, _fitted(wide) + 0 * _CLEARANCES))
+    by_ratio.append(_line(FIT, case, _RATIOS, _fitted(family)))
+    return {
+        ("by force", "normal force [N]"): by_force,
+        ("by clearance", "radial clearance ΔR [mm]"): by_clearance,
+        ("by R2/L", "R2/L"): by_ratio,
+    }
 
 
 def _scaled(model: Model, joint: Joint, force: Array) -> Array:
     contact = model.press(joint, force=force)
     return cases.scaled_modulus(contact.max_pressure, contact.indentation, joint.socket_radius)
+
+
+def _mean_modulus(model: Model, joints: Joint) -> Array:
+    return _scaled(model, joints, cases.LOADS[:, None]).mean(axis=0)
 
 
 def _fitted(joint: Joint) -> Array:
@@ -133,76 +102,141 @@ def figure_3_or_4(number: int, models: Models) -> Figure:
     """Force over indentation, and pressure over angle at 3 kN, of all models; ν 0.4 for Figure 3, 0.45 for Figure 4."""
     poisson = {3: 0.40, 4: 0.45}[number]
     joint = cases.hip(poisson)
-    loads, pressures = [], []
-    for name, model in models.items():
-        loads.append(_load_line(name, "", model, joint))
-        pressures.append(_pressure_line(name, "", model, joint))
     return Figure(
-        number=number,
-        caption=f"Force and pressure (at 3 kN) of all models: R2 18, L 6.75, c 0.1 mm, ν {poisson:g}.",
+        title=f"Figure {number}",
+        caption=f"Force by indentation, and pressure by angle at 3 kN: R2 18, L 6.75, ΔR 0.1 mm, ν {poisson:g}.",
+        columns=2,
+        panels=[_load_panel("force", "", joint, models), _pressure_panel("pressure at 3 kN", "", joint, models)],
+    )
+
+
+SERIES: dict[str, dict[str, Joint]] = {
+    "clearance": {f"ΔR {c:g} mm": cases.joint(clearance=c) for c in (0.05, 0.1, 0.2)},
+    "head radius": {f"R1 {r:g} mm": cases.joint(head_radius=r) for r in (11.0, 16.0, 23.0)},
+    "liner thickness": {f"L {t:g} mm": cases.joint(liner_thickness=t) for t in (3.0, 6.0, 12.0)},
+}
+"""The joints of Figure 5."""
+
+
+def figure_5(series: str, case: str, models: Models) -> Figure:
+    """Force and pressure of one joint of the three series, for the panels that show its series."""
+    joint = SERIES[series][case]
+    place = _BY_ARC if series == "head radius" else _BY_ANGLE
+    return Figure(
+        title="Figure 5",
+        caption="Force by indentation, and pressure at 3 kN, by clearance, head radius and liner thickness around "
+        "R1 16, L 6, ΔR 0.1 mm, ν 0.4. Pressure is shown over the arc R1 φ where the head's radius varies.",
+        columns=2,
         panels=[
-            Panel(title="force", x="indentation δ [µm]", y="normal force [N]", lines=loads),
-            Panel(title="pressure at 3 kN", x="polar angle φ [°]", y="contact pressure [MPa]", lines=pressures),
+            _load_panel(f"{series}: force", case, joint, models),
+            _pressure_panel(f"{series}: pressure at 3 kN", case, joint, models, place),
         ],
-        maps=[],
     )
 
 
-def figure_5(models: Models) -> Figure:
-    """The same for three series: clearance, head radius, liner thickness."""
-    series: dict[str, dict[str, Joint]] = {
-        "clearance": {f"ΔR {c:g} mm": cases.joint(clearance=c) for c in (0.05, 0.1, 0.2)},
-        "head radius": {f"R1 {r:g} mm": cases.joint(head_radius=r) for r in (11.0, 16.0, 23.0)},
-        "liner thickness": {f"L {t:g} mm": cases.joint(liner_thickness=t) for t in (3.0, 6.0, 12.0)},
-    }
-    panels = []
-    for name, joints in series.items():
-        pairs = [(case, joint, who, model) for case, joint in joints.items() for who, model in models.items()]
-        loads = [_load_line(who, case, model, joint) for case, joint, who, model in pairs]
-        pressures = [_pressure_line(who, case, model, joint) for case, joint, who, model in pairs]
-        panels.append(Panel(title=f"{name}: force", x="indentation δ [µm]", y="normal force [N]", lines=loads))
-        title = f"{name}: pressure at 3 kN"
-        panels.append(Panel(title=title, x="polar angle φ [°]", y="contact pressure [MPa]", lines=pressures))
+def figure_5_forces(series: str, case: str, models: Models) -> Figure:
+    """Force over indentation of one joint of the three series with every model, in a panel of its own."""
     return Figure(
-        number=5,
-        caption="Force and pressure by clearance, head radius and liner thickness around R1 16, L 6, ΔR 0.1 mm, ν 0.4.",
-        panels=panels,
-        maps=[],
+        title="Figure 5, forces of every model",
+        caption="Force by indentation for each joint of Figure 5.",
+        columns=3,
+        panels=[_load_panel(case, "", SERIES[series][case], models)],
     )
 
 
-def _load_line(name: str, case: str, model: Model, joint: Joint) -> Line:
-    forces = 4000.0 * numpy.linspace(0.12, 1.0, _STEPS) ** 2
-    contact = model.press(joint, force=forces)
-    start = numpy.zeros(1)
-    x, y = numpy.append(start, 1e3 * contact.indentation), numpy.append(start, forces)
-    return _line(name, case, x, y)
+def figure_5_pressures(series: str, case: str, models: Models) -> Figure:
+    """Pressure over angle of the same joint."""
+    return Figure(
+        title="Figure 5, pressures of every model",
+        caption="Pressure by angle at 3 kN for each joint of Figure 5.",
+        columns=3,
+        panels=[_pressure_panel(case, "", SERIES[series][case], models)],
+    )
 
 
-def _pressure_line(name: str, case: str, model: Model, joint: Joint) -> Line:
-    contact = model.press(joint, force=cases.LOAD)
-    angle = float(contact.half_angle) * numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 60))
-    return _line(name, case, numpy.degrees(angle), contact.pressure(angle))
+def _load_panel(title: str, case: str, joint: Joint, models: Models) -> Panel:
+    forces = 4000.0 * numpy.linspace(0.06, 1.0, _STEPS) ** 2
+    lines = []
+    for name, model in models.items():
+        depth = model.press(joint, force=forces).indentation
+        lines.append(_line(name, case, numpy.append(0.0, 1e3 * depth), numpy.append(0.0, forces)))
+    return Panel(title=title, x="indentation δ [µm]", y="normal force [N]", lines=lines)
 
 
-def figure_6(model: Model, points: int = 25) -> Figure:
+Place = tuple[str, Callable[[Joint, Array], Array]]
+_BY_ANGLE: Place = ("polar angle φ [°]", lambda joint, angle: numpy.degrees(angle))
+_BY_ARC: Place = ("arc from the pole R1 φ [mm]", lambda joint, angle: angle * joint.ball_radius)
+
+
+def _pressure_panel(title: str, case: str, joint: Joint, models: Models, place: Place = _BY_ANGLE) -> Panel:
+    label, position = place
+    lines = []
+    for name, model in models.items():
+        contact = model.press(joint, force=cases.LOAD)
+        angle = float(contact.half_angle) * numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 60))
+        lines.append(_line(name, case, position(joint, angle), contact.pressure(angle)))
+    return Panel(title=title, x=label, y="contact pressure [MPa]", lines=lines)
+
+
+def figure_6(name: str, model: Model, points: int = 25) -> Figure:
     """Peak pressure and contact area over head radius and liner thickness at 3 kN, about the outer radii of Table 1."""
-    radius, thickness = numpy.linspace(11.0, 23.0, points), numpy.linspace(3.0, 15.0, points)
-    R, L = numpy.meshgrid(radius, thickness)
-    outer = R + L
-    inside = (outer > cases.OUTER_RADII[0] - 1.5) & (outer < cases.OUTER_RADII[1] + 1.5)
-    contact = model.press(cases.joint(head_radius=R[inside], liner_thickness=L[inside]), force=cases.LOAD)
-    maps = []
-    for title, values in (("peak pressure [MPa]", contact.max_pressure), ("contact area [mm²]", contact.area)):
-        whole = numpy.full(R.shape, numpy.nan)
-        whole[inside] = values
-        rows = [[None if numpy.isnan(value) else value for value in row] for row in whole.tolist()]
-        axes = {"x_label": "head radius R1 [mm]", "y_label": "liner thickness L [mm]"}
-        maps.append(Map(title=title, **axes, x=radius.tolist(), y=thickness.tolist(), z=rows))
+    grid = _Grid(points)
+    contact = model.press(grid.joint, force=cases.LOAD)
     return Figure(
-        number=6,
-        caption=f"Peak pressure and contact area at 3 kN, ΔR 0.1 mm, ν 0.4, by {model.name}. "
-        "Dotted: outer radius 16 and 26 mm.",
-        panels=[],
-        maps=maps,
+        title=f"Figure 6, {name}",
+        caption="Peak pressure and contact area at 3 kN by head radius and liner thickness, ΔR 0.1 mm, ν 0.4. Dotted: "
+        "outer radius 16 and 26 mm.",
+        columns=2,
+        maps=[
+            grid.map("peak pressure [MPa]", contact.max_pressure),
+            grid.map("contact area [mm²]", contact.area),
+        ],
     )
+
+
+def figure_6_pressures(name: str, model: Model, reference: Model, points: int = 25) -> Figure:
+    """How far one model's peak pressure lies from a reference's, over the same axes."""
+    return Figure(
+        title="Figure 6, pressures of every model",
+        caption="How far the peak pressure of each model lies from the exact one, in %.",
+        columns=3,
+        maps=[_deviation(name, _Grid(points), model, reference, lambda contact: contact.max_pressure)],
+    )
+
+
+def figure_6_areas(name: str, model: Model, reference: Model, points: int = 25) -> Figure:
+    """How far its contact area does."""
+    return Figure(
+        title="Figure 6, areas of every model",
+        caption="How far the contact area of each model lies from the exact one, in %.",
+        columns=3,
+        maps=[_deviation(name, _Grid(points), model, reference, lambda contact: contact.area)],
+    )
+
+
+def _deviation(title: str, grid: _Grid, model: Model, reference: Model, quantity: Callable[[Contact], Array]) -> Map:
+    value, truth = (quantity(each.press(grid.joint, force=cases.LOAD)) for each in (model, reference))
+    return replace(grid.map(title, 100 * (value / truth - 1)), about_zero=True)
+
+
+class _Grid:
+    """Head radii and liner thicknesses, `points` of each, a little beyond the outer radii of Table 1."""
+
+    def __init__(self, points: int) -> None:
+        self.radius, self.thickness = numpy.linspace(11.0, 23.0, points), numpy.linspace(3.0, 15.0, points)
+        R, L = numpy.meshgrid(self.radius, self.thickness)
+        self.inside = (cases.OUTER_RADII[0] - 1.5 < R + L) & (cases.OUTER_RADII[1] + 1.5 > R + L)
+        self.joint = cases.joint(head_radius=R[self.inside], liner_thickness=L[self.inside])
+
+    def map(self, title: str, values: Array) -> Map:
+        whole = numpy.full(self.inside.shape, numpy.nan)
+        whole[self.inside] = values
+        rows = [[None if numpy.isnan(value) else value for value in row] for row in whole.tolist()]
+        return Map(
+            title=title,
+            x_label="head radius R1 [mm]",
+            y_label="liner thickness L [mm]",
+            x=self.radius.tolist(),
+            y=self.thickness.tolist(),
+            z=rows,
+        )

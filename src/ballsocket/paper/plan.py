@@ -3,39 +3,47 @@
 from __future__ import annotations
 
 import json
-import os
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
+from itertools import product
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..accuracy import accuracies, paper_joints
+from ..accuracy import accuracies
 from ..all_models import catalogue
-from ..calibrate import refit_table_3
+from ..calibrate import refit_column
 from ..elastic.axisymmetric import Exact
 from ..fem.model import FiniteElement
-from ..fem.spacing import Element, Uniform
+from ..fingerprint import fingerprint
 from ..models.base import Model
-from ..version import __version__
-from .claims import ledger
-from .curves import figure_2, figure_3_or_4, figure_5, figure_6
+from ..written import write_text
+from . import cases, curves
+from .claims import CLAIMS, ELSEWHERE, MESHED_CLAIMS, MESHED_ELSEWHERE, Claim, judged
+from .claims.agreement import dense_elements
 
 Piece = Callable[[], Any]
 """Computes something that JSON can hold."""
 
-_COMPARED = ("hess-forsbach", "bartel", "bonded-layer", "hertz", "refined", "exact")
+Results = dict[str, list[Any]]
+"""The results of the pieces of each part."""
+
+ELEMENTS = "finite elements"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """Pieces by name, and a name for all of them that says with what they are computed."""
+    """Parts by name, each of them pieces by name, and a name for all that says with what they are computed."""
 
     name: str
-    pieces: Mapping[str, Piece]
+    parts: Mapping[str, Mapping[str, Piece]]
 
-    def run(self, folder: Path) -> Iterator[tuple[str, Any]]:
-        """The pieces, one after the other, with their results; those that lie in the folder already are read from it.
+    def __len__(self) -> int:
+        return sum(map(len, self.parts.values()))
+
+    def run(self, folder: Path) -> Iterator[tuple[str, str, Any]]:
+        """The pieces, one after the other: part, piece and result. Those that lie in the folder already are read.
 
         Raises
         ------
@@ -43,17 +51,26 @@ class Plan:
             A folder that cannot be written to.
         """
         folder.mkdir(parents=True, exist_ok=True)
-        for name, piece in self.pieces.items():
-            path = folder / f"{name}.json"
-            kept = _kept(path, self._key)
-            if kept is None:
-                kept = piece()
-                _keep(path, {"key": self._key, "result": kept})
-            yield name, kept
+        for part, pieces in self.parts.items():
+            for name, piece in pieces.items():
+                path = folder / f"{part}{_plain(name)}.json"
+                kept = _kept(path, self._key)
+                if kept is None:
+                    kept = piece()
+                    write_text(path, json.dumps({"key": self._key, "result": kept}, allow_nan=False))
+                yield part, name, kept
+
+    def results(self, folder: Path, listen: Callable[[str], None] = lambda name: None) -> Results:
+        """All results by part; `listen` is told the name of each piece when it is there."""
+        whole: Results = {part: [] for part in self.parts}
+        for part, name, result in self.run(folder):
+            whole[part].append(result)
+            listen(f"{part} {name}".strip())
+        return whole
 
     @property
     def _key(self) -> str:
-        return f"ballsocket {__version__}, {self.name}"
+        return f"ballsocket {fingerprint()}, {self.name}"
 
 
 def _kept(path: Path, key: str) -> Any:
@@ -65,51 +82,119 @@ def _kept(path: Path, key: str) -> Any:
         return None
 
 
-def _keep(path: Path, record: Any) -> None:
-    """Write a file at once: an interruption leaves none."""
-    with TemporaryDirectory(dir=path.parent) as folder:
-        whole = Path(folder) / path.name
-        whole.write_text(json.dumps(record, allow_nan=False), encoding="utf-8")
-        os.replace(whole, path)
+def _plain(name: str) -> str:
+    """A piece's name as part of a file's."""
+    return "".join(f"_{word}" for word in re.findall(r"\w+", name))
+
+
+_COMPARED = ("hertz", "bartel", "bonded-layer", "hess-forsbach", "refined", "exact")
 
 
 def quick_plan() -> Plan:
     """The exact solution plays the part of the paper's finite elements: seconds."""
     exact = Exact(tolerance=1e-4)
-    models = {name: catalogue[name] for name in _COMPARED}
-    return Plan(name="quick", pieces=_pieces({"exact": exact}, models, exact, joints=32))
+    models = {**{name: catalogue[name] for name in _COMPARED}, "exact": exact}
+    return Plan(
+        name="quick",
+        parts={
+            **_ledgers(exact, CLAIMS, ELSEWHERE),
+            **_parts(references={"exact": exact}, models=models, dense=models),
+        },
+    )
 
 
 def full_plan() -> Plan:
-    """With finite elements: those of the paper's density beside the models, adapted ones for the moduli. Minutes."""
-    fem = FiniteElement(meshes=1)
-    dense = FiniteElement(spacing=Uniform(size=0.05), element=Element.BILINEAR, meshes=1)
-    exact = catalogue["exact"]
-    models = {**{name: catalogue[name] for name in _COMPARED}, "finite elements": dense}
-    return Plan(name="full", pieces=_pieces({"exact": exact, "finite elements": fem}, models, fem, joints=256))
+    """With finite elements: those of the paper's density in Figures 3 to 5, adapted ones elsewhere. Minutes."""
+    adapted = FiniteElement(meshes=1)
+    models = {name: catalogue[name] for name in _COMPARED}
+    return Plan(
+        name="full",
+        parts={
+            **_ledgers(adapted, CLAIMS + MESHED_CLAIMS, ELSEWHERE + MESHED_ELSEWHERE),
+            **_parts(
+                references={"exact": models["exact"], ELEMENTS: adapted},
+                models={**models, ELEMENTS: adapted},
+                dense={**models, ELEMENTS: dense_elements()},
+            ),
+        },
+    )
 
 
-def _pieces(
-    references: Mapping[str, Model], models: Mapping[str, Model], judge: Model, joints: int
-) -> dict[str, Piece]:
-    last = list(models)[-1]
-    pair = {"hess-forsbach": models["hess-forsbach"], last: models[last]}
+def _ledgers(judge: Model, claims: tuple[Claim, ...], elsewhere: tuple[Claim, ...]) -> dict[str, Mapping[str, Piece]]:
+    """What the paper says and what others found."""
     return {
-        "figure_2": lambda: figure_2(references).summary(),
-        "figure_3": lambda: figure_3_or_4(3, models).summary(),
-        "figure_4": lambda: figure_3_or_4(4, models).summary(),
-        "figure_5": lambda: figure_5(pair).summary(),
-        "figure_6": lambda: figure_6(models["hess-forsbach"]).summary(),
-        "figure_6_exact": lambda: figure_6(references["exact"], points=19).summary(),
-        **{f"table_3_{_plain(name)}": _table_3(model) for name, model in references.items()},
-        "claims": lambda: [finding.summary() for finding in ledger(judge)],
-        "accuracy": lambda: [row.summary() for row in accuracies(joints=paper_joints(joints))],
+        part: {claim.__name__: _summary(partial(judged, claim, judge)) for claim in group}
+        for part, group in (("claims", claims), ("elsewhere", elsewhere))
     }
 
 
-def _plain(name: str) -> str:
-    return name.replace(" ", "_")
+def _parts(
+    *,
+    references: Mapping[str, Model],
+    models: Mapping[str, Model],
+    dense: Mapping[str, Model],
+) -> dict[str, Mapping[str, Piece]]:
+    """`references` for the moduli, `dense` in the curves that the paper draws, `models` in all others."""
+    judged_as_drawn = {"hess-forsbach": dense["hess-forsbach"], list(dense)[-1]: list(dense.values())[-1]}
+    joints = {f"{series} {case}": (series, case) for series, group in curves.SERIES.items() for case in group}
+    ratios = {f"{poisson:g}": poisson for poisson in cases.POISSON}
+    fields = {name: model for name, model in models.items() if name != "exact"}
+    return {
+        "table_3": {
+            f"{name} {ratio}": _summary(partial(_column, name, model, ratios[ratio]))
+            for (name, model), ratio in product(references.items(), ratios)
+        },
+        "figure_2": {ratio: _summary(partial(curves.figure_2, value, references)) for ratio, value in ratios.items()},
+        "figure_2_models": {
+            ratio: _summary(partial(curves.figure_2_models, value, models)) for ratio, value in ratios.items()
+        },
+        **{
+            f"figure_{number}": {
+                name: _summary(partial(curves.figure_3_or_4, number, {name: model})) for name, model in dense.items()
+            }
+            for number in (3, 4)
+        },
+        "figure_5": {
+            name: _summary(partial(curves.figure_5, *joint, judged_as_drawn)) for name, joint in joints.items()
+        },
+        "figure_5_forces": {
+            name: _summary(partial(curves.figure_5_forces, *joint, models)) for name, joint in joints.items()
+        },
+        "figure_5_pressures": {
+            name: _summary(partial(curves.figure_5_pressures, *joint, models)) for name, joint in joints.items()
+        },
+        "figure_6": {"": _summary(partial(curves.figure_6, "hess-forsbach", models["hess-forsbach"]))},
+        "figure_6_exact": {"": _summary(partial(curves.figure_6, "exact", models["exact"], _COARSE))},
+        "figure_6_pressures": {
+            name: _summary(partial(curves.figure_6_pressures, name, model, models["exact"], _COARSE))
+            for name, model in fields.items()
+        },
+        "figure_6_areas": {
+            name: _summary(partial(curves.figure_6_areas, name, model, models["exact"], _COARSE))
+            for name, model in fields.items()
+        },
+        "accuracy": {"": lambda: [row.summary() for row in accuracies()]},
+    }
 
 
-def _table_3(model: Model) -> Piece:
-    return lambda: [column.summary() for column in refit_table_3(model)]
+_COARSE = 13
+"""Head radii and thicknesses in maps that are solved joint by joint."""
+
+
+def _summary(compute: Callable[[], Any]) -> Piece:
+    return lambda: compute().summary()
+
+
+@dataclass(frozen=True)
+class _Named:
+    """A column of Table 3 with the reference that it was fitted to."""
+
+    reference: str
+    column: Any
+
+    def summary(self) -> dict[str, Any]:
+        return {"reference": self.reference, **self.column.summary()}
+
+
+def _column(name: str, model: Model, poisson: float) -> _Named:
+    return _Named(name, refit_column(poisson, model))
