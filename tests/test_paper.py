@@ -210,6 +210,7 @@ def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     pieces = quick_plan().parts
     results = {
+        "about": ["By the exact solution."],
         "claims": [claims.judged(claim, EXACT).summary() for claim in claims.CLAIMS[:5]],
         "elsewhere": [pieces["elsewhere"]["half_angles_of_jin"]()],
         "table_3": [pieces["table_3"]["exact 0.4"]()],

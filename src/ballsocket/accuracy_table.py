@@ -35,7 +35,8 @@ def markdown(rows: Iterable[Row]) -> str:
 
 def spread(error: Row) -> str:
     """Median / 95th percentile / worst in percent."""
-    return " / ".join(percent(error[name]) for name in ("median", "percentile_95", "worst"))
+    shares = [percent(error[name]) for name in ("median", "percentile_95", "worst")]
+    return shares[0] if len(set(shares)) == 1 else " / ".join(shares)
 
 
 def percent(share: float) -> str:

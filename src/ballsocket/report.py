@@ -27,7 +27,8 @@ img { max-width: 100%; } figure { margin: 1rem 0; } figcaption, .quiet { color: 
 .wide { overflow-x: auto; margin: 1rem 0; }
 table { border-collapse: collapse; font-size: 0.9rem; } td, th { padding: 0.25rem 0.7rem; text-align: right; }
 td:first-child, th:first-child, .text td, .text th { text-align: left; vertical-align: top; }
-.text td:first-child { min-width: 18rem; } .text td:nth-child(2) { white-space: nowrap; } small { color: #555; }
+.text td:first-child { min-width: 14rem; } .text td:last-child { min-width: 17rem; } .text td:nth-child(2) { white-space: nowrap; } small { color: #555; }
+code { overflow-wrap: anywhere; } .text { width: 100%; }
 tr { border-bottom: 1px solid #e5e5e5; } nav a { margin-right: 1rem; white-space: nowrap; }
 .holds { color: #00684f; font-weight: 600; } .nearly { color: #8a5a00; font-weight: 600; }
 .fails { color: #b3261e; font-weight: 600; }
@@ -66,12 +67,13 @@ def write_report(results: Mapping[str, Sequence[Any]], folder: Path) -> Path:
         "figures": ("Figures 2 to 6", figures),
         "accuracy": ("How accurate is which model?", _accuracy(results["accuracy"][0], folder)),
     }
-    links = "".join(f"<a href='#{name}'>{escape(title.split(':')[0])}</a>" for name, (title, _) in sections.items())
+    links = " ".join(f"<a href='#{name}'>{escape(title.split(':')[0])}</a>" for name, (title, _) in sections.items())
     body = "".join(f"<h2 id='{name}'>{escape(title)}</h2>{text}" for name, (title, text) in sections.items())
     page = (
         f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>Heß &amp; Forsbach 2021, reproduced</title>"
         f"<meta name='viewport' content='width=device-width'><style>{_STYLE}</style></head><body>"
-        f"<h1>Heß &amp; Forsbach 2021, reproduced</h1>{_LEDE}<nav>{links}</nav>{body}"
+        f"<h1>Heß &amp; Forsbach 2021, reproduced</h1>{_LEDE}<p>{escape(results['about'][0])}</p>"
+        f"<nav>{links}</nav>{body}"
         f"<p class='quiet'>ballsocket {fingerprint()}</p></body></html>"
     )
     return write_text(folder / "report.html", page)

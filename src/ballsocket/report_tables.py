@@ -13,6 +13,7 @@ from .calibrate import RATIOS
 Row = Mapping[str, Any]
 
 _CLASSES = {"holds": "holds", "holds nearly": "nearly", "does not hold": "fails"}
+_MANY = ("hold", "hold nearly", "fail")
 
 
 def claims(findings: Sequence[Row]) -> str:
@@ -25,8 +26,11 @@ def _claim(finding: Row) -> tuple[str, str, str]:
     numbers = "<br>".join(f"{escape(name)}: {_number(value)}" for name, value in finding["numbers"].items())
     verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{finding['verdict']}</span>"
     comment = f"<br><small>{escape(finding['comment'])}</small>" if finding["comment"] else ""
-    code = f"<br><small><code>{escape(finding['code'])}</code></small>"
+    code = f"<br><small><code>{escape(finding['code'].removeprefix(_ROOM))}</code></small>"
     return said, numbers, verdict + comment + code
+
+
+_ROOM = "ballsocket.paper."
 
 
 def _number(value: float) -> str:
@@ -36,7 +40,8 @@ def _number(value: float) -> str:
 def tally(findings: Iterable[Row]) -> str:
     """How many of each verdict."""
     verdicts = [finding["verdict"] for finding in findings]
-    return ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in _CLASSES)
+    counts = ((verdicts.count(verdict), many) for verdict, many in zip(_CLASSES, _MANY, strict=True))
+    return ", ".join(f"{count} {many}" for count, many in counts)
 
 
 def given() -> str:

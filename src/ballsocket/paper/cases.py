@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy
 
 from ..joint import Joint, Material
@@ -56,6 +58,11 @@ def series() -> dict[str, Joint]:
         "head_radius": joint(head_radius=numpy.array(HEAD_RADII)),
         "liner_thickness": joint(liner_thickness=numpy.array(THICKNESSES)),
     }
+
+
+def named_series() -> Iterator[tuple[str, Joint, tuple[float, ...]]]:
+    """The same with the symbol and the values of what varies."""
+    yield from zip(("ΔR", "R1", "L"), series().values(), (CLEARANCES, HEAD_RADII, THICKNESSES), strict=True)
 
 
 def by_ratio(ratio: Array, poisson: Array | float) -> Joint:

@@ -90,6 +90,18 @@ def _plain(name: str) -> str:
 _COMPARED = ("hertz", "bartel", "bonded-layer", "hess-forsbach", "refined", "exact")
 
 
+_QUICK = (
+    "In this quick run the exact elastic solution of the lined socket plays the part of the paper's finite elements; "
+    "the full run has finite elements beside it in every figure and lets them judge the claims."
+)
+_FULL = (
+    "Claims are judged by finite elements with the half ball, the free rim and the fixed outside of the paper's, on "
+    "meshes that adapt themselves to the contact. Figures 3 and 4, and Figure 5 where it is drawn as in the paper, show "
+    "elements of 0.05 mm, as many as the paper's; the other figures show adapted ones. Beside them is the exact elastic "
+    "solution."
+)
+
+
 def quick_plan() -> Plan:
     """The exact solution plays the part of the paper's finite elements: seconds."""
     exact = Exact(tolerance=1e-4)
@@ -97,6 +109,7 @@ def quick_plan() -> Plan:
     return Plan(
         name="quick",
         parts={
+            "about": {"": lambda: _QUICK},
             **_ledgers(exact, CLAIMS, ELSEWHERE),
             **_parts(references={"exact": exact}, models=models, dense=models),
         },
@@ -110,6 +123,7 @@ def full_plan() -> Plan:
     return Plan(
         name="full",
         parts={
+            "about": {"": lambda: _FULL},
             **_ledgers(adapted, CLAIMS + MESHED_CLAIMS, ELSEWHERE + MESHED_ELSEWHERE),
             **_parts(
                 references={"exact": models["exact"], ELEMENTS: adapted},

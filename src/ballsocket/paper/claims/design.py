@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy
 
 from ...contact import Contact
@@ -74,12 +76,14 @@ def smallest_area(reference: Model) -> Finding:
             "at L, mm": float(thickness[best]),
         },
         verdict=graded(bool(radius[best] < 15 and thickness[best] < 6), bool(radius[best] < 16)),
+        comment="The smallest head, with the thinnest liner that an outer radius of 16 mm leaves it.",
     )
 
 
+@cache
 def _within_table_1(reference: Model) -> tuple[Array, Array, Contact]:
     """Head radius and liner thickness of the joints within the outer radii of Table 1, and their contacts at 3 kN."""
-    radius, thickness = (grid.ravel() for grid in numpy.meshgrid(numpy.linspace(11, 23, 9), numpy.linspace(3, 15, 9)))
+    radius, thickness = (grid.ravel() for grid in numpy.meshgrid(numpy.linspace(11, 23, 13), numpy.linspace(3, 15, 13)))
     outer = radius + 0.1 + thickness
     kept = (outer >= cases.OUTER_RADII[0]) & (outer <= cases.OUTER_RADII[1])
     joints = cases.joint(head_radius=radius[kept], liner_thickness=thickness[kept])

@@ -60,7 +60,7 @@ def constant_above_one_kilonewton(reference: Model) -> Finding:
         sentence="The foundation modulus p0/d is constant above 1000 N, with slight deviations only at ν 0.45.",
         numbers=spreads,
         verdict=graded(max(below) < 2.0, max(below[:4]) < 3.0),
-        comment="It grows with the load at every ν, and the more the less compressible the liner is.",
+        comment="Up to ν 0.4 it hardly moves; a liner that is nearly incompressible stiffens as the contact widens.",
     )
 
 
@@ -80,7 +80,7 @@ def independent_of_clearance(reference: Model) -> Finding:
         sentence="The foundation modulus is about the same for clearances from 0.05 to 0.2 mm.",
         numbers=spreads,
         verdict=graded(max(spreads.values()) < 2.0, max(list(spreads.values())[:4]) < 3.0),
-        comment="It falls with the clearance, since a narrower contact is closer to a half-space.",
+        comment="At ν 0.45 and 0.49 it falls with the clearance: a narrower contact confines the liner less.",
     )
 
 
