@@ -27,7 +27,8 @@ img { max-width: 100%; } figure { margin: 1rem 0; } figcaption, .quiet { color: 
 .wide { overflow-x: auto; margin: 1rem 0; }
 table { border-collapse: collapse; font-size: 0.9rem; } td, th { padding: 0.25rem 0.7rem; text-align: right; }
 td:first-child, th:first-child, .text td, .text th { text-align: left; vertical-align: top; }
-.text td:first-child { min-width: 14rem; } .text td:last-child { min-width: 17rem; } .text td:nth-child(2) { white-space: nowrap; } small { color: #555; }
+.text td:first-child { min-width: 14rem; } .text td:last-child { min-width: 17rem; }
+.text td:nth-child(2) { white-space: nowrap; } small { color: #555; }
 code { overflow-wrap: anywhere; } .text { width: 100%; }
 tr { border-bottom: 1px solid #e5e5e5; } nav a { margin-right: 1rem; white-space: nowrap; }
 .holds { color: #00684f; font-weight: 600; } .nearly { color: #8a5a00; font-weight: 600; }

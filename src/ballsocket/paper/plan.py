@@ -96,9 +96,9 @@ _QUICK = (
 )
 _FULL = (
     "Claims are judged by finite elements with the half ball, the free rim and the fixed outside of the paper's, on "
-    "meshes that adapt themselves to the contact. Figures 3 and 4, and Figure 5 where it is drawn as in the paper, show "
-    "elements of 0.05 mm, as many as the paper's; the other figures show adapted ones. Beside them is the exact elastic "
-    "solution."
+    "meshes that adapt themselves to the contact. Figures 3 and 4, and Figure 5 where it is drawn as in the paper, "
+    "show elements of 0.05 mm, as many as the paper's; the other figures show adapted ones. Beside them is the exact "
+    "elastic solution."
 )
 
 
