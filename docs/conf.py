@@ -6,8 +6,6 @@ from pathlib import Path
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_ext"))
 
-from pictures import moved_pictures  # noqa: E402
-
 import ballsocket  # noqa: E402
 
 project = "ballsocket"
@@ -52,7 +50,7 @@ sphinx_gallery_conf = {
     "examples_dirs": "../examples",
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
-    "image_scrapers": (moved_pictures,),
+    "image_scrapers": ("pictures.moved_pictures",),
     "abort_on_example_error": True,
     "download_all_examples": False,
     "show_signature": False,
