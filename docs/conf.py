@@ -36,6 +36,7 @@ autodoc_typehints = "none"
 autodoc_default_options = {"members": True, "exclude-members": "__init__"}
 napoleon_google_docstring = False
 napoleon_use_rtype = False
+napoleon_use_ivar = True
 
 html_theme = "furo"
 html_title = f"ballsocket {release}"

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+import ballsocket as bs
+
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = sorted(path for path in (DOCS / "index.md", *DOCS.glob("[etrh]*/*.md")) if "```" in path.read_text("utf-8"))
@@ -65,6 +67,15 @@ def test_python_on_a_page_is_tested():
     for path in PAGES:
         for block in fenced(path.read_text("utf-8"), "python"):
             assert block.startswith(">>> "), f"{path.name}: {block[:60]!r} is not an example with its output"
+
+
+def test_models_that_trust_themselves_are_within_ten_percent_of_the_presets():
+    """As the page on choosing says."""
+    for joint in bs.joints.values():
+        answers = bs.compare(joint, force=3000.0)
+        exact = answers["exact"].max_pressure
+        for name, contact in answers.items():
+            assert not contact.valid or contact.max_pressure == pytest.approx(exact, rel=0.1), (joint.name, name)
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)

@@ -60,8 +60,8 @@ def _model(model) -> str:
     where = [f"- {limit}: {limit.why}" for limit in model.validity]
     formula = [f"- {_open(limit)}: {limit.why}" for limit in getattr(model, "domain", ())]
     cited = "; ".join(f"[{source}](#ref-{source.key})" for source in dict.fromkeys(model.sources))
-    parts = [f"(model-{model.name})=\n## `{model.name}`", model.title[0].upper() + model.title[1:] + ".", "**Trusted for**"]
-    parts.append("\n".join(where))
+    title = model.title[0].upper() + model.title[1:] + "."
+    parts = [f"(model-{model.name})=\n## `{model.name}`", title, "**Trusted for**", "\n".join(where)]
     if formula:
         parts += ["**Has a formula for**", "\n".join(formula)]
     return "\n\n".join([*parts, f"**From** {cited}"]) + "\n"
@@ -78,7 +78,7 @@ def _nearness() -> str:
     """Peak pressure at 3 kN against the exact answer; bold where the model trusts itself."""
     answers = [bs.compare(bs.joints[name], force=3000.0) for name in _JOINTS]
     rows = [[f"[`{name}`](#model-{name})", *(_off(one, name) for one in answers)] for name in bs.catalogue]
-    rows[0] = [rows[0][0], *(f"{one['exact'].max_pressure:.4g} MPa" for one in answers)]
+    rows[0] = [rows[0][0], *(f"{one['exact'].max_pressure:.4g}\u202fMPa" for one in answers)]
     widths = [f"{_degrees(one['exact'].half_angle)}°" for one in answers]
     return _table(["", *_JOINTS], [["half angle ε", *widths], *rows])
 
@@ -92,7 +92,7 @@ def _off(answers, name: str) -> str:
         return "no answer"
     contact = answers[name]
     percent = 100 * (contact.max_pressure / answers["exact"].max_pressure - 1)
-    text = f"{percent:+.2g} %" if abs(percent) > 0.01 else "0.00 %"
+    text = f"{percent:+.{1 if abs(percent) < 10 else 0}f}\u202f%"
     return f"**{text}**" if contact.valid else text
 
 
@@ -100,7 +100,7 @@ def _off(answers, name: str) -> str:
 
 
 def _presets(presets) -> str:
-    rows = [(f"`{name}`", str(preset).removeprefix(f"{name}: "), _linked(preset.source)) for name, preset in presets.items()]
+    rows = [(f"`{name}`", str(one).removeprefix(f"{name}: "), _linked(one.source)) for name, one in presets.items()]
     return _table(("name", "numbers", "source"), rows)
 
 
@@ -179,7 +179,16 @@ _CLASSES = {"holds": "holds", "holds nearly": "nearly", "does not hold": "fails"
 def _claims(findings) -> str:
     rows = []
     for finding in findings:
-        numbers = "<br>".join(f"{name}: {value:.3g}" for name, value in finding["numbers"].items())
+        said = f"{finding['sentence']}<br><small>{finding['where']}</small>"
         verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{finding['verdict']}</span>"
-        rows.append((f"{finding['sentence']}<br><small>{finding['where']}</small>", verdict, f"<small>{numbers}</small>"))
+        numbers = "<br>".join(_number(name, value) for name, value in finding["numbers"].items())
+        rows.append((said, verdict, f"<small>{numbers}</small>"))
     return _table(("what the paper says", "verdict", "numbers"), rows)
+
+
+def _number(name: str, value: float) -> str:
+    """A number behind its name, with the unit that the name ends in."""
+    said, _, unit = name.replace("_", " ").rpartition(", ")
+    known = {"%": "{} %", "± %": "± {} %", "MPa": "{} MPa", "mm": "{} mm", "mm²": "{} mm²"}
+    shown = f"{value:.3g}"
+    return f"{said}: {known[unit].format(shown)}" if unit in known else f"{name.replace('_', ' ')}: {shown}"

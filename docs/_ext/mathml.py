@@ -20,11 +20,13 @@ def mathml(latex: str, display: str) -> str:
     formula = fromstring(convert(latex, display=display).replace(_NAMESPACE, ""))
     for row in formula.iter():
         _space(row)
+        if row.tag == "mo" and row.text == "/":
+            row.attrib.update(lspace="0", rspace="0")
     return tostring(formula, encoding="unicode")
 
 
 def _inline(self, node):
-    self.body.append(mathml(node.astext(), "inline"))
+    self.body.append(mathml(node.astext(), "inline") + "&#8288;")  # no line begins with the comma that follows
     raise SkipNode
 
 
