@@ -1,5 +1,6 @@
 """How the pages are made: `sphinx-build -W -b html docs site`. Nothing is fetched from a network, then or later."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -58,3 +59,23 @@ sphinx_gallery_conf = {
     "write_computation_times": False,
     "min_reported_time": 3600,
 }
+
+
+def setup(app):
+    app.connect("autodoc-process-signature", _short_defaults)
+
+
+def _short_defaults(app, what, name, thing, options, signature, returned):
+    """Defaults as one would write them, not as they print themselves."""
+    if signature is None:
+        return None
+    for printed, written in (
+        (r"<class '[\w.]*?(\w+)'>", r"\1"),
+        (r"<function (\w+)[^>]*>", r"\1"),
+        (r"<(\w+\.\w+): [^>]*>", r"\1"),
+        (r"(Cup|Adapted)\([^()]*\)", r"\1()"),
+        ("3.141592653589793", "π"),
+        ("1.5707963267948966", "π/2"),
+    ):
+        signature = re.sub(printed, written, signature)
+    return signature, returned

@@ -14,7 +14,7 @@ from ballsocket.paper.plan import quick_plan
 from ballsocket.report import write_report
 from ballsocket.sources import Source, bibliography
 
-_COLUMNS = 96  # of the terminal whose help texts are shown
+_COLUMNS = 88  # of the terminal whose help texts are shown
 
 
 def setup(app):
@@ -147,7 +147,7 @@ def _entry(fields: dict[str, str]) -> str:
 def _commands() -> str:
     from ballsocket.cli.root import app
 
-    names = [command.name or command.callback.__name__.replace("_", "-") for command in app.registered_commands]
+    names = sorted(command.name or command.callback.__name__.replace("_", "-") for command in app.registered_commands)
     return "\n".join(f"## {name}\n\n```text\n{_help(name)}\n```\n" for name in names)
 
 
