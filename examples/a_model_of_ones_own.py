@@ -1,17 +1,36 @@
-"""A foundation modulus of one's own, and what it changes.
+"""
+A foundation modulus of one's own
+=================================
 
-Say a finite-element study of one's own liner gave K R2/E = 1.02 + 1.25 (R2/L) + 0.10 (R2/L)².
+Say a finite-element study of one's own liner gave K R2/E = 1.02 + 1.25 (R2/L) + 0.10 (R2/L)². What does that change?
 """
 
-import ballsocket as bs
+from pathlib import Path
 
-own = bs.RadialFoundation(modulus=bs.polynomial(1.02, 1.25, 0.10, source="our liner, 2026"))
+import numpy as np
+
+import ballsocket as bs
+from ballsocket.figures import press_figure, save
+
 hip = bs.joints["hip-32"]
-for name, model in {"paper": bs.HessForsbach(), "own": own}.items():
-    contact = model.press(hip, force=3000.0)
+models = {
+    "paper": bs.HessForsbach(),
+    "own": bs.RadialFoundation(modulus=bs.polynomial(1.02, 1.25, 0.10, source="our liner, 2026")),
+    "exact": bs.Exact(),
+}
+contacts = {name: model.press(hip, force=3000.0) for name, model in models.items()}
+for name, contact in contacts.items():
     stiffness, pressure = contact.foundation_modulus, contact.max_pressure
     print(f"{name:>6}: K {stiffness:6.1f} MPa/mm, p0 {pressure:5.2f} MPa, valid {contact.valid}")
 
+# %%
+# A model of one's own is drawn, compared and cited like the others.
+
+curves = {name: model.press(hip, indentation=np.linspace(0.0, 0.08, 60)) for name, model in models.items()}
+save(press_figure(contacts, curves), Path("a_model_of_ones_own.png"))
+
+# %%
 # The ball pushed off the axis: the socket pushes back along the displacement.
-contact = own.press(hip, force=3000.0)
-print("force on a ball displaced by (0.10, 0, 0.10) mm:", contact.force_vector([0.10, 0.0, 0.10]).round(1), "N")
+
+force = contacts["own"].force_vector([0.10, 0.0, 0.10])
+print("force on a ball displaced by (0.10, 0, 0.10) mm:", force.round(1), "N")

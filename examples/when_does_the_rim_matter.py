@@ -1,4 +1,8 @@
-"""When does the rim of a cup matter? Finite elements with a rim against a socket that is a whole sphere.
+"""
+When does the rim of a cup matter?
+==================================
+
+Finite elements with a rim against a socket that is a whole sphere.
 
 The exact solution takes the liner for a closed sphere. A real one ends at its rim, where it can give way. Up to which
 contact may that be forgotten? Both answers come from the same elements, at the same force, for a steel ball on liners

@@ -26,12 +26,18 @@ FORCES = (1000.0, 2000.0, 3000.0)
 
 
 def as_constant(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """One number in MPa/mm: the mean."""
+    """One number in MPa/mm: the mean of `wanted`, the K of the joint (same shape) in MPa/mm."""
     return constant(float(numpy.mean(wanted)))
 
 
 def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """K R2/E = C1 + C2 (R2/L) + C3 (R2/L)², Eq. (18), by least squares of relative errors, constants 0 or more."""
+    """K R2/E = C1 + C2 (R2/L) + C3 (R2/L)², Eq. (18), by least squares of relative errors, constants 0 or more.
+
+    Raises
+    ------
+    ValueError
+        A joint of fewer than three thicknesses.
+    """
     from scipy.optimize import nnls
 
     thicknesses = numpy.unique(_values(joint.thickness_ratio)).size
@@ -137,6 +143,10 @@ def calibrate(
         `as_constant`, `as_polynomial` or `as_corrected_vessel`.
     reference : Model
         `Exact()` by default.
+
+    Returns
+    -------
+    Calibration
 
     Raises
     ------

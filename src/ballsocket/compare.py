@@ -56,7 +56,10 @@ class Comparison(Mapping[str, Contact]):
         return [f"{', '.join(names)}: {note}" for note, names in holders.items()] + list(self.missing.values())
 
     def deviation(self, name: str) -> dict[str, Array] | None:
-        """How far a model is from the exact answer, relative, for each column; None without an exact answer."""
+        """How far a model is from the exact answer, relative, by column and of the contact's shape.
+
+        None without an exact answer.
+        """
         exact = self.contacts.get(REFERENCE)
         if exact is None or name == REFERENCE or name not in self.contacts:
             return None

@@ -94,31 +94,39 @@ class Contact:
 
     @property
     def indentation_ratio(self) -> Array:
-        """d/L: indentation over liner thickness."""
+        """Indentation over liner thickness, d/L."""
         return self.indentation / self.joint.liner_thickness
 
     @property
     def depth_ratio(self) -> Array:
-        """d over liner thickness or socket radius, whichever is less: how large strains are."""
+        """Indentation over liner thickness or socket radius, whichever is less, which is how large strains are."""
         R2, L = self.joint.socket_radius, self.joint.liner_thickness
         return self.indentation / arrays.where(L < R2, L, R2)
 
     @property
     def width_ratio(self) -> Array:
-        """R2 sin ε / L: contact radius over liner thickness."""
+        """Contact radius over liner thickness, R2 sin ε / L."""
         return arrays.sin(self.half_angle) * self.joint.thickness_ratio
 
     @property
     def conformity(self) -> Array:
-        """c/d: clearance over indentation; 0 is a ball of the socket's own radius."""
+        """Clearance over indentation, c/d; 0 is a ball of the socket's own radius."""
         quotient = self.joint.clearance / arrays.divisor(self.indentation)
         return self._plain(arrays.where(self.indentation == 0, numpy.inf, quotient))
 
     def pressure(self, angle: Array) -> Array:
-        """Contact pressure in MPa at polar angles (rad) from the load axis; 0 outside the contact.
+        """Contact pressure in MPa at polar angles from the load axis; 0 outside the contact.
 
-        `angle` broadcasts against the contact's shape: for a profile of each of many contacts give it a leading
-        axis, `contact.pressure(angle[:, None])`.
+        Parameters
+        ----------
+        angle : float or array
+            In rad; broadcasts against the contact's shape. For a profile of each of many contacts give it a leading
+            axis, `contact.pressure(angle[:, None])`.
+
+        Returns
+        -------
+        float or array
+            Of the shape that angle and contact broadcast to.
         """
         _, angle = arrays.common(self.indentation, angle)
         return self._answer(lambda joint, indentation: self.laws.pressure(joint, indentation, angle))
@@ -144,6 +152,8 @@ class Contact:
         ------
         ValueError
             A coefficient that is negative or not finite.
+        TypeError
+            What is neither a number nor an array.
         """
         coefficient = numeric("coefficient", coefficient)
         allowed = "a coefficient of friction is 0 or more and finite"
@@ -194,7 +204,7 @@ class Contact:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """In words: what has no answer, and what lies outside the model's validity."""
+        """What has no answer, and what lies outside the model's validity, in words; empty where all is well."""
         notes = []
         for status in list(Status)[1:]:
             more = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""

@@ -72,7 +72,15 @@ def check_format(path: Path) -> None:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure as PNG, SVG or PDF, by the ending of `path`."""
+    """Write a figure as PNG, SVG or PDF, by the ending of `path`; one that cannot be drawn leaves no file.
+
+    Raises
+    ------
+    ValueError
+        Another ending.
+    OSError
+        A path that cannot be written to.
+    """
     check_format(path)
     with at_once(path) as draft:
         figure.savefig(draft, dpi=160)

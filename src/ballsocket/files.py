@@ -52,6 +52,11 @@ def read_joint(path: str | Path) -> JointFile:
     "bonded" or "sliding". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N,
     MPa, degrees.
 
+    Returns
+    -------
+    JointFile
+        With everything in mm, N, MPa and rad.
+
     Raises
     ------
     ValueError

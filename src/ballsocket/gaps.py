@@ -21,7 +21,7 @@ Array = numpy.ndarray
 
 @dataclass(frozen=True, kw_only=True)
 class LinearGap:
-    """u = d cos φ - c (1 - cos φ), Eq. (6) of Heß & Forsbach 2021."""
+    """u = d cos φ - c (1 - cos φ), Eq. (6) of Heß & Forsbach 2021, doi 10.3390/app112311170."""
 
     clearance: float
     socket_radius: float
@@ -29,7 +29,7 @@ class LinearGap:
     conservative: ClassVar[bool] = True  # ∂u/∂d = cos φ: the work of F is that of the pressure
 
     def displacement(self, angle: Array, d: Array | float) -> Array:
-        """u(φ)."""
+        """u(φ) in mm, at angles in rad and indentations in mm, which broadcast."""
         return d - (self.clearance + d) * 2 * numpy.sin(angle / 2) ** 2
 
     def transform(self, t: Array, d: Array) -> Array:
@@ -57,7 +57,7 @@ class CircularGap:
     conservative: ClassVar[bool] = False
 
     def displacement(self, angle: Array, d: Array | float) -> Array:
-        """u(φ)."""
+        """u(φ) in mm, at angles in rad and indentations in mm, which broadcast; NaN where the ball does not reach."""
         return self._parts(2 * numpy.sin(angle / 2) ** 2, d)[0]
 
     def transform(self, t: Array, d: Array) -> Array:

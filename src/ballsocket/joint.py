@@ -30,6 +30,8 @@ class Material:
     ------
     ValueError
         A number that is not allowed, named with its value.
+    TypeError
+        What is neither a number nor an array.
 
     Examples
     --------
@@ -59,7 +61,7 @@ class Material:
 
 
 class Support(Enum):
-    """What holds the outermost surface of a socket."""
+    """What holds the outermost surface of a socket: nothing moves it (FIXED), or nothing touches it (FREE)."""
 
     FIXED = "fixed"
     FREE = "free"
@@ -79,6 +81,8 @@ class Layer:
     ------
     ValueError
         A thickness that is not allowed, named with its value.
+    TypeError
+        A material that is none.
 
     Examples
     --------
@@ -140,6 +144,8 @@ class Joint:
     ------
     ValueError
         A number that is not allowed, named with its value.
+    TypeError
+        What is neither a number nor an array; a liner, ball, backing or support of another type.
 
     Examples
     --------
@@ -194,12 +200,12 @@ class Joint:
 
     @property
     def thickness_ratio(self) -> Array:
-        """R2/L: socket radius over liner thickness."""
+        """Socket radius over liner thickness, R2/L."""
         return self.socket_radius / self.liner_thickness
 
     @property
     def clearance_ratio(self) -> Array:
-        """c/R2: radial clearance over socket radius."""
+        """Radial clearance over socket radius, c/R2."""
         return self.clearance / self.socket_radius
 
     @property
@@ -224,7 +230,7 @@ class Joint:
 
     @property
     def effective_modulus(self) -> Array:
-        """E* in MPa: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 of ball and liner."""
+        """E* in MPa of ball and liner, from 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2."""
         compliance = (1 - self.liner.poisson**2) / self.liner.young
         if self.ball is not None:
             compliance = compliance + (1 - self.ball.poisson**2) / self.ball.young

@@ -31,6 +31,11 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
         One contact under load.
     exact : Contact, optional
         The exact answer to the same load, drawn in black.
+
+    Raises
+    ------
+    ValueError
+        More than one contact, or one without load or answer.
     """
     from matplotlib.figure import Figure
 

@@ -13,7 +13,10 @@ Array = numpy.ndarray
 class Stress:
     """Stresses in MPa, tension positive; r counts from the centre of the socket, φ from the load axis.
 
-    All arrays have the shape that angle and depth broadcast to.
+    Attributes
+    ----------
+    radial, meridional, hoop, shear : array
+        σ_rr, σ_φφ, σ_θθ and σ_rφ, of the shape that angle and depth broadcast to.
     """
 
     radial: Array
@@ -39,7 +42,17 @@ class Stress:
 
 @dataclass(frozen=True, kw_only=True)
 class Peak:
-    """The largest von Mises stress (MPa), where: depth below the surface of the socket (mm), polar angle (rad)."""
+    """The largest von Mises stress, and where.
+
+    Attributes
+    ----------
+    von_mises : float
+        In MPa.
+    depth : float
+        Below the surface of the socket, in mm.
+    angle : float
+        Polar angle from the load axis, in rad.
+    """
 
     von_mises: float
     depth: float

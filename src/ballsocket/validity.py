@@ -14,7 +14,7 @@ from .arrays import Array, to_numpy, truth
 
 
 class Status(IntEnum):
-    """How a press ended, point by point."""
+    """How a press ended, point by point. Arrays hold its codes."""
 
     OK = 0
     OUTSIDE_DOMAIN = 1
@@ -62,8 +62,16 @@ class OutsideDomainError(ValueError):
 class Range:
     """Where one quantity may lie, and why.
 
-    `quantity` is the attribute path from a contact ("joint.liner.poisson", "half_angle") or a function of it;
-    `symbol` is how people write it. A half angle is stored in rad and printed in degrees.
+    Parameters
+    ----------
+    quantity : str or function
+        The attribute path from a contact ("joint.liner.poisson", "half_angle"), or a function of it.
+    symbol : str
+        How people write it.
+    low, high : float
+        In the quantity's own unit. A half angle is stored in rad and printed in degrees.
+    why : str
+        Why it ends there.
     """
 
     quantity: str | Callable[[Any], Array]

@@ -23,8 +23,8 @@ class ElasticContact(SolvedContact):
     def displacement(self, angle: Array) -> Array:
         """Radial displacement in mm of the socket's surface at polar angles (rad), inside and outside the contact.
 
-        Outwards is positive. NumPy; by the sum of modes, to about 1e-5 of the indentation (1e-8 for half angles
-        above 40 degrees).
+        Outwards is positive; of the shape of `angle`. NumPy; by the sum of modes, to about 1e-5 of the indentation
+        (1e-8 for half angles above 40 degrees).
 
         Raises
         ------

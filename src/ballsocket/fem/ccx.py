@@ -45,6 +45,12 @@ class CcxAnswer:
 def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
     """Run CalculiX on the deck in a folder (see `Deck.write`), which keeps its files, and read its answer.
 
+    Parameters
+    ----------
+    folder : Path
+    threads : int
+        That CalculiX may use.
+
     Raises
     ------
     FileNotFoundError

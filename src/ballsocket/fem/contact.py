@@ -32,7 +32,7 @@ class MeshedContact(SolvedContact):
 
     @cached_property
     def section(self) -> Section:
-        """Displacements and stresses in both bodies, by part: `section["liner"].stress.von_mises`.
+        """Displacements and stresses in both bodies, by part, as in `section["liner"].stress.von_mises`.
 
         Raises
         ------
@@ -50,7 +50,7 @@ class MeshedContact(SolvedContact):
 
     @property
     def rim_displacement(self) -> tuple[float, float]:
-        """Of the bore's end in mm: away from the load axis, and up against the load."""
+        """Of the bore's end in mm, away from the load axis and up against the load."""
         return self.section.rim_displacement
 
     @property

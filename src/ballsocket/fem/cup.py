@@ -36,6 +36,8 @@ class Cup:
     ------
     ValueError
         A number that is not allowed, named with its value.
+    TypeError
+        An array, or an interface that is none.
     """
 
     arc_of_cover: float = pi

@@ -149,7 +149,7 @@ class Deck:
 
     @cached_property
     def expected(self) -> dict[str, Array]:
-        """Our own answer at each step (steps,): indentation in mm, force in N, max_pressure in MPa, half_angle_deg."""
+        """Our own answer at each step (steps,), by name, with indentation in mm, force in N, max_pressure in MPa."""
         answer = self.contact.model.press(self._joint, indentation=self._depths)
         return {
             "indentation": self._depths,

@@ -15,7 +15,17 @@ _GIB = 2**30
 
 @dataclass(frozen=True, kw_only=True)
 class MeshSize:
-    """Elements and nodes of both bodies together, the nodes of the larger one, and the size along the contact in mm."""
+    """How large a mesh is.
+
+    Attributes
+    ----------
+    elements, nodes : int
+        Of both bodies together.
+    largest : int
+        The nodes of the larger body.
+    element_size : float
+        Along the contact, in mm.
+    """
 
     elements: int
     nodes: int

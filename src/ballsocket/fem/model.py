@@ -47,6 +47,8 @@ class FiniteElement(Model):
     ------
     ValueError
         A number that is not allowed; at a press, a joint that cannot be meshed, or a mesh larger than the memory.
+    TypeError
+        A cup, spacing, element or gap of another type; a press inside `jax.jit` or `jax.grad`.
     ImportError
         At a press: the finite elements' extra is not installed.
 

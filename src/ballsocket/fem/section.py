@@ -54,7 +54,14 @@ class Part:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Section:
-    """Everything that deforms; a rigid ball is no part of it."""
+    """Everything that deforms; a rigid ball is no part of it. `section["liner"]` is one of its `parts`.
+
+    Attributes
+    ----------
+    parts : tuple of Part
+    socket_radius : float
+        R2 in mm.
+    """
 
     parts: tuple[Part, ...]
     socket_radius: float
@@ -67,7 +74,7 @@ class Section:
 
     @cached_property
     def peak_stress(self) -> Peak:
-        """The largest von Mises stress (MPa) in the liner, where: depth below the bore (mm), polar angle (rad).
+        """The largest von Mises stress (MPa) in the liner, its depth below the bore (mm) and polar angle (rad).
 
         The corners of its rim are left out, where elasticity knows no bound.
         """
@@ -85,7 +92,7 @@ class Section:
 
     @cached_property
     def rim_displacement(self) -> tuple[float, float]:
-        """Of the bore's end in mm: away from the load axis, and up against the load."""
+        """Of the bore's end in mm, away from the load axis and up against the load."""
         liner = self["liner"]
         end = numpy.flatnonzero(liner.angle > liner.angle.max() - 1e-12)
         across, up = liner.displacement[:, end[numpy.argmin(liner.radius[end])]]

@@ -27,6 +27,13 @@ def write_vtk(section: Section, path: Path) -> None:
     `displacement`, `von_mises`, and `radial`, `meridional`, `hoop` and `shear`, stresses in spherical directions. Cell
     data are `part`, 0 for the first. The file appears at once: an interrupted write leaves none.
 
+    Parameters
+    ----------
+    section : Section
+        Of a `MeshedContact`.
+    path : Path
+        Ends in .vtu or .vtk.
+
     Raises
     ------
     ValueError

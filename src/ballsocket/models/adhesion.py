@@ -35,6 +35,15 @@ class AdhesiveSocket(ClosedForm):
     modulus : Modulus
         Foundation modulus.
 
+    Raises
+    ------
+    ValueError
+        A work of adhesion that is negative or not finite.
+
+    References
+    ----------
+    The two stable states are those of Ciavarella 2018, arXiv 1712.09640; the formulas are derived in the docs (theory).
+
     Notes
     -----
     Forces may be negative at small indentations (the ball hangs on); a press by force finds the stable state for

@@ -53,7 +53,20 @@ class PinInHole:
         )
 
     def press(self, joint: Joint, *, line_load: Array | None = None, half_angle: Array | None = None) -> LineContact:
-        """Press by a line load in N/mm or a half angle in rad.
+        """Press by exactly one of a line load and a half angle.
+
+        Parameters
+        ----------
+        joint : Joint
+        line_load : float or array, optional
+            Q in N/mm, zero or more, finite.
+        half_angle : float or array, optional
+            In rad, from 0 to below 84.83 degrees, the perfect fit.
+
+        Returns
+        -------
+        LineContact
+            Of the shape that joint and load broadcast to.
 
         Raises
         ------
@@ -114,7 +127,7 @@ class LineContact:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """In words: what has no answer, and what lies outside the model's validity."""
+        """What has no answer, and what lies outside the model's validity, in words."""
         failed = self.status != int(Status.OK)
         notes = [Status.NOT_REACHED.sentence] if numpy.any(arrays.to_numpy(failed)) else []
         for limit in self.model.validity:

@@ -113,7 +113,12 @@ _RELATIVES = {
 
 
 def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like the models it stands beside
-    """The paper's model: linear kinematics and the modulus fitted to finite elements (Table 3)."""
+    """The paper's model: linear kinematics and the modulus fitted to finite elements (Table 3).
+
+    References
+    ----------
+    Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (18).
+    """
     return RadialFoundation()
 
 
@@ -121,25 +126,49 @@ def Vessel() -> RadialFoundation:  # noqa: N802
     """Vessel modulus with linear kinematics: the closed form that the paper suggests in place of Bartel's integral.
 
     Also the constrained radial columns with K_B of Jin, Dowson & Fisher 1994.
+
+    References
+    ----------
+    Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (14).
     """
     return RadialFoundation(modulus=spherical_vessel)
 
 
 def Bartel() -> RadialFoundation:  # noqa: N802
-    """Bartel et al. 1985: vessel modulus with exact kinematics, here in closed form."""
+    """Bartel et al. 1985: vessel modulus with exact kinematics, here in closed form.
+
+    References
+    ----------
+    Bartel et al. 1985, doi 10.1115/1.3138540; the closed form is derived in the docs (theory).
+    """
     return RadialFoundation(modulus=spherical_vessel, kinematics=exact_kinematics)
 
 
 def BondedLayer() -> RadialFoundation:  # noqa: N802
-    """Bonded-layer (constrained column) modulus with linear kinematics, as the paper compares it."""
+    """Bonded-layer (constrained column) modulus with linear kinematics, as the paper compares it.
+
+    References
+    ----------
+    Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (15); Johnson 1985.
+    """
     return RadialFoundation(modulus=bonded_layer)
 
 
 def BondedLayerExact() -> RadialFoundation:  # noqa: N802
-    """Bonded-layer modulus with exact kinematics: the physics of Askari & Andersen 2018 (their text was not read)."""
+    """Bonded-layer modulus with exact kinematics: the physics of Askari & Andersen 2018 (their text was not read).
+
+    References
+    ----------
+    Askari & Andersen 2018, doi 10.1177/0954411918810044.
+    """
     return RadialFoundation(modulus=bonded_layer, kinematics=exact_kinematics)
 
 
 def CosineLimit() -> RadialFoundation:  # noqa: N802
-    """The paper's modulus in the limit of no clearance: p = p0 cos φ up to 90 degrees, F = (2π/3) K R2² d."""
+    """The paper's modulus in the limit of no clearance: p = p0 cos φ up to 90 degrees, F = (2π/3) K R2² d.
+
+    References
+    ----------
+    Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6) and (13) with c = 0.
+    """
     return RadialFoundation(kinematics=cosine_kinematics)

@@ -108,7 +108,7 @@ class Hertz(HalfSpace):
 
     References
     ----------
-    Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (1)-(3); Johnson 1985, chapter 4.
+    Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (1)-(3); Johnson 1985, chapter 4, doi 10.1017/CBO9781139171731.
     """
 
     @property
@@ -138,9 +138,14 @@ class Steuermann(HalfSpace):
         n, 1 or more; 1 is Hertz. What n stands for a given socket is the user's choice, which is the model's
         known weakness. The pressure is highest off the pole for n > 1; `max_pressure` stays that at the pole.
 
+    Raises
+    ------
+    ValueError
+        An exponent that is no whole number of 1 or more.
+
     References
     ----------
-    Steuermann 1939; Johnson 1985, section 5.3.
+    Steuermann 1939; Johnson 1985, doi 10.1017/CBO9781139171731, section 5.3.
     """
 
     exponent: int = 2

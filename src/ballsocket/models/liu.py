@@ -25,7 +25,16 @@ class LiuReconstruction(ClosedForm):
     Parameters
     ----------
     coefficient : float
-        λ, the one fitted number; 1/2 before any fit.
+        λ, the one fitted number, above 0; 1/2 before any fit.
+
+    Raises
+    ------
+    ValueError
+        A coefficient that is not above 0 and finite.
+
+    References
+    ----------
+    Liu, Zhang & Yang 2006, doi 10.1115/1.2162872, after Heß & Forsbach 2021, doi 10.3390/app112311170, section 2.
     """
 
     coefficient: float = 0.5

@@ -25,6 +25,17 @@ Formula = Callable[..., Array]
 class Modulus:
     """A foundation modulus: Joint -> MPa/mm, with its source, its domain and its validity.
 
+    Attributes
+    ----------
+    name, title : str
+    formula : function
+        K in MPa/mm of R2 and L (mm), E (MPa), ν and the constants.
+    constants : tuple of float or array
+        The formula's own numbers.
+    sources : tuple of Source
+    domain, validity : tuple of Range
+        Where there is a formula (open), and where it can be trusted (closed).
+
     Examples
     --------
     >>> import ballsocket as bs
@@ -138,7 +149,14 @@ bonded_layer = Modulus(
 
 
 def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
-    """K R2/E = c1 + c2 (R2/L) + c3 (R2/L)², Eq. (18), with constants of one's own.
+    """K R2/E = c1 + c2 (R2/L) + c3 (R2/L)², Eq. (18) of Heß & Forsbach 2021, with constants of one's own.
+
+    Parameters
+    ----------
+    c1, c2, c3 : float or array
+        Without unit, zero or more; arrays broadcast against joint and load.
+    source : str
+        Where they come from.
 
     Raises
     ------
@@ -159,6 +177,13 @@ def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Mo
     """K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L): the vessel corrected for a pressure that is not uniform.
 
     The idea is Imado's (2005), the factor one's own: fit it with `calibrate`.
+
+    Parameters
+    ----------
+    a0, a1, a2 : float or array
+        Without unit; arrays broadcast against joint and load.
+    source : str
+        Where they come from.
 
     Raises
     ------
@@ -184,7 +209,12 @@ def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Mo
 
 
 def constant(modulus: Array) -> Modulus:
-    """A foundation modulus known from elsewhere, in MPa/mm, positive.
+    """A foundation modulus known from elsewhere.
+
+    Parameters
+    ----------
+    modulus : float or array
+        K in MPa/mm, positive; an array broadcasts against joint and load.
 
     Raises
     ------

@@ -33,7 +33,7 @@ class Refined(Model):
 
     References
     ----------
-    Heß & Forsbach 2021, Appl. Sci. 11, 11170, for the problem; the formulas are derived in the docs.
+    Heß & Forsbach 2021, doi 10.3390/app112311170, for the problem; the formulas are derived in the docs (refined).
     """
 
     @property

@@ -1,0 +1,194 @@
+"""What pages take from the package itself, written anew for each build as Markdown that they include.
+
+The paper's pieces are kept between builds by `Plan.run`; everything else takes a second.
+"""
+
+import re
+from contextlib import contextmanager
+from os import environ
+from pathlib import Path
+
+import ballsocket as bs
+from ballsocket.all_models import judge
+from ballsocket.paper.plan import quick_plan
+from ballsocket.report import write_report
+from ballsocket.sources import Source, bibliography
+
+_COLUMNS = 88  # of the terminal whose help texts are shown
+
+
+def setup(app):
+    app.connect("config-inited", lambda app, config: write(Path(app.confdir) / "_generated"), priority=100)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def write(folder: Path) -> None:
+    """All of it."""
+    report = folder / "report"
+    report.mkdir(parents=True, exist_ok=True)
+    results = dict(quick_plan().run(folder / "paper"))
+    page = write_report(results, folder / "paper")
+    (report / "report.html").write_bytes(page.read_bytes())
+    pages = {
+        "bibliography": _bibliography(),
+        "catalogue": "\n".join(map(_model, (*bs.catalogue.values(), judge, bs.PinInHole()))),
+        "claims": _claims(results["claims"]),
+        "commands": _commands(),
+        "joints": _presets(bs.joints),
+        "materials": _presets(bs.materials),
+        "nearness": _nearness(),
+        "statuses": _statuses(),
+    }
+    for name, text in pages.items():
+        (folder / f"{name}.md").write_text(text + "\n", encoding="utf-8")
+
+
+def _table(heads, rows) -> str:
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join("| " + " | ".join(str(cell).replace("|", r"\|") for cell in line) + " |" for line in lines)
+
+
+def _linked(text: str) -> str:
+    """Text with its DOIs as links."""
+    return re.sub(r"doi (10\.[^\s,;)]+)", r"[doi \1](https://doi.org/\1)", text)
+
+
+# --- models ---
+
+
+def _model(model) -> str:
+    where = [f"- {limit}: {limit.why}" for limit in model.validity]
+    formula = [f"- {_open(limit)}: {limit.why}" for limit in getattr(model, "domain", ())]
+    cited = "; ".join(f"[{source}](#ref-{source.key})" for source in dict.fromkeys(model.sources))
+    title = model.title[0].upper() + model.title[1:] + "."
+    parts = [f"(model-{model.name})=\n## `{model.name}`", title, "**Trusted for**", "\n".join(where)]
+    if formula:
+        parts += ["**Has a formula for**", "\n".join(formula)]
+    return "\n\n".join([*parts, f"**From** {cited}"]) + "\n"
+
+
+def _open(limit) -> str:
+    return str(limit).replace("≥", ">").replace("≤", "<")
+
+
+_JOINTS = ("hess-forsbach", "hip-28", "hip-36", "reverse-shoulder-42", "suspension-ball-joint", "tilting-pad-pivot")
+
+
+def _nearness() -> str:
+    """Peak pressure at 3 kN against the exact answer; bold where the model trusts itself."""
+    answers = [bs.compare(bs.joints[name], force=3000.0) for name in _JOINTS]
+    rows = [[f"[`{name}`](#model-{name})", *(_off(one, name) for one in answers)] for name in bs.catalogue]
+    rows[0] = [rows[0][0], *(f"{one['exact'].max_pressure:.4g}\u202fMPa" for one in answers)]
+    widths = [f"{_degrees(one['exact'].half_angle)}°" for one in answers]
+    return _table(["", *_JOINTS], [["half angle ε", *widths], *rows])
+
+
+def _degrees(angle: float) -> int:
+    return round(angle * 57.29577951308232)
+
+
+def _off(answers, name: str) -> str:
+    if name not in answers or answers[name].status.failed:
+        return "no answer"
+    contact = answers[name]
+    percent = 100 * (contact.max_pressure / answers["exact"].max_pressure - 1)
+    text = f"{percent:+.{1 if abs(percent) < 10 else 0}f}\u202f%"
+    return f"**{text}**" if contact.valid else text
+
+
+# --- presets, statuses, publications ---
+
+
+def _presets(presets) -> str:
+    rows = [(f"`{name}`", str(one).removeprefix(f"{name}: "), _linked(one.source)) for name, one in presets.items()]
+    return _table(("name", "numbers", "source"), rows)
+
+
+def _statuses() -> str:
+    rows = [
+        (f"`{status.name}`", int(status), status.sentence, "missing (NaN)" if status.failed else "there")
+        for status in bs.Status
+    ]
+    return _table(("status", "code", "what it says", "the numbers"), rows)
+
+
+_ACCENTS = {r"{\ss}": "ß", r"{\"u}": "ü", r"{\"o}": "ö", r"{\'e}": "é", r"\&": "&", "--": "–"}
+
+
+def _bibliography() -> str:
+    entries = {key: _fields(text) for key, text in bibliography().items()}
+    ordered = sorted(entries, key=lambda key: (Source(key).short.casefold(), key))
+    return "\n\n".join(f"(ref-{key})=\n{_entry(entries[key])}" for key in ordered)
+
+
+def _fields(entry: str) -> dict[str, str]:
+    for latex, letter in _ACCENTS.items():
+        entry = entry.replace(latex, letter)
+    entry = re.sub(r"\{\{(.*)\}\}", lambda whole: "{" + whole[1].replace(" and ", " & ") + "}", entry)  # one author
+    fields = re.findall(r"^\s*(\w+)\s*=\s*\{(.*)\},?\s*$", entry, flags=re.MULTILINE)
+    return {name: re.sub("[{}]", "", value) for name, value in fields}
+
+
+def _entry(fields: dict[str, str]) -> str:
+    people = (fields.get("author") or fields["editor"] + " (ed.)").replace(" and ", "; ")
+    printed = [fields[name] for name in ("journal", "publisher", "school", "howpublished") if name in fields]
+    place = " ".join(filter(None, [*printed, fields.get("volume"), fields.get("number") and f"({fields['number']})"]))
+    parts = [f"**{people} {fields['year']}.** *{fields['title']}*", place, fields.get("pages"), fields.get("note")]
+    if "doi" in fields:
+        parts.append(f"[doi {fields['doi']}](https://doi.org/{fields['doi']})")
+    if "eprint" in fields:
+        parts.append(f"[arXiv {fields['eprint']}](https://arxiv.org/abs/{fields['eprint']})")
+    return ". ".join(filter(None, parts)) + "."
+
+
+# --- the command ---
+
+
+def _commands() -> str:
+    from ballsocket.cli.root import app
+
+    names = sorted(command.name or command.callback.__name__.replace("_", "-") for command in app.registered_commands)
+    return "\n".join(f"## {name}\n\n```text\n{_help(name)}\n```\n" for name in names)
+
+
+def _help(name: str) -> str:
+    from typer.testing import CliRunner
+
+    from ballsocket.cli.root import app
+
+    with _terminal():
+        shown = CliRunner().invoke(app, [name, "--help"], prog_name="ballsocket", terminal_width=_COLUMNS)
+    return shown.output.strip()
+
+
+@contextmanager
+def _terminal():
+    before = environ.get("COLUMNS")
+    environ["COLUMNS"] = str(_COLUMNS)
+    try:
+        yield
+    finally:
+        environ.pop("COLUMNS") if before is None else environ.update(COLUMNS=before)
+
+
+# --- the paper ---
+
+_CLASSES = {"holds": "holds", "holds nearly": "nearly", "does not hold": "fails"}
+
+
+def _claims(findings) -> str:
+    rows = []
+    for finding in findings:
+        said = f"{finding['sentence']}<br><small>{finding['where']}</small>"
+        verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{finding['verdict']}</span>"
+        numbers = "<br>".join(_number(name, value) for name, value in finding["numbers"].items())
+        rows.append((said, verdict, f"<small>{numbers}</small>"))
+    return _table(("what the paper says", "verdict", "numbers"), rows)
+
+
+def _number(name: str, value: float) -> str:
+    """A number behind its name, with the unit that the name ends in."""
+    said, _, unit = name.replace("_", " ").rpartition(", ")
+    known = {"%": "{} %", "± %": "± {} %", "MPa": "{} MPa", "mm": "{} mm", "mm²": "{} mm²"}
+    shown = f"{value:.3g}"
+    return f"{said}: {known[unit].format(shown)}" if unit in known else f"{name.replace('_', ' ')}: {shown}"

@@ -1,0 +1,85 @@
+"""The pages of the docs say what the package does: their Python and their commands run, with the output they show."""
+
+import doctest
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from os import environ
+from pathlib import Path
+
+import pytest
+
+import ballsocket as bs
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+PAGES = sorted(path for path in (DOCS / "index.md", *DOCS.glob("[etrh]*/*.md")) if "```" in path.read_text("utf-8"))
+FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
+
+
+def fenced(text, language):
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+
+
+def pages(language, mark):
+    return [path for path in PAGES if any(mark in block for block in fenced(path.read_text("utf-8"), language))]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Beside the examples, as the pages take it."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("path", pages("python", ">>>"), ids=lambda path: path.stem)
+def test_the_python_of_a_page_gives_what_it_shows(path, folder):
+    text = path.read_text("utf-8")
+    for library in ("jax", "torch"):
+        if f"import {library}" in text and find_spec(library) is None:
+            pytest.skip(f"{library} is not installed")
+    code = "\n".join(fenced(text, "python"))
+    said = []
+    test = doctest.DocTestParser().get_doctest(code, {}, path.name, str(path), 0)
+    failed, tried = doctest.DocTestRunner(optionflags=FLAGS).run(test, out=said.append)
+    assert tried > 0
+    assert failed == 0, "".join(said)
+
+
+@pytest.mark.parametrize("path", pages("console", "$ "), ids=lambda path: path.stem)
+def test_the_commands_of_a_page_print_what_it_shows(path, folder):
+    for block in fenced(path.read_text("utf-8"), "console"):
+        command, _, shown = block.partition("\n")
+        done = subprocess.run(
+            [sys.executable, "-m", *shlex.split(command.removeprefix("$ "))],
+            capture_output=True,
+            encoding="utf-8",
+            check=True,
+            env={**environ, "COLUMNS": "100", "PYTHONIOENCODING": "utf-8"},
+        )
+        assert [line.rstrip() for line in done.stdout.splitlines()] == shown.splitlines()
+
+
+def test_python_on_a_page_is_tested():
+    for path in PAGES:
+        for block in fenced(path.read_text("utf-8"), "python"):
+            assert block.startswith(">>> "), f"{path.name}: {block[:60]!r} is not an example with its output"
+
+
+def test_models_that_trust_themselves_are_within_ten_percent_of_the_presets():
+    """As the page on choosing says."""
+    for joint in bs.joints.values():
+        answers = bs.compare(joint, force=3000.0)
+        exact = answers["exact"].max_pressure
+        for name, contact in answers.items():
+            assert not contact.valid or contact.max_pressure == pytest.approx(exact, rel=0.1), (joint.name, name)
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
+def test_an_example_begins_with_a_title(path):
+    title, line = path.read_text("utf-8").splitlines()[1:3]
+    assert re.fullmatch("=+", line)
+    assert len(line) == len(title)
