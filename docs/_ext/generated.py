@@ -9,6 +9,7 @@ from os import environ
 from pathlib import Path
 
 import ballsocket as bs
+from ballsocket.accuracy_table import markdown
 from ballsocket.all_models import judge
 from ballsocket.paper.plan import quick_plan
 from ballsocket.report import write_report
@@ -26,13 +27,14 @@ def write(folder: Path) -> None:
     """All of it."""
     report = folder / "report"
     report.mkdir(parents=True, exist_ok=True)
-    results = dict(quick_plan().run(folder / "paper"))
-    page = write_report(results, folder / "paper")
-    (report / "report.html").write_bytes(page.read_bytes())
+    results = quick_plan().results(folder / "paper")
+    write_report(results, report)
     pages = {
         "bibliography": _bibliography(),
         "catalogue": "\n".join(map(_model, (*bs.catalogue.values(), judge, bs.PinInHole()))),
+        "accuracy": markdown(results["accuracy"][0]),
         "claims": _claims(results["claims"]),
+        "elsewhere": _claims(results["elsewhere"]),
         "commands": _commands(),
         "joints": _presets(bs.joints),
         "materials": _presets(bs.materials),
@@ -180,10 +182,11 @@ def _claims(findings) -> str:
     rows = []
     for finding in findings:
         said = f"{finding['sentence']}<br><small>{finding['where']}</small>"
+        why = f"<br><small>{finding['comment']}</small>" if finding["comment"] else ""
         verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{finding['verdict']}</span>"
         numbers = "<br>".join(_number(name, value) for name, value in finding["numbers"].items())
-        rows.append((said, verdict, f"<small>{numbers}</small>"))
-    return _table(("what the paper says", "verdict", "numbers"), rows)
+        rows.append((said, verdict + why, f"<small>{numbers}</small>"))
+    return _table(("what is said", "verdict", "what we find"), rows)
 
 
 def _number(name: str, value: float) -> str:
