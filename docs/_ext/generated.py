@@ -192,6 +192,6 @@ def _claims(findings) -> str:
 def _number(name: str, value: float) -> str:
     """A number behind its name, with the unit that the name ends in."""
     said, _, unit = name.replace("_", " ").rpartition(", ")
-    known = {"%": "{} %", "± %": "± {} %", "MPa": "{} MPa", "mm": "{} mm", "mm²": "{} mm²"}
+    known = {"%": "{} %", "± %": "± {} %", "MPa": "{} MPa", "mm": "{} mm", "mm²": "{} mm²", "°": "{}°"}
     shown = f"{value:.3g}"
     return f"{said}: {known[unit].format(shown)}" if unit in known else f"{name.replace('_', ' ')}: {shown}"

@@ -38,7 +38,7 @@ def exact_agrees_with_calculix(_: Model) -> Finding:
     compressible = table["poisson"] < 0.47
     numbers = _against_calculix(Exact(), table[compressible])
     depth, pressure, angle = numbers.values()
-    softer = {f"{name}; at ν 0.49": value for name, value in _against_calculix(Exact(), table[~compressible]).items()}
+    softer = {f"at ν 0.49 {name}": value for name, value in _against_calculix(Exact(), table[~compressible]).items()}
     return Finding(
         name="exact-agrees-with-calculix",
         where="CalculiX 2.20: half a ball on its equator, a hemispherical liner with a free rim",
@@ -86,7 +86,7 @@ def half_angles_of_jin(reference: Model) -> Finding:
         )
         half_angle = numpy.degrees(reference.press(joints, force=2500.0).half_angle)
         for clearance, angle in zip(_JIN_CLEARANCES, half_angle, strict=True):
-            angles[f"{name}, L {thickness:g}, ΔR {clearance:g}: ε, °"] = float(angle)
+            angles[f"{name}, L {thickness:g}, ΔR {clearance:g}, °"] = float(angle)
     low, high = min(angles.values()), max(angles.values())
     return Finding(
         name="half-angles-of-jin",
