@@ -18,6 +18,7 @@ BENCHMARKS = {
     "exact": ("exact", "the exact answer: a first load, further loads, a curve, a sweep; and CalculiX"),
     "fem": ("fem", "the finite elements: default mesh, the paper's mesh, cost against size; and CalculiX"),
     "papers-mesh": ("papers_mesh", "CalculiX and the finite elements on the paper's mesh: a quarter of an hour"),
+    "reproduce": ("reproduce", "the whole paper by one command: quick, full, and when everything is kept"),
     "tabulated": (
         "tabulated",
         "a million presses by force from the tables, beside the exact solver and the paper's model",

@@ -101,6 +101,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
     for line in panel.lines:
         axes.plot(line.x, line.y, **_style(line, cases))
     finish(axes, panel.x, panel.y)
+    axes.locator_params(nbins=5)
     axes.set_title(panel.title, fontsize=10)
     _limit(axes, panel)
 

@@ -6,18 +6,22 @@ import csv
 import json
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import accuracy_table, paper_figures, report_tables
+from .engines import Engine, Serial
 from .fingerprint import fingerprint
 from .paper.figure import Figure
 from .written import at_once, write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
+
+_HERE = Serial()
 
 _STYLE = """
 :root { color-scheme: light; }
@@ -43,7 +47,7 @@ _ACCURACY = """<p>Relative errors against the exact answer over joints that fill
 whether it trusts itself or not; the last column says at how many of the contacts it does.</p>"""
 
 
-def write_report(results: Mapping[str, Sequence[Any]], folder: Path) -> Path:
+def write_report(results: Mapping[str, Sequence[Any]], folder: Path, engine: Engine = _HERE) -> Path:
     """Write `report.html` and beside it what is in it: figures as PNG, SVG and CSV, the accuracy as a table.
 
     Parameters
@@ -52,21 +56,25 @@ def write_report(results: Mapping[str, Sequence[Any]], folder: Path) -> Path:
         Of a `Plan`: the results of the pieces of each part.
     folder : Path
         Must be there.
+    engine : Engine
+        Who draws.
 
     Returns
     -------
     Path
         Of the page.
     """
-    parts = {name: Figure.joined(map(Figure.of, pieces)) for name, pieces in results.items() if "figure" in name}
-    figures = "".join(_figure(name, figure, folder) for name, figure in parts.items())
+    rows = results["accuracy"][0]
+    figures = {name: Figure.joined(map(Figure.of, pieces)) for name, pieces in results.items() if "figure" in name}
+    pictures = dict(engine.run(_Pictures(tuple(figures.items()), tuple(rows), folder), range(len(figures) + 1)))
+    shown = [_figure(name, figure, pictures[number]) for number, (name, figure) in enumerate(figures.items())]
     sections = {
         "claims": (f"What the paper says: {report_tables.tally(results['claims'])}", _claims(results["claims"])),
         "elsewhere": ("What others found", report_tables.claims(results["elsewhere"])),
         "given": ("Tables 1 and 2: what is given", report_tables.given()),
         "table_3": ("Table 3, fitted again", report_tables.table_3(results["table_3"])),
-        "figures": ("Figures 2 to 6", figures),
-        "accuracy": ("How accurate is which model?", _accuracy(results["accuracy"][0], folder)),
+        "figures": ("Figures 2 to 6", "".join(shown)),
+        "accuracy": ("How accurate is which model?", _accuracy(rows, folder, pictures[len(figures)])),
     }
     links = " ".join(f"<a href='#{name}'>{escape(title.split(':')[0])}</a>" for name, (title, _) in sections.items())
     body = "".join(f"<h2 id='{name}'>{escape(title)}</h2>{text}" for name, (title, text) in sections.items())
@@ -84,15 +92,28 @@ def _claims(findings: Sequence[Mapping[str, Any]]) -> str:
     return "<p>Each with the numbers behind it and the function that made them.</p>" + report_tables.claims(findings)
 
 
-def _figure(name: str, figure: Figure, folder: Path) -> str:
-    picture = _pictured(name, paper_figures.draw(figure), folder)
-    write_text(folder / f"{name}.csv", _csv(figure))
+@dataclass(frozen=True)
+class _Pictures:
+    """Draws a figure, or last the accuracy, writes it as PNG and SVG and the numbers as CSV; returns the PNG."""
+
+    figures: tuple[tuple[str, Figure], ...]
+    rows: tuple[Mapping[str, Any], ...]
+    folder: Path
+
+    def __call__(self, number: int) -> bytes:
+        if number == len(self.figures):
+            return _pictured("accuracy", paper_figures.heat_map(self.rows), self.folder)
+        name, figure = self.figures[number]
+        write_text(self.folder / f"{name}.csv", _csv(figure))
+        return _pictured(name, paper_figures.draw(figure), self.folder)
+
+
+def _figure(name: str, figure: Figure, picture: bytes) -> str:
     caption = f"{escape(figure.caption)} <a href='{name}.csv'>numbers</a>, <a href='{name}.svg'>SVG</a>"
     return f"<h3 id='{name}'>{escape(figure.title)}</h3>{_shown(picture, figure.title, caption)}"
 
 
-def _accuracy(rows: Sequence[Mapping[str, Any]], folder: Path) -> str:
-    picture = _pictured("accuracy", paper_figures.heat_map(rows), folder)
+def _accuracy(rows: Sequence[Mapping[str, Any]], folder: Path, picture: bytes) -> str:
     write_text(folder / "accuracy.md", accuracy_table.markdown(rows))
     write_text(folder / "accuracy.csv", accuracy_table.table(rows))
     write_text(folder / "accuracy.json", json.dumps(rows, indent=1) + "\n")

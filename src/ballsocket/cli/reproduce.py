@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -9,6 +10,7 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
+from ..engines import Processes
 from ..paper.plan import full_plan, quick_plan
 from ..report import write_report
 from .root import app
@@ -18,13 +20,18 @@ from .root import app
 def reproduce(
     out: Annotated[Path, typer.Option(help="The folder to write into; made if it is not there.")] = Path("reproduced"),
     quick: Annotated[bool, typer.Option("--quick", help="The exact solution alone, without finite elements.")] = False,
+    workers: Annotated[int | None, typer.Option(help="Processes at work; as many as there are cores.")] = None,
 ) -> None:
     """Compute every table, figure and claim of Heß & Forsbach 2021 again, and write a report with a verdict on each.
 
     What is finished is kept: a run that was stopped goes on where it was.
     """
+    engine = Processes(workers=workers)
     plan = quick_plan() if quick else full_plan()
     with Progress(console=Console(stderr=True)) as progress:
         task = progress.add_task("reproducing", total=len(plan))
-        results = plan.results(out / "data", lambda name: progress.update(task, advance=1, description=name))
-    typer.echo(str(write_report(results, out)))
+        listen = partial(progress.update, task, advance=1)
+        results = plan.results(out / "data", lambda name: listen(description=name), engine)
+        listen(advance=0, description="drawing")
+        report = write_report(results, out, engine)
+    typer.echo(str(report))

@@ -194,15 +194,19 @@ class State:
         x, w = (numpy.array(part) for part in gauss_legendre(12))
         y = ((numpy.arange(panels)[:, None] + x) / panels).ravel()
         weights = numpy.tile(w / panels, panels) * pi / 2 * numpy.cos(pi / 2 * y)
-        modes = numpy.empty((len(self.half_angle), count))
-        q = numpy.arange(count) + 0.5
+        blocks = -(-count // _BLOCK)
+        start, step = numpy.arange(blocks)[:, None] * _BLOCK + 0.5, numpy.arange(_BLOCK)[:, None]
+        modes = numpy.empty((len(self.half_angle), blocks, _BLOCK))
         for modes_here, angle, series in zip(modes, self.half_angle, self._expansion, strict=True):
             s = angle * numpy.sin(pi / 2 * y)
-            G = numpy.sin(s) * _even_series(series, y)
-            for first in range(0, count, 64):
-                block = slice(first, first + 64)
-                modes_here[block] = angle * (weights * G) @ numpy.sin(s[:, None] * q[block])
-        return modes / self.kernel.compliance
+            G = angle * weights * numpy.sin(s) * _even_series(series, y)
+            # sin((start + step) s) as a sum of products: a sine for each start and each step, not for each mode
+            modes_here[:] = (G * numpy.sin(start * s)) @ numpy.cos(step * s).T
+            modes_here[:] += (G * numpy.cos(start * s)) @ numpy.sin(step * s).T
+        return modes.reshape(len(modes), -1)[:, :count] / self.kernel.compliance
+
+
+_BLOCK = 64  # modes
 
 
 def _even_series(coefficients: Array, y: Array) -> Array:

@@ -234,11 +234,9 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
     """The solution at the width that belongs to the load (NaN where none below a half angle of π/2 does)."""
     shape = (load, *joint.numbers())
     widest = broadcast(pi / 2 * clip(joint.thickness_ratio, 0.0, THINNEST), *shape)
-    numbers = arrays.known(widest)
-    if numbers is None:
+    if arrays.known(widest) is None:
         widest = clip(widest, 0.0, TRACED_WIDTH)
-        numbers = numpy.array(TRACED_WIDTH)
-    reach = float(ceil(numpy.max(numbers, initial=0.0, where=numpy.isfinite(numbers))))
+    reach = _reach(widest)
     if kind == "half_angle":
         width = broadcast(load * joint.thickness_ratio, *shape)
         width = where(width <= widest, width, float("nan"))
@@ -246,17 +244,24 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
     which = 0 if kind == "force" else 1
     goal = log(broadcast(divisor(load), *shape))
 
-    def law(narrowing: Array) -> tuple[Array, Array]:
+    def law(narrowing: Array, reach: float) -> tuple[Array, Array]:
+        """Of how much narrower than the widest a contact is, in logarithms."""
         width = widest * exp(-narrowing)
         solution = LayerSolution(joint=joint, width=width, widest=reach)
         value, slope = solution.values[which], solution.slopes[which]
         return -log(value), slope * width * joint.liner_thickness / value
 
-    # how much narrower than the widest: 0 where even that does not suffice, so that no search is wasted there
-    missing = -goal - law(0.0 * goal)[0]
+    missing = -goal - law(0.0 * goal, reach)[0]  # below 0 where even the widest does not suffice
     steep, guess, flat = (
         clip(missing, 0.0, inf) / power for power in ((8.0, 3.4, 2.0) if which == 0 else (4.0, 1.6, 0.8))
     )
-    root = arrays.increasing_root(law, -goal, steep, flat, guess, steps=24)
+    reach = _reach(widest * exp(-steep))
+    root = arrays.increasing_root(lambda narrowing: law(narrowing, reach), -goal, steep, flat, guess, steps=24)
     width = where(missing >= 0, widest * exp(-root), float("nan"))
     return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=reach)
+
+
+def _reach(width: Array) -> float:
+    """The width for which a quadrature serves all of these; that of a traced call where they are not known yet."""
+    widths = arrays.known(width)
+    return TRACED_WIDTH if widths is None else float(ceil(numpy.max(widths, initial=0.0, where=numpy.isfinite(widths))))

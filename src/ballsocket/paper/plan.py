@@ -15,6 +15,7 @@ from ..accuracy import accuracies
 from ..all_models import catalogue
 from ..calibrate import refit_column
 from ..elastic.axisymmetric import Exact
+from ..engines import Engine, Serial
 from ..fem.model import FiniteElement
 from ..fingerprint import fingerprint
 from ..models.base import Model
@@ -31,6 +32,8 @@ Results = dict[str, list[Any]]
 
 ELEMENTS = "finite elements"
 
+_HERE = Serial()
+
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
@@ -42,8 +45,8 @@ class Plan:
     def __len__(self) -> int:
         return sum(map(len, self.parts.values()))
 
-    def run(self, folder: Path) -> Iterator[tuple[str, str, Any]]:
-        """The pieces, one after the other: part, piece and result. Those that lie in the folder already are read.
+    def run(self, folder: Path, engine: Engine = _HERE) -> Iterator[tuple[str, str, Any]]:
+        """The pieces with part, name and result, as they are there. Those that lie in the folder already are read.
 
         Raises
         ------
@@ -51,26 +54,46 @@ class Plan:
             A folder that cannot be written to.
         """
         folder.mkdir(parents=True, exist_ok=True)
-        for part, pieces in self.parts.items():
-            for name, piece in pieces.items():
-                path = folder / f"{part}{_plain(name)}.json"
-                kept = _kept(path, self._key)
-                if kept is None:
-                    kept = piece()
-                    write_text(path, json.dumps({"key": self._key, "result": kept}, allow_nan=False))
+        pieces = [(part, name) for part, pieces in self.parts.items() for name in pieces]
+        key = f"ballsocket {fingerprint()}, {self.name}"
+        work = _Pieces(
+            tuple(folder / f"{part}{_plain(name)}.json" for part, name in pieces),
+            tuple(self.parts[part][name] for part, name in pieces),
+            key,
+        )
+        missing = []
+        for number, (part, name) in enumerate(pieces):
+            kept = _kept(work.paths[number], key)
+            if kept is None:
+                missing.append(number)
+            else:
                 yield part, name, kept
+        for number, result in engine.run(work, missing):
+            yield *pieces[number], result
 
-    def results(self, folder: Path, listen: Callable[[str], None] = lambda name: None) -> Results:
-        """All results by part; `listen` is told the name of each piece when it is there."""
-        whole: Results = {part: [] for part in self.parts}
-        for part, name, result in self.run(folder):
-            whole[part].append(result)
+    def results(
+        self, folder: Path, listen: Callable[[str], None] = lambda name: None, engine: Engine = _HERE
+    ) -> Results:
+        """All results by part, in the order of the pieces; `listen` is told the name of each when it is there."""
+        found: dict[tuple[str, str], Any] = {}
+        for part, name, result in self.run(folder, engine):
+            found[part, name] = result
             listen(f"{part} {name}".strip())
-        return whole
+        return {part: [found[part, name] for name in pieces] for part, pieces in self.parts.items()}
 
-    @property
-    def _key(self) -> str:
-        return f"ballsocket {fingerprint()}, {self.name}"
+
+@dataclass(frozen=True)
+class _Pieces:
+    """Computes a piece and keeps it in its file."""
+
+    paths: tuple[Path, ...]
+    pieces: tuple[Piece, ...]
+    key: str
+
+    def __call__(self, number: int) -> Any:
+        result = self.pieces[number]()
+        write_text(self.paths[number], json.dumps({"key": self.key, "result": result}, allow_nan=False))
+        return result
 
 
 def _kept(path: Path, key: str) -> Any:
@@ -109,7 +132,8 @@ def quick_plan() -> Plan:
     return Plan(
         name="quick",
         parts={
-            "about": {"": lambda: _QUICK},
+            "accuracy": {"": _accuracy},  # the longest piece first: the other process does the rest meanwhile
+            "about": {"": partial(str, _QUICK)},
             **_ledgers(exact, CLAIMS, ELSEWHERE),
             **_parts(references={"exact": exact}, models=models, dense=models),
         },
@@ -123,7 +147,8 @@ def full_plan() -> Plan:
     return Plan(
         name="full",
         parts={
-            "about": {"": lambda: _FULL},
+            "accuracy": {"": _accuracy},
+            "about": {"": partial(str, _FULL)},
             **_ledgers(adapted, CLAIMS + MESHED_CLAIMS, ELSEWHERE + MESHED_ELSEWHERE),
             **_parts(
                 references={"exact": models["exact"], ELEMENTS: adapted},
@@ -137,7 +162,7 @@ def full_plan() -> Plan:
 def _ledgers(judge: Model, claims: tuple[Claim, ...], elsewhere: tuple[Claim, ...]) -> dict[str, Mapping[str, Piece]]:
     """What the paper says and what others found."""
     return {
-        part: {claim.__name__: _summary(partial(judged, claim, judge)) for claim in group}
+        part: {claim.__name__: _Summary(partial(judged, claim, judge)) for claim in group}
         for part, group in (("claims", claims), ("elsewhere", elsewhere))
     }
 
@@ -155,39 +180,38 @@ def _parts(
     fields = {name: model for name, model in models.items() if name != "exact"}
     return {
         "table_3": {
-            f"{name} {ratio}": _summary(partial(_column, name, model, ratios[ratio]))
+            f"{name} {ratio}": partial(_column, name, model, ratios[ratio])
             for (name, model), ratio in product(references.items(), ratios)
         },
-        "figure_2": {ratio: _summary(partial(curves.figure_2, value, references)) for ratio, value in ratios.items()},
+        "figure_2": {ratio: _Summary(partial(curves.figure_2, value, references)) for ratio, value in ratios.items()},
         "figure_2_models": {
-            ratio: _summary(partial(curves.figure_2_models, value, models)) for ratio, value in ratios.items()
+            ratio: _Summary(partial(curves.figure_2_models, value, models)) for ratio, value in ratios.items()
         },
         **{
             f"figure_{number}": {
-                name: _summary(partial(curves.figure_3_or_4, number, {name: model})) for name, model in dense.items()
+                name: _Summary(partial(curves.figure_3_or_4, number, {name: model})) for name, model in dense.items()
             }
             for number in (3, 4)
         },
         "figure_5": {
-            name: _summary(partial(curves.figure_5, *joint, judged_as_drawn)) for name, joint in joints.items()
+            name: _Summary(partial(curves.figure_5, *joint, judged_as_drawn)) for name, joint in joints.items()
         },
         "figure_5_forces": {
-            name: _summary(partial(curves.figure_5_forces, *joint, models)) for name, joint in joints.items()
+            name: _Summary(partial(curves.figure_5_forces, *joint, models)) for name, joint in joints.items()
         },
         "figure_5_pressures": {
-            name: _summary(partial(curves.figure_5_pressures, *joint, models)) for name, joint in joints.items()
+            name: _Summary(partial(curves.figure_5_pressures, *joint, models)) for name, joint in joints.items()
         },
-        "figure_6": {"": _summary(partial(curves.figure_6, "hess-forsbach", models["hess-forsbach"]))},
-        "figure_6_exact": {"": _summary(partial(curves.figure_6, "exact", models["exact"], _COARSE))},
+        "figure_6": {"": _Summary(partial(curves.figure_6, "hess-forsbach", models["hess-forsbach"]))},
+        "figure_6_exact": {"": _Summary(partial(curves.figure_6, "exact", models["exact"], _COARSE))},
         "figure_6_pressures": {
-            name: _summary(partial(curves.figure_6_pressures, name, model, models["exact"], _COARSE))
+            name: _Summary(partial(curves.figure_6_pressures, name, model, models["exact"], _COARSE))
             for name, model in fields.items()
         },
         "figure_6_areas": {
-            name: _summary(partial(curves.figure_6_areas, name, model, models["exact"], _COARSE))
+            name: _Summary(partial(curves.figure_6_areas, name, model, models["exact"], _COARSE))
             for name, model in fields.items()
         },
-        "accuracy": {"": lambda: [row.summary() for row in accuracies()]},
     }
 
 
@@ -195,20 +219,20 @@ _COARSE = 13
 """Head radii and thicknesses in maps that are solved joint by joint."""
 
 
-def _summary(compute: Callable[[], Any]) -> Piece:
-    return lambda: compute().summary()
-
-
 @dataclass(frozen=True)
-class _Named:
+class _Summary:
+    """The summary of what is computed; a value, so that it can go to another process."""
+
+    compute: Callable[[], Any]
+
+    def __call__(self) -> Any:
+        return self.compute().summary()
+
+
+def _column(name: str, model: Model, poisson: float) -> dict[str, Any]:
     """A column of Table 3 with the reference that it was fitted to."""
-
-    reference: str
-    column: Any
-
-    def summary(self) -> dict[str, Any]:
-        return {"reference": self.reference, **self.column.summary()}
+    return {"reference": name, **refit_column(poisson, model).summary()}
 
 
-def _column(name: str, model: Model, poisson: float) -> _Named:
-    return _Named(name, refit_column(poisson, model))
+def _accuracy() -> list[dict[str, Any]]:
+    return [row.summary() for row in accuracies()]

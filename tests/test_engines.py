@@ -1,0 +1,92 @@
+"""Who computes makes no difference, and a process that dies costs its piece once more."""
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from ballsocket.engines import Processes, Serial
+
+
+@dataclass(frozen=True)
+class Square:
+    def __call__(self, number):
+        return number * number
+
+
+@dataclass(frozen=True)
+class DiesOnce:
+    """Its process is killed at one piece, as often as told."""
+
+    folder: Path
+    at: int
+    times: int
+
+    def __call__(self, number):
+        marks = len(list(self.folder.iterdir()))
+        if number == self.at and marks < self.times:
+            (self.folder / str(marks)).touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return os.environ["OPENBLAS_NUM_THREADS"]
+
+
+@dataclass(frozen=True)
+class Fails:
+    def __call__(self, number):
+        raise ValueError(f"piece {number} = {number} is not allowed")
+
+
+def test_every_engine_gives_every_number_once():
+    expected = [(number, number * number) for number in range(20)]
+    assert list(Serial().run(Square(), range(20))) == expected
+    assert sorted(Processes(workers=2).run(Square(), range(20))) == expected
+    assert list(Processes(workers=2).run(Square(), [])) == []
+
+
+def test_a_killed_process_costs_a_retry(tmp_path):
+    found = dict(Processes(workers=2).run(DiesOnce(tmp_path, at=3, times=2), range(8)))
+    assert sorted(found) == list(range(8))
+    assert set(found.values()) == {"1"}  # one thread of linear algebra each
+    assert "OPENBLAS_NUM_THREADS" not in os.environ
+
+
+def test_a_piece_that_always_kills_is_an_error(tmp_path):
+    with pytest.raises(RuntimeError, match="lost its process"):
+        list(Processes(workers=1, retries=1).run(DiesOnce(tmp_path, at=0, times=100), range(1)))
+
+
+def test_an_error_of_a_piece_is_raised_as_it_is():
+    with pytest.raises(ValueError, match="piece 5 = 5 is not allowed"):
+        list(Processes(workers=1).run(Fails(), [5]))
+    with pytest.raises(ValueError, match="at least one process"):
+        Processes(workers=0)
+
+
+def test_a_killed_reproduction_goes_on_where_it_was(tmp_path):
+    """The whole command, killed after its first pieces."""
+    words = [
+        sys.executable,
+        "-m",
+        "ballsocket",
+        "reproduce",
+        "--quick",
+        "--workers",
+        "1",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    running = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+    data = tmp_path / "out" / "data"
+    while len(list(data.glob("*.json"))) < 3 and running.poll() is None:
+        pass
+    os.killpg(running.pid, signal.SIGKILL)
+    running.wait()
+    kept = {path: path.stat().st_mtime_ns for path in data.glob("*.json")}
+    assert len(kept) >= 3
+    subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    assert all(path.stat().st_mtime_ns == when for path, when in kept.items())
+    assert (tmp_path / "out" / "report.html").stat().st_size > 100_000
