@@ -4,13 +4,16 @@ import os
 import signal
 import subprocess
 import sys
-from dataclasses import dataclass
-from pathlib import Path
+from importlib import import_module
 
 import pytest
 
 from ballsocket.engines import Processes, Serial
 
+PIECES = """
+import os, signal
+from dataclasses import dataclass
+from pathlib import Path
 
 @dataclass(frozen=True)
 class Square:
@@ -20,8 +23,6 @@ class Square:
 
 @dataclass(frozen=True)
 class DiesOnce:
-    """Its process is killed at one piece, as often as told."""
-
     folder: Path
     at: int
     times: int
@@ -38,30 +39,40 @@ class DiesOnce:
 class Fails:
     def __call__(self, number):
         raise ValueError(f"piece {number} = {number} is not allowed")
+"""
 
 
-def test_every_engine_gives_every_number_once():
+@pytest.fixture
+def pieces(tmp_path, monkeypatch):
+    """Work that other processes can import."""
+    (tmp_path / "some_pieces.py").write_text(PIECES, encoding="utf-8")
+    (tmp_path / "marks").mkdir()
+    monkeypatch.syspath_prepend(tmp_path)
+    return import_module("some_pieces")
+
+
+def test_every_engine_gives_every_number_once(pieces):
     expected = [(number, number * number) for number in range(20)]
-    assert list(Serial().run(Square(), range(20))) == expected
-    assert sorted(Processes(workers=2).run(Square(), range(20))) == expected
-    assert list(Processes(workers=2).run(Square(), [])) == []
+    assert list(Serial().run(pieces.Square(), range(20))) == expected
+    assert sorted(Processes(workers=2).run(pieces.Square(), range(20))) == expected
+    assert list(Processes(workers=2).run(pieces.Square(), [])) == []
 
 
-def test_a_killed_process_costs_a_retry(tmp_path):
-    found = dict(Processes(workers=2).run(DiesOnce(tmp_path, at=3, times=2), range(8)))
+def test_a_killed_process_costs_a_retry(tmp_path, pieces):
+    found = dict(Processes(workers=2).run(pieces.DiesOnce(tmp_path / "marks", at=3, times=2), range(8)))
     assert sorted(found) == list(range(8))
     assert set(found.values()) == {"1"}  # one thread of linear algebra each
     assert "OPENBLAS_NUM_THREADS" not in os.environ
 
 
-def test_a_piece_that_always_kills_is_an_error(tmp_path):
+def test_a_piece_that_always_kills_is_an_error(tmp_path, pieces):
     with pytest.raises(RuntimeError, match="lost its process"):
-        list(Processes(workers=1, retries=1).run(DiesOnce(tmp_path, at=0, times=100), range(1)))
+        list(Processes(workers=1, retries=1).run(pieces.DiesOnce(tmp_path / "marks", at=0, times=100), range(1)))
 
 
-def test_an_error_of_a_piece_is_raised_as_it_is():
+def test_an_error_of_a_piece_is_raised_as_it_is(pieces):
     with pytest.raises(ValueError, match="piece 5 = 5 is not allowed"):
-        list(Processes(workers=1).run(Fails(), [5]))
+        list(Processes(workers=1).run(pieces.Fails(), [5]))
     with pytest.raises(ValueError, match="at least one process"):
         Processes(workers=0)
 
