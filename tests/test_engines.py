@@ -91,7 +91,7 @@ def test_a_killed_reproduction_goes_on_where_it_was(tmp_path):
         str(tmp_path / "out"),
     ]
     running = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
-    data = tmp_path / "out" / "data"
+    data = tmp_path / "out" / "data" / "quick"
     while len(list(data.glob("*.json"))) < 3 and running.poll() is None:
         pass
     os.killpg(running.pid, signal.SIGKILL)

@@ -175,7 +175,7 @@ def _terminal():
 
 # --- the paper ---
 
-_CLASSES = {"holds": "holds", "holds nearly": "nearly", "does not hold": "fails"}
+_CLASSES = {"holds": "holds", "holds within": "nearly", "does not hold": "fails"}
 
 
 def _claims(findings) -> str:
@@ -183,7 +183,7 @@ def _claims(findings) -> str:
     for finding in findings:
         said = f"{finding['sentence']}<br><small>{finding['where']}</small>"
         why = f"<br><small>{finding['comment']}</small>" if finding["comment"] else ""
-        verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{finding['verdict']}</span>"
+        verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{finding['text']}</span>"
         numbers = "<br>".join(_number(name, value) for name, value in finding["numbers"].items())
         rows.append((said, verdict + why, f"<small>{numbers}</small>"))
     return _table(("what is said", "verdict", "what we find"), rows)

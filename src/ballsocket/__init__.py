@@ -55,6 +55,7 @@ from .presets import (
     materials,
 )
 from .sources import cite
+from .studies.run import study
 from .validity import Range, Status
 from .version import __version__ as __version__
 
@@ -123,4 +124,5 @@ __all__ = [
     "polynomial",
     "read_joint",
     "spherical_vessel",
+    "study",
 ]

@@ -64,6 +64,22 @@ class Accuracy:
         return {"model": self.model, "answered": self.answered, "valid": self.valid, "errors": errors}
 
 
+def edge_joints() -> Joint:
+    """Joints on the ends of the paper's ranges, where errors are worst: as arrays of shape (joints,).
+
+    Every combination of the ends and the middle of the head's radius, of what liners the outer radius leaves it, and
+    of the ends of the clearance, at ν 0.3, 0.4 and 0.49.
+    """
+    clearances = RANGES["clearance"]
+    largest = RANGES["outer_radius"][1] - THICKNESS[0] - max(clearances)  # leaves the thinnest liner
+    radii = numpy.linspace(RANGES["ball_radius"][0], largest, 3)
+    R1, c, poisson, share = (
+        grid.ravel() for grid in numpy.meshgrid(radii, clearances, (0.3, 0.4, 0.49), (0.0, 0.5, 1.0), indexing="ij")
+    )
+    thinnest, thickest = (numpy.clip(outer - R1 - c, *THICKNESS) for outer in RANGES["outer_radius"])
+    return _joints(R1, c, thinnest + share * (thickest - thinnest), poisson)
+
+
 def paper_joints(count: int = 128) -> Joint:
     """Joints that fill the paper's ranges evenly, as arrays of shape (joints,): steel on 1 GPa.
 
@@ -76,16 +92,22 @@ def paper_joints(count: int = 128) -> Joint:
     R1, outer, clearance, poisson = points.T
     thickness = outer - R1 - clearance
     kept = (thickness >= THICKNESS[0]) & (thickness <= THICKNESS[1])
+    return _joints(R1[kept], clearance[kept], thickness[kept], poisson[kept])
+
+
+def _joints(R1: Array, clearance: Array, thickness: Array, poisson: Array) -> Joint:
     return Joint(
-        ball_radius=R1[kept],
-        clearance=clearance[kept],
-        liner_thickness=thickness[kept],
-        liner=Material(young=1000.0, poisson=poisson[kept]),
+        ball_radius=R1,
+        clearance=clearance,
+        liner_thickness=thickness,
+        liner=Material(young=1000.0, poisson=poisson),
         ball=STEEL,
     )
 
 
-def accuracies(models: Mapping[str, Model] | None = None, joints: Joint | None = None) -> tuple[Accuracy, ...]:
+def accuracies(
+    models: Mapping[str, Model] | None = None, joints: Joint | None = None, edges: Joint | None = None
+) -> tuple[Accuracy, ...]:
     """The errors of models against the exact answer, the most accurate in peak pressure first.
 
     Parameters
@@ -93,10 +115,14 @@ def accuracies(models: Mapping[str, Model] | None = None, joints: Joint | None =
     models : mapping of str to Model, optional
         By default the whole catalogue. A model that answers no joint at all is left out.
     joints : Joint, optional
-        Arrays of shape (joints,); `paper_joints()` by default.
+        Arrays of shape (joints,), over which median and percentile are taken; `paper_joints()` by default.
+    edges : Joint, optional
+        More of them, among which the worst is looked for too; `edge_joints()` by default.
     """
     chosen = catalogue if models is None else models
-    family = paper_joints() if joints is None else joints
+    within = paper_joints() if joints is None else joints
+    family = _together(within, edge_joints() if edges is None else edges)
+    inner = slice(0, len(within.ball_radius))
     exact = catalogue[REFERENCE].press(family, force=FORCES[:, None])
     rows = []
     for name, model in chosen.items():
@@ -107,16 +133,23 @@ def accuracies(models: Mapping[str, Model] | None = None, joints: Joint | None =
             pushed = model.press(family, indentation=exact.indentation)
         except OutsideDomainError:
             continue
-        rows.append(_accuracy(name, family, exact, pressed, pushed))
+        rows.append(_accuracy(name, family, inner, exact, pressed, pushed))
     return tuple(sorted(rows, key=lambda row: row.spreads["max_pressure"].median))
 
 
-def _accuracy(name: str, joints: Joint, exact: Contact, pressed: Contact, pushed: Contact) -> Accuracy:
+def _together(one: Joint, other: Joint) -> Joint:
+    """Joints of two families, both of arrays."""
+    pairs = zip(one.numbers(), other.numbers(), strict=True)
+    shapes = [numpy.ones(len(joint.ball_radius)) for joint in (one, other)]
+    return one.with_numbers([numpy.concatenate([a * shapes[0], b * shapes[1]]) for a, b in pairs])
+
+
+def _accuracy(name: str, joints: Joint, inner: slice, exact: Contact, pressed: Contact, pushed: Contact) -> Accuracy:
     contacts = {"force": pushed}
     spreads = {}
     for quantity in QUANTITIES:
         value = getattr(contacts.get(quantity, pressed), quantity)
-        spreads[quantity] = _spread(abs(value / getattr(exact, quantity) - 1), joints)
+        spreads[quantity] = _spread(abs(value / getattr(exact, quantity) - 1), joints, inner)
     return Accuracy(
         model=name,
         spreads=spreads,
@@ -125,15 +158,16 @@ def _accuracy(name: str, joints: Joint, exact: Contact, pressed: Contact, pushed
     )
 
 
-def _spread(error: Array, joints: Joint) -> Spread:
-    """Of errors (loads, joints)."""
-    known = error[numpy.isfinite(error)]
+def _spread(error: Array, joints: Joint, inner: slice) -> Spread:
+    """Of errors (loads, joints): the usual ones over the inner joints, the worst over all."""
+    usual = error[:, inner]
+    known = usual[numpy.isfinite(usual)]
     load, which = numpy.unravel_index(int(numpy.nanargmax(error)), error.shape)
     numbers = [float(numpy.broadcast_to(number, error.shape[1:])[which]) for number in joints.numbers()]
     return Spread(
         median=float(numpy.median(known)),
         high=float(numpy.percentile(known, 95)),
-        worst=float(known.max()),
+        worst=float(error[load, which]),
         joint=joints.with_numbers(numbers),
         load=float(FORCES[load]),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -185,9 +185,9 @@ RATIOS = numpy.array([0.73, 1.0, 1.35, 1.8, 2.3, 2.8, 3.4, 4.1, 4.9, 5.8, 6.7, 7
 """The twelve R2/L over which Table 3 is refitted."""
 
 
-def paper_joint(poisson: float) -> Joint:
-    """Twelve joints in the ranges of Table 1: outer radius 24 mm, clearance 0.1 mm, steel on 1 GPa."""
-    socket = 24.0 * RATIOS / (1 + RATIOS)
+def paper_joint(poisson: Array, ratios: Array = RATIOS) -> Joint:
+    """Joints by R2/L in the ranges of Table 1: outer radius 24 mm, clearance 0.1 mm, steel on 1 GPa."""
+    socket = 24.0 * ratios / (1 + ratios)
     return Joint(
         ball_radius=socket - 0.1,
         clearance=0.1,
@@ -201,13 +201,15 @@ def paper_joint(poisson: float) -> Joint:
 class Column:
     """One column of Table 3: the paper's constants and ours.
 
-    `difference` is how far the paper's K lies from the reference at each of `RATIOS`, relative.
+    `difference` is how far the paper's K lies from the reference at each of `RATIOS`, relative; `paper_error` the worst
+    errors of the closed form with the paper's K, as `calibration.error` has them with ours.
     """
 
     poisson: float
     paper: tuple[float, float, float]
     ours: tuple[float, float, float]
     difference: numpy.ndarray
+    paper_error: dict[str, float]
     calibration: Calibration
 
     def summary(self) -> dict[str, Any]:
@@ -221,6 +223,7 @@ class Column:
             "residual": self.calibration.residual.tolist(),
             "spread_over_load": self.calibration.spread,
             "error": self.calibration.error,
+            "paper_error": self.paper_error,
         }
 
 
@@ -244,11 +247,13 @@ def refit_column(poisson: float, reference: Model | None = None) -> Column:
     paper = _three(published[name][place] for name in ("C1", "C2", "C3"))
     joint = paper_joint(poisson)
     fit = calibrate(joint, form=as_polynomial, reference=reference)
+    theirs = replace(fit, modulus=polynomial(*paper))
     return Column(
         poisson=poisson,
         paper=paper,
         ours=_three(fit.modulus.constants),
-        difference=_values(polynomial(*paper)(joint)) / fit.wanted - 1,
+        difference=theirs.residual,
+        paper_error=theirs.error,
         calibration=fit,
     )
 

@@ -18,20 +18,21 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 _STYLES: dict[str, dict[str, Any]] = {
-    "exact": {"color": "black", "linestyle": "-", "linewidth": 2.2},
+    "exact": {"color": "black", "linestyle": "-", "linewidth": 1.6},
     "finite elements": {
         "color": "#CC79A7",
         "linestyle": "",
         "marker": "o",
         "markersize": 3.5,
         "markerfacecolor": "none",
+        "markevery": 3,
     },
     "hess-forsbach": {"color": "#D55E00", "linestyle": (0, (6, 2)), "linewidth": 1.6},
     "bartel": {"color": "#0072B2", "linestyle": (0, (2, 1.5)), "linewidth": 1.6},
     "bonded-layer": {"color": "#009E73", "linestyle": (0, (7, 2, 1.5, 2)), "linewidth": 1.6},
-    "hertz": {"color": "#56B4E9", "linestyle": (0, (4, 1.5, 1, 1.5)), "linewidth": 1.6},
+    "hertz": {"color": "#56B4E9", "linestyle": "-", "linewidth": 1.0},
     "refined": {"color": "#E69F00", "linestyle": (0, (1, 1)), "linewidth": 2.0},
-    FIT: {"color": "0.5", "linestyle": ":", "linewidth": 1.6},
+    FIT: {"color": "0.5", "linestyle": ":", "linewidth": 1.8, "zorder": 3},
 }
 _WIDTH = 10.8  # inches: a page's width, with letters as large as the text's
 
@@ -43,7 +44,9 @@ def draw(figure: Figure) -> Drawing:
     parts: list[Panel | Map] = [*figure.panels, *figure.maps]
     rows = -(-len(parts) // figure.columns)
     drawing = Drawing()
-    for axes, part in zip(_grid(drawing, rows, figure.columns), parts, strict=False):
+    for axes, part in zip(
+        _grid(drawing, rows, figure.columns, bottom=0.95 if figure.panels else 0.55), parts, strict=False
+    ):
         axes.set_visible(True)
         if isinstance(part, Map):
             _draw_map(axes, part)
@@ -55,9 +58,9 @@ def draw(figure: Figure) -> Drawing:
     return drawing
 
 
-def _grid(drawing: Drawing, rows: int, columns: int) -> Iterator[Axes]:
+def _grid(drawing: Drawing, rows: int, columns: int, bottom: float) -> Iterator[Axes]:
     """Axes of the same size, invisible yet. Margins are known, so that no layout need be searched for: seconds less."""
-    left, between, right, top, apart, bottom = 0.75, 0.75, 0.15, 0.35, 0.85, 0.95
+    left, between, right, top, apart = 0.75, 0.75, 0.15, 0.35, 0.85
     width = (_WIDTH - left - right - (columns - 1) * between) / columns
     height = 0.72 * width
     whole = top + rows * height + (rows - 1) * apart + bottom
@@ -144,14 +147,11 @@ def _style(line: Line, cases: list[str]) -> dict[str, Any]:
 
 def _draw_map(axes: Axes, each: Map) -> None:
     values = numpy.array([[numpy.nan if value is None else value for value in row] for row in each.z], dtype=float)
-    if each.about_zero:
-        reach = 1.6 * min(float(numpy.nanmax(abs(values))), 100.0)  # pale enough for the numbers on it
-        colours: dict[str, Any] = {"cmap": "RdBu_r", "levels": numpy.linspace(-reach, reach, 17), "extend": "both"}
-    else:
-        colours = {"cmap": "viridis", "levels": 12}
-    axes.contourf(each.x, each.y, values, **colours)
-    ink = "0.2" if each.about_zero else "white"
-    axes.clabel(axes.contour(each.x, each.y, values, levels=7, colors=ink, linewidths=0.6), fontsize=7)
+    colours = _about_zero() if each.about_zero else {"cmap": "viridis", "levels": 9}
+    filled = axes.contourf(each.x, each.y, values, **colours)
+    lines = axes.contour(each.x, each.y, values, levels=filled.levels, colors="black", linewidths=0.5, linestyles="-")
+    for text in axes.clabel(lines, fontsize=7):
+        text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.6})
     radius = numpy.array(each.x)
     for outer in OUTER_RADII:
         axes.plot(radius, outer - radius, color="black", linestyle=":", linewidth=1.5)
@@ -159,6 +159,18 @@ def _draw_map(axes: Axes, each: Map) -> None:
     axes.set_xlabel(each.x_label)
     axes.set_ylabel(each.y_label)
     axes.set_title(each.title, fontsize=10)
+
+
+_ENDS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+_LEVELS = (*(-end for end in reversed(_ENDS)), *_ENDS)
+
+
+def _about_zero() -> dict[str, Any]:
+    """The same levels in every map, so that a colour means the same error everywhere."""
+    from matplotlib.colors import SymLogNorm
+
+    norm = SymLogNorm(linthresh=1.0, vmin=-300.0, vmax=300.0)
+    return {"levels": _LEVELS, "cmap": "RdBu_r", "norm": norm, "extend": "both"}
 
 
 def heat_map(rows: Sequence[Mapping[str, Any]]) -> Drawing:

@@ -43,8 +43,9 @@ Almost Conformal Spherical Contact Problems</i>, Appl. Sci. 2021, 11, 11170
 (<a href="https://doi.org/10.3390/app112311170">doi 10.3390/app112311170</a>), computed again from the
 geometry up.</p>"""
 _ACCURACY = """<p>Relative errors against the exact answer over joints that fill Table 1 evenly, ν 0.3 to 0.49, 500 to
-4000 N: median / 95th percentile / worst in %, and under each the joint that is worst (mm). A model is asked here
-whether it trusts itself or not; the last column says at how many of the contacts it does.</p>"""
+4000 N: median and 95th percentile / worst in %, the worst also among joints on the ends of the ranges; under each the
+joint that is worst (mm). A model is asked here whether it trusts itself or not; the last columns say at how many of
+the contacts it answers, and trusts itself.</p>"""
 
 
 def write_report(results: Mapping[str, Sequence[Any]], folder: Path, engine: Engine = _HERE) -> Path:
@@ -137,16 +138,19 @@ def _shown(picture: bytes, title: str, caption: str) -> str:
 
 
 def _csv(figure: Figure) -> str:
-    """A row a point: panel, model, case, x, y; for maps also z."""
+    """A row a point: panel, model, case, x and y with their names; for maps z, which the panel's title names."""
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(("panel", "model", "case", "x", "y", "z"))
+    writer.writerow(("panel", "model", "case", "x_name", "x", "y_name", "y", "z"))
     for panel in figure.panels:
         for line in panel.lines:
             writer.writerows(
-                (panel.title, line.model, line.case, x, y, "") for x, y in zip(line.x, line.y, strict=True)
+                (panel.title, line.model, line.case, panel.x, x, panel.y, y, "")
+                for x, y in zip(line.x, line.y, strict=True)
             )
     for each in figure.maps:
         for y, row in zip(each.y, each.z, strict=True):
-            writer.writerows((each.title, "", "", x, y, z) for x, z in zip(each.x, row, strict=True) if z is not None)
+            names = (each.title, "", "", each.x_label)
+            known = ((x, z) for x, z in zip(each.x, row, strict=True) if z is not None)
+            writer.writerows((*names, x, each.y_label, y, z) for x, z in known)
     return text.getvalue()

@@ -7,13 +7,14 @@ from html import escape
 from itertools import groupby
 from typing import Any
 
+from .accuracy import RANGES, THICKNESS
 from .accuracy_table import HEADS, place, spread
 from .calibrate import RATIOS
 
 Row = Mapping[str, Any]
 
-_CLASSES = {"holds": "holds", "holds nearly": "nearly", "does not hold": "fails"}
-_MANY = ("hold", "hold nearly", "fail")
+_CLASSES = {"holds": "holds", "holds within": "nearly", "does not hold": "fails"}
+_MANY = ("hold", "hold within some percent", "fail")
 
 
 def claims(findings: Sequence[Row]) -> str:
@@ -24,13 +25,10 @@ def claims(findings: Sequence[Row]) -> str:
 def _claim(finding: Row) -> tuple[str, str, str]:
     said = f"{escape(finding['sentence'])}<br><small>{escape(finding['where'])}</small>"
     numbers = "<br>".join(f"{escape(name)}: {_number(value)}" for name, value in finding["numbers"].items())
-    verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{finding['verdict']}</span>"
+    verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{escape(finding['text'])}</span>"
     comment = f"<br><small>{escape(finding['comment'])}</small>" if finding["comment"] else ""
-    code = f"<br><small><code>{escape(finding['code'].removeprefix(_ROOM))}</code></small>"
+    code = f"<br><small><code>{escape(finding['code'])}</code></small>"
     return said, numbers, verdict + comment + code
-
-
-_ROOM = "ballsocket.paper."
 
 
 def _number(value: float) -> str:
@@ -46,9 +44,10 @@ def tally(findings: Iterable[Row]) -> str:
 
 def given() -> str:
     """Tables 1 and 2, which are the paper's input and ours."""
+    ranges = (RANGES["ball_radius"], THICKNESS, RANGES["clearance"], RANGES["outer_radius"])
     geometry = _table(
         ("Table 1", "head radius R1", "liner thickness L", "radial clearance ΔR", "outer radius R2 + L"),
-        [("range", "11 to 23 mm", "3 to 15 mm", "0.05 to 0.2 mm", "16 to 26 mm")],
+        [("range", *(f"{low:g} to {high:g} mm" for low, high in ranges))],
         "",
     )
     material = _table(
@@ -76,9 +75,10 @@ def _refitted(name: str, columns: Sequence[Row]) -> str:
     for i, ratio in enumerate(RATIOS):
         differences = (f"{100 * column['difference'][i]:+.1f} %" for column in columns)
         rows.append((f"the paper's K against ours at R2/L {ratio:g}", *differences))
-    for quantity in ("indentation", "max_pressure", "half_angle", "force"):
-        errors = (f"{100 * column['error'][quantity]:.1f} %" for column in columns)
-        rows.append((f"closed form with our K: {quantity.replace('_', ' ')}, worst", *errors))
+    for quantity, head in HEADS.items():
+        for whose, key in (("the paper's", "paper_error"), ("our", "error")):
+            errors = (f"{100 * column[key][quantity]:.1f} %" for column in columns)
+            rows.append((f"closed form with {whose} K: {head}, worst", *errors))
     return _table(heads, rows, "")
 
 
@@ -87,12 +87,16 @@ def accuracy(rows: Iterable[Row]) -> str:
     cells = [
         (
             f"<code>{escape(row['model'])}</code>",
-            *(f"{spread(row['errors'][name])}<br><small>{place(row['errors'][name])}</small>" for name in HEADS),
-            f"{100 * row['valid']:.0f} %",
+            *(
+                f"{escape(spread(row['errors'][name]))}<br><small>{place(row['errors'][name])}</small>"
+                for name in HEADS
+            ),
+            f"{100 * row['answered']:.3g} %",
+            f"{100 * row['valid']:.3g} %",
         )
         for row in rows
     ]
-    return _table(("model", *HEADS.values(), "says valid"), cells, "")
+    return _table(("model", *HEADS.values(), "answers", "says valid"), cells, "")
 
 
 def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], kind: str) -> str:

@@ -23,6 +23,7 @@ class Status(IntEnum):
     BEYOND_EQUATOR = 4
     AT_RIM = 5
     NOT_ROUND = 6
+    NO_JOINT = 7
 
     @property
     def sentence(self) -> str:
@@ -31,7 +32,13 @@ class Status(IntEnum):
     @property
     def failed(self) -> bool:
         """Whether the numbers are missing (NaN)."""
-        return self in (Status.OUTSIDE_DOMAIN, Status.NOT_REACHED, Status.NOT_CONVERGED, Status.NOT_ROUND)
+        return self in (
+            Status.OUTSIDE_DOMAIN,
+            Status.NOT_REACHED,
+            Status.NOT_CONVERGED,
+            Status.NOT_ROUND,
+            Status.NO_JOINT,
+        )
 
 
 def missing(status: Array) -> Array:
@@ -51,6 +58,7 @@ _SENTENCES = {
     Status.BEYOND_EQUATOR: "the contact circle would pass the socket's equator (half angle above 90 degrees)",
     Status.AT_RIM: "the contact fills the socket and reaches its rim",
     Status.NOT_ROUND: "ball and socket do not touch in one round patch around the pole, as the model takes it",
+    Status.NO_JOINT: "these numbers make no joint: they leave no liner, or less than no clearance",
 }
 
 

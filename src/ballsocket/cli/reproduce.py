@@ -10,6 +10,7 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
+from ..checks import needs
 from ..engines import Processes
 from ..paper.plan import full_plan, quick_plan
 from ..report import write_report
@@ -26,6 +27,8 @@ def reproduce(
 
     What is finished is kept: a run that was stopped goes on where it was.
     """
+    if not quick:
+        needs("fem", "skfem", "meshio", "psutil")
     engine = Processes(workers=workers)
     plan = quick_plan() if quick else full_plan()
     with Progress(console=Console(stderr=True)) as progress:

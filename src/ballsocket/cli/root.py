@@ -71,6 +71,8 @@ def main() -> None:
         message = str(error)
     except ImportError as error:
         message = str(error)
+    except RuntimeError as error:  # a process that was lost too often
+        message, status = str(error), FAILURE
     except (ArithmeticError, MemoryError) as error:
         message, status = f"these numbers are too large or too small to calculate with ({error})", FAILURE
     print("ballsocket: " + " ".join(message.split()), file=sys.stderr)

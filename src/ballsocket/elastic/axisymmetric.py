@@ -67,6 +67,14 @@ class Exact(Model):
         return ElasticContact
 
     @property
+    def differentiable(self) -> bool:
+        return False
+
+    @property
+    def seconds_a_press(self) -> float:
+        return 3e-3
+
+    @property
     def name(self) -> str:
         return "exact"
 

@@ -67,6 +67,10 @@ class Tabulated(Model):
     file: str = ""
 
     @property
+    def seconds_a_press(self) -> float:
+        return 4e-6
+
+    @property
     def name(self) -> str:
         return "tabulated"
 

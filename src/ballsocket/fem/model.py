@@ -78,6 +78,14 @@ class FiniteElement(Model):
         return MeshedContact
 
     @property
+    def differentiable(self) -> bool:
+        return False
+
+    @property
+    def seconds_a_press(self) -> float:
+        return 0.2
+
+    @property
     def name(self) -> str:
         return "fem"
 

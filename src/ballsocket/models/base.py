@@ -82,6 +82,16 @@ class Model(ABC):
         """Numbers of the model's own that may be arrays and broadcast against joint and load."""
         return ()
 
+    @property
+    def differentiable(self) -> bool:
+        """Whether JAX can trace a press."""
+        return True
+
+    @property
+    def seconds_a_press(self) -> float:
+        """Roughly, for one of many points on one core: studies cut their work by it."""
+        return 4e-7
+
     def press(
         self,
         joint: Joint,

@@ -33,6 +33,10 @@ class PlaneLayer(Model):
     """
 
     @property
+    def seconds_a_press(self) -> float:
+        return 2e-3
+
+    @property
     def name(self) -> str:
         return "plane-layer"
 

@@ -37,6 +37,10 @@ class Refined(Model):
     """
 
     @property
+    def seconds_a_press(self) -> float:
+        return 3e-5
+
+    @property
     def name(self) -> str:
         return "refined"
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy
 
+from ..accuracy import RANGES, THICKNESS
+from ..calibrate import paper_joint
 from ..joint import Joint, Material
 from ..presets import STEEL
 
@@ -25,7 +28,7 @@ LOAD = 3000.0
 LOADS = numpy.array([1000.0, 1500.0, 2000.0, 2500.0, 3000.0])
 """Over which the foundation modulus is averaged."""
 
-OUTER_RADII = (16.0, 26.0)
+OUTER_RADII = RANGES["outer_radius"]
 """The limits of Table 1 for R2 + L, dotted in Figure 6."""
 
 
@@ -66,9 +69,22 @@ def named_series() -> Iterator[tuple[str, Joint, tuple[float, ...]]]:
 
 
 def by_ratio(ratio: Array, poisson: Array | float) -> Joint:
-    """Figure 2, right: joints by R2/L whose outer radius is 24 mm, in the middle of Table 1."""
-    socket = 24.0 * ratio / (1 + ratio)
-    return joint(head_radius=socket - 0.1, liner_thickness=24.0 - socket, poisson=poisson)
+    """Figure 2, right, and Table 3: joints by R2/L whose outer radius is 24 mm, in the middle of Table 1."""
+    return paper_joint(poisson, ratio)
+
+
+def outline(poisson: float = 0.4, heads: int = 5, liners: int = 3) -> tuple[Array, Array, Joint]:
+    """Head radii and liner thicknesses that Table 1 allows, from end to end, and their joints; c is 0.1 mm."""
+    radius = numpy.linspace(*RANGES["ball_radius"], heads)[:, None] + numpy.zeros(liners)
+    thinnest, thickest = (numpy.clip(outer - radius - 0.1, *THICKNESS) for outer in (OUTER_RADII[0], OUTER_RADII[1]))
+    thickness = thinnest + (thickest - thinnest) * numpy.linspace(0.0, 1.0, liners)
+    radius, thickness = radius.ravel(), thickness.ravel()
+    return radius, thickness, joint(head_radius=radius, liner_thickness=thickness, poisson=poisson)
+
+
+def with_clearance(joints: Joint, clearance: float) -> Joint:
+    """The same joints with another clearance."""
+    return replace(joints, clearance=clearance)
 
 
 def scaled_modulus(contact_pressure: Array, indentation: Array, socket_radius: Array) -> Array:

@@ -12,7 +12,7 @@ from ..arrays import to_numpy
 from ..contact import Contact
 from ..joint import Joint
 from ..models.base import Model
-from ..models.modulus import hess_forsbach
+from ..models.foundation import HessForsbach
 from . import cases
 from .figure import Figure, Line, Map, Panel
 
@@ -21,8 +21,7 @@ Models = Mapping[str, Model]
 """By the name under which they are drawn."""
 
 FIT = "Eq. (18), Table 3"
-REFERENCE = "exact"
-"""Deviations are taken from it."""
+"""The paper's closed form, where its modulus is what is shown."""
 
 
 def _line(model: str, case: str, x: Any, y: Any) -> Line:
@@ -37,7 +36,7 @@ _MODULUS = "p0 R2/(δ E)"
 
 def figure_2(poisson: float, references: Models) -> Figure:
     """K~ = p0 R2/(d E) by force, clearance and R2/L for one ν, with the published fit."""
-    panels = _modulus_panels(poisson, references, f"ν {poisson:g}")
+    panels = _modulus_panels(poisson, {**references, FIT: HessForsbach()}, f"ν {poisson:g}")
     return Figure(
         title="Figure 2",
         caption="Dimensionless foundation modulus by force (R2 18, L 6.75, ΔR 0.1 mm), by radial clearance, and by R2/L"
@@ -70,10 +69,6 @@ def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str
         by_force.append(_line(name, case, _FORCES, _scaled(model, hip, _FORCES)))
         by_clearance.append(_line(name, case, _CLEARANCES, _mean_modulus(model, wide)))
         by_ratio.append(_line(name, case, _RATIOS, _mean_modulus(model, family)))
-    ends = numpy.array([_FORCES[0], _FORCES[-1]])
-    by_force.append(_line(FIT, case, ends, _fitted(hip) + 0 * ends))
-    by_clearance.append(_line(FIT, case, _CLEARANCES, _fitted(wide) + 0 * _CLEARANCES))
-    by_ratio.append(_line(FIT, case, _RATIOS, _fitted(family)))
     return {
         ("by force", "normal force [N]"): by_force,
         ("by clearance", "radial clearance ΔR [mm]"): by_clearance,
@@ -88,11 +83,6 @@ def _scaled(model: Model, joint: Joint, force: Array) -> Array:
 
 def _mean_modulus(model: Model, joints: Joint) -> Array:
     return _scaled(model, joints, cases.LOADS[:, None]).mean(axis=0)
-
-
-def _fitted(joint: Joint) -> Array:
-    """K~ of Eq. (18)."""
-    return hess_forsbach(joint) * joint.socket_radius / joint.liner.young
 
 
 _STEPS = 25
@@ -117,19 +107,22 @@ SERIES: dict[str, dict[str, Joint]] = {
 }
 """The joints of Figure 5."""
 
+_LETTERS = {"clearance": ("a", "b"), "head radius": ("c", "d"), "liner thickness": ("e", "f")}
+
 
 def figure_5(series: str, case: str, models: Models) -> Figure:
     """Force and pressure of one joint of the three series, for the panels that show its series."""
     joint = SERIES[series][case]
     place = _BY_ARC if series == "head radius" else _BY_ANGLE
+    left, right = _LETTERS[series]
     return Figure(
         title="Figure 5",
         caption="Force by indentation, and pressure at 3 kN, by clearance, head radius and liner thickness around "
         "R1 16, L 6, ΔR 0.1 mm, ν 0.4. Pressure is shown over the arc R1 φ where the head's radius varies.",
         columns=2,
         panels=[
-            _load_panel(f"{series}: force", case, joint, models),
-            _pressure_panel(f"{series}: pressure at 3 kN", case, joint, models, place),
+            _load_panel(f"({left}) {series}: force", case, joint, models),
+            _pressure_panel(f"({right}) {series}: pressure at 3 kN", case, joint, models, place),
         ],
     )
 
@@ -198,9 +191,9 @@ def figure_6_pressures(name: str, model: Model, reference: Model, points: int = 
     """How far one model's peak pressure lies from a reference's, over the same axes."""
     return Figure(
         title="Figure 6, pressures of every model",
-        caption="How far the peak pressure of each model lies from the exact one, in %.",
+        caption="How far the peak pressure of each model lies from the exact one, in %; white is within 1 %.",
         columns=3,
-        maps=[_deviation(name, _Grid(points), model, reference, lambda contact: contact.max_pressure)],
+        maps=[_deviation(name, "p0", _Grid(points), (model, reference), lambda contact: contact.max_pressure)],
     )
 
 
@@ -208,15 +201,17 @@ def figure_6_areas(name: str, model: Model, reference: Model, points: int = 25) 
     """How far its contact area does."""
     return Figure(
         title="Figure 6, areas of every model",
-        caption="How far the contact area of each model lies from the exact one, in %.",
+        caption="How far the contact area of each model lies from the exact one, in %; white is within 1 %.",
         columns=3,
-        maps=[_deviation(name, _Grid(points), model, reference, lambda contact: contact.area)],
+        maps=[_deviation(name, "area", _Grid(points), (model, reference), lambda contact: contact.area)],
     )
 
 
-def _deviation(title: str, grid: _Grid, model: Model, reference: Model, quantity: Callable[[Contact], Array]) -> Map:
-    value, truth = (quantity(each.press(grid.joint, force=cases.LOAD)) for each in (model, reference))
-    return replace(grid.map(title, 100 * (value / truth - 1)), about_zero=True)
+def _deviation(
+    name: str, symbol: str, grid: _Grid, pair: tuple[Model, Model], quantity: Callable[[Contact], Array]
+) -> Map:
+    value, truth = (quantity(each.press(grid.joint, force=cases.LOAD)) for each in pair)
+    return replace(grid.map(f"{name}: {symbol} over exact [%]", 100 * (value / truth - 1)), about_zero=True)
 
 
 class _Grid:

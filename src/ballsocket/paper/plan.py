@@ -46,13 +46,15 @@ class Plan:
         return sum(map(len, self.parts.values()))
 
     def run(self, folder: Path, engine: Engine = _HERE) -> Iterator[tuple[str, str, Any]]:
-        """The pieces with part, name and result, as they are there. Those that lie in the folder already are read.
+        """The pieces with part, name and result, as they are there. Those that lie in the folder of the
+        plan's name already are read.
 
         Raises
         ------
         OSError
             A folder that cannot be written to.
         """
+        folder = folder / self.name
         folder.mkdir(parents=True, exist_ok=True)
         pieces = [(part, name) for part, pieces in self.parts.items() for name in pieces]
         key = f"ballsocket {fingerprint()}, {self.name}"
@@ -92,7 +94,11 @@ class _Pieces:
 
     def __call__(self, number: int) -> Any:
         result = self.pieces[number]()
-        write_text(self.paths[number], json.dumps({"key": self.key, "result": result}, allow_nan=False))
+        try:
+            record = json.dumps({"key": self.key, "result": result}, allow_nan=False)
+        except ValueError as error:
+            raise ValueError(f"{self.paths[number].stem} has a number that is missing or infinite") from error
+        write_text(self.paths[number], record)
         return result
 
 

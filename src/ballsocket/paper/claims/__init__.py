@@ -14,14 +14,21 @@ from . import agreement, design, elsewhere, modulus
 from .finding import Claim, Finding, Verdict
 
 CLAIMS: tuple[Claim, ...] = (
-    modulus.unbounded_moduli,
     modulus.linear_kinematics_suffice,
+    modulus.unbounded_moduli,
+    agreement.deviations_grow_with_poisson,
     agreement.only_the_liner_deforms,
     modulus.constant_above_one_kilonewton,
+    modulus.constant_at_0_49,
+    modulus.varies_below_one_kilonewton,
     modulus.independent_of_clearance,
+    modulus.independent_of_clearance_at_0_49,
+    modulus.stiffer_where_confined,
     modulus.quality_of_the_fit,
+    modulus.quality_of_the_fit_on_thin_liners,
     agreement.hertz_is_inadequate,
     agreement.good_agreement_at_0_4,
+    agreement.older_models_acceptable_at_0_4,
     agreement.minor_deviations_at_0_45,
     agreement.overestimated_pressure,
     agreement.wide_half_angle,
@@ -30,6 +37,7 @@ CLAIMS: tuple[Claim, ...] = (
     design.lowest_pressure,
     design.smallest_area,
     agreement.usable_above_0_45,
+    agreement.older_models_err_considerably,
 )
 """Of the paper, in its order."""
 

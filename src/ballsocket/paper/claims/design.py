@@ -9,7 +9,7 @@ import numpy
 from ...contact import Contact
 from ...models.base import Model
 from .. import cases
-from .finding import Finding, graded
+from .finding import Finding, named, true
 
 Array = numpy.ndarray
 
@@ -18,13 +18,15 @@ def stiffness_and_geometry(reference: Model) -> Finding:
     """Figure 5 a, c, e: which way the stiffness at 3 kN goes."""
     rise = {name: reference.press(series, force=cases.LOAD).stiffness for name, series in cases.series().items()}
     signs = {"clearance": -1, "head_radius": 1, "liner_thickness": -1}
-    good = all(numpy.all(sign * numpy.diff(rise[name]) > 0) for name, sign in signs.items())
     return Finding(
         name="stiffness-and-geometry",
         where="Section 3.2, Figure 5 a, c, e",
         sentence="The joint gets softer with clearance, stiffer with the head's radius, stiffer with a thinner liner.",
-        numbers={f"last over first of {name}": float(values[-1] / values[0]) for name, values in rise.items()},
-        verdict=graded(good, False),
+        numbers={
+            f"stiffness at the largest over that at the smallest {named(name)}": float(values[-1] / values[0])
+            for name, values in rise.items()
+        },
+        **true(all(numpy.all(sign * numpy.diff(rise[name]) > 0) for name, sign in signs.items())),
     )
 
 
@@ -40,7 +42,7 @@ def clearance_and_pressure(reference: Model) -> Finding:
             "p0 at 0.2 over p0 at 0.05 mm": float(contact.max_pressure[-1] / contact.max_pressure[0]),
             "ε at 0.2 over ε at 0.05 mm": float(contact.half_angle[-1] / contact.half_angle[0]),
         },
-        verdict=graded(bool(good), False),
+        **true(good),
     )
 
 
@@ -57,8 +59,9 @@ def lowest_pressure(reference: Model) -> Finding:
             "at R1, mm": float(radius[best]),
             "at L, mm": float(thickness[best]),
         },
-        verdict=graded(bool(radius[best] > 18) and 3.0 < thickness[best] < 12.0, bool(radius[best] > 17)),
-        comment="Within an outer radius of 26 mm, where a larger head leaves a thinner liner.",
+        comment=f"At an outer radius of {radius[best] + 0.1 + thickness[best]:.3g} mm, where a larger head leaves a "
+        "thinner liner.",
+        **true(radius[best] > 17 and 4.0 <= thickness[best] <= 10.0),
     )
 
 
@@ -75,16 +78,14 @@ def smallest_area(reference: Model) -> Finding:
             "at R1, mm": float(radius[best]),
             "at L, mm": float(thickness[best]),
         },
-        verdict=graded(bool(radius[best] < 15 and thickness[best] < 6), bool(radius[best] < 16)),
-        comment="The smallest head, with the thinnest liner that an outer radius of 16 mm leaves it.",
+        comment=f"At an outer radius of {radius[best] + 0.1 + thickness[best]:.3g} mm: a small head is allowed a thin "
+        "liner only as far as that limit.",
+        **true(radius[best] < 14 and thickness[best] < 6),
     )
 
 
 @cache
 def _within_table_1(reference: Model) -> tuple[Array, Array, Contact]:
     """Head radius and liner thickness of the joints within the outer radii of Table 1, and their contacts at 3 kN."""
-    radius, thickness = (grid.ravel() for grid in numpy.meshgrid(numpy.linspace(11, 23, 13), numpy.linspace(3, 15, 13)))
-    outer = radius + 0.1 + thickness
-    kept = (outer >= cases.OUTER_RADII[0]) & (outer <= cases.OUTER_RADII[1])
-    joints = cases.joint(head_radius=radius[kept], liner_thickness=thickness[kept])
-    return radius[kept], thickness[kept], reference.press(joints, force=cases.LOAD)
+    radius, thickness, joints = cases.outline(heads=13, liners=7)
+    return radius, thickness, reference.press(joints, force=cases.LOAD)

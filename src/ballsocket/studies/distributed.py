@@ -1,0 +1,102 @@
+"""Dask as an engine: a cluster of one's own, or any scheduler by its address."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..checks import needs, require
+from ..engines import Work, available_cores
+
+if TYPE_CHECKING:
+    import xarray
+    from distributed import Client
+
+
+@dataclass(frozen=True, kw_only=True)
+class Distributed:
+    """Dask workers. Blocks are cut by `xarray.map_blocks`: a task of Dask's for each block, not for each press.
+
+    A worker that dies costs its blocks once more. Workers on other machines need this package in the same version,
+    and a store that they reach under the same path.
+
+    Parameters
+    ----------
+    address : str, optional
+        Of a scheduler, such as "tcp://10.0.0.1:8786"; without one a cluster is started on this machine, and ended
+        with the study. A script that does so needs the guard `if __name__ == "__main__":`.
+    workers : int, optional
+        Of a cluster of one's own: as many as there are cores. Each has one thread.
+    retries : int
+        How often a block is tried anew.
+
+    Raises
+    ------
+    ValueError
+        An address and workers, or fewer than one worker.
+    """
+
+    address: str | None = None
+    workers: int | None = None
+    retries: int = 3
+
+    def __post_init__(self) -> None:
+        if self.workers is not None:
+            require("workers", self.workers, self.workers >= 1, "at least one worker")
+            if self.address is not None:
+                raise ValueError(f"{self.address} has workers of its own: give an address or a number of workers")
+
+    def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
+        """Each number with what its work returned, as soon as it is there.
+
+        Raises
+        ------
+        ImportError
+            Dask is not installed.
+        OSError
+            There is no scheduler at the address.
+        """
+        if not len(numbers):
+            return
+        needs("study", "dask", "distributed", "xarray")
+        from distributed import as_completed, futures_of
+
+        with self._client() as client:
+            blocks = client.persist(_blocks(work, numbers), retries=self.retries)
+            coming = as_completed(futures_of(blocks), with_results=True)
+            del blocks  # an answer is let go by its worker once it is here
+            for future, answers in coming:
+                yield from answers.tolist()
+                future.release()
+
+    @contextmanager
+    def _client(self) -> Iterator[Client]:
+        from distributed import Client, LocalCluster
+
+        if self.address is not None:
+            with Client(self.address, timeout=10) as client:
+                yield client
+            return
+        count = self.workers or available_cores()
+        options: dict[str, Any] = {"dashboard_address": None, "host": "127.0.0.1", "silence_logs": 40}
+        with LocalCluster(n_workers=count, threads_per_worker=1, **options) as cluster, Client(cluster) as client:
+            yield client
+
+
+def _blocks(work: Work, numbers: Sequence[int]) -> xarray.Dataset:
+    """A dataset along `block` whose one element per chunk is (number, answer)."""
+    import xarray
+
+    plan = xarray.Dataset({"answer": ("block", numpy.array(numbers))}).chunk(block=1)
+    return xarray.map_blocks(_answers, plan, kwargs={"work": work}, template=plan.astype(object))
+
+
+def _answers(block: xarray.Dataset, work: Work) -> xarray.Dataset:
+    answers = numpy.empty(block.sizes["block"], dtype=object)
+    for place, number in enumerate(block.answer.values.tolist()):
+        answers[place] = (number, work(number))
+    return block.assign(answer=("block", answers))

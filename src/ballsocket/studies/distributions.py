@@ -1,0 +1,91 @@
+"""How a number scatters: what a drawing's tolerance means."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+import numpy
+
+from ..checks import require
+
+Array = numpy.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Uniform:
+    """Anything from `low` to `high`, equally likely.
+
+    Raises
+    ------
+    ValueError
+        Ends that are not finite, or the wrong way round.
+    """
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        require("low", self.low, -inf < self.low < self.high, f"it is finite and below high = {self.high:g}")
+        require("high", self.high, self.high < inf, "it is finite")
+
+    @property
+    def frozen(self) -> Any:
+        """The distribution of `scipy.stats`."""
+        from scipy.stats import uniform
+
+        return uniform(self.low, self.high - self.low)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Normal:
+    """Normal, cut off at `low` and `high` where these are given: a process with inspection.
+
+    Parameters
+    ----------
+    mean, deviation : float
+        Of the distribution before it is cut off; the deviation is positive.
+    low, high : float
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+    """
+
+    mean: float
+    deviation: float
+    low: float = -inf
+    high: float = inf
+
+    def __post_init__(self) -> None:
+        require("mean", self.mean, abs(self.mean) < inf, "it is finite")
+        require("deviation", self.deviation, 0 < self.deviation < inf, "a standard deviation is above 0 and finite")
+        require("low", self.low, self.low < self.high, f"it is below high = {self.high:g}")
+
+    @property
+    def frozen(self) -> Any:
+        """The distribution of `scipy.stats`."""
+        from scipy.stats import norm, truncnorm
+
+        if (self.low, self.high) == (-inf, inf):
+            return norm(self.mean, self.deviation)
+        ends = ((end - self.mean) / self.deviation for end in (self.low, self.high))
+        return truncnorm(*ends, loc=self.mean, scale=self.deviation)
+
+
+Distribution = Uniform | Normal
+
+
+def tolerance(nominal: float, plus_minus: float) -> Normal:
+    """The usual reading of 0.10 ± 0.05: three standard deviations to each limit, nothing beyond.
+
+    Examples
+    --------
+    >>> tolerance(0.10, 0.06).deviation
+    0.02
+    """
+    require("plus_minus", plus_minus, 0 < plus_minus < inf, "a tolerance is above 0 and finite")
+    low, high = nominal - plus_minus, nominal + plus_minus
+    return Normal(mean=nominal, deviation=plus_minus / 3, low=low, high=high)

@@ -1,0 +1,238 @@
+"""A study file: TOML with units in; model, joint and design out. Strict, as joint files are."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..all_models import catalogue, judge
+from ..engines import Engine, Processes, Serial
+from ..files import check_names, joint_of, nearest, read_joint
+from ..joint import Joint
+from ..models.base import Model
+from ..presets import joints
+from ..units import as_given, parse
+from .design import Design, Method, Span, grid, sample, table
+from .distributed import Distributed
+from .distributions import Distribution, Normal, Uniform, tolerance
+from .parameters import PARAMETERS
+
+_MAX_BYTES = 100_000
+_TOP = (
+    "title",
+    "model",
+    "joint",
+    "liner",
+    "ball",
+    "backing",
+    "axes",
+    "samples",
+    "table",
+    "quantities",
+    "store",
+    "engine",
+)
+_DESCRIBED = ("joint", "liner", "ball", "backing")
+_ENGINES = ("serial", "processes", "dask")
+models: dict[str, Model] = {**catalogue, judge.name: judge}
+"""By the names that files and the command line use."""
+
+
+@dataclass(frozen=True, eq=False)
+class StudyFile:
+    """What a study file says."""
+
+    model: Model
+    joint: Joint
+    design: Design
+    quantities: tuple[str, ...]
+    store: Path | None
+    engine: Engine
+
+
+def read_study(path: str | Path) -> StudyFile:
+    """Read a study file.
+
+    Tables: `axes`, a parameter each, with a number, a list, or `{from, to, count}`; `samples`, with `count`, `seed`,
+    `method` ("sobol", "latin-hypercube") and for each parameter that scatters `{low, high}`, `{mean, deviation}` (with
+    `low` and `high` where it is cut off) or `{nominal, plus_minus}`; `table`, with the `path` of a CSV or Parquet file.
+    At the top: `model` (by name), `joint` (a joint file or a preset by name, or a table as in joint files, with
+    `liner`, `ball`, `backing`), `quantities`, `store` (a folder), and a table `engine` with `kind` ("serial",
+    "processes", "dask"), `workers`, `address`. Numbers are text with a unit or bare in mm, N, MPa, degrees. Paths are
+    taken from the file's own folder.
+
+    Raises
+    ------
+    ValueError
+        One sentence: what is wrong, and the nearest thing that is right.
+    OSError
+        A file cannot be read.
+    """
+    path = Path(path)
+    if path.stat().st_size > _MAX_BYTES:
+        raise ValueError(f"{path.name} is larger than {_MAX_BYTES} bytes; a study file is a few lines")
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path.name} is not text in UTF-8: {error.reason} at byte {error.start}") from error
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{path.name} is not TOML: {error}") from error
+    try:
+        return _study(content, path.parent)
+    except ValueError as error:
+        raise ValueError(f"{path.name}: {error}") from error
+
+
+def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
+    check_names(content, _TOP, "at the top")
+    quantities = content.get("quantities", [])
+    if not (isinstance(quantities, list) and all(isinstance(name, str) for name in quantities)):
+        raise ValueError(f"quantities = {quantities!r} must be a list of names")
+    return StudyFile(
+        model=named_model(content.get("model", "hess-forsbach")),
+        joint=_joint(content, folder),
+        design=_design(content, folder),
+        quantities=tuple(quantities),
+        store=folder / _text("store", content["store"]) if "store" in content else None,
+        engine=read_engine(_table_of(content, "engine")),
+    )
+
+
+def named_model(name: Any) -> Model:
+    """A model by its name in the catalogue, or the finite elements.
+
+    Raises
+    ------
+    ValueError
+        A name that is not known, with the nearest one.
+    """
+    if name not in models:
+        raise ValueError(f"model {name!r} is not known{nearest(str(name), models)}")
+    return models[name]
+
+
+def read_engine(content: Mapping[str, Any]) -> Engine:
+    """An engine from `kind`, `workers` and `address`."""
+    check_names(content, ("kind", "workers", "address"), "in [engine]")
+    kind, workers = content.get("kind", "serial"), content.get("workers")
+    if kind not in _ENGINES:
+        raise ValueError(f"engine kind {kind!r} is not known{nearest(str(kind), _ENGINES)}")
+    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int)):
+        raise ValueError(f"workers = {workers!r} must be a whole number")
+    if kind == "dask":
+        return Distributed(address=content.get("address"), workers=workers)
+    if "address" in content:
+        raise ValueError(f"engine kind {kind!r} has no address: 'dask' has")
+    return Processes(workers=workers) if kind == "processes" else Serial()
+
+
+def _joint(content: Mapping[str, Any], folder: Path) -> Joint:
+    given = content.get("joint")
+    if isinstance(given, Mapping):
+        return joint_of({name: content[name] for name in _DESCRIBED if name in content}).joint
+    if given is None:
+        raise ValueError("a joint is needed: a joint file, a preset's name, or a table [joint]")
+    name = _text("joint", given)
+    if name in joints:
+        return joints[name]
+    if not (folder / name).is_file():
+        raise ValueError(f"joint {name!r} is neither a file nor a preset{nearest(name, joints)}")
+    return read_joint(folder / name).joint
+
+
+def _design(content: Mapping[str, Any], folder: Path) -> Design:
+    axes, samples, rows = (_table_of(content, name) for name in ("axes", "samples", "table"))
+    check_names(axes, PARAMETERS, "in [axes]")
+    design = grid(**{name: _values(name, value) for name, value in axes.items()})
+    if samples:
+        design = _samples(samples) * design
+    if rows:
+        check_names(rows, ("path",), "in [table]")
+        design = table(folder / _text("path", rows.get("path", ""))) * design
+    if not design.names:
+        raise ValueError("nothing varies: a table [axes], [samples] or [table] is needed")
+    return design
+
+
+def _values(name: str, value: Any) -> Any:
+    """What an axis takes: one number, several, or a span."""
+    kind = PARAMETERS[name].kind
+    if isinstance(value, list):
+        return [parse(f"{name}[{place}]", each, kind) for place, each in enumerate(value)]
+    if not isinstance(value, Mapping):
+        return parse(name, value, kind)
+    check_names(value, ("from", "to", "count"), f"in {name}")
+    missing = [key for key in ("from", "to", "count") if key not in value]
+    if missing:
+        raise ValueError(f"{name} needs from, to and count; missing: {', '.join(missing)}")
+    low, high = (parse(f"{name}.{key}", value[key], kind) for key in ("from", "to"))
+    return Span(low, high, _whole(f"{name}.count", value["count"]))
+
+
+def _samples(content: Mapping[str, Any]) -> Design:
+    own = ("count", "seed", "method")
+    check_names(content, (*own, *PARAMETERS), "in [samples]")
+    if "count" not in content:
+        raise ValueError("samples.count is missing")
+    method = content.get("method", Method.SOBOL.value)
+    known = [one.value for one in Method]
+    if method not in known:
+        raise ValueError(f"method {method!r} is not known{nearest(str(method), known)}")
+    scattered = {name: distribution_of(name, value) for name, value in content.items() if name not in own}
+    count, seed = _whole("count", content["count"]), _whole("seed", content.get("seed", 0))
+    return sample(count, seed=seed, method=Method(method), **scattered)
+
+
+_KINDS: tuple[tuple[tuple[str, ...], Any], ...] = (
+    (("low", "high"), Uniform),
+    (("mean", "deviation"), Normal),
+    (("mean", "deviation", "low"), Normal),
+    (("mean", "deviation", "high"), Normal),
+    (("mean", "deviation", "low", "high"), Normal),
+    (("nominal", "plus_minus"), tolerance),
+)
+
+
+def distribution_of(name: str, content: Any) -> Distribution:
+    """A distribution from `{low, high}`, `{mean, deviation}` or `{nominal, plus_minus}`.
+
+    Raises
+    ------
+    ValueError
+        Other keys, or numbers that are not allowed.
+    """
+    kind = PARAMETERS[name].kind
+    for keys, make in _KINDS:
+        if isinstance(content, Mapping) and set(content) == set(keys):
+            numbers = {key: parse(f"{name}.{key}", content[key], kind) for key in keys}
+            with as_given(content, f"{name}."):
+                made: Distribution = make(**numbers)
+                return made
+    raise ValueError(
+        f"{name} = {content!r} must be {{low, high}}, {{mean, deviation}} with or without low and high, or "
+        "{nominal, plus_minus}"
+    )
+
+
+def _whole(name: str, value: Any) -> int:
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise ValueError(f"{name} = {value!r} must be a whole number")
+    return value
+
+
+def _table_of(content: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    part = content.get(name, {})
+    if not isinstance(part, Mapping):
+        raise ValueError(f"{name} = {part!r} must be a table: [{name}]")
+    return part
+
+
+def _text(name: str, value: Any) -> str:
+    if not isinstance(value, str) or not value:
+        raise ValueError(f"{name} = {value!r} must be text")
+    return value

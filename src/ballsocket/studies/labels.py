@@ -1,0 +1,79 @@
+"""Names, units and sources that go with the numbers of a study."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..fingerprint import fingerprint
+from ..validity import Status
+from .design import Design
+from .parameters import PARAMETERS
+from .task import Task
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = numpy.ndarray
+
+_ANSWERS = {
+    "force": ("normal force", "F", "N"),
+    "indentation": ("indentation from first touch", "δ", "mm"),
+    "half_angle": ("contact half angle", "ε", "rad"),
+    "max_pressure": ("peak pressure", "p0", "MPa"),
+    "area": ("contact area", "A", "mm2"),
+    "stiffness": ("tangent stiffness", "dF/dδ", "N/mm"),
+    "energy": ("work of the load", "U", "N mm"),
+    "foundation_modulus": ("foundation modulus", "K", "MPa/mm"),
+}
+
+
+def described(name: str) -> dict[str, Any]:
+    """The attributes of a variable or axis, after the CF conventions."""
+    if name == "status":
+        return {
+            "long_name": "how the press ended",
+            "flag_values": [int(one) for one in Status],
+            "flag_meanings": " ".join(one.name.lower() for one in Status),
+        }
+    if name == "valid":
+        return {"long_name": "joint and answer lie where the model can be trusted"}
+    if name in _ANSWERS:
+        title, symbol, unit = _ANSWERS[name]
+        return {"long_name": title, "symbol": symbol, "units": unit}
+    parameter = PARAMETERS[name]
+    return {"long_name": parameter.title, "symbol": parameter.symbol, "units": parameter.unit}
+
+
+def attributes(task: Task) -> dict[str, Any]:
+    """Of the whole study: who computed what, and after whom."""
+    return {
+        "title": f"{task.model.title}, pressed at {task.design.size} points",
+        "model": task.model.name,
+        "joint": json.dumps(task.joint.summary(), ensure_ascii=False),
+        "references": "; ".join(map(str, dict.fromkeys(task.model.sources))),
+        "source": f"ballsocket {fingerprint()}",
+        "Conventions": "CF-1.10",
+    }
+
+
+def coordinates(design: Design) -> dict[str, tuple[tuple[str, ...], Array]]:
+    """Every parameter that varies or is fixed, with its dimensions."""
+    varying = {name: ((axis.name,), values) for axis in design.axes for name, values in axis.values.items()}
+    fixed: dict[str, tuple[tuple[str, ...], Array]] = {
+        name: ((), numpy.asarray(value)) for name, value in design.fixed.items()
+    }
+    return {**varying, **fixed}
+
+
+def dataset(task: Task, answers: dict[str, Array]) -> xarray.Dataset:
+    """Arrays of the study's shape, labelled."""
+    import xarray
+
+    return xarray.Dataset(
+        {name: (task.design.dims, values, described(name)) for name, values in answers.items()},
+        coords={name: (dims, values, described(name)) for name, (dims, values) in coordinates(task.design).items()},
+        attrs=attributes(task),
+    )

@@ -1,0 +1,110 @@
+"""What a design may be: limits on its dimensions and on what a load does to it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import inf, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..checks import require
+from ..files import check_names
+from .parameters import PARAMETERS
+from .task import QUANTITIES
+
+if TYPE_CHECKING:
+    import xarray
+
+EDGE_DISTANCE = "edge_distance"
+"""Arc in mm from the edge of the contact to the rim of the socket, along its surface."""
+
+NAMES = (*PARAMETERS, *QUANTITIES, EDGE_DISTANCE)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limit:
+    """A closed range of a dimension, an answer, or the `edge_distance`.
+
+    Parameters
+    ----------
+    name : str
+        A parameter of a study, a quantity of a contact, or "edge_distance".
+    low, high : float
+        In mm, N, MPa, rad.
+    rim, tilt : float
+        For the edge distance: polar angle of the socket's rim, and of the load, from the socket's axis in rad. A
+        cup that is half a sphere has its rim at π/2.
+
+    Raises
+    ------
+    ValueError
+        A name that is not known, or an empty range.
+    """
+
+    name: str
+    low: float = -inf
+    high: float = inf
+    rim: float = pi / 2
+    tilt: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_names([self.name], NAMES, "among what can be limited")
+        require(
+            self.name, self.low, self.low <= self.high, f"the lower limit is not above the upper one, {self.high:g}"
+        )
+
+    def of(self, study: xarray.Dataset) -> Any:
+        """The quantity at every point."""
+        if self.name == EDGE_DISTANCE:
+            return (self.rim - self.tilt - study.half_angle) * dimension(study, "socket_radius")
+        return study[self.name] if self.name in study.data_vars else dimension(study, self.name)
+
+    def margin(self, study: xarray.Dataset) -> Any:
+        """How far inside the range, negative outside."""
+        value = self.of(study)
+        return numpy.minimum(value - self.low, self.high - value)
+
+    def __str__(self) -> str:
+        if self.high == inf:
+            return f"{self.name} ≥ {self.low:g}"
+        return f"{self.name} ≤ {self.high:g}" if self.low == -inf else f"{self.low:g} ≤ {self.name} ≤ {self.high:g}"
+
+
+def dimension(study: xarray.Dataset, name: str) -> Any:
+    """A dimension or modulus of the joints of a study: an axis, a fixed number, or what follows from others.
+
+    Raises
+    ------
+    ValueError
+        The joint has no such number: a rigid ball has no modulus.
+    """
+    if name in study.coords:
+        return study[name]
+    joint = json.loads(study.attrs["joint"])
+    if name == "socket_radius":
+        return dimension(study, "ball_radius") + dimension(study, "clearance")
+    if name == "ball_radius" and "socket_radius" in study.coords and "clearance" in study.coords:
+        return study.socket_radius - study.clearance
+    if name == "clearance" and "socket_radius" in study.coords:
+        return study.socket_radius - dimension(study, "ball_radius")
+    if name == "outer_radius":
+        return dimension(study, "socket_radius") + dimension(study, "liner_thickness")
+    if name == "liner_thickness" and "outer_radius" in study.coords:
+        return study.outer_radius - dimension(study, "socket_radius")
+    part, _, number = name.rpartition("_")
+    value = joint.get(name) if name in joint else (joint.get(part) or {}).get(number)
+    if value is None:
+        raise ValueError(f"the joint of this study has no {name}")
+    return float(value)
+
+
+def allowed(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:
+    """Where a study has an answer and every limit holds."""
+    first = next(iter(study.data_vars))
+    good = study[first].notnull()
+    for limit in limits:
+        good = good & (limit.margin(study) >= 0)
+    return good

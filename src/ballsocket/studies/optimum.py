@@ -1,0 +1,234 @@
+"""The best joint: the smallest answer over ranges of its numbers, within limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy
+
+from ..checks import needs, require
+from ..files import check_names
+from ..joint import Joint
+from ..models.base import Model
+from .design import Design, grid, sample
+from .distributions import Uniform
+from .limits import EDGE_DISTANCE, Limit, allowed
+from .parameters import LOADS, PARAMETERS, varied
+from .run import study
+from .slopes import Derive, differences
+from .task import QUANTITIES
+
+Array = numpy.ndarray
+
+_SEARCH = 3.0  # s that the search for a start may take
+_FEWEST, _MOST = 64, 4096
+_STARTS = 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Optimum:
+    """The best joint that was found.
+
+    Attributes
+    ----------
+    point : dict of str to float
+        What was varied, in mm, MPa, rad.
+    value : float
+        The quantity that was minimised.
+    joint : Joint
+    active : tuple of str
+        Limits and ends of ranges that it touches: giving way there would help.
+    slopes : dict of str to float
+        Derivative of the quantity with respect to what was varied.
+    presses : int
+        How many were made.
+    """
+
+    minimise: str
+    point: dict[str, float]
+    value: float
+    joint: Joint
+    active: tuple[str, ...]
+    slopes: dict[str, float]
+    presses: int
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON."""
+        return {
+            "minimise": self.minimise,
+            "value": self.value,
+            "point": self.point,
+            "active": list(self.active),
+            "slopes": self.slopes,
+            "joint": self.joint.summary(),
+            "presses": self.presses,
+        }
+
+
+def optimise(
+    model: Model,
+    joint: Joint,
+    vary: Mapping[str, tuple[float, float]],
+    *,
+    load: Mapping[str, float],
+    minimise: str = "max_pressure",
+    limits: Iterable[Limit] = (),
+    seed: int = 0,
+    derive: Derive = differences,
+) -> Optimum:
+    """Minimise one answer over ranges of a joint's numbers.
+
+    A global search by Sobol's points finds where to start, then sequential quadratic programming (SLSQP) with
+    derivatives of the model finds the point; of several starts the best is taken.
+
+    Parameters
+    ----------
+    model, joint
+        What is pressed; numbers that do not vary stay.
+    vary : mapping of str to (low, high)
+        Ranges in mm, MPa.
+    load : mapping of str to float
+        One of force (N), indentation (mm), half_angle (rad).
+    minimise : str
+        A quantity of a contact.
+    limits : iterable of Limit
+    seed : int
+        Of the search.
+    derive : callable
+        Where derivatives come from: `differences`, or `traced` by JAX (`ballsocket.studies.slopes`).
+
+    Raises
+    ------
+    ValueError
+        A name that is not known, an empty range, or no joint within the limits.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.studies.limits import Limit
+    >>> shell = [Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0)]
+    >>> ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
+    >>> hip = bs.joints["hess-forsbach"]
+    >>> best = optimise(bs.HessForsbach(), hip, ranges, load={"force": 3000.0}, limits=shell)
+    >>> round(best.value, 2), best.active
+    (10.34, ('outer_radius ≤ 26',))
+    """
+    needs("study", "xarray")
+    check_names(vary, PARAMETERS, "among what varies")
+    check_names([minimise], QUANTITIES, "among the quantities")
+    for name, (low, high) in vary.items():
+        require(name, low, low < high, f"a range goes upwards, to {high:g}")
+    if not vary:
+        raise ValueError("at least one number must vary")
+    problem = _Problem(model, joint, dict(vary), minimise, tuple(limits), dict(load), derive)
+    starts, searched = problem.starts(seed)
+    found = [problem.refined(start) for start in starts]
+    return problem.optimum(min(found, key=lambda each: each[1])[0], searched)
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """Points are scaled: each number runs from 0 to 1 over its range."""
+
+    model: Model
+    joint: Joint
+    vary: dict[str, tuple[float, float]]
+    minimise: str
+    limits: tuple[Limit, ...]
+    load: dict[str, float]
+    derive: Derive
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What is minimised, and what the limits ask for."""
+        named = ("half_angle" if limit.name == EDGE_DISTANCE else limit.name for limit in self.limits)
+        loads = [name for name in LOADS if name in self.load]
+        wanted = (self.minimise, *(name for name in named if name in QUANTITIES and name not in loads))
+        return tuple(dict.fromkeys(wanted))
+
+    def at(self, share: Array) -> dict[str, float]:
+        return {
+            name: float(low + one * (high - low))
+            for one, (name, (low, high)) in zip(share, self.vary.items(), strict=True)
+        }
+
+    def starts(self, seed: int) -> tuple[list[Array], int]:
+        """The best few allowed points of a search, and how many were pressed."""
+        count = int(numpy.clip(_SEARCH / self.model.seconds_a_press, _FEWEST, _MOST))
+        count = 1 << (count.bit_length() - 1)
+        ranges: dict[str, Any] = {name: Uniform(low=low, high=high) for name, (low, high) in self.vary.items()}
+        points = self.study(sample(count, seed=seed, **ranges))
+        value = points[self.minimise].where(allowed(points, self.limits)).values
+        if numpy.isnan(value).all():
+            limits = " and ".join(map(str, self.limits)) or "the model"
+            raise ValueError(f"none of {count} joints within the ranges is allowed by {limits}")
+        best = numpy.argsort(value)[: min(_STARTS, int(numpy.isfinite(value).sum()))]
+        shares = numpy.stack(
+            [(points[name].values[best] - low) / (high - low) for name, (low, high) in self.vary.items()], axis=-1
+        )
+        return list(shares), count
+
+    def study(self, design: Design) -> Any:
+        return study(self.model, self.joint, design * grid(**self.load), quantities=self.quantities)
+
+    def refined(self, start: Array) -> tuple[Array, float]:
+        """SLSQP from a start; the start itself where that leads nowhere better."""
+        from scipy.optimize import minimize
+
+        scale = self.value(start)[0]
+        constraints = [
+            {"type": "ineq", "fun": lambda share, limit=limit: self.margin(share, limit)} for limit in self.limits
+        ]
+
+        def relative(share: Array) -> tuple[float, Array]:
+            value, slope = self.value(share)
+            return value / scale, slope / scale
+
+        answer = minimize(
+            relative, start, jac=True, method="SLSQP", bounds=[(0.0, 1.0)] * len(start), constraints=constraints
+        )
+        end = numpy.clip(answer.x, 0.0, 1.0)
+        good = all(self.margin(end, limit) > -1e-6 for limit in self.limits) and self.value(end)[0] <= scale
+        best = end if good else start
+        return best, self.value(best)[0]
+
+    def value(self, share: Array) -> tuple[float, Array]:
+        """The quantity and its slope along each share."""
+        at = self.at(share)
+        answers, found = self.derive(self.model, self.joint, [self.minimise], {**at, **self.load})
+        slope = [found[self.minimise][name] * (high - low) for name, (low, high) in self.vary.items()]
+        return answers[self.minimise], numpy.array(slope)
+
+    def margin(self, share: Array, limit: Limit) -> float:
+        return float(limit.margin(self.study(grid(**self.at(share)))))
+
+    def optimum(self, share: Array, presses: int) -> Optimum:
+        at = self.at(share)
+        value, slope = self.value(share)
+        ends = [
+            f"{name} = {low if one < 0.5 else high:g}"
+            for one, (name, (low, high)) in zip(share, self.vary.items(), strict=True)
+            if min(one, 1 - one) < 1e-6
+        ]
+        touched = [str(limit) for limit in self.limits if abs(self.margin(share, limit)) < _TOUCH * _size(limit)]
+        made, _ = varied(self.joint, dict(at))
+        spans = numpy.array([high - low for low, high in self.vary.values()])
+        return Optimum(
+            minimise=self.minimise,
+            point=at,
+            value=value,
+            joint=made,
+            active=(*touched, *ends),
+            slopes=dict(zip(self.vary, (slope / spans).tolist(), strict=True)),
+            presses=presses,
+        )
+
+
+_TOUCH = 1e-5
+
+
+def _size(limit: Limit) -> float:
+    finite = [abs(end) for end in (limit.low, limit.high) if numpy.isfinite(end)]
+    return max([*finite, 1e-3])

@@ -1,0 +1,119 @@
+"""Which number matters: Sobol indices over distributions, and elasticities at their middle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..checks import needs, require
+from ..files import check_names
+from ..joint import Joint
+from ..models.base import Model
+from .distributions import Distribution
+from .labels import described
+from .parameters import PARAMETERS
+from .slopes import elasticities, pressed
+from .task import QUANTITIES
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = numpy.ndarray
+
+
+def sensitivity(
+    model: Model,
+    joint: Joint,
+    distributions: Mapping[str, Distribution],
+    *,
+    quantities: Iterable[str] = ("indentation", "half_angle", "max_pressure", "area"),
+    count: int = 1024,
+    seed: int = 0,
+    confidence: float = 0.95,
+    load: Mapping[str, float] | None = None,
+) -> xarray.Dataset:
+    """How much of each answer's scatter comes from each number that scatters.
+
+    Parameters
+    ----------
+    model, joint
+        What is pressed; numbers that are not in `distributions` stay.
+    distributions : mapping of str to Uniform or Normal
+        Independent of each other.
+    quantities : iterable of str
+    count : int
+        Samples of each of `len(distributions) + 2` sets; a power of two.
+    seed : int
+    confidence : float
+        Of the bootstrap intervals, between 0 and 1.
+    load : mapping of str to float
+        One of force (N), indentation (mm), half_angle (rad), unless it scatters itself.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along `quantity` and `parameter`: `first_order` (the share of the variance that this number alone makes),
+        `total_order` (with all that it does together with others), each with `_low` and `_high` ends of its interval,
+        and `elasticity`, percent by percent where every number is at its median. Along `quantity` also `mean` and
+        `deviation`.
+
+    Raises
+    ------
+    ValueError
+        A name that is not known, a count that is no power of two, samples that have no answer.
+
+    References
+    ----------
+    Saltelli et al. 2010, Comput. Phys. Commun. 181, 259; `scipy.stats.sobol_indices`.
+    """
+    needs("study", "xarray")
+    import xarray
+    from scipy.stats import sobol_indices
+
+    check_names(distributions, PARAMETERS, "among what scatters")
+    wanted, fixed = tuple(quantities), dict(load or {})
+    check_names(wanted, QUANTITIES, "among the quantities")
+    if not distributions:
+        raise ValueError("at least one number must scatter")
+    require("count", count, count >= 2 and count & (count - 1) == 0, "a power of two of samples")
+    seen: list[Array] = []
+
+    def answers(values: Array) -> Array:
+        found = pressed(model, joint, {**dict(zip(distributions, values, strict=True)), **fixed}, wanted)
+        table = numpy.stack([numpy.broadcast_to(found[name], values.shape[1:]) for name in wanted])
+        if not numpy.isfinite(table).all():
+            bad = int((~numpy.isfinite(table)).any(axis=0).sum())
+            raise ValueError(f"{model.name} has no answer for {bad} of {values.shape[1]} samples: narrow what scatters")
+        seen.append(table.copy())  # SciPy centres its own in place
+        return table
+
+    indices = sobol_indices(
+        func=answers, n=count, dists=[one.frozen for one in distributions.values()], rng=numpy.random.default_rng(seed)
+    )
+    interval = indices.bootstrap(confidence_level=confidence)
+    dims = ("quantity", "parameter")
+    shape = (len(wanted), len(distributions))
+    numbers: dict[str, tuple[Any, Any]] = {
+        f"{order}_order{end}": (dims, numpy.reshape(values, shape))
+        for order, found, ends in (
+            ("first", indices.first_order, interval.first_order.confidence_interval),
+            ("total", indices.total_order, interval.total_order.confidence_interval),
+        )
+        for end, values in (("", found), ("_low", ends.low), ("_high", ends.high))
+    }
+    middle = {name: float(one.frozen.median()) for name, one in distributions.items()}
+    local = elasticities(model, joint, wanted, {**middle, **fixed})
+    numbers["elasticity"] = (dims, [[local[quantity][name] for name in distributions] for quantity in wanted])
+    samples = numpy.concatenate(seen[:2], axis=1)
+    return xarray.Dataset(
+        {
+            **numbers,
+            "mean": ("quantity", samples.mean(axis=1)),
+            "deviation": ("quantity", samples.std(axis=1)),
+            "units": ("quantity", [described(name)["units"] for name in wanted]),
+        },
+        coords={"quantity": list(wanted), "parameter": list(distributions)},
+        attrs={"model": model.name, "samples": count, "confidence": confidence},
+    )

@@ -1,0 +1,137 @@
+"""How answers change with the numbers of a joint: derivatives and elasticities at one point."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
+from typing import Any
+
+import numpy
+
+from ..checks import needs
+from ..files import check_names
+from ..joint import Joint
+from ..models.base import Model
+from .parameters import LOADS, PARAMETERS, varied
+from .task import QUANTITIES
+
+Array = numpy.ndarray
+Slopes = dict[str, dict[str, float]]
+"""By quantity, then by parameter."""
+
+_STEP = 1e-4  # of the parameter: rounding and curvature are both about 1e-8
+
+
+def differences(
+    model: Model, joint: Joint, quantities: Iterable[str], at: Mapping[str, float]
+) -> tuple[dict[str, float], Slopes]:
+    """Answers at one point and their derivatives, by central differences in one press of arrays: for any model.
+
+    Parameters
+    ----------
+    model : Model
+    joint : Joint
+        Plain numbers.
+    quantities : iterable of str
+    at : mapping of str to float
+        The point: parameters, one load among them, in mm, N, MPa, rad.
+
+    Returns
+    -------
+    answers : dict of str to float
+    slopes : dict of str to dict of str to float
+        By quantity and parameter, in their units.
+
+    Raises
+    ------
+    ValueError
+        A name that is not known; no load.
+    """
+    wanted = _checked(quantities, at)
+    steps = {name: _STEP * abs(value) or _STEP for name, value in at.items()}
+    # row 0 is the point itself, rows 2i + 1 and 2i + 2 are above and below it in the i-th number
+    rows = {name: numpy.full(2 * len(at) + 1, float(value)) for name, value in at.items()}
+    for place, name in enumerate(at):
+        rows[name][2 * place + 1] += steps[name]
+        rows[name][2 * place + 2] -= steps[name]
+    found = pressed(model, joint, rows, wanted)
+    answers = {quantity: float(values[0]) for quantity, values in found.items()}
+    return answers, {
+        quantity: {
+            name: float(values[2 * place + 1] - values[2 * place + 2]) / (2 * steps[name])
+            for place, name in enumerate(at)
+        }
+        for quantity, values in found.items()
+    }
+
+
+def traced(
+    model: Model, joint: Joint, quantities: Iterable[str], at: Mapping[str, float]
+) -> tuple[dict[str, float], Slopes]:
+    """The same by JAX, exact to rounding, for a `differentiable` model; compiled when first asked.
+
+    Raises
+    ------
+    ValueError
+        A model that JAX cannot trace; a name that is not known; no load.
+    ImportError
+        JAX is not installed.
+    """
+    wanted = _checked(quantities, at)
+    if not model.differentiable:
+        raise ValueError(f"{model.name} cannot be traced by JAX: ask `differences`")
+    needs("jax", "jax")
+    import jax
+
+    with jax.enable_x64(True):
+        here, there = _compiled(model, joint, wanted)({name: float(value) for name, value in at.items()})
+    return (
+        {name: float(here[name]) for name in wanted},
+        {quantity: {name: float(there[quantity][name]) for name in at} for quantity in wanted},
+    )
+
+
+@lru_cache(maxsize=16)
+def _compiled(model: Model, joint: Joint, quantities: tuple[str, ...]) -> Callable[[dict[str, float]], Any]:
+    import jax
+
+    def answers(values: dict[str, Any]) -> dict[str, Any]:
+        load = {name: value for name, value in values.items() if name in LOADS}
+        made, _ = varied(joint, {name: value for name, value in values.items() if name not in LOADS})
+        contact = model.press(made, **load)
+        return {name: getattr(contact, name) for name in quantities}
+
+    compiled: Callable[[dict[str, float]], Any] = jax.jit(lambda values: (answers(values), jax.jacfwd(answers)(values)))
+    return compiled
+
+
+Derive = Callable[[Model, Joint, Iterable[str], Mapping[str, float]], tuple[dict[str, float], Slopes]]
+"""`differences` or `traced`."""
+
+
+def _checked(quantities: Iterable[str], at: Mapping[str, float]) -> tuple[str, ...]:
+    check_names(at, PARAMETERS, "among the numbers that vary")
+    wanted = tuple(quantities)
+    check_names(wanted, QUANTITIES, "among the quantities")
+    if not any(name in at for name in LOADS):
+        raise ValueError(f"one load is needed: {', '.join(LOADS)}")
+    return wanted
+
+
+def elasticities(
+    model: Model, joint: Joint, quantities: Iterable[str], at: Mapping[str, float], derive: Derive = differences
+) -> Slopes:
+    """Percent of change in each quantity for one percent in each number: (x/y) dy/dx; see `differences`."""
+    answers, found = derive(model, joint, quantities, at)
+    return {
+        quantity: {name: slope * at[name] / answers[quantity] for name, slope in each.items()}
+        for quantity, each in found.items()
+    }
+
+
+def pressed(model: Model, joint: Joint, values: Mapping[str, Any], quantities: Iterable[str]) -> dict[str, Any]:
+    """Quantities of a press at values that broadcast; NaN where these make no joint."""
+    load = {name: value for name, value in values.items() if name in LOADS}
+    made, possible = varied(joint, {name: value for name, value in values.items() if name not in LOADS})
+    contact = model.press(made, **load)
+    return {name: numpy.where(possible, getattr(contact, name), numpy.nan) for name in quantities}

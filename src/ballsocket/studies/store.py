@@ -1,0 +1,151 @@
+"""A study on disk: a Zarr group that xarray reads, written block by block, each block with its checksum."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from zlib import crc32
+
+import numpy
+
+from ..checks import needs
+from ..written import at_once
+from .identity import differences, identity
+from .labels import attributes, coordinates, described
+from .task import DTYPES, Task
+
+Array = numpy.ndarray
+
+CHECKSUM = "block_checksum"
+"""An array with a number for each block: its checksum, or -1 as long as the block is not there."""
+
+_STUDY = "study"
+"""The attribute that says which study this is."""
+
+
+@dataclass(frozen=True)
+class Store:
+    """The Zarr group of one study."""
+
+    path: Path
+
+    def prepare(self, task: Task) -> None:
+        """Make the group, with labels and without answers, unless it is there already.
+
+        Raises
+        ------
+        ValueError
+            There is another study, another version's, or something else.
+        OSError
+            It cannot be written.
+        """
+        needs("study", "zarr")
+        asked = json.loads(json.dumps(identity(task)))
+        if not self.path.exists():
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            with at_once(self.path) as draft:
+                _make(draft, task, asked)
+            return
+        kept = self._kept()
+        if kept != asked:
+            raise ValueError(
+                f"{self.path} holds another study: {'; '.join(differences(kept, asked))}. Choose another folder, or "
+                "remove this one"
+            )
+
+    def _kept(self) -> Any:
+        import zarr
+
+        try:
+            found: Any = zarr.open_group(self.path, mode="r").attrs[_STUDY]
+        except (KeyError, ValueError, FileNotFoundError, NotADirectoryError) as error:
+            raise ValueError(f"{self.path} is there already and is no study") from error
+        return found
+
+    def missing(self, task: Task) -> list[int]:
+        """Blocks that are not there, or are not what was written."""
+        import zarr
+
+        group = zarr.open_group(self.path, mode="r")
+        try:
+            checksums = numpy.asarray(group[CHECKSUM][:])  # type: ignore[index]
+        except Exception:  # a damaged list: every block is looked at anew
+            return list(range(len(task.blocks)))
+        return [
+            number
+            for number, checksum in enumerate(checksums.tolist())
+            if checksum < 0 or checksum != _checksum_of(group, task, number)
+        ]
+
+    def write(self, task: Task, number: int, answers: Mapping[str, Array]) -> None:
+        """Write a block, and last its checksum.
+
+        Raises
+        ------
+        OSError
+            It cannot be written: the disk is full, or the store is read-only.
+        """
+        import zarr
+
+        group = zarr.open_group(self.path, mode="r+")
+        for name, values in answers.items():
+            group[name][task.blocks[number]] = values  # type: ignore[index]
+        group[CHECKSUM][number] = _checksum(answers, task)  # type: ignore[index]
+
+
+@dataclass(frozen=True, eq=False)
+class Writing:
+    """Computes a block and writes it where it belongs."""
+
+    task: Task
+    store: Store
+
+    def __call__(self, number: int) -> None:
+        self.store.write(self.task, number, self.task(number))
+
+
+def _make(path: Path, task: Task, study: Mapping[str, Any]) -> None:
+    import zarr
+    from zarr.codecs import BloscCodec
+
+    quick: Any = BloscCodec(cname="lz4", clevel=1, shuffle="shuffle")
+    attrs: Any = {**attributes(task), _STUDY: study, "coordinates": " ".join(task.design.names)}
+    group = zarr.create_group(path, attributes=attrs)
+    for name, (dims, values) in coordinates(task.design).items():
+        made = group.create_array(
+            name, shape=values.shape, dtype=values.dtype, dimension_names=dims, attributes=described(name)
+        )
+        made[...] = values
+    for name in task.variables:
+        dtype = numpy.dtype(DTYPES[name])
+        group.create_array(
+            name,
+            shape=task.design.shape,
+            chunks=task.blocks.size,
+            dtype=dtype,
+            fill_value=numpy.nan if dtype.kind == "f" else 0,
+            dimension_names=task.design.dims,
+            compressors=quick,
+            attributes=described(name),
+        )
+    group.create_array(
+        CHECKSUM, shape=(len(task.blocks),), chunks=(1,), dtype="int64", fill_value=-1, dimension_names=("block",)
+    )
+
+
+def _checksum_of(group: Any, task: Task, number: int) -> int | None:
+    """Of what lies there; None where it cannot be read."""
+    try:
+        return _checksum({name: group[name][task.blocks[number]] for name in task.variables}, task)
+    except Exception:  # whatever a damaged file makes of its decoder: the block is computed anew
+        return None
+
+
+def _checksum(answers: Mapping[str, Array], task: Task) -> int:
+    total = 0
+    for name in task.variables:
+        total = crc32(numpy.ascontiguousarray(answers[name]).view(numpy.uint8).data, total)
+    return total
