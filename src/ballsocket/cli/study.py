@@ -64,11 +64,15 @@ def _engine(given: StudyFile, workers: int | None, scheduler: str | None) -> Eng
 def _shown() -> Iterator[Listener]:
     """A bar with the rate and the remaining time."""
     columns = (TextColumn("pressing"), BarColumn(), TextColumn("{task.fields[rate]}"), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True)) as progress:
-        task = progress.add_task("pressing", total=None, rate="")
+    progress = Progress(*columns, console=Console(stderr=True))
+    task = progress.add_task("pressing", total=None, rate="")
 
-        def listen(reached: Reached) -> None:
-            rate = f"{reached.done:.4g} of {reached.points:.4g}, {reached.rate:.3g}/s"
-            progress.update(task, completed=reached.done, total=reached.points, rate=rate)
+    def listen(reached: Reached) -> None:
+        progress.start()  # not before there is something to tell
+        rate = f"{reached.done:.4g} of {reached.points:.4g}, {reached.rate:.3g}/s"
+        progress.update(task, completed=reached.done, total=reached.points, rate=rate)
 
+    try:
         yield listen
+    finally:
+        progress.stop()

@@ -1,0 +1,137 @@
+"""What can go wrong with a stored study, and that nothing done is lost and nothing wrong is kept."""
+
+import os
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.studies.store import CHECKSUM
+
+HIP = bs.joints["hess-forsbach"]
+AXES = {"clearance": np.linspace(0.05, 0.2, 12).tolist(), "force": [500.0, 1500.0, 3000.0, 4000.0]}
+
+
+@pytest.fixture(autouse=True)
+def small_blocks(monkeypatch):
+    monkeypatch.setattr("ballsocket.studies.run.points_a_block", lambda model: 8)
+
+
+@pytest.fixture
+def store(tmp_path):
+    return tmp_path / "s.zarr"
+
+
+def reference():
+    return bs.study(bs.HessForsbach(), HIP, **AXES)
+
+
+def presses(store):
+    """Runs the study and counts the blocks that were computed."""
+    told = []
+    found = bs.study(bs.HessForsbach(), HIP, store=store, listen=told.append, **AXES).load()
+    return found, len(told) - 1
+
+
+def test_a_finished_study_is_not_computed_again(store):
+    first, blocks = presses(store)
+    assert blocks == 6
+    again, blocks = presses(store)
+    assert blocks == 0
+    assert again.identical(first)
+
+
+def chunks(store, name):
+    return sorted(path for path in (store / name / "c").rglob("*") if path.is_file())
+
+
+@pytest.mark.parametrize("damage", ["truncated", "garbage", "removed", "changed"])
+def test_a_damaged_chunk_is_found_and_mended(store, damage):
+    whole, _ = presses(store)
+    chunk = chunks(store, "max_pressure")[2]
+    if damage == "truncated":
+        chunk.write_bytes(chunk.read_bytes()[:-5])
+    elif damage == "garbage":
+        chunk.write_bytes(b"nonsense")
+    elif damage == "removed":
+        chunk.unlink()
+    else:
+        chunk.write_bytes(chunks(store, "max_pressure")[3].read_bytes())
+    again, blocks = presses(store)
+    assert blocks == 1
+    assert again.identical(whole)
+
+
+def test_damaged_checksums_cost_their_blocks_only(store):
+    whole, _ = presses(store)
+    chunks(store, CHECKSUM)[0].write_bytes(b"")
+    again, blocks = presses(store)
+    assert 1 <= blocks <= 6
+    assert again.identical(whole)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"clearance": [0.1]}, r"axes.clearance.clearance is \[0.05.* there and \[0.1\] here"),
+        ({"quantities": ["energy"]}, "quantities is"),
+        ({"model": bs.Bartel()}, "model.modulus"),
+        ({"joint": bs.joints["hip-28"]}, r"joint.ball_radius is 17.9 there and 14.0 here"),
+    ],
+)
+def test_the_store_of_another_study_is_refused_with_what_differs(store, change, message):
+    presses(store)
+    asked = {"model": bs.HessForsbach(), "joint": HIP, "quantities": (), **AXES, **change}
+    with pytest.raises(ValueError, match=message):
+        bs.study(asked.pop("model"), asked.pop("joint"), store=store, **asked)
+    _, blocks = presses(store)
+    assert blocks == 0
+
+
+def test_the_store_of_other_code_is_refused(store, monkeypatch):
+    presses(store)
+    monkeypatch.setattr("ballsocket.studies.identity.fingerprint", lambda: "9.9.9+other")
+    with pytest.raises(ValueError, match="code is .* there and 9.9.9[+]other here"):
+        presses(store)
+
+
+def test_what_is_no_study_is_left_alone(store):
+    store.mkdir()
+    (store / "precious.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(ValueError, match="is there already and is no study"):
+        presses(store)
+    assert (store / "precious.txt").read_text(encoding="utf-8") == "mine"
+
+
+def test_a_disk_that_is_full_stops_with_one_sentence_and_keeps_what_is_done(store, monkeypatch):
+    from ballsocket.studies.store import Store
+
+    write, written = Store.write, []
+
+    def full(self, task, number, answers):
+        if len(written) == 3:
+            raise OSError(28, "No space left on device")
+        written.append(number)
+        write(self, task, number, answers)
+
+    monkeypatch.setattr(Store, "write", full)
+    with pytest.raises(OSError, match="No space left on device; 3 of 6 blocks are kept; run it again to go on"):
+        presses(store)
+    monkeypatch.setattr(Store, "write", write)
+    found, blocks = presses(store)
+    assert blocks == 3
+    assert np.array_equal(found.max_pressure.values, reference().max_pressure.values)
+
+
+@pytest.mark.skipif(hasattr(os, "geteuid") and os.geteuid() == 0, reason="root may write everywhere")
+def test_a_read_only_store_is_one_sentence(store):
+    presses(store)
+    chunks(store, CHECKSUM)[0].unlink()
+    for path in (store, *store.rglob("*")):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    try:
+        with pytest.raises(OSError, match="blocks are kept"):
+            presses(store)
+    finally:
+        for path in (store, *store.rglob("*")):
+            path.chmod(0o755)

@@ -1,0 +1,132 @@
+"""A study as a process of the system: killed, interrupted, out of room. The result is that of an undisturbed one."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.studies.run import read
+from ballsocket.studies.store import CHECKSUM
+
+HIP = bs.joints["hess-forsbach"]
+pytestmark = pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds processes in /proc")
+STUDY = """
+joint = "hess-forsbach"
+model = "{model}"
+store = "s.zarr"
+
+[axes]
+clearance = {{ from = 0.05, to = 0.2, count = {clearances} }}
+ball_radius = {{ from = 14, to = 20, count = {radii} }}
+force = ["1 kN", "3 kN"]
+
+[engine]
+kind = "{engine}"
+"""
+
+
+def test_files_that_may_not_grow_stop_the_command_with_one_sentence(tmp_path):
+    """A real failure of the system's: no file may be larger than 20 kB."""
+    (tmp_path / "s.toml").write_text(
+        STUDY.format(model="hess-forsbach", clearances=300, radii=300, engine="serial"), encoding="utf-8"
+    )
+    code = (
+        "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)); "
+        "from ballsocket.cli import main; sys.argv = ['ballsocket', 'study', 's.toml']; main()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, encoding="utf-8")
+    assert done.returncode == 2
+    assert "File too large; 0 of" in done.stderr
+    assert "Traceback" not in done.stderr
+    subprocess.run(
+        [sys.executable, "-m", "ballsocket", "study", "s.toml"], cwd=tmp_path, check=True, capture_output=True
+    )
+
+
+def started(folder):
+    words = [sys.executable, "-m", "ballsocket", "study", "s.toml"]
+    return subprocess.Popen(
+        words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+    )
+
+
+def done_blocks(store):
+    return len(list((store / CHECKSUM / "c").glob("*"))) if store.exists() else 0
+
+
+def equal_to_undisturbed(store, **counts):
+    found = read(store).load()
+    axes = {
+        "clearance": np.linspace(0.05, 0.2, counts["clearances"]),
+        "ball_radius": np.linspace(14, 20, counts["radii"]),
+        "force": [1000.0, 3000.0],
+    }
+    whole = bs.study(bs.catalogue[counts["model"]], HIP, **axes)
+    return all(
+        found[name].values.tobytes() == whole[name].values.tobytes()
+        for name in ("max_pressure", "half_angle", "status")
+    )
+
+
+@pytest.mark.parametrize("engine", ["serial", "processes"])
+def test_a_study_killed_ten_times_is_that_of_an_undisturbed_one(tmp_path, engine):
+    counts = {"clearances": 60, "radii": 20, "model": "exact"}
+    (tmp_path / "s.toml").write_text(STUDY.format(engine=engine, **counts), encoding="utf-8")
+    moments, before = random.Random(engine), 0
+    for _ in range(10):
+        process = started(tmp_path)
+        time.sleep(moments.uniform(0.5, 2.0))
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        assert done_blocks(tmp_path / "s.zarr") >= before
+        before = done_blocks(tmp_path / "s.zarr")
+    assert started(tmp_path).wait() == 0
+    assert equal_to_undisturbed(tmp_path / "s.zarr", **counts)
+
+
+@pytest.mark.parametrize("engine", ["processes", "dask"])
+def test_a_killed_worker_costs_a_retry(tmp_path, engine):
+    counts = {"clearances": 30, "radii": 20, "model": "exact"}
+    (tmp_path / "s.toml").write_text(STUDY.format(engine=engine, **counts), encoding="utf-8")
+    process, victims = started(tmp_path), []
+    while not victims and process.poll() is None:
+        if done_blocks(tmp_path / "s.zarr") >= 1:
+            victims = [int(pid) for pid in _descendants(process.pid) if _is_worker(pid)]
+        time.sleep(0.02)
+    assert victims
+    os.kill(victims[0], signal.SIGKILL)
+    assert process.wait(timeout=120) == 0
+    assert equal_to_undisturbed(tmp_path / "s.zarr", **counts)
+
+
+def _descendants(pid):
+    found = []
+    for path in Path(f"/proc/{pid}/task").glob("*/children"):
+        for child in path.read_text(encoding="ascii").split():
+            found += [child, *_descendants(child)]
+    return found
+
+
+def _is_worker(pid):
+    return b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()
+
+
+def test_control_c_leaves_a_store_that_resumes(tmp_path):
+    counts = {"clearances": 30, "radii": 20, "model": "exact"}
+    (tmp_path / "s.toml").write_text(STUDY.format(engine="processes", **counts), encoding="utf-8")
+    process = started(tmp_path)
+    while done_blocks(tmp_path / "s.zarr") < 1 and process.poll() is None:
+        time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.wait(timeout=60) == 130
+    before = done_blocks(tmp_path / "s.zarr")
+    assert before >= 1
+    assert started(tmp_path).wait() == 0
+    assert equal_to_undisturbed(tmp_path / "s.zarr", **counts)
