@@ -19,6 +19,7 @@ BENCHMARKS = {
     "fem": ("fem", "the finite elements: default mesh, the paper's mesh, cost against size; and CalculiX"),
     "papers-mesh": ("papers_mesh", "CalculiX and the finite elements on the paper's mesh: a quarter of an hour"),
     "reproduce": ("reproduce", "the whole paper by one command: quick, full, and when everything is kept"),
+    "studies": ("studies", "studies of ten million presses, what they add, and their cost against size: 10 minutes"),
     "tabulated": (
         "tabulated",
         "a million presses by force from the tables, beside the exact solver and the paper's model",

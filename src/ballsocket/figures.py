@@ -71,7 +71,7 @@ def check_format(path: Path) -> None:
         raise ValueError(f"figure {str(path)!r} must end in {', '.join('.' + name for name in FORMATS)}")
 
 
-def save(figure: Figure, path: Path) -> None:
+def save(figure: Figure, path: str | Path) -> None:
     """Write a figure as PNG, SVG or PDF, by the ending of `path`; one that cannot be drawn leaves no file.
 
     Raises
@@ -81,6 +81,7 @@ def save(figure: Figure, path: Path) -> None:
     OSError
         A path that cannot be written to.
     """
+    path = Path(path)
     check_format(path)
     with at_once(path) as draft:
         figure.savefig(draft, dpi=160)
