@@ -12,7 +12,7 @@ joints; Sobol's indices say which number they come from.
 import ballsocket as bs
 from ballsocket.figures import save
 from ballsocket.studies.design import Span, grid, sample
-from ballsocket.studies.distributions import Uniform, tolerance
+from ballsocket.studies.distributions import Rectangular, tolerance
 from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.study_figures import band_figure, sensitivity_figure
 
@@ -20,8 +20,8 @@ hip = bs.Joint(ball_radius=16.0, clearance=0.10, liner_thickness=6.0, liner=bs.U
 scatter = {
     "clearance": tolerance(0.10, 0.05),
     "liner_thickness": tolerance(6.0, 0.2),
-    "liner_young": Uniform(low=900.0, high=1100.0),
-    "liner_poisson": Uniform(low=0.38, high=0.42),
+    "liner_young": Rectangular(low=900.0, high=1100.0),
+    "liner_poisson": Rectangular(low=0.38, high=0.42),
 }
 
 study = bs.study(bs.Tabulated(), hip, sample(1024, **scatter) * grid(force=Span(500.0, 4000.0, 15)))

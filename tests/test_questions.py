@@ -13,7 +13,7 @@ import ballsocket as bs
 from ballsocket import study_figures
 from ballsocket.cli.phrases import limit_of, range_of, spread_of
 from ballsocket.studies.design import Span, grid, sample
-from ballsocket.studies.distributions import Normal, Uniform, tolerance
+from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, allowed, dimension
 from ballsocket.studies.optimum import optimise
@@ -148,7 +148,10 @@ def test_sobol_indices_of_a_product_of_powers():
         ({"count": 1000}, "count = 1000 is not allowed: a power of two"),
         ({"distributions": {}}, "at least one number must scatter"),
         ({"distributions": {"clearence": tolerance(0.1, 0.05)}}, "did you mean 'clearance'"),
-        ({"distributions": {"liner_poisson": Uniform(low=0.4, high=0.499999)}}, "has no answer for .* of 1024 samples"),
+        (
+            {"distributions": {"liner_poisson": Rectangular(low=0.4, high=0.499999)}},
+            "has no answer for .* of 1024 samples",
+        ),
     ],
 )
 def test_bad_sensitivities_are_one_sentence(words, message):
@@ -162,7 +165,7 @@ def test_phrases_of_the_shell():
     assert range_of("force=1 kN .. 3 kN") == ("force", 1000.0, 3000.0)
     assert range_of("force=1..3 kN") == ("force", 1000.0, 3000.0)
     assert spread_of("clearance=100+-50 um") == ("clearance", tolerance(0.1, 0.05))
-    assert spread_of("liner_poisson=0.38..0.46") == ("liner_poisson", Uniform(low=0.38, high=0.46))
+    assert spread_of("liner_poisson=0.38..0.46") == ("liner_poisson", Rectangular(low=0.38, high=0.46))
     assert limit_of("outer_radius <= 2.6 cm") == Limit(name="outer_radius", high=26.0)
     assert limit_of("half_angle<=60").high == pytest.approx(pi / 3)
     for phrase in ("ball_radius", "ball_radius=11", "outer_radius<26", "ball_radios=11..23"):

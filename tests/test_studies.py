@@ -14,7 +14,7 @@ from ballsocket.engines import Processes, Serial
 from ballsocket.studies.blocks import Blocks
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributed import Distributed
-from ballsocket.studies.distributions import Normal, Uniform, tolerance
+from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
 from ballsocket.studies.run import read
 
@@ -113,14 +113,14 @@ def test_blocks_cover_every_point_once(shape, most):
 @given(mean=st.floats(0.05, 0.2), deviation=st.floats(0.001, 0.03), seed=st.integers(0, 1000))
 def test_samples_follow_their_distributions(mean, deviation, seed):
     design = sample(
-        512, seed=seed, clearance=Normal(mean=mean, deviation=deviation), liner_poisson=Uniform(low=0.3, high=0.4)
+        512, seed=seed, clearance=Normal(mean=mean, deviation=deviation), liner_poisson=Rectangular(low=0.3, high=0.4)
     )
     values = design.part([slice(None)])
     assert values["clearance"].mean() == pytest.approx(mean, abs=deviation / 20)
     assert values["clearance"].std() == pytest.approx(deviation, rel=0.05)
     assert values["liner_poisson"].min() >= 0.3
     again = sample(
-        512, seed=seed, clearance=Normal(mean=mean, deviation=deviation), liner_poisson=Uniform(low=0.3, high=0.4)
+        512, seed=seed, clearance=Normal(mean=mean, deviation=deviation), liner_poisson=Rectangular(low=0.3, high=0.4)
     )
     assert (again.part([slice(None)])["clearance"] == values["clearance"]).all()
 

@@ -6,7 +6,7 @@ import re
 
 from ..files import check_names
 from ..studies.design import Span
-from ..studies.distributions import Distribution, Uniform, tolerance
+from ..studies.distributions import Distribution, Rectangular, tolerance
 from ..studies.limits import EDGE_DISTANCE, Limit
 from ..studies.limits import NAMES as LIMITED
 from ..studies.parameters import PARAMETERS
@@ -55,7 +55,7 @@ def spread_of(phrase: str) -> tuple[str, Distribution]:
     found = re.fullmatch(r"\s*(\w+)\s*=\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+?)\s*", phrase)
     if found is None:
         name, low, high = range_of(phrase)
-        return name, Uniform(low=low, high=high)
+        return name, Rectangular(low=low, high=high)
     name, middle, half = found.groups()
     check_names([name], PARAMETERS, "among what can scatter")
     kind = PARAMETERS[name].kind

@@ -250,7 +250,7 @@ def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distri
     seed : int
         The same seed gives the same samples.
     method : Method
-    **distributions : Uniform or Normal
+    **distributions : Rectangular or Normal
         By name of a parameter.
 
     Raises
@@ -260,8 +260,8 @@ def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distri
 
     Examples
     --------
-    >>> from ballsocket.studies.distributions import Uniform
-    >>> sample(8, clearance=Uniform(low=0.05, high=0.15)).dims
+    >>> from ballsocket.studies.distributions import Rectangular
+    >>> sample(8, clearance=Rectangular(low=0.05, high=0.15)).dims
     ('sample',)
     """
     require("count", count, count >= 1, "at least one sample is drawn")

@@ -14,8 +14,8 @@ Array = numpy.ndarray
 
 
 @dataclass(frozen=True, kw_only=True)
-class Uniform:
-    """Anything from `low` to `high`, equally likely.
+class Rectangular:
+    """Anything from `low` to `high`, equally likely: uniform.
 
     Raises
     ------
@@ -75,7 +75,7 @@ class Normal:
         return truncnorm(*ends, loc=self.mean, scale=self.deviation)
 
 
-Distribution = Uniform | Normal
+Distribution = Rectangular | Normal
 
 
 def tolerance(nominal: float, plus_minus: float) -> Normal:

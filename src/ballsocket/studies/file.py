@@ -17,7 +17,7 @@ from ..presets import joints
 from ..units import as_given, parse
 from .design import Design, Method, Span, grid, sample, table
 from .distributed import Distributed
-from .distributions import Distribution, Normal, Uniform, tolerance
+from .distributions import Distribution, Normal, Rectangular, tolerance
 from .parameters import PARAMETERS
 
 _MAX_BYTES = 100_000
@@ -187,7 +187,7 @@ def _samples(content: Mapping[str, Any]) -> Design:
 
 
 _KINDS: tuple[tuple[tuple[str, ...], Any], ...] = (
-    (("low", "high"), Uniform),
+    (("low", "high"), Rectangular),
     (("mean", "deviation"), Normal),
     (("mean", "deviation", "low"), Normal),
     (("mean", "deviation", "high"), Normal),

@@ -13,7 +13,7 @@ from ..files import check_names
 from ..joint import Joint
 from ..models.base import Model
 from .design import Design, grid, sample
-from .distributions import Uniform
+from .distributions import Rectangular
 from .limits import EDGE_DISTANCE, Limit, allowed
 from .parameters import LOADS, PARAMETERS, varied
 from .run import study
@@ -158,7 +158,7 @@ class _Problem:
         """The best few allowed points of a search, and how many were pressed."""
         count = int(numpy.clip(_SEARCH / self.model.seconds_a_press, _FEWEST, _MOST))
         count = 1 << (count.bit_length() - 1)
-        ranges: dict[str, Any] = {name: Uniform(low=low, high=high) for name, (low, high) in self.vary.items()}
+        ranges: dict[str, Any] = {name: Rectangular(low=low, high=high) for name, (low, high) in self.vary.items()}
         points = self.study(sample(count, seed=seed, **ranges))
         value = points[self.minimise].where(allowed(points, self.limits)).values
         if numpy.isnan(value).all():

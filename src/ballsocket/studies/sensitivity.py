@@ -40,7 +40,7 @@ def sensitivity(
     ----------
     model, joint
         What is pressed; numbers that are not in `distributions` stay.
-    distributions : mapping of str to Uniform or Normal
+    distributions : mapping of str to Rectangular or Normal
         Independent of each other.
     quantities : iterable of str
     count : int
