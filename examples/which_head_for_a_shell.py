@@ -17,7 +17,7 @@ from ballsocket.studies.design import Span
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.optimum import optimise
 from ballsocket.studies.pareto import pareto
-from ballsocket.study_figures import front_figure, map_figure
+from ballsocket.study_figures import design_map, front_figure
 
 hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE, ball=bs.COCR)
 limits = (
@@ -36,7 +36,7 @@ print(f"the exact answer for that joint: {truth.max_pressure:.2f} MPa")
 study = bs.study(
     bs.Tabulated(), hip, ball_radius=Span(11.0, 23.0, 61), liner_thickness=Span(3.0, 15.0, 61), force=3000.0
 )
-save(map_figure(study, limits, best=best.point), "which_head_for_a_shell.png")
+save(design_map(study, limits, best=best.point), "which_head_for_a_shell.png")
 
 # %%
 # Little wear asks for a small contact area, strength for a low peak pressure. No head serves both; these are the ones

@@ -174,7 +174,7 @@ def test_phrases_of_the_shell():
 
 
 def test_pictures_show_what_was_asked(design_space):
-    figure = study_figures.map_figure(design_space, SHELL, best={"ball_radius": 19.6, "liner_thickness": 6.3})
+    figure = study_figures.design_map(design_space, SHELL, best={"ball_radius": 19.6, "liner_thickness": 6.3})
     assert [axes.get_title() for axes in figure.axes] == [
         "peak pressure p0 [MPa]",
         "contact area A [mm²]",
@@ -184,7 +184,7 @@ def test_pictures_show_what_was_asked(design_space):
     bands = bs.study(bs.HessForsbach(), HIP, scattered)
     assert "median" in study_figures.band_figure(bands).axes[0].get_legend_handles_labels()[1]
     with pytest.raises(ValueError, match="a map needs two axes"):
-        study_figures.map_figure(bands.isel(force=0))
+        study_figures.design_map(bands.isel(force=0))
     with pytest.raises(ValueError, match="bands need samples"):
         study_figures.band_figure(design_space)
 

@@ -27,7 +27,7 @@ _READ: dict[str, tuple[str, float]] = {
 }
 
 
-def map_figure(
+def design_map(
     study: xarray.Dataset, limits: Sequence[Limit] = (), quantities: Iterable[str] = SHOWN, best: Any = None
 ) -> Figure:
     """Contours of answers over the two axes of a study, pale where a limit is broken.

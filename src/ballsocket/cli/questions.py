@@ -57,7 +57,7 @@ def design_map(
     else:
         study_tables.print_map(found, limits)
     if figure is not None:
-        figures.save(study_figures.map_figure(found, limits), figure)
+        figures.save(study_figures.design_map(found, limits), figure)
 
 
 @app.command()
@@ -104,7 +104,7 @@ def optimise(
     if figure is not None:
         axes = dict(axis_of(phrase, points) for phrase in vary)
         found = bs.study(answers, given.joint, grid(**axes, **load))
-        figures.save(study_figures.map_figure(found, limits, best=best.point), figure)
+        figures.save(study_figures.design_map(found, limits, best=best.point), figure)
 
 
 @app.command()

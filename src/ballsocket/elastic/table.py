@@ -135,12 +135,21 @@ def _layers(contact: Any) -> Array:
     return contact.joint.backing_ratio + 2.0 * len(contact.joint.backing)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Curves:
-    """The curves of joints (joints,), one or as many as there are contacts (contacts,)."""
+    """The curves of joints (joints,), one or as many as there are contacts (contacts,).
+
+    Where many contacts share few joints, `shared` are the curves of these, and `which` of them each contact has.
+    """
 
     file: str
     joint: Joint
+    shared: Curves | None = None
+    which: Array | None = None
+
+    def _taken(self, values: Array) -> Array:
+        """Columns of the shared joints, for each contact."""
+        return arrays.namespace(values).take(values, self.which, axis=-1)
 
     @cached_property
     def ratio(self) -> Array:
@@ -163,6 +172,8 @@ class Curves:
 
     def series(self, name: str) -> Array:
         """Coefficients (functions, angles, joints) of the table of that name and of what an elastic ball adds."""
+        if self.shared is not None:
+            return self._taken(self.shared.series(name))
         nu, shelf = self.joint.liner.poisson, tables(self.file)
         places = [poisson_place(nu), thickness_place(self.ratio)]
         total = shelf[name].of(places)
@@ -175,11 +186,13 @@ class Curves:
 
     @cached_property
     def three(self) -> Array:
-        return self.series("rigid")
+        return self.series("rigid") if self.shared is None else self._taken(self.shared.three)
 
     @cached_property
     def slopes(self) -> Array:
         """Coefficients of the derivatives."""
+        if self.shared is not None:
+            return self._taken(self.shared.slopes)
         xp = arrays.namespace(self.three)
         flow = own(_derivative(self.three.shape[1]), self.three)
         return xp.stack([flow @ self.three[row, ...] for row in range(3)])
@@ -252,6 +265,13 @@ class Curves:
         functions = [(waves @ self.three[k, ...], widening * (waves @ self.slopes[k, ...])) for k in rows]
         return ln(angle / LIMIT), *self._logarithm(kind, angle, functions)
 
+    def known(self, kind: str) -> tuple[Array, Array, Array]:
+        """The knots, found once."""
+        if kind not in self._known:
+            shared = None if self.shared is None else self.shared.known(kind)
+            self._known[kind] = self._knots(kind) if shared is None else tuple(map(self._taken, shared))
+        return self._known[kind]
+
     @cached_property
     def _known(self) -> dict[str, tuple[Array, Array, Array]]:
         return {}
@@ -259,9 +279,7 @@ class Curves:
     def _start(self, kind: str, goal: Array) -> tuple[Array, Array]:
         """The unknown by cubics between a few contacts, like a power of the load below the first; and the last load."""
         xp = arrays.namespace(goal)
-        if kind not in self._known:
-            self._known[kind] = self._knots(kind)
-        places, loads, slopes = self._known[kind]
+        places, loads, slopes = self.known(kind)
         index = xp.count_nonzero(goal > loads[1:-1, :], axis=0)[None, :]
 
         def at(values: Array, step: int) -> Array:
@@ -418,19 +436,34 @@ def _in_blocks(
     xp, numbers = arrays.namespace(load), joint.numbers()
     shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
     alone = all(prod(part.shape) == 1 for part in numbers)
+    shared, which = (None, None) if alone else _shared(file, joint, shape)
     if not alone:
         numbers = tuple(arrays.broadcast_to(part, shape) for part in numbers)
     flat = [xp.reshape(part, (-1,)) for part in numbers]
     loads = xp.reshape(arrays.broadcast_to(where(load > 0, load, _LITTLE), shape), (-1,))
-    whole = Curves(file=file, joint=joint.with_numbers(flat))
+    whole = Curves(file, joint.with_numbers(flat))
     size = (4 if alone else 1) * (_BLOCK if xp is numpy else 64 * _BLOCK)
     results = []
     for first in range(0, max(prod(shape), 1), size):
         block = slice(first, min(first + size, prod(shape)))
-        curves = whole if alone else Curves(file=file, joint=joint.with_numbers([part[block] for part in flat]))
+        here = None if which is None else which[block]
+        curves = whole if alone else Curves(file, joint.with_numbers([part[block] for part in flat]), shared, here)
         results.append(law(curves, loads[block]))
     joined = (xp.concat(parts, axis=-1) if len(parts) > 1 else parts[0] for parts in zip(*results, strict=True))
     return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)
 
+
+def _shared(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[Curves | None, Array | None]:
+    """The curves of the joints of a grid, and which of them each contact has: worth while in NumPy, from a few on."""
+    numbers = joint.numbers()
+    inner = numpy.broadcast_shapes(*(tuple(part.shape) for part in numbers))
+    if arrays.namespace(*numbers) is not numpy or prod(inner) * _FEW > prod(shape) or prod(inner) > _BLOCK:
+        return None, None
+    flat = [numpy.broadcast_to(part, inner).ravel() for part in numbers]
+    which = numpy.broadcast_to(numpy.arange(prod(inner)).reshape(inner), shape).ravel()
+    return Curves(file, joint.with_numbers(flat)), which
+
+
+_FEW = 4  # contacts a joint
 
 _LITTLE = 1e-3

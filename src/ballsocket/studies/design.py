@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import cached_property
+from functools import lru_cache
 from math import inf, prod
 from pathlib import Path
 from typing import Any
@@ -59,7 +59,12 @@ class SpanAxis(Axis):
 
     @property
     def values(self) -> Mapping[str, Array]:
-        return {self.name: numpy.linspace(self.span.low, self.span.high, self.span.count)}
+        return _stepped(self)
+
+
+@lru_cache(maxsize=16)
+def _stepped(axis: SpanAxis) -> Mapping[str, Array]:
+    return {axis.name: numpy.linspace(axis.span.low, axis.span.high, axis.span.count)}
 
 
 @dataclass(frozen=True)
@@ -108,21 +113,23 @@ class SampleAxis(Axis):
     def __len__(self) -> int:
         return self.count
 
-    @cached_property
+    @property
     def values(self) -> Mapping[str, Array]:
-        from scipy.stats.qmc import LatinHypercube, Sobol
+        return _drawn(self)
 
-        engines = {Method.SOBOL: Sobol, Method.LATIN_HYPERCUBE: LatinHypercube}
-        engine = engines[self.method](len(self.distributions), rng=self.seed)
-        shares = engine.random(self.count)
-        return {
-            name: distribution.frozen.ppf(share)
-            for (name, distribution), share in zip(self.distributions, shares.T, strict=True)
-        }
 
-    def __getstate__(self) -> dict[str, Any]:
-        """Without the drawn numbers, which a worker draws for itself."""
-        return {key: value for key, value in self.__dict__.items() if key != "values"}
+@lru_cache(maxsize=4)
+def _drawn(axis: SampleAxis) -> Mapping[str, Array]:
+    """Once in each process: a worker is sent the recipe, not the numbers."""
+    from scipy.stats.qmc import LatinHypercube, Sobol
+
+    engines = {Method.SOBOL: Sobol, Method.LATIN_HYPERCUBE: LatinHypercube}
+    engine = engines[axis.method](len(axis.distributions), rng=axis.seed)
+    shares = engine.random(axis.count)
+    return {
+        name: distribution.frozen.ppf(share)
+        for (name, distribution), share in zip(axis.distributions, shares.T, strict=True)
+    }
 
 
 @dataclass(frozen=True, eq=False)
