@@ -111,7 +111,7 @@ class Cluster:
         from distributed import LocalCluster
 
         self._made = LocalCluster(
-            n_workers=workers, threads_per_worker=1, dashboard_address=None, host="127.0.0.1", silence_logs=40
+            n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0", host="127.0.0.1", silence_logs=40
         )
 
     def __enter__(self) -> str:

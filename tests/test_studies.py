@@ -204,7 +204,7 @@ def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
 def test_a_scheduler_is_asked_by_its_address():
     from distributed import LocalCluster
 
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None, host="127.0.0.1") as cluster:
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0", host="127.0.0.1") as cluster:
         found = bs.study(bs.HessForsbach(), HIP, engine=Distributed(address=cluster.scheduler_address), **AXES)
     assert same(found, bs.study(bs.HessForsbach(), HIP, **AXES))
     with pytest.raises(ValueError, match="give an address or a number of workers"):

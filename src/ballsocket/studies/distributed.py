@@ -82,7 +82,7 @@ class Distributed:
                 yield client
             return
         count = self.workers or available_cores()
-        options: dict[str, Any] = {"dashboard_address": None, "host": "127.0.0.1", "silence_logs": 40}
+        options: dict[str, Any] = {"dashboard_address": "127.0.0.1:0", "host": "127.0.0.1", "silence_logs": 40}
         with LocalCluster(n_workers=count, threads_per_worker=1, **options) as cluster, Client(cluster) as client:
             yield client
 
