@@ -128,6 +128,22 @@ def test_slopes_by_jax_are_those_of_differences(model):
     )
 
 
+def test_slopes_of_finite_elements_are_near_the_exact_ones():
+    at = {"force": 3000.0, "clearance": 0.1}
+    near, true = (
+        elasticities(model, HIP, ("max_pressure", "half_angle"), at)
+        for model in (bs.FiniteElement(meshes=1), bs.Exact())
+    )
+    for quantity, each in true.items():
+        for name, value in each.items():
+            assert near[quantity][name] == pytest.approx(value, abs=0.02)
+
+
+def test_a_massive_socket_is_thick_enough():
+    found = bs.study(bs.Hertz(), bs.joints["tilting-pad-pivot"], liner_thickness=[3.0, 6.0, np.inf], force=1e3)
+    assert allowed(found, [Limit(name="liner_thickness", low=4.0)]).values.tolist() == [False, True, True]
+
+
 def test_sobol_indices_of_a_product_of_powers():
     """Hertz with a rigid ball: d ~ (F²/(E*² R*))^(1/3), whose logarithm is a sum; small spreads make it additive."""
     rigid = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
@@ -146,6 +162,7 @@ def test_sobol_indices_of_a_product_of_powers():
     ("words", "message"),
     [
         ({"count": 1000}, "count = 1000 is not allowed: a power of two"),
+        ({"distributions": {"force": tolerance(3e3, 5e2)}}, "force scatters and is given as a load too"),
         ({"distributions": {}}, "at least one number must scatter"),
         ({"distributions": {"clearence": tolerance(0.1, 0.05)}}, "did you mean 'clearance'"),
         (
@@ -282,6 +299,10 @@ def test_questions_on_the_command_line(tmp_path):
     columns = json.loads(front.stdout)["points"]
     assert np.all(np.diff(columns["area"]) > 0)
     assert np.all(np.diff(columns["max_pressure"]) < 0)
+    loads = command(
+        tmp_path, "map", "hess-forsbach", "--x", "force=1..4 kN", "--limit", "area<=500 mm2", "--points", "9", "--json"
+    )
+    assert json.loads(loads.stdout)["limits"] == ["area ≤ 500"]
     scatter = command(
         tmp_path,
         "sensitivity",
@@ -300,6 +321,11 @@ def test_questions_on_the_command_line(tmp_path):
         (("optimise", *common, "--vary", "ball_radius=23..11 mm"), "a range goes upwards"),
         (("sensitivity", *common, "--spread", "clearance=much"), "is not a range"),
         (("map", "hess-forsbach"), "a load is needed"),
+        (("map", *common, "--x", "force=1..4 kN"), "force varies, and a load is given too"),
+        (
+            ("optimise", *common, "--vary", "clearance=0.05..0.1", "--vary", "clearance=0.1..0.2"),
+            "clearance is given twice",
+        ),
     ):
         done = command(tmp_path, *words)
         assert done.returncode == 2, done.stdout

@@ -59,7 +59,7 @@ def test_labels_say_what_units_and_who():
     assert found.clearance.attrs["units"] == "mm"
     assert "Heß & Forsbach 2021" in found.attrs["references"]
     assert json.loads(found.attrs["joint"])["liner"]["young"] == 1000.0
-    assert found.status.attrs["flag_meanings"].split()[0] == "ok"
+    assert found.status.attrs["flag_meanings"].split()[:2] == ["not_computed", "ok"]
     assert json.loads(json.dumps(found.attrs))
 
 
@@ -172,13 +172,37 @@ def test_rows_of_a_table(tmp_path):
         ({"outer_radius": 20.0, "liner_thickness": 2.0, "force": 1.0}, "either fixes the other"),
         ({"clearance": [], "force": 1.0}, "clearance has no values"),
         ({"clearance": [0.1, float("nan")], "force": 1.0}, r"clearance\[1\] = nan is not allowed"),
-        ({"clearance": [-0.1], "force": 1.0}, r"clearance.* = -0.1 is not allowed"),
+        ({"clearance": [0.1, -0.1], "force": 1.0}, r"clearance\[1\] = -0.1 is not allowed for a radial clearance"),
+        ({"force": Span(-1.0, 5.0, 10**9)}, r"force\[0\] = -1 is not allowed for a normal force"),
         ({"force": ["1 kN"]}, "force must be a row of numbers"),
     ],
 )
 def test_bad_designs_are_one_sentence(axes, message):
     with pytest.raises(ValueError, match=message):
         bs.study(bs.HessForsbach(), HIP, **axes)
+
+
+def test_what_would_be_ignored_is_refused(tmp_path):
+    rigid = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+    with pytest.raises(ValueError, match="the ball of this joint is rigid: it has no ball_young"):
+        bs.study(bs.Tabulated(), rigid, ball_young=[1e4, 1e5], force=1e3)
+    many = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=np.array([5.0, 6.0]), liner=bs.UHMWPE)
+    with pytest.raises(ValueError, match="plain numbers"):
+        bs.study(bs.HessForsbach(), many, force=[1e3, 2e3])
+    with pytest.raises(ValueError, match="two axes are called sample"):
+        sample(4, clearance=tolerance(0.1, 0.05)) * sample(4, liner_poisson=Rectangular(low=0.3, high=0.4))
+    with pytest.raises(
+        ValueError, match=r"clearance.* is not allowed for a radial clearance; cut the distribution off"
+    ):
+        bs.study(bs.HessForsbach(), HIP, sample(4096, clearance=Normal(mean=0.1, deviation=0.03)), force=1e3)
+    for text, message in (
+        ("clearance_deg,force\n6,1000\n", "'clearance_deg' among the columns"),
+        ("clearance,clearance,force\n0.1,0.2,1000\n", "has clearance twice"),
+        ("clearance,force\n0.1,1000,7\n", "row 0 of rows.csv has more cells"),
+    ):
+        (tmp_path / "rows.csv").write_text(text, encoding="utf-8")
+        with pytest.raises(ValueError, match=message):
+            table(tmp_path / "rows.csv")
 
 
 def test_too_many_points_are_refused_with_size_and_time(tmp_path):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.studies.run import read
 from ballsocket.studies.store import CHECKSUM
 
 HIP = bs.joints["hess-forsbach"]
@@ -93,6 +94,60 @@ def test_the_store_of_other_code_is_refused(store, monkeypatch):
     monkeypatch.setattr("ballsocket.studies.identity.fingerprint", lambda: "9.9.9+other")
     with pytest.raises(ValueError, match="code is .* there and 9.9.9[+]other here"):
         presses(store)
+
+
+def enclosing(value):
+    def formula(radius, thickness, young, poisson):
+        return value + 0.0 * radius
+
+    return formula
+
+
+def test_models_of_ones_own_are_told_apart(store):
+    from ballsocket.models.modulus import Modulus
+
+    def model(value):
+        return bs.RadialFoundation(modulus=Modulus(name="mine", title="mine", formula=enclosing(value)))
+
+    bs.study(model(100.0), HIP, store=store, force=[1000.0])
+    with pytest.raises(ValueError, match="encloses is .100.0. there and .300.0. here"):
+        bs.study(model(300.0), HIP, store=store, force=[1000.0])
+
+
+def test_a_finished_study_is_opened_on_a_full_disk(store, monkeypatch):
+    presses(store)
+    monkeypatch.setattr("ballsocket.studies.room._free_disk", lambda path: 0)
+    _, blocks = presses(store)
+    assert blocks == 0
+
+
+def test_damaged_axes_are_mended(store):
+    whole, _ = presses(store)
+    chunks(store, "clearance")[0].unlink()
+    again, blocks = presses(store)
+    assert blocks == 0
+    assert again.identical(whole)
+
+
+def test_points_of_an_unfinished_store_say_so(store, monkeypatch):
+    from ballsocket.studies.store import NOT_COMPUTED
+
+    presses(store)
+    chunk = chunks(store, "status")[0]
+    chunk.unlink()
+    assert (read(store).status.values == NOT_COMPUTED).any()
+
+
+def test_a_worker_of_another_version_is_refused():
+    from dataclasses import replace
+
+    from ballsocket.studies.design import grid
+    from ballsocket.studies.run import _task
+
+    task = replace(_task(bs.HessForsbach(), HIP, None, {"force": [1000.0]}, ()), code="0.0.0+old")
+    with pytest.raises(ValueError, match="this worker has ballsocket .* and 0.0.0.old asks"):
+        task(0)
+    assert grid(force=[1.0]).size == 1
 
 
 def test_what_is_no_study_is_left_alone(store):

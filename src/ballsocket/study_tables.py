@@ -115,6 +115,8 @@ def print_optimum(best: Optimum) -> None:
     for name, value in best.point.items():
         table.add_row(name, f"{value:.5g}", _unit(name), f"{best.slopes[name]:.4g}")
     console.print(table)
+    if not best.valid:
+        console.print("the model does not trust itself there: ask another", highlight=False)
     if best.active:
         console.print(f"held by {', '.join(best.active)}", highlight=False)
 

@@ -7,14 +7,15 @@ import re
 from ..files import check_names
 from ..studies.design import Span
 from ..studies.distributions import Distribution, Rectangular, tolerance
+from ..studies.labels import described
 from ..studies.limits import EDGE_DISTANCE, Limit
 from ..studies.limits import NAMES as LIMITED
 from ..studies.parameters import PARAMETERS
+from ..studies.task import QUANTITIES
 from ..units import parse
 
 _ANSWERS = {
     "max_pressure": "modulus",
-    "area": "number",
     "half_angle": "angle",
     "indentation": "length",
     "force": "force",
@@ -75,7 +76,10 @@ def limit_of(phrase: str) -> Limit:
         raise ValueError(f"{phrase!r} is not a limit, such as 'outer_radius<=26 mm'")
     name, sign, end = found.groups()
     check_names([name], LIMITED, "among what can be limited")
-    value = parse(name, end, _kind(name))
+    if name in QUANTITIES:
+        unit = str(described(name)["units"])
+        end = end.removesuffix(unit).removesuffix(unit.replace("2", "²")) if name not in _ANSWERS else end
+    value = parse(name, end.strip(), _kind(name))
     return Limit(name=name, high=value) if sign in ("<=", "≤") else Limit(name=name, low=value)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,14 +12,20 @@ import typer
 import ballsocket as bs
 
 from .. import figures, study_figures, study_tables
+from ..fem.model import FiniteElement
+from ..files import JointFile
+from ..models.base import Model
 from ..studies.design import grid
 from ..studies.file import named_model
+from ..studies.limits import Limit
 from ..studies.optimum import optimise as find_optimum
+from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
 from ..studies.sensitivity import sensitivity as find_sensitivity
+from ..studies.task import QUANTITIES, USUAL
 from .phrases import axis_of, limit_of, range_of, spread_of
 from .root import app
-from .words import echo_json, load_of, named_joint
+from .words import echo_json, given, load_of, named_joint
 
 JointName = Annotated[str, typer.Argument(help="A joint file or a preset's name.")]
 ModelName = Annotated[str, typer.Option(help="A model's name: tabulated, exact, hess-forsbach, ...")]
@@ -28,8 +36,43 @@ Picture = Annotated[Path | None, typer.Option(help="Write a picture (.png, .svg,
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")]
 
 
-def _load(force: str | None, indentation: str | None, joint: Any) -> dict[str, float]:
-    return load_of({"force": force, "indentation": indentation}, joint)
+def _load(force: str | None, indentation: str | None, joint: JointFile, named: Iterable[str]) -> dict[str, float]:
+    """The load; none where it is among what varies."""
+    words = {"force": force, "indentation": indentation}
+    varied = [name for name in named if name in LOADS]
+    if varied and given(words):
+        raise ValueError(f"{varied[0]} varies, and a load is given too; one is needed")
+    return {} if varied else load_of(words, joint)
+
+
+def _model(name: str, joint: JointFile) -> Model:
+    """By its name; finite elements take the cup of the joint's file."""
+    model = named_model(name)
+    return replace(model, cup=joint.cup) if isinstance(model, FiniteElement) else model
+
+
+def _limits(phrases: list[str] | None, joint: JointFile) -> list[Limit]:
+    return [replace(limit_of(phrase), rim=joint.cup.rim) for phrase in phrases or []]
+
+
+def _once(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """As a dictionary, if no name comes twice."""
+    found: dict[str, Any] = {}
+    for name, value in pairs:
+        if name in found:
+            raise ValueError(f"{name} is given twice; one is needed")
+        found[name] = value
+    return found
+
+
+def _shown(wishes: list[str]) -> list[str]:
+    return list(dict.fromkeys((*wishes, *study_figures.SHOWN)))
+
+
+def _quantities(wishes: Iterable[str], limits: Iterable[Limit]) -> list[str]:
+    """What is shown, wished for, or limited."""
+    limited = (limit.name for limit in limits if limit.name in QUANTITIES)
+    return list(dict.fromkeys((*USUAL, *wishes, *limited)))
 
 
 @app.command(name="map")
@@ -48,10 +91,11 @@ def design_map(
     """Map peak pressure, contact area and half angle over two numbers of a joint, with limits drawn."""
     if figure is not None:
         figures.check_format(figure)
-    given = named_joint(joint)
-    limits = [limit_of(phrase) for phrase in limit or []]
-    design = grid(**dict([axis_of(x, points), axis_of(y, points)]), **_load(force, indentation, given))
-    found = bs.study(named_model(model), given.joint, design)
+    file = named_joint(joint)
+    limits = _limits(limit, file)
+    axes = _once([axis_of(x, points), axis_of(y, points)])
+    design = grid(**axes, **_load(force, indentation, file, axes))
+    found = bs.study(_model(model, file), file.joint, design, quantities=_quantities((), limits))
     if as_json:
         echo_json(study_tables.map_summary(found, limits))
     else:
@@ -78,13 +122,16 @@ def optimise(
     """Find the joint with the smallest answer within limits; with two answers, the joints that none beats in both."""
     if figure is not None:
         figures.check_format(figure)
-    given, chosen = named_joint(joint), minimise or ["max_pressure"]
-    limits = [limit_of(phrase) for phrase in limit or []]
-    load = _load(force, indentation, given)
-    answers = named_model(model)
+    file, chosen = named_joint(joint), minimise or ["max_pressure"]
+    limits = _limits(limit, file)
+    ranges = _once((name, (low, high)) for name, low, high in map(range_of, vary))
+    if figure is not None and len(chosen) == 1 and len(ranges) != 2:
+        raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
+    load = _load(force, indentation, file, ranges)
+    answers, quantities = _model(model, file), _quantities(chosen, limits)
     if len(chosen) == 2:
         design = grid(**dict(axis_of(phrase, points) for phrase in vary), **load)
-        found = bs.study(answers, given.joint, design)
+        found = bs.study(answers, file.joint, design, quantities=quantities)
         front = pareto(found, (chosen[0], chosen[1]), limits)
         if as_json:
             echo_json(study_tables.front_summary(front))
@@ -95,16 +142,15 @@ def optimise(
         return
     if len(chosen) != 1:
         raise ValueError(f"one answer or two are minimised, got {len(chosen)}")
-    ranges = {name: (low, high) for name, low, high in map(range_of, vary)}
-    best = find_optimum(answers, given.joint, ranges, minimise=chosen[0], limits=limits, load=load)
+    best = find_optimum(answers, file.joint, ranges, minimise=chosen[0], limits=limits, load=load)
     if as_json:
         echo_json({"version": bs.__version__, **best.summary()})
     else:
         study_tables.print_optimum(best)
     if figure is not None:
         axes = dict(axis_of(phrase, points) for phrase in vary)
-        found = bs.study(answers, given.joint, grid(**axes, **load))
-        figures.save(study_figures.design_map(found, limits, best=best.point), figure)
+        found = bs.study(answers, file.joint, grid(**axes, **load), quantities=quantities)
+        figures.save(study_figures.design_map(found, limits, _shown(chosen), best=best.point), figure)
 
 
 @app.command()
@@ -121,10 +167,10 @@ def sensitivity(
     """Tell which number's scatter matters: Sobol indices with intervals, and elasticities."""
     if figure is not None:
         figures.check_format(figure)
-    given = named_joint(joint)
-    load = _load(force, indentation, given)
-    scattered = dict(map(spread_of, spread))
-    found = find_sensitivity(named_model(model), given.joint, scattered, count=count, load=load)
+    file = named_joint(joint)
+    scattered = _once(map(spread_of, spread))
+    load = _load(force, indentation, file, scattered)
+    found = find_sensitivity(_model(model, file), file.joint, scattered, count=count, load=load)
     if as_json:
         echo_json({"version": bs.__version__, "model": found.attrs["model"], **study_tables.sensitivity_summary(found)})
     else:

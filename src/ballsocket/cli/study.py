@@ -34,6 +34,8 @@ def study(
     """Press a joint at every point of a study file, into a store that can be resumed."""
     if out is not None:
         check_suffix(out)
+        if not out.parent.is_dir():
+            raise ValueError(f"{str(out.parent)!r} is no folder to write {out.name} into")
     given = read_study(file)
     kept = store or given.store
     with _shown() as listen:

@@ -71,6 +71,10 @@ class Exact(Model):
         return False
 
     @property
+    def smooth_step(self) -> float:
+        return 2e-3
+
+    @property
     def seconds_a_press(self) -> float:
         return 3e-3
 

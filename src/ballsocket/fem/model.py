@@ -82,6 +82,10 @@ class FiniteElement(Model):
         return False
 
     @property
+    def smooth_step(self) -> float:
+        return 3e-2
+
+    @property
     def seconds_a_press(self) -> float:
         return 0.2
 

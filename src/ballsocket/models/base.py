@@ -88,6 +88,11 @@ class Model(ABC):
         return True
 
     @property
+    def smooth_step(self) -> float:
+        """A share of a number over which answers change by more than they are uncertain: for differences."""
+        return 1e-4
+
+    @property
     def seconds_a_press(self) -> float:
         """Roughly, for one of many points on one core: studies cut their work by it."""
         return 4e-7

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -125,7 +126,9 @@ def _drawn(axis: SampleAxis) -> Mapping[str, Array]:
 
     engines = {Method.SOBOL: Sobol, Method.LATIN_HYPERCUBE: LatinHypercube}
     engine = engines[axis.method](len(axis.distributions), rng=axis.seed)
-    shares = engine.random(axis.count)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of counts that are no power of two: the docstring says so
+        shares = engine.random(axis.count)
     return {
         name: distribution.frozen.ppf(share)
         for (name, distribution), share in zip(axis.distributions, shares.T, strict=True)
@@ -164,6 +167,9 @@ class Design:
             if names.count(name) > 1:
                 raise ValueError(f"{name} varies along two axes; one is needed")
         contradiction(dict.fromkeys(names))
+        for dim in self.dims:
+            if self.dims.count(dim) > 1:
+                raise ValueError(f"two axes are called {dim}: draw all samples, or take all rows, in one")
 
     def __mul__(self, other: Design) -> Design:
         """Every combination of both."""
@@ -234,6 +240,28 @@ def grid(**axes: Any) -> Design:
     return Design(tuple(_axis(name, value) for name, value in varying.items()), fixed)
 
 
+def check_values(design: Design) -> None:
+    """Raise ValueError for the first value of an axis that no joint and no load has.
+
+    Of a span only the ends are looked at, since all that lies between them is allowed with them.
+    """
+    for axis in design.axes:
+        ends = {axis.name: numpy.array([axis.span.low, axis.span.high])} if isinstance(axis, SpanAxis) else axis.values
+        for name, values in ends.items():
+            _check_allowed(name, values, "; cut the distribution off" if isinstance(axis, SampleAxis) else "")
+    for name, value in design.fixed.items():
+        _check_allowed(name, numpy.array([value]), "")
+
+
+def _check_allowed(name: str, values: Array, hint: str) -> None:
+    bad = ~PARAMETERS[name].allows(values)
+    if bad.any():
+        first = int(numpy.argmax(bad))
+        more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
+        what = PARAMETERS[name].title
+        raise ValueError(f"{name}[{first}] = {values[first]:g}{more} is not allowed for a {what}{hint}")
+
+
 def is_one(value: Any) -> bool:
     """Whether a value is one number."""
     return numpy.ndim(value) == 0
@@ -294,7 +322,9 @@ def table(path: str | Path) -> Design:
         raise ValueError(f"{str(path)!r} must end in {' or '.join(_READERS)}")
     columns = {}
     for name, values in _READERS[path.suffix.lower()](path).items():
-        parameter = name.removesuffix("_deg")
+        parameter = name.removesuffix("_deg") if name.endswith("half_angle_deg") else name
+        if parameter in columns:
+            raise ValueError(f"{path.name} has {parameter} twice")
         check_names([parameter], PARAMETERS, f"among the columns of {path.name}")
         column = _column(parameter, values, row=f" in row {{}} of {path.name}")
         columns[parameter] = numpy.radians(column) if name != parameter else column
@@ -307,8 +337,15 @@ def _read_csv(path: Path) -> dict[str, Array]:
     import csv
 
     with path.open(encoding="utf-8-sig", newline="") as stream:
-        rows = list(csv.DictReader(stream, strict=True))
-    heads = rows[0].keys() if rows else ()
+        reader = csv.DictReader(stream, strict=True)
+        rows = list(reader)
+    heads = reader.fieldnames or () if rows else ()
+    for name in heads:
+        if heads.count(name) > 1:
+            raise ValueError(f"{path.name} has {name} twice")
+    for number, row in enumerate(rows):
+        if None in row:
+            raise ValueError(f"row {number} of {path.name} has more cells than there are columns")
     return {name: numpy.array([_number(row[name]) for row in rows]) for name in heads}
 
 

@@ -57,28 +57,37 @@ class Distributed:
         ------
         ImportError
             Dask is not installed.
-        OSError
+        ConnectionError
             There is no scheduler at the address.
+        RuntimeError
+            A block that lost its worker too often.
         """
         if not len(numbers):
             return
         needs("study", "dask", "distributed", "xarray")
-        from distributed import as_completed, futures_of
+        from distributed import KilledWorker, as_completed, futures_of
 
         with self._client() as client:
             blocks = client.persist(_blocks(work, numbers), retries=self.retries)
             coming = as_completed(futures_of(blocks), with_results=True)
             del blocks  # an answer is let go by its worker once it is here
-            for future, answers in coming:
-                yield from answers.tolist()
-                future.release()
+            try:
+                for future, answers in coming:
+                    yield from answers.tolist()
+                    future.release()
+            except KilledWorker as error:
+                raise RuntimeError(f"a block lost its worker too often: {error}") from error
 
     @contextmanager
     def _client(self) -> Iterator[Client]:
         from distributed import Client, LocalCluster
 
         if self.address is not None:
-            with Client(self.address, timeout=10) as client:
+            try:
+                client = Client(self.address, timeout=10)
+            except OSError as error:
+                raise ConnectionError(None, "no scheduler answers", self.address) from error
+            with client:
                 yield client
             return
         count = self.workers or available_cores()

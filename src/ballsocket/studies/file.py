@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ..all_models import catalogue, judge
 from ..engines import Engine, Processes, Serial
-from ..files import check_names, joint_of, nearest, read_joint
+from ..fem.model import FiniteElement
+from ..files import JointFile, check_names, joint_of, nearest, read_joint
 from ..joint import Joint
 from ..models.base import Model
 from ..presets import joints
@@ -22,12 +23,12 @@ from .parameters import PARAMETERS
 
 _MAX_BYTES = 100_000
 _TOP = (
-    "title",
     "model",
     "joint",
     "liner",
     "ball",
     "backing",
+    "cup",
     "axes",
     "samples",
     "table",
@@ -35,7 +36,7 @@ _TOP = (
     "store",
     "engine",
 )
-_DESCRIBED = ("joint", "liner", "ball", "backing")
+_DESCRIBED = ("joint", "liner", "ball", "backing", "cup")
 _ENGINES = ("serial", "processes", "dask")
 models: dict[str, Model] = {**catalogue, judge.name: judge}
 """By the names that files and the command line use."""
@@ -91,9 +92,12 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     quantities = content.get("quantities", [])
     if not (isinstance(quantities, list) and all(isinstance(name, str) for name in quantities)):
         raise ValueError(f"quantities = {quantities!r} must be a list of names")
+    model, given = named_model(content.get("model", "hess-forsbach")), _joint(content, folder)
+    if isinstance(model, FiniteElement):
+        model = replace(model, cup=given.cup)
     return StudyFile(
-        model=named_model(content.get("model", "hess-forsbach")),
-        joint=_joint(content, folder),
+        model=model,
+        joint=given.joint,
         design=_design(content, folder),
         quantities=tuple(quantities),
         store=folder / _text("store", content["store"]) if "store" in content else None,
@@ -117,7 +121,11 @@ def named_model(name: Any) -> Model:
 def read_engine(content: Mapping[str, Any]) -> Engine:
     """An engine from `kind`, `workers` and `address`."""
     check_names(content, ("kind", "workers", "address"), "in [engine]")
+    if content and "kind" not in content:
+        raise ValueError(f"[engine] needs a kind: {', '.join(_ENGINES)}")
     kind, workers = content.get("kind", "serial"), content.get("workers")
+    if kind == "serial" and workers is not None:
+        raise ValueError("engine kind 'serial' has no workers: 'processes' and 'dask' have")
     if kind not in _ENGINES:
         raise ValueError(f"engine kind {kind!r} is not known{nearest(str(kind), _ENGINES)}")
     if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int)):
@@ -129,18 +137,21 @@ def read_engine(content: Mapping[str, Any]) -> Engine:
     return Processes(workers=workers) if kind == "processes" else Serial()
 
 
-def _joint(content: Mapping[str, Any], folder: Path) -> Joint:
+def _joint(content: Mapping[str, Any], folder: Path) -> JointFile:
     given = content.get("joint")
     if isinstance(given, Mapping):
-        return joint_of({name: content[name] for name in _DESCRIBED if name in content}).joint
+        return joint_of({name: content[name] for name in _DESCRIBED if name in content})
+    others = [name for name in _DESCRIBED[1:] if name in content]
+    if given is not None and others:
+        raise ValueError(f"joint = {given!r} is a whole joint: [{others[0]}] belongs to a table [joint]")
     if given is None:
         raise ValueError("a joint is needed: a joint file, a preset's name, or a table [joint]")
     name = _text("joint", given)
     if name in joints:
-        return joints[name]
+        return JointFile(joints[name], {})
     if not (folder / name).is_file():
         raise ValueError(f"joint {name!r} is neither a file nor a preset{nearest(name, joints)}")
-    return read_joint(folder / name).joint
+    return read_joint(folder / name)
 
 
 def _design(content: Mapping[str, Any], folder: Path) -> Design:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from hashlib import sha256
+from types import FunctionType
 from typing import Any
 
 import numpy
@@ -44,13 +45,27 @@ def plain(value: Any) -> Any:
         return [plain(each) for each in value]
     if isinstance(value, float):
         return value if numpy.isfinite(value) else str(value)
-    if isinstance(value, Callable):  # type: ignore[arg-type]
+    if value is None or isinstance(value, str | int):
+        return value
+    if isinstance(value, type):
         return _name(value)
-    return value
+    if isinstance(value, FunctionType):
+        return _function(value)
+    raise ValueError(f"a store cannot tell {value!r} from others: make it a dataclass or a function")
 
 
 def _name(thing: Any) -> str:
     return f"{thing.__module__}.{thing.__qualname__}"
+
+
+def _function(function: FunctionType) -> Any:
+    """A function of this package by its name; any other also by its code and what it encloses."""
+    if function.__module__.startswith("ballsocket.") and function.__closure__ is None:
+        return _name(function)
+    code = function.__code__
+    digest = sha256(repr((code.co_code, code.co_names, [str(each) for each in code.co_consts])).encode()).hexdigest()
+    enclosed = [plain(cell.cell_contents) for cell in function.__closure__ or ()]
+    return {"name": _name(function), "code": digest, "encloses": enclosed, "defaults": plain(function.__defaults__)}
 
 
 def _axis(axis: Axis) -> Any:

@@ -35,8 +35,8 @@ def described(name: str) -> dict[str, Any]:
     if name == "status":
         return {
             "long_name": "how the press ended",
-            "flag_values": [int(one) for one in Status],
-            "flag_meanings": " ".join(one.name.lower() for one in Status),
+            "flag_values": [-1, *(int(one) for one in Status)],
+            "flag_meanings": " ".join(["not_computed", *(one.name.lower() for one in Status)]),
         }
     if name == "valid":
         return {"long_name": "joint and answer lie where the model can be trusted"}

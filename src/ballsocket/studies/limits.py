@@ -65,7 +65,9 @@ class Limit:
     def margin(self, study: xarray.Dataset) -> Any:
         """How far inside the range, negative outside."""
         value = self.of(study)
-        return numpy.minimum(value - self.low, self.high - value)
+        below = value - self.low if self.low > -inf else inf + 0.0 * numpy.isnan(value)
+        above = self.high - value if self.high < inf else inf + 0.0 * numpy.isnan(value)
+        return numpy.minimum(below, above)
 
     def __str__(self) -> str:
         if self.high == inf:

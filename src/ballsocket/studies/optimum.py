@@ -42,8 +42,10 @@ class Optimum:
         Limits and ends of ranges that it touches: giving way there would help.
     slopes : dict of str to float
         Derivative of the quantity with respect to what was varied.
-    presses : int
-        How many were made.
+    valid : bool
+        Whether the model can be trusted there.
+    searched : int
+        Joints that the search for a start looked at.
     """
 
     minimise: str
@@ -52,7 +54,8 @@ class Optimum:
     joint: Joint
     active: tuple[str, ...]
     slopes: dict[str, float]
-    presses: int
+    valid: bool
+    searched: int
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
@@ -63,7 +66,8 @@ class Optimum:
             "active": list(self.active),
             "slopes": self.slopes,
             "joint": self.joint.summary(),
-            "presses": self.presses,
+            "valid": self.valid,
+            "searched": self.searched,
         }
 
 
@@ -204,7 +208,7 @@ class _Problem:
     def margin(self, share: Array, limit: Limit) -> float:
         return float(limit.margin(self.study(grid(**self.at(share)))))
 
-    def optimum(self, share: Array, presses: int) -> Optimum:
+    def optimum(self, share: Array, searched: int) -> Optimum:
         at = self.at(share)
         value, slope = self.value(share)
         ends = [
@@ -222,7 +226,8 @@ class _Problem:
             joint=made,
             active=(*touched, *ends),
             slopes=dict(zip(self.vary, (slope / spans).tolist(), strict=True)),
-            presses=presses,
+            valid=bool(self.study(grid(**at)).valid),
+            searched=searched,
         )
 
 

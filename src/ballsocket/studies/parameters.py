@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import pi
 from types import MappingProxyType
 
 from ..arrays import Array, where
@@ -18,6 +19,14 @@ class Parameter:
     symbol: str
     unit: str
     kind: str
+
+    def allows(self, values: Array) -> Array:
+        """Where a joint or a load may have these numbers."""
+        if self.symbol in ("ν", "ν1"):
+            return (values > -1) & (values <= 0.5)
+        if self.kind == "angle":
+            return (values >= 0) & (values < pi / 2)
+        return values >= 0 if self.symbol in ("ΔR", "F", "δ") else values > 0
 
 
 PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
@@ -61,6 +70,9 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
         A number that no joint may have, named with its value; names that contradict each other.
     """
     contradiction(values)
+    for name in ("ball_young", "ball_poisson"):
+        if name in values and joint.ball is None:
+            raise ValueError(f"the ball of this joint is rigid: it has no {name}")
     radius, clearance = _radius_and_clearance(joint, values)
     thickness = values.get("liner_thickness", joint.liner_thickness)
     if "outer_radius" in values:

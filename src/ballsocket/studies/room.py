@@ -11,16 +11,20 @@ import numpy
 from .task import DTYPES, Task
 
 
-def check_room(task: Task, path: Path | None) -> None:
-    """Raise ValueError, with the size and the time that a study takes, where memory (or the disk) is too small."""
-    size = task.design.size * sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
+def check_room(task: Task, path: Path | None, points: int | None = None) -> None:
+    """Raise ValueError, with the size and the time that a study takes, where memory (or the disk) is too small.
+
+    `points` are those that are still to come, all of them by default.
+    """
+    count = task.design.size if points is None else points
+    size = count * sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
     free = _free_memory() if path is None else _free_disk(path)
     if size <= free:
         return
-    hours = task.design.size * task.model.seconds_a_press / 3600
+    hours = count * task.model.seconds_a_press / 3600
     where = "of memory; give it a store, or fewer points" if path is None else "on the disk of the store"
     raise ValueError(
-        f"{task.design.size:.3g} points take about {_bytes(size)} and {_hours(hours)} on one core, and there are "
+        f"{count:.3g} points take about {_bytes(size)} and {_hours(hours)} on one core, and there are "
         f"{_bytes(free)} {where}"
     )
 

@@ -17,7 +17,7 @@ from ..files import check_names
 from ..joint import Joint
 from ..models.base import Model
 from .blocks import Blocks
-from .design import Design, grid
+from .design import Design, check_values, grid, is_one
 from .labels import dataset
 from .parameters import LOADS
 from .room import check_room
@@ -114,10 +114,13 @@ def study(
     if store is None:
         check_room(task, None)
         return dataset(task, _in_memory(task, engine, listen))
-    kept = Store(Path(store))
-    check_room(task, kept.path)
+    kept = Store(Path(store).absolute())
+    if not kept.path.exists():
+        check_room(task, kept.path)
     kept.prepare(task)
-    _into(kept, task, engine, listen)
+    numbers = kept.missing(task)
+    check_room(task, kept.path, sum(map(task.blocks.points, numbers)))
+    _into(kept, task, numbers, engine, listen)
     return read(kept.path)
 
 
@@ -141,6 +144,9 @@ def _task(model: Model, joint: Joint, design: Design | None, axes: dict[str, Any
     if not loads:
         raise ValueError(f"one load is needed, as an axis or a number: {', '.join(LOADS)}")
     check_names(quantities, QUANTITIES, "among the quantities")
+    if not all(is_one(number) for number in (*joint.numbers(), *model.parameters)):
+        raise ValueError("joint and model of a study have plain numbers: what varies is an axis")
+    check_values(points)
     wanted = quantities or tuple(name for name in ("force", *USUAL) if name not in loads)
     chosen = tuple(dict.fromkeys(name for name in wanted if name not in loads))
     return Task(model, joint, points, chosen, Blocks.of(points.shape, points_a_block(model)))
@@ -155,12 +161,13 @@ def _in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.
     return whole
 
 
-def _into(store: Store, task: Task, engine: Engine, listen: Listener) -> None:
-    numbers = store.missing(task)
+def _into(store: Store, task: Task, numbers: list[int], engine: Engine, listen: Listener) -> None:
     done = len(task.blocks) - len(numbers)
     try:
         for _ in _told(engine.run(Writing(task, store), numbers), task, numbers, listen):
             done += 1
+    except ConnectionError:
+        raise
     except OSError as error:
         kept = f"{done} of {len(task.blocks)} blocks are kept; run it again to go on"
         raise OSError(error.errno, f"{error.strerror or error}; {kept}", str(store.path)) from error

@@ -13,7 +13,7 @@ from ..joint import Joint
 from ..models.base import Model
 from .distributions import Distribution
 from .labels import described
-from .parameters import PARAMETERS
+from .parameters import PARAMETERS, contradiction
 from .slopes import elasticities, pressed
 from .task import QUANTITIES
 
@@ -77,6 +77,10 @@ def sensitivity(
     check_names(wanted, QUANTITIES, "among the quantities")
     if not distributions:
         raise ValueError("at least one number must scatter")
+    contradiction({**distributions, **fixed})
+    for name in fixed:
+        if name in distributions:
+            raise ValueError(f"{name} scatters and is given as a load too; one is needed")
     require("count", count, count >= 2 and count & (count - 1) == 0, "a power of two of samples")
     seen: list[Array] = []
 

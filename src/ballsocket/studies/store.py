@@ -22,6 +22,9 @@ Array = numpy.ndarray
 CHECKSUM = "block_checksum"
 """An array with a number for each block: its checksum, or -1 as long as the block is not there."""
 
+NOT_COMPUTED = -1
+"""The status of a point whose block is not there yet."""
+
 _STUDY = "study"
 """The attribute that says which study this is."""
 
@@ -141,7 +144,7 @@ def _make(path: Path, task: Task, study: Mapping[str, Any]) -> None:
             shape=task.design.shape,
             chunks=task.blocks.size,
             dtype=dtype,
-            fill_value=numpy.nan if dtype.kind == "f" else 0,
+            fill_value=numpy.nan if dtype.kind == "f" else NOT_COMPUTED if name == "status" else 0,
             dimension_names=task.design.dims,
             compressors=quick,
             attributes=described(name),

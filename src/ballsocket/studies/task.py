@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy
 
 from ..describe import COLUMNS
+from ..fingerprint import fingerprint
 from ..joint import Joint
 from ..models.base import Model
 from ..validity import OutsideDomainError, Status
@@ -43,13 +44,22 @@ class Task:
     design: Design
     quantities: tuple[str, ...]
     blocks: Blocks
+    code: str = field(default_factory=fingerprint)
 
     @property
     def variables(self) -> tuple[str, ...]:
         return (*self.quantities, "status", "valid")
 
     def __call__(self, number: int) -> dict[str, Array]:
-        """The variables of one block, each of the block's shape."""
+        """The variables of one block, each of the block's shape.
+
+        Raises
+        ------
+        ValueError
+            Another version of this package than that which asks.
+        """
+        if fingerprint() != self.code:
+            raise ValueError(f"this worker has ballsocket {fingerprint()}, and {self.code} asks")
         place = self.blocks[number]
         shape = tuple(part.stop - part.start for part in place)
         whole = {name: numpy.empty(shape, dtype=DTYPES[name]) for name in self.variables}
