@@ -96,7 +96,7 @@ def test_a_study_killed_ten_times_is_that_of_an_undisturbed_one(tmp_path, engine
 
 @pytest.mark.parametrize("engine", ["processes", "dask"])
 def test_a_killed_worker_costs_a_retry(tmp_path, engine):
-    counts = {"clearances": 30, "radii": 20, "model": "exact"}
+    counts = {"clearances": 50, "radii": 20, "model": "exact"}
     (tmp_path / "s.toml").write_text(STUDY.format(engine=engine, **counts), encoding="utf-8")
     process, victims = started(tmp_path), []
     while not victims and process.poll() is None:
@@ -122,7 +122,7 @@ def _is_worker(pid):
 
 
 def test_control_c_leaves_a_store_that_resumes(tmp_path):
-    counts = {"clearances": 30, "radii": 20, "model": "exact"}
+    counts = {"clearances": 60, "radii": 20, "model": "exact"}
     (tmp_path / "s.toml").write_text(STUDY.format(engine="processes", **counts), encoding="utf-8")
     process = started(tmp_path)
     while done_blocks(tmp_path / "s.zarr") < 1 and process.poll() is None:
