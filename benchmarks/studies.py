@@ -122,13 +122,15 @@ class Cluster:
 
 
 _ONE = """
-import resource, sys, time
+import sys, time
 import ballsocket as bs
 from benchmarks.studies import HIP, points
 design = points(10 ** int(sys.argv[1]), 1000 if int(sys.argv[1]) > 5 else 10)
 start = time.perf_counter()
 bs.study(bs.HessForsbach(), HIP, design, store=sys.argv[2])
-print(time.perf_counter() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
+seconds = time.perf_counter() - start
+lines = open("/proc/self/status").read().splitlines()
+print(seconds, *(int(line.split()[1]) / 1e6 for line in lines if line.startswith("VmHWM")))
 """
 
 

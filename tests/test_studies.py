@@ -140,6 +140,8 @@ def test_samples_times_a_grid_are_bands():
     spread = found.max_pressure.quantile(0.95, dim="sample") - found.max_pressure.quantile(0.05, dim="sample")
     assert (spread > 0).all()
     assert found.clearance.dims == ("sample",)
+    drawn = json.loads(found.attrs["design"])["sample"]
+    assert (drawn["count"], drawn["seed"], drawn["method"]) == (64, 0, "sobol")
 
 
 def test_rows_of_a_table(tmp_path):

@@ -51,9 +51,13 @@ def test_files_that_may_not_grow_stop_the_command_with_one_sentence(tmp_path):
 
 
 def started(folder):
-    words = [sys.executable, "-m", "ballsocket", "study", "s.toml"]
     return subprocess.Popen(
-        words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        [sys.executable, "-m", "ballsocket", "study", "s.toml"],
+        cwd=folder,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background jobs ignore it
     )
 
 
@@ -107,6 +111,29 @@ def test_a_killed_worker_costs_a_retry(tmp_path, engine):
     os.kill(victims[0], signal.SIGKILL)
     assert process.wait(timeout=120) == 0
     assert equal_to_undisturbed(tmp_path / "s.zarr", **counts)
+
+
+def test_workers_leave_when_the_study_is_killed_alone(tmp_path):
+    counts = {"clearances": 60, "radii": 30, "model": "exact"}
+    (tmp_path / "s.toml").write_text(STUDY.format(engine="processes", **counts), encoding="utf-8")
+    process, workers = started(tmp_path), []
+    while done_blocks(tmp_path / "s.zarr") < 1 and process.poll() is None:
+        time.sleep(0.02)
+    workers = [int(pid) for pid in _descendants(process.pid) if _is_worker(pid)]
+    assert workers
+    process.kill()
+    process.wait()
+    deadline = time.time() + 20
+    while any(_alive(pid) for pid in workers) and time.time() < deadline:
+        time.sleep(0.1)
+    assert not any(_alive(pid) for pid in workers)
+
+
+def _alive(pid):
+    try:
+        return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="ascii").split(")")[-1].split()[0]
+    except FileNotFoundError:
+        return False
 
 
 def _descendants(pid):

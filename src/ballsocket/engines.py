@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -11,6 +12,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
+from threading import Thread
 from typing import Any, Protocol
 
 from .checks import require
@@ -150,7 +152,15 @@ def _begin(work: Work) -> None:
     """In each process, once: the work is sent there only once, and Ctrl-C is left to the process that asked."""
     global _work
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_leave_with, args=(os.getppid(),), daemon=True).start()
     _work = work
+
+
+def _leave_with(parent: int) -> None:
+    """A process whose parent was killed has nobody to work for."""
+    while os.getppid() == parent:
+        time.sleep(0.5)
+    os._exit(1)
 
 
 def _call(number: int) -> Any:

@@ -150,7 +150,9 @@ def sensitivity_summary(found: xarray.Dataset) -> dict[str, Any]:
                 "mean": float(found["mean"].sel(quantity=quantity)),
                 "deviation": float(found["deviation"].sel(quantity=quantity)),
                 "numbers": {
-                    name: {order: float(found[order].sel(quantity=quantity, parameter=name)) for order in orders}
+                    name: {
+                        order: to_list(found[order].sel(quantity=quantity, parameter=name).values) for order in orders
+                    }
                     for name in found.parameter.values.tolist()
                 },
             }

@@ -12,7 +12,7 @@ from typing import Any
 import numpy
 
 from ..fingerprint import fingerprint
-from .design import Axis, SampleAxis
+from .design import Axis, Design, SampleAxis
 from .task import Task
 
 _SHOWN = 40  # values of an axis that are written down one by one
@@ -24,11 +24,16 @@ def identity(task: Task) -> dict[str, Any]:
         "code": fingerprint(),
         "model": plain(task.model),
         "joint": plain(task.joint),
-        "axes": {axis.name: _axis(axis) for axis in task.design.axes},
+        "axes": axes_of(task.design),
         "fixed": dict(task.design.fixed),
         "quantities": list(task.quantities),
         "block": list(task.blocks.size),
     }
+
+
+def axes_of(design: Design) -> dict[str, Any]:
+    """The axes: values, or how samples are drawn."""
+    return {axis.name: _axis(axis) for axis in design.axes}
 
 
 def plain(value: Any) -> Any:

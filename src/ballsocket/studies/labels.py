@@ -10,6 +10,7 @@ import numpy
 from ..fingerprint import fingerprint
 from ..validity import Status
 from .design import Design
+from .identity import axes_of
 from .parameters import PARAMETERS
 from .task import Task
 
@@ -54,6 +55,7 @@ def attributes(task: Task) -> dict[str, Any]:
         "model": task.model.name,
         "joint": json.dumps(task.joint.summary(), ensure_ascii=False),
         "references": "; ".join(map(str, dict.fromkeys(task.model.sources))),
+        "design": json.dumps(axes_of(task.design)),
         "source": f"ballsocket {fingerprint()}",
         "Conventions": "CF-1.10",
     }
