@@ -109,10 +109,10 @@ class Calibration:
         at_force = self.model.press(self.joint, force=force)
         at_depth = self.model.press(self.joint, indentation=truth.indentation)
         errors = {
-            name: _worst(getattr(at_force, name), getattr(truth, name))
+            name: worst_error(getattr(at_force, name), getattr(truth, name))
             for name in ("indentation", "max_pressure", "half_angle")
         }
-        return {**errors, "force": _worst(at_depth.force, truth.force)}
+        return {**errors, "force": worst_error(at_depth.force, truth.force)}
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
@@ -267,5 +267,6 @@ def _values(x: Array) -> numpy.ndarray:
     return numpy.asarray(arrays.to_numpy(x), dtype=float)
 
 
-def _worst(value: Array, truth: Array) -> float:
+def worst_error(value: Array, truth: Array) -> float:
+    """The largest relative error among all points."""
     return float(numpy.max(abs(_values(value) / _values(truth) - 1)))

@@ -79,21 +79,10 @@ def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
 
 def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], across: str, up: str) -> None:
     for limit in limits:
-        margin = limit.margin(study)
-        if set(getattr(margin, "dims", ())) >= {across, up}:
-            values = margin.transpose(up, across).values
-        else:
-            values = (
-                numpy.broadcast_to(margin, (study.sizes[up], study.sizes[across]))
-                if not hasattr(margin, "dims")
-                else _spread(margin, study, across, up)
-            )
+        spread = limit.margin(study) + 0.0 * study[across] + 0.0 * study[up]
+        values = spread.transpose(up, across).values
         if numpy.nanmin(values) < 0 < numpy.nanmax(values):
             axes.contour(study[across].values, study[up].values, values, levels=[0.0], colors="black", linestyles=":")
-
-
-def _spread(margin: Any, study: xarray.Dataset, across: str, up: str) -> numpy.ndarray:
-    return (margin + 0.0 * study[across] + 0.0 * study[up]).transpose(up, across).values
 
 
 def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressure", "half_angle")) -> Figure:

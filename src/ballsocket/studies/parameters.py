@@ -89,6 +89,13 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
     return made, possible
 
 
+def pressable(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, dict[str, Array], Array]:
+    """The joint with other numbers, the load among them as the keyword of a press, and where they make a joint."""
+    load = {name: value for name, value in values.items() if name in LOADS}
+    made, possible = varied(joint, {name: value for name, value in values.items() if name not in LOADS})
+    return made, load, possible
+
+
 _ROUNDING = 1e-12
 
 

@@ -12,7 +12,7 @@ from ..checks import needs
 from ..files import check_names
 from ..joint import Joint
 from ..models.base import Model
-from .parameters import LOADS, PARAMETERS, varied
+from .parameters import LOADS, PARAMETERS, pressable
 from .task import QUANTITIES
 
 Array = numpy.ndarray
@@ -98,8 +98,7 @@ def _compiled(model: Model, joint: Joint, quantities: tuple[str, ...]) -> Callab
     import jax
 
     def answers(values: dict[str, Any]) -> dict[str, Any]:
-        load = {name: value for name, value in values.items() if name in LOADS}
-        made, _ = varied(joint, {name: value for name, value in values.items() if name not in LOADS})
+        made, load, _ = pressable(joint, values)
         contact = model.press(made, **load)
         return {name: getattr(contact, name) for name in quantities}
 
@@ -133,7 +132,6 @@ def elasticities(
 
 def pressed(model: Model, joint: Joint, values: Mapping[str, Any], quantities: Iterable[str]) -> dict[str, Any]:
     """Quantities of a press at values that broadcast; NaN where these make no joint."""
-    load = {name: value for name, value in values.items() if name in LOADS}
-    made, possible = varied(joint, {name: value for name, value in values.items() if name not in LOADS})
+    made, load, possible = pressable(joint, values)
     contact = model.press(made, **load)
     return {name: numpy.where(possible, getattr(contact, name), numpy.nan) for name in quantities}

@@ -15,7 +15,7 @@ from ..models.base import Model
 from ..validity import OutsideDomainError, Status
 from .blocks import Blocks
 from .design import Design
-from .parameters import LOADS, varied
+from .parameters import pressable
 
 Array = numpy.ndarray
 
@@ -73,8 +73,7 @@ class Task:
         return whole
 
     def _answers(self, values: Mapping[str, Array]) -> Mapping[str, Any]:
-        load = {name: value for name, value in values.items() if name in LOADS}
-        joint, made = varied(self.joint, {name: value for name, value in values.items() if name not in LOADS})
+        joint, load, made = pressable(self.joint, values)
         possible = numpy.asarray(made)
         try:
             contact = self.model.press(joint, **load)

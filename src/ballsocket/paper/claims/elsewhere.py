@@ -7,6 +7,7 @@ from io import StringIO
 
 import numpy
 
+from ...calibrate import worst_error
 from ...elastic.axisymmetric import Exact
 from ...elastic.contact import ElasticContact
 from ...fem.model import FiniteElement
@@ -64,7 +65,7 @@ def _against_calculix(model: Model, table: Array) -> dict[str, float]:
         ball=STEEL,
     )
     ours = model.press(joints, force=table["force"])
-    depth, pressure = (percent(numpy.max(abs(getattr(ours, name) / table[name] - 1))) for name in SHOWN[:2])
+    depth, pressure = (percent(worst_error(getattr(ours, name), table[name])) for name in SHOWN[:2])
     angle = float(numpy.max(abs(numpy.degrees(ours.half_angle) - table["half_angle_deg"])))
     return {"indentation off by, %": depth, "peak pressure off by, %": pressure, "half angle off by, °": angle}
 

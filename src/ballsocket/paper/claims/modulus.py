@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy
 
-from ...calibrate import RATIOS, refit_table_3
+from ...calibrate import RATIOS, refit_table_3, worst_error
 from ...models.base import Model
 from ...models.foundation import Bartel, Vessel
 from ...models.modulus import bonded_layer, spherical_vessel
@@ -43,7 +43,7 @@ def linear_kinematics_suffice(_: Model) -> Finding:
         family = cases.with_clearance(joints, clearance)
         exact, linear = (model.press(family, force=cases.LOAD) for model in (Bartel(), Vessel()))
         for name in worst:
-            off = numpy.max(abs(getattr(linear, name) / getattr(exact, name) - 1))
+            off = worst_error(getattr(linear, name), getattr(exact, name))
             worst[name] = max(worst[name], percent(off))
     return Finding(
         name="linear-kinematics-suffice",
