@@ -18,7 +18,7 @@ from ballsocket.engines import Engine, Processes, Serial
 from ballsocket.models.base import Model
 from ballsocket.studies.blocks import Blocks
 from ballsocket.studies.design import Design, Span, grid
-from ballsocket.studies.distributed import Distributed
+from ballsocket.studies.distributed import Distributed, local_cluster
 from ballsocket.studies.task import DTYPES, USUAL
 
 from .report import Report, Rows
@@ -84,7 +84,8 @@ def overhead(rows: Rows) -> None:
     ratio = seconds["study"].over(seconds["direct"])
     rows.add("10^7, paper's model, in memory", seconds["study"], seconds["direct"], f"{ratio} times as long; aim 1.2")
     exact, few = bs.Exact(), points(2500, 1)
-    with Cluster(1) as one, Cluster(2) as two:
+    with local_cluster(1) as first, local_cluster(2) as second:
+        one, two = str(first.scheduler_address), str(second.scheduler_address)
         works: dict[str, Work] = {
             "direct": lambda: direct(exact, few, 1 << 7),
             "one worker": lambda: bs.study(exact, HIP, few, engine=Distributed(address=one)),
@@ -102,23 +103,6 @@ def overhead(rows: Rows) -> None:
         seconds["one worker"],
         f"{ratio} times faster; aim 1.7",
     )
-
-
-class Cluster:
-    """A Dask cluster of this machine that is there already when the clock starts; its address."""
-
-    def __init__(self, workers: int) -> None:
-        from distributed import LocalCluster
-
-        self._made = LocalCluster(
-            n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0", host="127.0.0.1", silence_logs=40
-        )
-
-    def __enter__(self) -> str:
-        return str(self._made.scheduler_address)
-
-    def __exit__(self, *_: object) -> None:
-        self._made.close()
 
 
 _ONE = """

@@ -112,6 +112,34 @@ def test_slopes_by_differences_are_those_of_scaling():
         assert each["liner_young"] + each["ball_young"] + each["force"] == pytest.approx(moduli, abs=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("model", "name", "end", "inside"),
+    [(bs.HessForsbach(), "clearance", 0.0, 1e-6), (bs.Hertz(), "liner_poisson", 0.5, 0.49999)],
+    ids=["perfect fit", "rubber"],
+)
+def test_slopes_at_the_end_of_what_is_allowed_are_those_just_inside(model, name, end, inside):
+    """There steps go to one side."""
+    at = {"clearance": 0.1, "liner_poisson": 0.4, "force": 2000.0}
+    slopes = [differences(model, HIP, ("max_pressure",), {**at, name: one})[1] for one in (end, inside)]
+    for each in at:
+        assert slopes[0]["max_pressure"][each] == pytest.approx(slopes[1]["max_pressure"][each], rel=1e-3, abs=1e-3)
+
+
+def test_first_touch_has_no_slope():
+    with pytest.raises(ValueError, match="force = 0 is first touch"):
+        differences(bs.HessForsbach(), HIP, ("area",), {"force": 0.0})
+
+
+def test_sobol_intervals_are_those_of_the_seed_and_leave_the_global_stream_alone():
+    spread = {"clearance": tolerance(0.1, 0.05), "liner_poisson": Rectangular(low=0.38, high=0.46)}
+    before = np.random.get_state()[1].tolist()  # noqa: NPY002
+    one, other = (sensitivity(bs.HessForsbach(), HIP, spread, count=64, load={"force": 1e3}) for _ in range(2))
+    assert one.identical(other)
+    assert np.random.get_state()[1].tolist() == before  # noqa: NPY002
+    with pytest.raises(ValueError, match="force does not change with clearance and liner_poisson"):
+        sensitivity(bs.HessForsbach(), HIP, spread, quantities=["force"], count=64, load={"force": 1e3})
+
+
 @pytest.mark.skipif(find_spec("jax") is None, reason="jax is not installed")
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
 def test_slopes_by_jax_are_those_of_differences(model):

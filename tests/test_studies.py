@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 import ballsocket as bs
 from ballsocket.engines import Processes, Serial
 from ballsocket.studies.blocks import Blocks
-from ballsocket.studies.design import Method, Span, grid, sample, table
+from ballsocket.studies.design import Method, Span, grid, sample
 from ballsocket.studies.distributed import Distributed
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
+from ballsocket.studies.rows import table
 from ballsocket.studies.run import read
 
 HIP = bs.joints["hess-forsbach"]
@@ -175,7 +176,7 @@ def test_rows_of_a_table(tmp_path):
         ({"clearance": [], "force": 1.0}, "clearance has no values"),
         ({"clearance": [0.1, float("nan")], "force": 1.0}, r"clearance\[1\] = nan is not allowed"),
         ({"clearance": [0.1, -0.1], "force": 1.0}, r"clearance\[1\] = -0.1 is not allowed for a radial clearance"),
-        ({"force": Span(-1.0, 5.0, 10**9)}, r"force\[0\] = -1 is not allowed for a normal force"),
+        ({"force": Span(-1.0, 5.0, 10**6)}, r"force\[0\] = -1 is not allowed for a normal force"),
         ({"force": ["1 kN"]}, "force must be a row of numbers"),
     ],
 )
@@ -210,8 +211,12 @@ def test_what_would_be_ignored_is_refused(tmp_path):
 def test_too_many_points_are_refused_with_size_and_time(tmp_path):
     with pytest.raises(ValueError, match=r"1e\+12 points take about .* TB and .* hours on one core"):
         bs.study(bs.HessForsbach(), HIP, force=Span(1.0, 2.0, 10**12))
+    wide = {"force": Span(1.0, 2.0, 10**7), "clearance": Span(0.05, 0.1, 10**6)}
     with pytest.raises(ValueError, match="on the disk of the store"):
-        bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", force=Span(1.0, 2.0, 10**13))
+        bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", **wide)
+    many = sample(10**12, clearance=Rectangular(low=0.05, high=0.15))
+    with pytest.raises(ValueError, match="of memory for the values along its axes; take fewer"):
+        bs.study(bs.HessForsbach(), HIP, many, store=tmp_path / "s.zarr", force=1000.0)
     assert not (tmp_path / "s.zarr").exists()
 
 

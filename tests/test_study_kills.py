@@ -50,12 +50,13 @@ def test_files_that_may_not_grow_stop_the_command_with_one_sentence(tmp_path):
     )
 
 
-def started(folder):
+def started(folder, stderr=subprocess.DEVNULL):
     return subprocess.Popen(
         [sys.executable, "-m", "ballsocket", "study", "s.toml"],
         cwd=folder,
         stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        stderr=stderr,
+        encoding="utf-8",
         start_new_session=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background jobs ignore it
     )
@@ -79,12 +80,12 @@ def equal_to_undisturbed(store, **counts):
     )
 
 
-@pytest.mark.parametrize("engine", ["serial", "processes"])
-def test_a_study_killed_ten_times_is_that_of_an_undisturbed_one(tmp_path, engine):
+@pytest.mark.parametrize(("engine", "times"), [("serial", 10), ("processes", 10), ("dask", 3)])
+def test_a_study_killed_many_times_is_that_of_an_undisturbed_one(tmp_path, engine, times):
     counts = {"clearances": 70, "radii": 25, "model": "exact"}
     (tmp_path / "s.toml").write_text(STUDY.format(engine=engine, **counts), encoding="utf-8")
     moments, before = random.Random(engine), 0
-    for _ in range(10):
+    for _ in range(times):
         process, more = started(tmp_path), moments.choice([0, 1, 1, 2])
         while process.poll() is None and done_blocks(tmp_path / "s.zarr") < before + more:
             time.sleep(0.005)
@@ -99,16 +100,19 @@ def test_a_study_killed_ten_times_is_that_of_an_undisturbed_one(tmp_path, engine
 
 
 @pytest.mark.parametrize("engine", ["processes", "dask"])
-def test_a_killed_worker_costs_a_retry(tmp_path, engine):
-    counts = {"clearances": 50, "radii": 20, "model": "exact"}
+def test_killed_workers_cost_retries(tmp_path, engine):
+    """Two of them, at random moments."""
+    counts = {"clearances": 50, "radii": 25, "model": "exact"}
     (tmp_path / "s.toml").write_text(STUDY.format(engine=engine, **counts), encoding="utf-8")
-    process, victims = started(tmp_path), []
-    while not victims and process.poll() is None:
-        if done_blocks(tmp_path / "s.zarr") >= 1:
-            victims = [int(pid) for pid in _descendants(process.pid) if _is_worker(pid)]
+    process, moments, killed = started(tmp_path), random.Random(engine), []
+    while len(killed) < 2 and process.poll() is None:
+        if done_blocks(tmp_path / "s.zarr") > len(killed):
+            time.sleep(moments.uniform(0.0, 0.3))
+            victims = [int(pid) for pid in _descendants(process.pid) if _is_worker(pid) and int(pid) not in killed]
+            killed += [moments.choice(victims)] if victims else []
+            os.kill(killed[-1], signal.SIGKILL)
         time.sleep(0.02)
-    assert victims
-    os.kill(victims[0], signal.SIGKILL)
+    assert len(killed) == 2
     assert process.wait(timeout=120) == 0
     assert equal_to_undisturbed(tmp_path / "s.zarr", **counts)
 
@@ -151,11 +155,13 @@ def _is_worker(pid):
 def test_control_c_leaves_a_store_that_resumes(tmp_path):
     counts = {"clearances": 60, "radii": 20, "model": "exact"}
     (tmp_path / "s.toml").write_text(STUDY.format(engine="processes", **counts), encoding="utf-8")
-    process = started(tmp_path)
+    process = started(tmp_path, subprocess.PIPE)
     while done_blocks(tmp_path / "s.zarr") < 1 and process.poll() is None:
         time.sleep(0.02)
     os.killpg(process.pid, signal.SIGINT)
-    assert process.wait(timeout=60) == 130
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "points are kept in s.zarr: run it again to go on" in " ".join(said.split())
     before = done_blocks(tmp_path / "s.zarr")
     assert before >= 1
     assert started(tmp_path).wait() == 0

@@ -30,7 +30,8 @@ _READ: dict[str, tuple[str, float]] = {
 def design_map(
     study: xarray.Dataset, limits: Sequence[Limit] = (), quantities: Iterable[str] = SHOWN, best: Any = None
 ) -> Figure:
-    """Contours of answers over the two axes of a study, pale where a limit is broken.
+    """Contours of answers over the two axes of a study, pale where a limit is broken, hatched where the model is
+    not to be trusted.
 
     Parameters
     ----------
@@ -53,6 +54,7 @@ def design_map(
     across, up = _two_axes(study)
     figure = Figure(figsize=(4.4 * len(names) + 0.4, 4.0), layout="constrained")
     good = allowed(study, limits).transpose(up, across).values
+    trusted = study.valid.transpose(up, across).values
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
         values = study[name].transpose(up, across).values * _factor(name)
         x, y = study[across].values, study[up].values
@@ -61,12 +63,18 @@ def design_map(
         axes.clabel(lines, fontsize=8)
         if not good.all():
             axes.contourf(x, y, (~good).astype(float), levels=[0.5, 1.5], colors="white", alpha=0.65)
+        if not trusted.all():
+            doubt = axes.contourf(x, y, (~trusted).astype(float), levels=[0.5, 1.5], colors="none", hatches=["//"])
+            doubt.set_edgecolor("0.85")
+            doubt.set_linewidth(0)
         _draw_limits(axes, study, limits, across, up)
         if best is not None:
             axes.plot(best[across], best[up], "o", color="white", markeredgecolor="black", markersize=8)
         axes.set_xlabel(label(across))
         axes.set_ylabel(label(up))
         axes.set_title(label(name), fontsize=10)
+    said = [(good, "pale: a limit is broken, or no answer"), (trusted, "hatched: the model is not to be trusted")]
+    figure.supxlabel("; ".join(words for where, words in said if not where.all()), fontsize=8, color="0.3")
     return figure
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy
 from rich.console import Console
@@ -13,6 +14,7 @@ from rich.table import Table
 from .arrays import to_list
 from .studies.labels import described
 from .studies.limits import Limit, allowed
+from .studies.pieces import dims_of, pieces
 from .validity import Status
 
 if TYPE_CHECKING:
@@ -28,29 +30,61 @@ def print_study(study: xarray.Dataset) -> None:
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
     Console().print(f"{study.attrs['model']}, {shape or 'one point'}", highlight=False)
     table = _table("quantity", "unit", "least", "median", "largest", "least at", "largest at")
-    for name in _answers(study):
-        values = study[name].values
-        if numpy.isnan(values).all():
+    seen = _Seen.of(study)
+    for name, (low, high) in seen.ends.items():
+        if numpy.isnan(low.value):
             table.add_row(name, _unit(name), *["no answer"] * 3, "", "")
             continue
-        low, high = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
-        middle = numpy.nanmedian(values.ravel()[:: max(1, values.size // _SAMPLED)])
-        numbers = (_shown(name, value) for value in (values.flat[low], middle, values.flat[high]))
-        table.add_row(name, _unit(name), *numbers, _place(study, low), _place(study, high))
+        middle = float(numpy.nanmedian(numpy.concatenate(seen.sampled[name])))
+        numbers = (_shown(name, value) for value in (low.value, middle, high.value))
+        table.add_row(name, _unit(name), *numbers, _place(study, low.place), _place(study, high.place))
     Console().print(table)
-    Console().print(_state(study), highlight=False)
+    failed = "".join(f"; {count} {one.sentence}" for one, count in seen.failed.items() if count)
+    Console().print(f"{study.status.size} points, {seen.valid} of them valid{failed}", highlight=False)
 
 
-def _state(study: xarray.Dataset) -> str:
-    """How many points have an answer, and are trusted."""
-    status = study.status.values
-    total, valid = status.size, int(study.valid.values.sum())
-    failed = [
-        f"{int((status == int(one)).sum())} {one.sentence}"
-        for one in Status
-        if one.failed and (status == int(one)).any()
-    ]
-    return f"{total} points, {valid} of them valid" + "".join(f"; {text}" for text in failed)
+class _End(NamedTuple):
+    value: float
+    place: int
+
+
+@dataclass
+class _Seen:
+    """What is told of a study, gathered part by part: it may be larger than the memory."""
+
+    ends: dict[str, tuple[_End, _End]]
+    sampled: dict[str, list[numpy.ndarray]]
+    failed: dict[Status, int]
+    valid: int = 0
+
+    @classmethod
+    def of(cls, study: xarray.Dataset) -> _Seen:
+        names = _answers(study)
+        nothing = (_End(float("nan"), 0), _End(float("nan"), 0))
+        seen = cls(
+            dict.fromkeys(names, nothing), {name: [] for name in names}, {one: 0 for one in Status if one.failed}
+        )
+        first, stride = 0, max(1, study.status.size // _SAMPLED)
+        for part in pieces(study):
+            for name in names:
+                seen._add(name, part[name].values.ravel(), first, stride)
+            for one in seen.failed:
+                seen.failed[one] += int((part.status.values == int(one)).sum())
+            seen.valid += int(part.valid.values.sum())
+            first += part.status.size
+        return seen
+
+    def _add(self, name: str, values: numpy.ndarray, first: int, stride: int) -> None:
+        self.sampled[name].append(values[::stride].copy())
+        if numpy.isnan(values).all():
+            return
+        low, high = self.ends[name]
+        least, most = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
+        if not values[least] >= low.value:
+            low = _End(float(values[least]), first + least)
+        if not values[most] <= high.value:
+            high = _End(float(values[most]), first + most)
+        self.ends[name] = low, high
 
 
 def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
@@ -82,7 +116,7 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
         raise ValueError(f"no point of the map is allowed by {' and '.join(map(str, limits)) or 'the model'}")
     quantities = {}
     for name in _answers(study):
-        values = study[name].where(good).transpose(*study.sizes).values
+        values = study[name].where(good).transpose(*dims_of(study)).values
         ends = (int(numpy.nanargmin(values)), int(numpy.nanargmax(values)))
         quantities[name] = [{"value": float(values.flat[end]), "at": _coordinates(study, end)} for end in ends]
     return {"model": study.attrs["model"], "limits": [str(limit) for limit in limits], "quantities": quantities}
@@ -167,7 +201,8 @@ def _answers(study: xarray.Dataset) -> list[str]:
 
 def _coordinates(study: xarray.Dataset, flat: int) -> dict[str, float]:
     """The parameters at a point, by its number in the order of the dimensions."""
-    place = dict(zip(study.sizes, numpy.unravel_index(flat, tuple(study.sizes.values())), strict=True))
+    dims = dims_of(study)
+    place = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
     found = {}
     for name, variable in study.coords.items():
         here = variable.isel({dim: int(place[dim]) for dim in variable.dims})

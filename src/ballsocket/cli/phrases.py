@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ..files import check_names
-from ..studies.design import Span
+from ..studies.axes import Span
 from ..studies.distributions import Distribution, Rectangular, tolerance
 from ..studies.labels import described
 from ..studies.limits import EDGE_DISTANCE, Limit

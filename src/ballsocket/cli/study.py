@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import timedelta
+from math import ceil, inf
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TextColumn
 
 import ballsocket as bs
 
-from .. import study_tables
+from .. import figures, study_figures, study_tables
 from ..engines import Engine, Processes
 from ..studies.distributed import Distributed
 from ..studies.export import check_suffix, export
@@ -21,6 +23,9 @@ from ..studies.file import StudyFile, read_study
 from ..studies.run import Listener
 from ..studies.run import Progress as Reached
 from .root import app
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @app.command()
@@ -30,6 +35,9 @@ def study(
     out: Annotated[Path | None, typer.Option(help="Also write all numbers as NetCDF (.nc) or CSV (.csv).")] = None,
     workers: Annotated[int | None, typer.Option(help="So many processes on this machine.")] = None,
     scheduler: Annotated[str | None, typer.Option(help="The address of a Dask scheduler, 'tcp://host:8786'.")] = None,
+    figure: Annotated[
+        Path | None, typer.Option(help="A map of two axes, or bands of samples over one (.png, .svg, .pdf).")
+    ] = None,
 ) -> None:
     """Press a joint at every point of a study file, into a store that can be resumed."""
     if out is not None:
@@ -37,8 +45,9 @@ def study(
         if not out.parent.is_dir():
             raise ValueError(f"{str(out.parent)!r} is no folder to write {out.name} into")
     given = read_study(file)
+    draw = None if figure is None else _drawing(given, figure)
     kept = store or given.store
-    with _shown() as listen:
+    with _shown(kept) as listen:
         found = bs.study(
             given.model,
             given.joint,
@@ -54,6 +63,18 @@ def study(
     if out is not None:
         export(found, out)
         typer.echo(str(out))
+    if draw is not None and figure is not None:
+        figures.save(draw(found), figure)
+        typer.echo(str(figure))
+
+
+def _drawing(given: StudyFile, path: Path) -> Callable[[Any], Figure]:
+    """How the study is drawn, asked before it is run."""
+    figures.check_format(path)
+    long = [axis.name for axis in given.design.axes if len(axis) > 1]
+    if len(long) != 2:
+        raise ValueError(f"a figure needs two axes, or samples and an axis; this study has {', '.join(long) or 'none'}")
+    return study_figures.band_figure if "sample" in long else study_figures.design_map
 
 
 def _engine(given: StudyFile, workers: int | None, scheduler: str | None) -> Engine:
@@ -63,18 +84,34 @@ def _engine(given: StudyFile, workers: int | None, scheduler: str | None) -> Eng
 
 
 @contextmanager
-def _shown() -> Iterator[Listener]:
-    """A bar with the rate and the remaining time."""
-    columns = (TextColumn("pressing"), BarColumn(), TextColumn("{task.fields[rate]}"), TimeRemainingColumn())
+def _shown(store: Path | None) -> Iterator[Listener]:
+    """A bar with the rate and the remaining time; after Ctrl-C, what is kept."""
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[state]}"))
     progress = Progress(*columns, console=Console(stderr=True))
-    task = progress.add_task("pressing", total=None, rate="")
+    task = progress.add_task("looking at what is there", total=None, state="")
+    last: list[Reached] = []
+    if store is not None and store.exists():
+        progress.start()
 
     def listen(reached: Reached) -> None:
         progress.start()  # not before there is something to tell
-        rate = f"{reached.done:.4g} of {reached.points:.4g}, {reached.rate:.3g}/s"
-        progress.update(task, completed=reached.done, total=reached.points, rate=rate)
+        progress.update(
+            task, description="pressing", completed=reached.done, total=reached.points, state=_state(reached)
+        )
+        last[:] = [reached]
 
     try:
         yield listen
+    except KeyboardInterrupt:
+        progress.stop()
+        if store is not None and last:
+            done = f"{last[0].done:.4g} of {last[0].points:.4g} points are kept in {store}"
+            typer.echo(f"ballsocket: stopped; {done}: run it again to go on", err=True)
+        raise
     finally:
         progress.stop()
+
+
+def _state(reached: Reached) -> str:
+    left = "" if reached.left in (0.0, inf) else f", {timedelta(seconds=ceil(reached.left))} left"
+    return f"{reached.done:.4g} of {reached.points:.4g}, {reached.rate:.3g}/s{left}"

@@ -26,7 +26,8 @@ def load_of(words: dict[str, str | None], file: JointFile) -> dict[str, float]:
     """The load in words, or that of the joint's file."""
     load = read_load(given(words)) or file.load
     if not load:
-        raise ValueError("a load is needed: --force, --indentation or --half-angle")
+        options = [f"--{name.replace('_', '-')}" for name in words]
+        raise ValueError(f"a load is needed: {', '.join(options[:-1])} or {options[-1]}")
     return load
 
 

@@ -85,17 +85,34 @@ class Table:
     shape: tuple[int, int]
 
     def of(self, places: list[Array]) -> Array:
-        """Chebyshev coefficients (functions, angles, joints) at the places (joints,) of ν, R2/L and of the ball."""
+        """Chebyshev coefficients (functions, angles, joints) at the places of ν, R2/L and of the ball.
+
+        Places are (joints,), or (1,) where all joints have the same.
+        """
         first, second, *ball = (polynomials(*both) for both in zip(places, self.counts, strict=False))
-        found = own(self.liner, first) @ _products(first, second)
+        found = _applied(own(self.liner, first), first, second)
         if ball:
-            found = own(self.ball, first) @ _products(_products(*ball), found)
+            found = _applied(own(self.ball, first), *ball, found)
         return arrays.namespace(first).reshape(own(self.curves, first) @ found, (*self.shape, -1))
 
 
-def _products(first: Array, second: Array) -> Array:
-    """Rows of one times rows of the other (rows, joints)."""
-    return arrays.namespace(first).reshape(first[:, None, :] * second[None, :, :], (-1, first.shape[1]))
+def _applied(matrix: Array, *factors: Array) -> Array:
+    """matrix (rows, products) times all products of the rows of the factors (each its rows, joints or 1).
+
+    What is the same for all joints is taken into the matrix first: a sweep of one material costs a third.
+    """
+    xp = arrays.namespace(matrix)
+    cube = xp.reshape(matrix, (-1, *(factor.shape[0] for factor in factors)))
+    for axis in reversed(range(len(factors))):
+        if factors[axis].shape[1] == 1:
+            cube = xp.tensordot(cube, factors[axis][:, 0], axes=((axis + 1,), (0,)))
+    varying = [factor for factor in factors if factor.shape[1] > 1]
+    if not varying:
+        return cube[:, None]
+    rows = varying[0]
+    for factor in varying[1:]:
+        rows = xp.reshape(rows[:, None, :] * factor[None, :, :], (-1, rows.shape[1]))
+    return xp.reshape(cube, (matrix.shape[0], -1)) @ rows
 
 
 def polynomials(place: Array, count: int) -> Array:

@@ -44,7 +44,7 @@ from .chebyshev import (
 )
 
 _KNOTS = numpy.cos(pi * numpy.linspace(1.0, 0.0, 9)[1:])
-_BLOCK = 512  # contacts at a time: what stays in the cache
+_BLOCK = 1024  # contacts at a time: what stays in the cache
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -437,9 +437,8 @@ def _in_blocks(
     shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
     alone = all(prod(part.shape) == 1 for part in numbers)
     shared, which = (None, None) if alone else _shared(file, joint, shape)
-    if not alone:
-        numbers = tuple(arrays.broadcast_to(part, shape) for part in numbers)
-    flat = [xp.reshape(part, (-1,)) for part in numbers]
+    wide = (part if prod(part.shape) == 1 else arrays.broadcast_to(part, shape) for part in numbers)
+    flat = [xp.reshape(part, (-1,)) for part in wide]
     loads = xp.reshape(arrays.broadcast_to(where(load > 0, load, _LITTLE), shape), (-1,))
     whole = Curves(file, joint.with_numbers(flat))
     size = (4 if alone else 1) * (_BLOCK if xp is numpy else 64 * _BLOCK)
@@ -447,7 +446,8 @@ def _in_blocks(
     for first in range(0, max(prod(shape), 1), size):
         block = slice(first, min(first + size, prod(shape)))
         here = None if which is None else which[block]
-        curves = whole if alone else Curves(file, joint.with_numbers([part[block] for part in flat]), shared, here)
+        parts = [part if part.shape[0] == 1 else part[block] for part in flat]
+        curves = whole if alone else Curves(file, joint.with_numbers(parts), shared, here)
         results.append(law(curves, loads[block]))
     joined = (xp.concat(parts, axis=-1) if len(parts) > 1 else parts[0] for parts in zip(*results, strict=True))
     return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from uuid import uuid4
 
 import numpy
 
@@ -14,7 +15,7 @@ from ..engines import Work, available_cores
 
 if TYPE_CHECKING:
     import xarray
-    from distributed import Client
+    from distributed import Client, LocalCluster
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +33,8 @@ class Distributed:
     workers : int, optional
         Of a cluster of one's own: as many as there are cores. Each has one thread.
     retries : int
-        How often a block is tried anew.
+        How often a block is tried anew after an error. Of workers that die under a block a cluster of one's own
+        forgives as many; elsewhere it is the scheduler that says how many (`distributed.scheduler.allowed-failures`).
 
     Raises
     ------
@@ -67,8 +69,8 @@ class Distributed:
         needs("study", "dask", "distributed", "xarray")
         from distributed import KilledWorker, as_completed, futures_of
 
-        with self._client() as client:
-            blocks = client.persist(_blocks(work, numbers), retries=self.retries)
+        with self._client() as client, _given(client, work) as name:
+            blocks = client.persist(_blocks(name, numbers), retries=self.retries)
             coming = as_completed(futures_of(blocks), with_results=True)
             del blocks  # an answer is let go by its worker once it is here
             try:
@@ -80,7 +82,7 @@ class Distributed:
 
     @contextmanager
     def _client(self) -> Iterator[Client]:
-        from distributed import Client, LocalCluster
+        from distributed import Client
 
         if self.address is not None:
             try:
@@ -90,22 +92,59 @@ class Distributed:
             with client:
                 yield client
             return
-        count = self.workers or available_cores()
-        options: dict[str, Any] = {"dashboard_address": "127.0.0.1:0", "host": "127.0.0.1", "silence_logs": 40}
-        with LocalCluster(n_workers=count, threads_per_worker=1, **options) as cluster, Client(cluster) as client:
+        with local_cluster(self.workers or available_cores(), self.retries) as cluster, Client(cluster) as client:
             yield client
 
 
-def _blocks(work: Work, numbers: Sequence[int]) -> xarray.Dataset:
+@contextmanager
+def local_cluster(workers: int, retries: int = 3) -> Iterator[LocalCluster]:
+    """Workers on this machine, of one thread each, which keep the memory that they will need again.
+
+    Dask has its workers hand memory back to the system at every turn, which makes exact presses a third slower;
+    workers elsewhere do without if MALLOC_TRIM_THRESHOLD_ is large in their environment.
+    """
+    import dask
+    from distributed import LocalCluster
+
+    settings = {
+        "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
+        "distributed.scheduler.allowed-failures": retries,
+    }
+    options: dict[str, Any] = {"dashboard_address": "127.0.0.1:0", "host": "127.0.0.1", "silence_logs": 40}
+    with dask.config.set(settings), LocalCluster(n_workers=workers, threads_per_worker=1, **options) as cluster:
+        yield cluster
+
+
+@contextmanager
+def _given(client: Client, work: Work) -> Iterator[str]:
+    """Give the work to every worker once, to those that come later too, and not with every block; its name there."""
+    from distributed import WorkerPlugin
+
+    class Works(WorkerPlugin):
+        def __init__(self) -> None:
+            self.work = work
+
+    name = f"ballsocket-{uuid4()}"
+    client.register_plugin(Works(), name=name)
+    try:
+        yield name
+    finally:
+        client.unregister_worker_plugin(name)
+
+
+def _blocks(name: str, numbers: Sequence[int]) -> xarray.Dataset:
     """A dataset along `block` whose one element per chunk is (number, answer)."""
     import xarray
 
     plan = xarray.Dataset({"answer": ("block", numpy.array(numbers))}).chunk(block=1)
-    return xarray.map_blocks(_answers, plan, kwargs={"work": work}, template=plan.astype(object))
+    return xarray.map_blocks(_answers, plan, kwargs={"name": name}, template=plan.astype(object))
 
 
-def _answers(block: xarray.Dataset, work: Work) -> xarray.Dataset:
+def _answers(block: xarray.Dataset, name: str) -> xarray.Dataset:
+    from distributed import get_worker
+
+    given: Any = get_worker().plugins[name]
     answers = numpy.empty(block.sizes["block"], dtype=object)
     for place, number in enumerate(block.answer.values.tolist()):
-        answers[place] = (number, work(number))
+        answers[place] = (number, given.work(number))
     return block.assign(answer=("block", answers))

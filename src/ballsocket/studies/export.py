@@ -9,12 +9,12 @@ import numpy
 
 from ..checks import needs
 from ..written import at_once
+from .pieces import blocks_of, dims_of, pieces
 
 if TYPE_CHECKING:
     import xarray
 
 SUFFIXES = (".nc", ".csv")
-_ROWS = 1 << 18
 
 
 def check_suffix(path: Path) -> None:
@@ -24,7 +24,7 @@ def check_suffix(path: Path) -> None:
 
 
 def export(study: xarray.Dataset, path: str | Path) -> None:
-    """Write a study as NetCDF (.nc) or CSV (.csv). The file appears at once.
+    """Write a study as NetCDF (.nc) or CSV (.csv), part by part. The file appears at once.
 
     CSV has a row a point, the parameters first, in mm, N and MPa; half angles are in degrees, in a column whose name
     ends in `_deg`.
@@ -43,32 +43,24 @@ def export(study: xarray.Dataset, path: str | Path) -> None:
             needs("study", "h5netcdf")
             plain = study.assign_attrs({key: value for key, value in study.attrs.items() if isinstance(value, str)})
             plain.attrs.pop("study", None)
-            plain.to_netcdf(draft, engine="h5netcdf")
+            parted = plain.chunk(dict(zip(dims_of(study), blocks_of(study).size, strict=True)))
+            parted.to_netcdf(draft, engine="h5netcdf")
         else:
             _write_csv(study, draft)
 
 
 def _write_csv(study: xarray.Dataset, path: Path) -> None:
-    names = [*study.coords, *study.data_vars]
-    heads = [f"{name}_deg" if name == "half_angle" else str(name) for name in names]
-    shape = tuple(study.sizes.values())
-    columns = [numpy.broadcast_to(*_aligned(study[name], study)).ravel() for name in names]
+    names = [str(name) for name in (*study.coords, *study.data_vars)]
     with path.open("w", encoding="utf-8", newline="") as stream:
-        stream.write(",".join(heads) + "\n")
-        for first in range(0, int(numpy.prod(shape)), _ROWS):
-            part = [
-                numpy.degrees(column[first : first + _ROWS]) if name == "half_angle" else column[first : first + _ROWS]
+        stream.write(",".join(f"{name}_deg" if name == "half_angle" else name for name in names) + "\n")
+        for part in pieces(study):
+            wide = (variable.broadcast_like(part[names[-1]]) for variable in map(part.__getitem__, names))
+            columns = [each.transpose(*dims_of(study)).values.ravel() for each in wide]
+            read = (
+                numpy.degrees(column) if name == "half_angle" else column
                 for name, column in zip(names, columns, strict=True)
-            ]
-            stream.writelines(",".join(map(_cell, row)) + "\n" for row in zip(*part, strict=True))
-
-
-def _aligned(variable: xarray.DataArray, study: xarray.Dataset) -> tuple[numpy.ndarray, tuple[int, ...]]:
-    """Values with as many dimensions as the study, and its shape."""
-    dims = tuple(study.sizes)
-    shape = [study.sizes[dim] if dim in variable.dims else 1 for dim in dims]
-    order = [dim for dim in dims if dim in variable.dims]
-    return variable.transpose(*order).values.reshape(shape), tuple(study.sizes.values())
+            )
+            stream.writelines(",".join(map(_cell, row)) + "\n" for row in zip(*read, strict=True))
 
 
 def _cell(value: object) -> str:

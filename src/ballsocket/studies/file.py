@@ -16,10 +16,12 @@ from ..joint import Joint
 from ..models.base import Model
 from ..presets import joints
 from ..units import as_given, parse
-from .design import Design, Method, Span, grid, sample, table
+from .axes import Method, Span
+from .design import Design, grid, sample
 from .distributed import Distributed
 from .distributions import Distribution, Normal, Rectangular, tolerance
 from .parameters import PARAMETERS
+from .rows import table
 
 _MAX_BYTES = 100_000
 _TOP = (

@@ -12,7 +12,8 @@ from typing import Any
 import numpy
 
 from ..fingerprint import fingerprint
-from .design import Axis, Design, SampleAxis
+from .axes import Axis, SampleAxis
+from .design import Design
 from .task import Task
 
 _SHOWN = 40  # values of an axis that are written down one by one
@@ -91,6 +92,9 @@ def differences(kept: Mapping[str, Any], asked: Mapping[str, Any], path: str = "
         one, other = kept.get(key), asked.get(key)
         if isinstance(one, Mapping) and isinstance(other, Mapping):
             found += differences(one, other, f"{path}{key}.")
+        elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+            numbered = [{f"{key}[{place}]": value for place, value in enumerate(each)} for each in (one, other)]
+            found += differences(numbered[0], numbered[1], path)[:1]
         elif one != other:
             found.append(f"{path}{key} is {_short(one)} there and {_short(other)} here")
     return found

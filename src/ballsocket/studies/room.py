@@ -17,16 +17,24 @@ def check_room(task: Task, path: Path | None, points: int | None = None) -> None
     `points` are those that are still to come, all of them by default.
     """
     count = task.design.size if points is None else points
-    size = count * sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
-    free = _free_memory() if path is None else _free_disk(path)
-    if size <= free:
+    answers = count * sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
+    values = 8 * sum(len(axis) * len(axis.names) for axis in task.design.axes)
+    time = f"{count:.3g} points take about {{}} and {_hours(count * task.model.seconds_a_press / 3600)} on one core"
+    if path is None:
+        size, free = answers + _COPIES * values, _free_memory()
+        _refuse(time, size, free, "of memory; give it a store, or fewer points")
         return
-    hours = count * task.model.seconds_a_press / 3600
-    where = "of memory; give it a store, or fewer points" if path is None else "on the disk of the store"
-    raise ValueError(
-        f"{count:.3g} points take about {_bytes(size)} and {_hours(hours)} on one core, and there are "
-        f"{_bytes(free)} {where}"
-    )
+    _refuse(time, _COPIES * values, _free_memory(), "of memory for the values along its axes; take fewer")
+    labels = values if points is None else 0
+    _refuse(time, answers + labels, _free_disk(path), "on the disk of the store")
+
+
+_COPIES = 3  # of the values along an axis: as drawn, as scaled, as labels
+
+
+def _refuse(time: str, size: int, free: int, where: str) -> None:
+    if size > free:
+        raise ValueError(f"{time.format(_bytes(size))}, and there are {_bytes(free)} {where}")
 
 
 def _free_disk(path: Path) -> int:

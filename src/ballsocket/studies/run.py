@@ -111,12 +111,12 @@ def study(
     """
     needs("study", "xarray", "zarr")
     task = _task(model, joint, design, axes, tuple(quantities))
-    if store is None:
-        check_room(task, None)
+    kept = None if store is None else Store(Path(store).absolute())
+    if kept is None or not kept.path.exists():
+        check_room(task, None if kept is None else kept.path)
+    check_values(task.design)
+    if kept is None:
         return dataset(task, _in_memory(task, engine, listen))
-    kept = Store(Path(store).absolute())
-    if not kept.path.exists():
-        check_room(task, kept.path)
     kept.prepare(task)
     numbers = kept.missing(task)
     check_room(task, kept.path, sum(map(task.blocks.points, numbers)))
@@ -146,7 +146,6 @@ def _task(model: Model, joint: Joint, design: Design | None, axes: dict[str, Any
     check_names(quantities, QUANTITIES, "among the quantities")
     if not all(is_one(number) for number in (*joint.numbers(), *model.parameters)):
         raise ValueError("joint and model of a study have plain numbers: what varies is an axis")
-    check_values(points)
     wanted = quantities or tuple(name for name in ("force", *USUAL) if name not in loads)
     chosen = tuple(dict.fromkeys(name for name in wanted if name not in loads))
     return Task(model, joint, points, chosen, Blocks.of(points.shape, points_a_block(model)))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -46,6 +47,7 @@ def sensitivity(
     count : int
         Samples of each of `len(distributions) + 2` sets; a power of two.
     seed : int
+        The same seed gives the same indices and intervals.
     confidence : float
         Of the bootstrap intervals, between 0 and 1.
     load : mapping of str to float
@@ -62,7 +64,8 @@ def sensitivity(
     Raises
     ------
     ValueError
-        A name that is not known, a count that is no power of two, samples that have no answer.
+        A name that is not known, a count that is no power of two, samples that have no answer, an answer that does not
+        change.
 
     References
     ----------
@@ -90,13 +93,19 @@ def sensitivity(
         if not numpy.isfinite(table).all():
             bad = int((~numpy.isfinite(table)).any(axis=0).sum())
             raise ValueError(f"{model.name} has no answer for {bad} of {values.shape[1]} samples: narrow what scatters")
+        same = [name for name, row in zip(wanted, table, strict=True) if not seen and numpy.ptp(row) == 0]
+        if same:
+            raise ValueError(
+                f"{same[0]} does not change with {' and '.join(distributions)}: there is nothing to share out"
+            )
         seen.append(table.copy())  # SciPy centres its own in place
         return table
 
     indices = sobol_indices(
         func=answers, n=count, dists=[one.frozen for one in distributions.values()], rng=numpy.random.default_rng(seed)
     )
-    interval = indices.bootstrap(confidence_level=confidence)
+    with _seeded(seed):
+        interval = indices.bootstrap(confidence_level=confidence)
     dims = ("quantity", "parameter")
     shape = (len(wanted), len(distributions))
     numbers: dict[str, tuple[Any, Any]] = {
@@ -121,3 +130,14 @@ def sensitivity(
         coords={"quantity": list(wanted), "parameter": list(distributions)},
         attrs={"model": model.name, "samples": count, "confidence": confidence},
     )
+
+
+@contextmanager
+def _seeded(seed: int) -> Iterator[None]:
+    """SciPy's bootstrap of these indices draws from NumPy's global stream: seeded here, and left as it was."""
+    state = numpy.random.get_state()  # noqa: NPY002
+    numpy.random.seed(seed)  # noqa: NPY002
+    try:
+        yield
+    finally:
+        numpy.random.set_state(state)  # noqa: NPY002

@@ -23,10 +23,11 @@ Slopes = dict[str, dict[str, float]]
 def differences(
     model: Model, joint: Joint, quantities: Iterable[str], at: Mapping[str, float]
 ) -> tuple[dict[str, float], Slopes]:
-    """Answers at one point and their derivatives, by central differences in one press of arrays: for any model.
+    """Answers at one point and their derivatives, by differences of second order in one press of arrays: for any model.
 
-    Good to 1e-7 for closed forms and 1e-5 for `Exact`; to a few percent for finite elements, whose mesh changes
-    with the joint.
+    They are central, and to one side where a number is at an end of what it may be, such as a clearance of zero. Good
+    to 1e-7 for closed forms and 1e-5 for `Exact`; to a few percent for finite elements, whose mesh changes with the
+    joint.
 
     Parameters
     ----------
@@ -46,25 +47,38 @@ def differences(
     Raises
     ------
     ValueError
-        A name that is not known; no load.
+        A name that is not known; no load, or one of zero, where answers start steeply.
     """
     wanted = _checked(quantities, at)
-    step = model.smooth_step
-    steps = {name: step * abs(value) or step for name, value in at.items()}
-    # row 0 is the point itself, rows 2i + 1 and 2i + 2 are above and below it in the i-th number
+    steps = {name: _steps(name, float(value), model.smooth_step) for name, value in at.items()}
+    # row 0 is the point itself, rows 2i + 1 and 2i + 2 are beside it in the i-th number
     rows = {name: numpy.full(2 * len(at) + 1, float(value)) for name, value in at.items()}
     for place, name in enumerate(at):
-        rows[name][2 * place + 1] += steps[name]
-        rows[name][2 * place + 2] -= steps[name]
+        rows[name][2 * place + 1 : 2 * place + 3] += steps[name]
     found = pressed(model, joint, rows, wanted)
     answers = {quantity: float(values[0]) for quantity, values in found.items()}
     return answers, {
         quantity: {
-            name: float(values[2 * place + 1] - values[2 * place + 2]) / (2 * steps[name])
+            name: _slope(values[2 * place + 1 : 2 * place + 3] - values[0], steps[name])
             for place, name in enumerate(at)
         }
         for quantity, values in found.items()
     }
+
+
+def _steps(name: str, value: float, step: float) -> tuple[float, float]:
+    """To either side, or both to the one where the number is allowed."""
+    size = step * abs(value) or step
+    for steps in ((size, -size), (size, 2 * size), (-size, -2 * size)):
+        if PARAMETERS[name].allows(value + numpy.array(steps)).all():
+            return steps
+    raise ValueError(f"{name} = {value:g} is not allowed for a {PARAMETERS[name].title}")
+
+
+def _slope(rises: Array, steps: tuple[float, float]) -> float:
+    """Of the parabola through a point and two more."""
+    (one, other), (a, b) = rises, steps
+    return float((b * b * one - a * a * other) / (a * b * (b - a)))
 
 
 def traced(
@@ -116,6 +130,9 @@ def _checked(quantities: Iterable[str], at: Mapping[str, float]) -> tuple[str, .
     check_names(wanted, QUANTITIES, "among the quantities")
     if not any(name in at for name in LOADS):
         raise ValueError(f"one load is needed: {', '.join(LOADS)}")
+    for name in LOADS:
+        if at.get(name) == 0:
+            raise ValueError(f"{name} = 0 is first touch, where answers have no slope; it must be above 0")
     return wanted
 
 

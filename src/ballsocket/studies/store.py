@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import filecmp
 import json
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from zlib import crc32
 
@@ -54,25 +57,23 @@ class Store:
             return
         kept = self._kept()
         if kept == asked:
-            self._label(task)
+            self._label(task, asked)
         else:
             raise ValueError(
                 f"{self.path} holds another study: {'; '.join(differences(kept, asked))}. Choose another folder, or "
                 "remove this one"
             )
 
-    def _label(self, task: Task) -> None:
-        """Write the axes again where they are not what they were."""
-        import zarr
-
-        group: Any = zarr.open_group(self.path, mode="r+")
-        for name, (_, values) in coordinates(task.design).items():
-            try:
-                good = numpy.array_equal(group[name][...], values)
-            except Exception:  # whatever a damaged file makes of its decoder
-                good = False
-            if not good:
-                group[name][...] = values
+    def _label(self, task: Task, asked: Mapping[str, Any]) -> None:
+        """Put every label, which is all that a store without answers has, where it is damaged or gone."""
+        with TemporaryDirectory() as folder:
+            draft = Path(folder) / "draft"
+            _make(draft, task, asked)
+            for fresh in draft.rglob("*"):
+                here = self.path / fresh.relative_to(draft)
+                if fresh.is_file() and not (here.is_file() and filecmp.cmp(fresh, here, shallow=False)):
+                    here.parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copyfile(fresh, here)
 
     def _kept(self) -> Any:
         import zarr

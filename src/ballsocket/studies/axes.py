@@ -1,0 +1,173 @@
+"""The dimensions of a study: values of a grid, equal steps, samples of distributions, rows of a table."""
+
+from __future__ import annotations
+
+import warnings
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import lru_cache
+from math import inf
+
+import numpy
+
+from ..checks import require
+from .distributions import Distribution
+
+Array = numpy.ndarray
+
+
+class Axis(ABC):
+    """One dimension of a study: one or more parameters that vary along it together."""
+
+    name: str
+
+    @property
+    @abstractmethod
+    def values(self) -> Mapping[str, Array]:
+        """By parameter, float64 of shape (length,)."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters."""
+        return (self.name,)
+
+    def __len__(self) -> int:
+        return len(next(iter(self.values.values())))
+
+
+@dataclass(frozen=True, eq=False)
+class GridAxis(Axis):
+    """One parameter at given values."""
+
+    name: str
+    column: Array
+
+    @property
+    def values(self) -> Mapping[str, Array]:
+        return {self.name: self.column}
+
+
+@dataclass(frozen=True)
+class SpanAxis(Axis):
+    """One parameter at equal steps, which are not written down before they are needed."""
+
+    name: str
+    span: Span
+
+    def __len__(self) -> int:
+        return self.span.count
+
+    @property
+    def values(self) -> Mapping[str, Array]:
+        return _stepped(self)
+
+
+@lru_cache(maxsize=16)
+def _stepped(axis: SpanAxis) -> Mapping[str, Array]:
+    return {axis.name: numpy.linspace(axis.span.low, axis.span.high, axis.span.count)}
+
+
+@dataclass(frozen=True)
+class Span:
+    """`count` numbers at equal steps from `low` to `high`.
+
+    Raises
+    ------
+    ValueError
+        Ends that are not finite, or no number at all.
+
+    Examples
+    --------
+    >>> grid(force=Span(500.0, 4000.0, 8)).part([slice(None)])["force"]
+    array([ 500., 1000., 1500., 2000., 2500., 3000., 3500., 4000.])
+    """
+
+    low: float
+    high: float
+    count: int
+
+    def __post_init__(self) -> None:
+        for name in ("low", "high"):
+            value = getattr(self, name)
+            require(name, value, abs(value) < inf, "the end of a span is finite")
+        require("count", self.count, self.count >= 1, "a span has at least one value")
+
+
+class Method(Enum):
+    """How samples fill the space."""
+
+    SOBOL = "sobol"
+    LATIN_HYPERCUBE = "latin-hypercube"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SampleAxis(Axis):
+    """Samples of distributions, drawn anew from the seed wherever they are needed."""
+
+    count: int
+    distributions: tuple[tuple[str, Distribution], ...]
+    seed: int = 0
+    method: Method = Method.SOBOL
+    name: str = field(default="sample", init=False)
+
+    def __len__(self) -> int:
+        return self.count
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(name for name, _ in self.distributions)
+
+    @property
+    def values(self) -> Mapping[str, Array]:
+        return _drawn(self)
+
+
+@lru_cache(maxsize=4)
+def _drawn(axis: SampleAxis) -> Mapping[str, Array]:
+    """Once in each process: a worker is sent the recipe, not the numbers."""
+    from scipy.stats.qmc import LatinHypercube, Sobol
+
+    engines = {Method.SOBOL: Sobol, Method.LATIN_HYPERCUBE: LatinHypercube}
+    engine = engines[axis.method](len(axis.distributions), rng=axis.seed)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of counts that are no power of two: the docstring says so
+        shares = engine.random(axis.count)
+    return {
+        name: distribution.frozen.ppf(share)
+        for (name, distribution), share in zip(axis.distributions, shares.T, strict=True)
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class TableAxis(Axis):
+    """Rows of a table, a column a parameter."""
+
+    columns: Mapping[str, Array]
+    name: str = "row"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(self.columns)
+
+    @property
+    def values(self) -> Mapping[str, Array]:
+        return self.columns
+
+
+def column(name: str, values: Array, row: str = "[{}]") -> Array:
+    """Float64 numbers that a parameter may have."""
+    if values.ndim != 1 or values.dtype.kind not in "iuf":
+        raise ValueError(f"{name} must be a row of numbers, got {values.dtype} of shape {values.shape}")
+    if not len(values):
+        raise ValueError(f"{name} has no values")
+    numbers = values.astype(float)
+    bad = ~numpy.isfinite(numbers)
+    if name == "liner_thickness":
+        bad &= numbers != numpy.inf
+    if bad.any():
+        first = int(numpy.argmax(bad))
+        more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
+        raise ValueError(f"{name}{row.format(first)} = {numbers[first]:g}{more} is not allowed: a finite number")
+    return numbers
