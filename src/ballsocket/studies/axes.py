@@ -80,6 +80,7 @@ class Span:
 
     Examples
     --------
+    >>> from ballsocket.studies.design import grid
     >>> grid(force=Span(500.0, 4000.0, 8)).part([slice(None)])["force"]
     array([ 500., 1000., 1500., 2000., 2500., 3000., 3500., 4000.])
     """
