@@ -11,7 +11,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket import study_figures
-from ballsocket.cli.phrases import limit_of, range_of, spread_of
+from ballsocket.phrases import limit_of, range_of, spread_of
 from ballsocket.studies.design import Span, grid, sample
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.file import read_study

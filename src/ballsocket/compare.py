@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+import numpy
+
 from .all_models import catalogue
 from .arrays import Array, divisor, to_list, where
 from .checks import one_load
@@ -159,3 +161,36 @@ def compare(
         except OutsideDomainError as error:
             missing[name] = str(error)
     return Comparison(joint, contacts, missing)
+
+
+def answered(comparison: Mapping[str, Contact]) -> dict[str, Contact]:
+    """The contacts of models that have an answer."""
+    return {name: contact for name, contact in comparison.items() if not contact.status.failed}
+
+
+_MANY = numpy.linspace(0.0, 1.0, 121) ** 2
+_FEW = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)  # each class of contacts takes a mesh
+
+
+def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -> dict[str, Contact]:
+    """From first touch to a little beyond the deepest of some contacts: each pressed on by its own model.
+
+    Parameters
+    ----------
+    contacts : mapping of str to Contact
+        One contact of plain numbers each.
+    models : mapping of str to Model
+        By the same names.
+
+    Returns
+    -------
+    dict of str to Contact
+        Contacts of a 1-D array of indentations.
+    """
+    deepest = 1.15 * max(contact.indentation for contact in contacts.values())
+    return {
+        name: models[name].press(
+            contact.joint, indentation=deepest * (_FEW if models[name].seconds_a_press > 0.1 else _MANY)
+        )
+        for name, contact in contacts.items()
+    }

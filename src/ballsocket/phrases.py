@@ -1,18 +1,18 @@
-"""Short phrases of the shell: ranges, limits and tolerances of named numbers."""
+"""Short phrases of shells and links: ranges, limits and tolerances of named numbers."""
 
 from __future__ import annotations
 
 import re
 
-from ..files import check_names
-from ..studies.axes import Span
-from ..studies.distributions import Distribution, Rectangular, tolerance
-from ..studies.labels import described
-from ..studies.limits import EDGE_DISTANCE, Limit
-from ..studies.limits import NAMES as LIMITED
-from ..studies.parameters import PARAMETERS
-from ..studies.task import QUANTITIES
-from ..units import parse
+from .files import check_names
+from .studies.axes import Span
+from .studies.distributions import Distribution, Rectangular, tolerance
+from .studies.labels import described
+from .studies.limits import EDGE_DISTANCE, Limit
+from .studies.limits import NAMES as LIMITED
+from .studies.parameters import PARAMETERS
+from .studies.task import QUANTITIES
+from .units import parse
 
 _ANSWERS = {
     "max_pressure": "modulus",

@@ -6,15 +6,13 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated
 
-import numpy
 import typer
 
 import ballsocket as bs
 
 from .. import figures, tables
 from ..all_models import judge
-from ..compare import REFERENCE, Comparison
-from ..contact import Contact
+from ..compare import REFERENCE, Comparison, answered, force_curves
 from ..files import nearest, read_load
 from ..models.base import Model
 from ..validity import Status
@@ -90,7 +88,7 @@ def press(
     if figure is not None:
         _draw(comparison, {**bs.catalogue, **chosen}, figure)
     if judge.name in comparison:
-        output.write(comparison[judge.name], _answered(comparison).get(REFERENCE))
+        output.write(comparison[judge.name], answered(comparison).get(REFERENCE))
     if as_json:
         echo_json(comparison.summary())
     else:
@@ -120,25 +118,13 @@ def _failure(comparison: Comparison, chosen: Iterable[str]) -> str:
     unsettled = [name for name, contact in comparison.items() if contact.status == Status.NOT_CONVERGED]
     if unsettled:
         return f"no convergence of {', '.join(unsettled)} (see the notes)"
-    return "" if set(_answered(comparison)) & set(chosen) else f"no answer from {', '.join(chosen)} (see the notes)"
-
-
-def _answered(comparison: Comparison) -> dict[str, Contact]:
-    return {name: contact for name, contact in comparison.items() if not contact.status.failed}
-
-
-_MANY = numpy.linspace(0.0, 1.0, 121) ** 2
-_FEW = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)  # each class of contacts takes a mesh
+    return "" if set(answered(comparison)) & set(chosen) else f"no answer from {', '.join(chosen)} (see the notes)"
 
 
 def _draw(comparison: Comparison, models: Mapping[str, Model], path: Path) -> None:
     """Draw what has an answer; without any there is no figure."""
-    shown = _answered(comparison)
+    shown = answered(comparison)
     if not shown:
         return
-    deepest = 1.15 * max(contact.indentation for contact in shown.values())
-    curves = {
-        name: models[name].press(comparison.joint, indentation=deepest * (_FEW if name == judge.name else _MANY))
-        for name in shown
-    }
+    curves = force_curves(shown, {name: models[name] for name in shown})
     figures.save(figures.press_figure(shown, curves), path)

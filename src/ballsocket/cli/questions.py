@@ -23,7 +23,7 @@ from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
-from .phrases import axis_of, limit_of, range_of, spread_of
+from ..phrases import axis_of, limit_of, range_of, spread_of
 from .root import app
 from .words import echo_json, given, load_of, named_joint
 
