@@ -25,6 +25,7 @@ BENCHMARKS = {
         "a million presses by force from the tables, beside the exact solver and the paper's model",
     ),
     "gpu": ("gpu", "presses a second on a GPU through PyTorch, against its memory's bandwidth; skipped without one"),
+    "app": ("app", "the explorer in a browser: first view, a slider that moves, fifty sessions at once"),
     "import": ("start", "how long a fresh interpreter takes to import the package and to answer a joint file"),
 }
 """Name: the module with a `measure()`, and one line on it."""

@@ -119,7 +119,7 @@ def _answers(pool: ProcessPoolExecutor, left: deque[int], most: int) -> Iterator
 
 @contextmanager
 def _pool(workers: int, work: Work) -> Iterator[ProcessPoolExecutor]:
-    with _one_thread_each():
+    with one_thread_each():
         pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(work,))
         try:
             yield pool
@@ -131,7 +131,7 @@ _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
 
 @contextmanager
-def _one_thread_each() -> Iterator[None]:
+def one_thread_each() -> Iterator[None]:
     """For processes that are started inside: linear algebra of two processes on the same cores is many times slower."""
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))

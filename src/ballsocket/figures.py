@@ -25,7 +25,7 @@ _REFERENCE_STYLE = {"color": "black", "linestyle": "-", "linewidth": 2.0}
 FORMATS = ("png", "svg", "pdf")
 
 
-def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact]) -> Figure:
+def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact], title: str = "") -> Figure:
     """Pressure over angle beside force over indentation.
 
     Parameters
@@ -34,6 +34,8 @@ def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact])
         One contact of plain numbers a model: the pressed state.
     curves : mapping of str to Contact
         For each of these models a contact of a 1-D array of loads: its force-indentation curve.
+    title : str
+        By default the joint of the first contact, and its load.
 
     Returns
     -------
@@ -61,7 +63,7 @@ def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact])
     right.set_ylim(0.0, 1.6e-3 * max(contact.force for contact in contacts.values()) or 1.0)
     columns = min(len(contacts), 4)
     figure.legend(loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
-    figure.suptitle(_title(next(iter(contacts.values()))), fontsize=10)
+    figure.suptitle(title or _title(next(iter(contacts.values()))), fontsize=10)
     return figure
 
 

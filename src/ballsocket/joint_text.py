@@ -51,15 +51,15 @@ def tables_of(file: JointFile) -> Tables:
     if joint.backing:
         tables["backing"] = [_layer(layer) for layer in joint.backing]
     if file.cup != Cup():
-        cup = file.cup
-        tables["cup"] = {
-            "arc_of_cover": degrees(cup.arc_of_cover),
-            "chamfer": cup.chamfer,
-            "interface": cup.interface.value,
-        }
+        tables["cup"] = cup_table(file.cup)
     if file.load:
         tables["load"] = {name: degrees(value) if name == "half_angle" else value for name, value in file.load.items()}
     return tables
+
+
+def cup_table(cup: Cup) -> Tables:
+    """The table `cup` of a joint file."""
+    return {"arc_of_cover": degrees(cup.arc_of_cover), "chamfer": cup.chamfer, "interface": cup.interface.value}
 
 
 def toml_of(file: JointFile) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -12,9 +11,8 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import accuracy_table, paper_figures, report_tables
+from . import accuracy_table, html_page, paper_figures, report_tables
 from .engines import Engine, Serial
-from .fingerprint import fingerprint
 from .paper.figure import Figure
 from .written import at_once, write_text
 
@@ -23,21 +21,6 @@ if TYPE_CHECKING:
 
 _HERE = Serial()
 
-_STYLE = """
-:root { color-scheme: light; }
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 66rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
-h1, h2 { line-height: 1.2; } h2 { margin-top: 2.5rem; border-bottom: 1px solid #ccc; }
-img { max-width: 100%; } figure { margin: 1rem 0; } figcaption, .quiet { color: #555; }
-.wide { overflow-x: auto; margin: 1rem 0; }
-table { border-collapse: collapse; font-size: 0.9rem; } td, th { padding: 0.25rem 0.7rem; text-align: right; }
-td:first-child, th:first-child, .text td, .text th { text-align: left; vertical-align: top; }
-.text td:first-child { min-width: 14rem; } .text td:last-child { min-width: 17rem; }
-.text td:nth-child(2) { white-space: nowrap; } small { color: #555; }
-code { overflow-wrap: anywhere; } .text { width: 100%; }
-tr { border-bottom: 1px solid #e5e5e5; } nav a { margin-right: 1rem; white-space: nowrap; }
-.holds { color: #00684f; font-weight: 600; } .nearly { color: #8a5a00; font-weight: 600; }
-.fails { color: #b3261e; font-weight: 600; }
-"""
 _LEDE = """<p>The tables, figures and checkable sentences of M. Heß and F. Forsbach, <i>An Analytical Model for
 Almost Conformal Spherical Contact Problems</i>, Appl. Sci. 2021, 11, 11170
 (<a href="https://doi.org/10.3390/app112311170">doi 10.3390/app112311170</a>), computed again from the
@@ -77,16 +60,8 @@ def write_report(results: Mapping[str, Sequence[Any]], folder: Path, engine: Eng
         "figures": ("Figures 2 to 6", "".join(shown)),
         "accuracy": ("How accurate is which model?", _accuracy(rows, folder, pictures[len(figures)])),
     }
-    links = " ".join(f"<a href='#{name}'>{escape(title.split(':')[0])}</a>" for name, (title, _) in sections.items())
-    body = "".join(f"<h2 id='{name}'>{escape(title)}</h2>{text}" for name, (title, text) in sections.items())
-    page = (
-        f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>Heß &amp; Forsbach 2021, reproduced</title>"
-        f"<meta name='viewport' content='width=device-width'><style>{_STYLE}</style></head><body>"
-        f"<h1>Heß &amp; Forsbach 2021, reproduced</h1>{_LEDE}<p>{escape(results['about'][0])}</p>"
-        f"<nav>{links}</nav>{body}"
-        f"<p class='quiet'>ballsocket {fingerprint()}</p></body></html>"
-    )
-    return write_text(folder / "report.html", page)
+    lede = f"{_LEDE}<p>{escape(results['about'][0])}</p>"
+    return write_text(folder / "report.html", html_page.page("Heß & Forsbach 2021, reproduced", lede, sections))
 
 
 def _claims(findings: Sequence[Mapping[str, Any]]) -> str:
@@ -111,14 +86,14 @@ class _Pictures:
 
 def _figure(name: str, figure: Figure, picture: bytes) -> str:
     caption = f"{escape(figure.caption)} <a href='{name}.csv'>numbers</a>, <a href='{name}.svg'>SVG</a>"
-    return f"<h3 id='{name}'>{escape(figure.title)}</h3>{_shown(picture, figure.title, caption)}"
+    return f"<h3 id='{name}'>{escape(figure.title)}</h3>{html_page.picture(picture, figure.title, caption)}"
 
 
 def _accuracy(rows: Sequence[Mapping[str, Any]], folder: Path, picture: bytes) -> str:
     write_text(folder / "accuracy.md", accuracy_table.markdown(rows))
     write_text(folder / "accuracy.csv", accuracy_table.table(rows))
     write_text(folder / "accuracy.json", json.dumps(rows, indent=1) + "\n")
-    return _ACCURACY + _shown(picture, "errors of every model", "") + report_tables.accuracy(rows)
+    return _ACCURACY + html_page.picture(picture, "errors of every model") + report_tables.accuracy(rows)
 
 
 def _pictured(name: str, drawing: Drawing, folder: Path) -> bytes:
@@ -127,14 +102,6 @@ def _pictured(name: str, drawing: Drawing, folder: Path) -> bytes:
         with at_once(folder / f"{name}.{suffix}") as draft:
             drawing.savefig(draft, dpi=140)
     return (folder / f"{name}.png").read_bytes()
-
-
-def _shown(picture: bytes, title: str, caption: str) -> str:
-    code = b64encode(picture).decode("ascii")
-    return (
-        f"<figure><img alt='{escape(title)}' src='data:image/png;base64,{code}'>"
-        f"<figcaption>{caption}</figcaption></figure>"
-    )
 
 
 def _csv(figure: Figure) -> str:

@@ -56,7 +56,7 @@ def design_map(
     good = allowed(study, limits).transpose(up, across).values
     trusted = study.valid.transpose(up, across).values
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values = study[name].transpose(up, across).values * _factor(name)
+        values = study[name].transpose(up, across).values * factor(name)
         x, y = study[across].values, study[up].values
         axes.contourf(x, y, values, levels=14, cmap="viridis")
         lines = axes.contour(x, y, values, levels=7, colors="white", linewidths=0.6)
@@ -109,7 +109,7 @@ def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressur
     names = [name for name in quantities if name in study.data_vars]
     figure = Figure(figsize=(5.0 * len(names), 4.0), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values, x = study[name] * _factor(name), study[others[0]].values
+        values, x = study[name] * factor(name), study[others[0]].values
         for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
             low, high = (values.quantile(end, dim="sample").values for end in ((1 - share) / 2, (1 + share) / 2))
             axes.fill_between(x, low, high, color=shade, label=f"{100 * share:g} % of the joints", linewidth=0)
@@ -136,9 +136,9 @@ def front_figure(
     figure = Figure(figsize=(6.4, 4.6), layout="constrained")
     axes = figure.subplots()
     good = allowed(study, limits)
-    one, other = ((study[name] * _factor(name)).where(good).values.ravel() for name in minimise)
+    one, other = ((study[name] * factor(name)).where(good).values.ravel() for name in minimise)
     axes.plot(one, other, ".", color="0.75", markersize=3, label="allowed")
-    best = [(front[name] * _factor(name)).values for name in minimise]
+    best = [(front[name] * factor(name)).values for name in minimise]
     axes.plot(*best, "o-", color=COLOURS[0], markersize=4, linewidth=1.2, label="no other is better in both")
     finish(axes, label(minimise[0]), label(minimise[1]))
     axes.legend(frameon=False, fontsize=9)
@@ -187,5 +187,6 @@ def label(name: str) -> str:
     return f"{words['long_name']} {words['symbol']}{shown}"
 
 
-def _factor(name: str) -> float:
+def factor(name: str) -> float:
+    """From the unit of a study to the one that is drawn."""
     return _READ[name][1] if name in _READ else 1.0

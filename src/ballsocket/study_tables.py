@@ -89,18 +89,27 @@ class _Seen:
 
 def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
     """The least and largest value of each answer among what the limits allow, and where."""
-    table = _table("quantity", "unit", "least", "at", "largest", "at")
-    for name, ends in map_summary(study, limits)["quantities"].items():
-        cells = []
-        for end in ends:
-            varied = {axis: value for axis, value in end["at"].items() if study[axis].dims}
-            cells += [_shown(name, end["value"]), _words(varied)]
-        table.add_row(name, _unit(name), *cells)
+    heads, rows = map_rows(study, limits)
+    table = _table(*heads)
+    for row in rows:
+        table.add_row(*row)
     Console().print(table)
     share = float(allowed(study, limits).mean())
     Console().print(
         f"{100 * share:.3g} % of the map is allowed" + "".join(f", {limit}" for limit in limits), highlight=False
     )
+
+
+def map_rows(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[list[str], list[list[str]]]:
+    """Heads and text of that table."""
+    rows = []
+    for name, ends in map_summary(study, limits)["quantities"].items():
+        row = [name, _unit(name)]
+        for end in ends:
+            varied = {axis: value for axis, value in end["at"].items() if study[axis].dims}
+            row += [_shown(name, end["value"]), _words(varied)]
+        rows.append(row)
+    return ["quantity", "unit", "least", "at", "largest", "at"], rows
 
 
 def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any]:

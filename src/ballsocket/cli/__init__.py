@@ -1,6 +1,6 @@
 """The words of the shell become the calls of the package."""
 
-from . import deck, fit, lists, press, questions, reproduce, study
+from . import app, deck, fit, lists, press, questions, reproduce, study
 from .root import main
 
-__all__ = ["deck", "fit", "lists", "main", "press", "questions", "reproduce", "study"]
+__all__ = ["app", "deck", "fit", "lists", "main", "press", "questions", "reproduce", "study"]

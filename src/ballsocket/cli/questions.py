@@ -15,6 +15,7 @@ from .. import figures, study_figures, study_tables
 from ..fem.model import FiniteElement
 from ..files import JointFile
 from ..models.base import Model
+from ..phrases import axis_of, limit_of, range_of, spread_of
 from ..studies.design import grid
 from ..studies.file import named_model
 from ..studies.limits import Limit
@@ -23,7 +24,6 @@ from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
-from ..phrases import axis_of, limit_of, range_of, spread_of
 from .root import app
 from .words import echo_json, given, load_of, named_joint
 

@@ -259,7 +259,7 @@ class Curves:
         """ln ε - ln LIMIT of a few contacts of each joint (knots, joints), and ln d or ln F there with its slope."""
         place = own(_KNOTS, self.ratio)[:, None]
         angle = angle_at(place, self.ratio)
-        waves = own(numpy.polynomial.chebyshev.chebvander(_KNOTS, self.three.shape[1] - 1), self.ratio)
+        waves = own(_waves_at_knots(self.three.shape[1]), self.ratio)
         widening = self._widening(angle, place)
         rows = (0, 1) if kind == "force" else (0,)
         functions = [(waves @ self.three[k, ...], widening * (waves @ self.slopes[k, ...])) for k in rows]
@@ -304,6 +304,11 @@ def _sum(coefficients: Array, waves: Array) -> Array:
     if coefficients.shape[-1] == 1:
         return coefficients[:, 0] @ waves
     return numpy.einsum("ij,ij->j", coefficients, waves) if xp is numpy else xp.sum(coefficients * waves, axis=0)
+
+
+@cache
+def _waves_at_knots(count: int) -> numpy.ndarray:
+    return numpy.polynomial.chebyshev.chebvander(_KNOTS, count - 1)
 
 
 @cache

@@ -1,0 +1,249 @@
+"""The numbers of a joint as sliders and lists: each edits one entry of the tables of a joint file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import inf, isclose, isinf
+from typing import Any
+
+import panel as pn
+
+from ..files import JointFile, joint_of
+from ..joint_text import Tables, tables_of
+from ..presets import joints, materials
+from .screen import Screen
+
+_OWN, _RIGID = "– own numbers –", "rigid"
+_PRESET = "– choose –"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number:
+    """A slider for one number of the tables, over a range that is usual; any other can be typed."""
+
+    table: str
+    key: str
+    label: str
+    low: float
+    high: float
+    step: float
+    form: str
+    factor: float = 1.0  # from the number in the table to the one that is shown
+
+
+def _number(table: str, key: str, label: str, ends: tuple[float, float], step: float, form: str) -> Number:
+    return Number(table=table, key=key, label=label, low=ends[0], high=ends[1], step=step, form=form)
+
+
+_NUMBERS = {
+    "ball_radius": _number("joint", "ball_radius", "Ball radius R1 [mm]", (5.0, 30.0), 0.1, "0.[000]"),
+    "clearance": _number("joint", "clearance", "Radial clearance ΔR [mm]", (0.0, 0.5), 0.005, "0.[0000]"),
+    "liner_thickness": _number("joint", "liner_thickness", "Liner thickness L [mm]", (0.5, 20.0), 0.1, "0.[000]"),
+    "liner_young": _number("liner", "young", "Liner: Young's modulus E [MPa]", (100.0, 5000.0), 10.0, "0.[0]"),
+    "liner_poisson": _number("liner", "poisson", "Liner: Poisson's ratio ν", (0.0, 0.4995), 0.005, "0.[0000]"),
+    "ball_young": _number("ball", "young", "Ball: Young's modulus E1 [MPa]", (1e3, 4e5), 1e3, "0.[0]"),
+    "ball_poisson": _number("ball", "poisson", "Ball: Poisson's ratio ν1", (0.0, 0.4995), 0.005, "0.[0000]"),
+}
+_DIAMETER = replace(_NUMBERS["ball_radius"], label="Ball diameter 2 R1 [mm]", low=10.0, high=60.0, step=0.2, factor=2.0)
+_LOADS = {
+    "force": _number("load", "force", "Force F [N]", (50.0, 5000.0), 50.0, "0.[0]"),
+    "indentation": replace(
+        _number("load", "indentation", "Indentation d [µm]", (1.0, 200.0), 1.0, "0.[00]"), factor=1e3
+    ),
+    "half_angle": _number("load", "half_angle", "Half angle ε [°]", (1.0, 80.0), 0.5, "0.[000]"),
+}
+_IN_RADIANS = replace(
+    _LOADS["half_angle"],
+    label="Half angle ε [rad]",
+    low=0.02,
+    high=1.4,
+    step=0.01,
+    form="0.[00000]",
+    factor=0.017453292519943295,
+)
+_LOAD_NAMES = {"force": "force", "indentation": "indentation", "half angle": "half_angle"}
+
+
+class JointControls:
+    """All inputs of a joint and its load.
+
+    Parameters
+    ----------
+    changed : callable
+        Told the joint after every change.
+    refused : callable
+        Told, in one sentence, why there is no such joint.
+    loaded : callable
+        Asked for the load of another kind that presses the joint as much as now.
+    """
+
+    def __init__(
+        self,
+        changed: Callable[[JointFile], None],
+        refused: Callable[[str], None],
+        loaded: Callable[[str], dict[str, float]],
+    ) -> None:
+        self._changed, self._refused, self._loaded = changed, refused, loaded
+        self._putting = False
+        self._file: JointFile
+        self._specs: dict[str, Number] = dict(_NUMBERS)
+        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
+        self.preset = pn.widgets.Select(name="Start from", options=[_PRESET, *joints], **wide)
+        self.sliders = {name: _slider(spec, name) for name, spec in _NUMBERS.items()}
+        self.massive = pn.widgets.Checkbox(name="massive socket (L = ∞)")
+        self.liner = pn.widgets.Select(name="Liner", options=[_OWN, *materials], **wide)
+        self.ball = pn.widgets.Select(name="Ball", options=[_RIGID, _OWN, *materials], **wide)
+        self.kind = pn.widgets.RadioButtonGroup(name="Load given as", options=_LOAD_NAMES, **wide)
+        self.load = _slider(_LOADS["force"], "load")
+        self.backing = pn.pane.HTML("", **wide)
+        self._watch()
+        self.panel = pn.Column(
+            self.preset,
+            self.sliders["ball_radius"],
+            self.sliders["clearance"],
+            self.sliders["liner_thickness"],
+            self.massive,
+            self.kind,
+            self.load,
+            self.liner,
+            self.sliders["liner_young"],
+            self.sliders["liner_poisson"],
+            self.ball,
+            self.sliders["ball_young"],
+            self.sliders["ball_poisson"],
+            self.backing,
+            **wide,
+        )
+
+    def _watch(self) -> None:
+        for name, slider in self.sliders.items():
+            slider.param.watch(lambda event, name=name: self._typed(self._specs[name], event.new), "value")
+        self.load.param.watch(lambda event: self._typed(self._load_spec, event.new), "value")
+        self.kind.param.watch(self._load_kind, "value")
+        self.preset.param.watch(self._start, "value")
+        self.massive.param.watch(self._made_massive, "value")
+        self.liner.param.watch(lambda event: self._material("liner", event.new), "value")
+        self.ball.param.watch(lambda event: self._material("ball", event.new), "value")
+
+    def put(self, screen: Screen) -> None:
+        """Set every input to what is on the screen, without an answer."""
+        self._putting = True
+        try:
+            self._put(screen)
+        finally:
+            self._putting = False
+
+    def _put(self, screen: Screen) -> None:
+        file, joint = screen.file, screen.file.joint
+        self._file = file
+        self._specs["ball_radius"] = _DIAMETER if screen.size == "diameter" else _NUMBERS["ball_radius"]
+        ((kind, _),) = file.load.items()
+        self._load_spec = _IN_RADIANS if (kind, screen.angle) == ("half_angle", "radians") else _LOADS[kind]
+        tables = tables_of(file)
+        for part in ("liner", "ball"):
+            material = getattr(joint, part)
+            if material is not None:
+                tables[part] = {"young": float(material.young), "poisson": float(material.poisson)}
+        for name, slider in self.sliders.items():
+            spec = self._specs[name]
+            value = tables.get(spec.table, {}).get(spec.key)
+            slider.visible = value is not None and not isinf(value)
+            if slider.visible:
+                _set(slider, spec, value)
+        _set(self.load, self._load_spec, tables["load"][kind])
+        self.massive.value = isinf(float(joint.liner_thickness))
+        self.massive.visible = not joint.backing
+        self.kind.value = kind
+        self.liner.value = _chosen(tables_of(file)["liner"])
+        self.ball.value = _RIGID if joint.ball is None else _chosen(tables_of(file)["ball"])
+        self.preset.value = joint.name if joints.get(joint.name) == joint else _PRESET
+        behind = "".join(f"<li>{layer}</li>" for layer in joint.backing)
+        self.backing.object = f"<p>Behind the liner:</p><ul>{behind}</ul>" if behind else ""
+
+    def _edit(self, change: Callable[[Tables], None], load: dict[str, float] | None = None) -> None:
+        """The joint with a change to its tables; its preset's name goes with the first number that differs."""
+        if self._putting:
+            return
+        tables = tables_of(self._file)
+        before = joint_of(tables).joint
+        try:
+            change(tables)
+            file = joint_of(tables)
+            if file.joint != before:
+                tables.pop("name", None)
+                tables.pop("source", None)
+                file = joint_of(tables)
+        except ValueError as error:
+            self._refused(str(error))
+            return
+        if load is not None:
+            file = replace(file, load=load)
+        self._file = file
+        self._changed(file)
+
+    def _typed(self, spec: Number, value: float) -> None:
+        def change(tables: Tables) -> None:
+            tables.setdefault(spec.table, {})[spec.key] = round(value / spec.factor, 12)
+
+        self._edit(change)
+
+    def _load_kind(self, event: Any) -> None:
+        if not self._putting:
+            load = self._loaded(event.new)
+            self._edit(lambda tables: None, load)
+
+    def _start(self, event: Any) -> None:
+        if not self._putting and event.new != _PRESET:
+            self._file = replace(self._file, joint=joints[event.new])
+            self._changed(self._file)
+
+    def _made_massive(self, event: Any) -> None:
+        radius = float(self._file.joint.socket_radius)
+        thickness = inf if event.new else round(radius / 3, 1)
+        self._edit(lambda tables: tables["joint"].update(liner_thickness=thickness))
+
+    def _material(self, part: str, chosen: str) -> None:
+        material = getattr(self._file.joint, part)
+        if chosen == _RIGID:
+            self._edit(lambda tables: tables.pop(part, None))
+        elif chosen != _OWN:
+            self._edit(lambda tables: tables.update({part: {"material": chosen}}))
+        else:
+            numbers = {"young": 2e5, "poisson": 0.3}
+            if material is not None:
+                numbers = {"young": float(material.young), "poisson": float(material.poisson)}
+            self._edit(lambda tables: tables.update({part: numbers}))
+
+
+def _chosen(table: Tables) -> str:
+    """The material's name, unless a number differs from it."""
+    return str(table["material"]) if list(table) == ["material"] else _OWN
+
+
+def _slider(spec: Number, name: str) -> Any:
+    return pn.widgets.EditableFloatSlider(
+        name=spec.label,
+        start=spec.low,
+        end=spec.high,
+        step=spec.step,
+        value=spec.low,
+        format=spec.form,
+        sizing_mode="stretch_width",
+        css_classes=["slider", name],
+    )
+
+
+def _set(slider: Any, spec: Number, value: float) -> None:
+    """What lies outside the usual range widens it; a slider that is being moved is left where it is."""
+    shown = value * spec.factor
+    if isclose(shown, slider.value, rel_tol=1e-9):
+        shown = slider.value
+    slider.param.update(
+        name=spec.label,
+        format=spec.form,
+        step=spec.step,
+        start=min(spec.low, shown),
+        end=max(spec.high, shown),
+        value=shown,
+    )

@@ -1,0 +1,75 @@
+"""Several named curves in one chart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy
+from bokeh.models import ColumnDataSource, HoverTool
+
+from .look import Line, Palette, chart, from_zero
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Points of one curve, how it is drawn, and a point to mark on it, if any."""
+
+    x: numpy.ndarray
+    y: numpy.ndarray
+    line: Line
+    mark: tuple[float, float] | None = None
+
+
+class CurveChart:
+    """A chart whose curves are replaced at every change."""
+
+    def __init__(self, x: str, y: str, palette: Palette, formats: tuple[str, str]) -> None:
+        self.figure = chart(x, y, palette)
+        self.figure.x_range, self.figure.y_range = from_zero(1.0), from_zero(1.0)
+        self._lines = ColumnDataSource(_lines({}))
+        self._marks = ColumnDataSource(_marks({}))
+        lines: Any = self.figure.multi_line(
+            "x",
+            "y",
+            source=self._lines,
+            line_color="colour",
+            line_dash="dash",
+            line_width="width",
+            legend_field="name",
+        )
+        self.figure.scatter("x", "y", source=self._marks, color="colour", size=7)
+        tips = [("", "@name"), (x, f"$data_x{{{formats[0]}}}"), (y, f"$data_y{{{formats[1]}}}")]
+        self.figure.add_tools(HoverTool(renderers=[lines], tooltips=tips, line_policy="interp"))
+        legend = self.legend = self.figure.legend[0]
+        legend.background_fill_alpha = legend.border_line_alpha = 0.0
+        legend.label_text_color = palette.text
+        legend.label_text_font_size = "12px"
+        legend.spacing, legend.padding = 0, 2
+
+    def show(self, curves: Mapping[str, Curve], x: float, y: float) -> None:
+        """Draw these; the axes run up to x and y."""
+        self._lines.data = _lines(curves)
+        self._marks.data = _marks(curves)
+        self.figure.x_range.end, self.figure.y_range.end = x, y
+
+
+def _lines(curves: Mapping[str, Curve]) -> dict[str, list[Any]]:
+    return {
+        "name": list(curves),
+        "x": [curve.x.astype(numpy.float32) for curve in curves.values()],
+        "y": [curve.y.astype(numpy.float32) for curve in curves.values()],
+        "colour": [curve.line.colour for curve in curves.values()],
+        "dash": [curve.line.dash for curve in curves.values()],
+        "width": [curve.line.width for curve in curves.values()],
+    }
+
+
+def _marks(curves: Mapping[str, Curve]) -> dict[str, list[Any]]:
+    marked = [(curve.mark, curve.line.colour) for curve in curves.values() if curve.mark is not None]
+    return {
+        "x": [mark[0] for mark, _ in marked],
+        "y": [mark[1] for mark, _ in marked],
+        "colour": [colour for _, colour in marked],
+    }

@@ -1,0 +1,80 @@
+"""What is on the screen as files: a picture, numbers, a page, a joint file."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from html import escape
+from io import BytesIO, StringIO
+from typing import TYPE_CHECKING
+
+import panel as pn
+
+from ..html_page import page as html_page
+from ..html_page import picture
+from ..joint_text import toml_of
+from .view import Document
+
+if TYPE_CHECKING:
+    from .page import Page
+
+
+class Downloads:
+    """A button for each kind of file; made when it is pressed."""
+
+    def __init__(self, page: Page) -> None:
+        self._page = page
+        kinds: dict[str, tuple[str, Callable[[], bytes]]] = {
+            "PNG": ("ballsocket.png", lambda: self._picture("png")),
+            "SVG": ("ballsocket.svg", lambda: self._picture("svg")),
+            "CSV": ("ballsocket.csv", self._numbers),
+            "HTML": ("ballsocket.html", self._report),
+            "TOML": ("joint.toml", self._joint),
+        }
+        buttons = [
+            pn.widgets.FileDownload(
+                callback=lambda make=make: BytesIO(make()),
+                filename=name,
+                label=kind,
+                button_type="default",
+                embed=False,
+                width=64,
+                margin=(2, 2),
+            )
+            for kind, (name, make) in kinds.items()
+        ]
+        self.panel = pn.Column(
+            pn.pane.HTML("<span class='label'>Save figure, numbers, report, joint</span>"),
+            pn.FlexBox(*buttons, flex_wrap="wrap"),
+            sizing_mode="stretch_width",
+        )
+
+    def _document(self) -> Document:
+        return self._page.view.document(self._page.screen)
+
+    def _picture(self, form: str) -> bytes:
+        draw = self._document().picture
+        if draw is None:
+            raise ValueError("there is nothing to draw: no model has an answer")
+        return draw(form)
+
+    def _numbers(self) -> bytes:
+        stream = StringIO()
+        csv.writer(stream, lineterminator="\n").writerows(self._document().rows)
+        return stream.getvalue().encode("utf-8")
+
+    def _joint(self) -> bytes:
+        return toml_of(self._page.screen.file).encode("utf-8")
+
+    def _report(self) -> bytes:
+        """One page: the joint, the figure, the numbers, and the link that leads back."""
+        document, screen = self._document(), self._page.screen
+        joint = screen.file.joint
+        title = f"{self._page.view.title}: {joint.name or 'a joint'}"
+        figure = "" if document.picture is None else picture(document.picture("png"), title)
+        link = self._page.link()
+        lede = (
+            f"<p>{escape(str(joint))}</p><pre>{escape(toml_of(screen.file))}</pre>"
+            f"<p class='quiet'>Seen in the explorer: <code>{escape(link)}</code></p>"
+        )
+        return html_page(title, lede, {"figure": ("Figure", figure), **document.sections}).encode("utf-8")

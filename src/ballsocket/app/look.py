@@ -1,0 +1,92 @@
+"""Colours of light and dark pages, and the same style for every chart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from bokeh.models import Range1d
+from bokeh.plotting import figure
+
+from ..all_models import catalogue
+from ..compare import REFERENCE
+from ..figures import COLOURS
+
+
+@dataclass(frozen=True, kw_only=True)
+class Palette:
+    """What a theme is made of; `ball`, `liner`, `backing` fill the drawing."""
+
+    text: str
+    grid: str
+    paper: str
+    ball: str
+    liner: str
+    backing: str
+
+
+PALETTES = {
+    "light": Palette(
+        text="#1d2328", grid="#e3e6e8", paper="#ffffff", ball="#c9ced3", liner="#e8eef4", backing="#b3a99c"
+    ),
+    "dark": Palette(
+        text="#e6e9ec", grid="#3a4249", paper="#191e23", ball="#5b646d", liner="#2b3946", backing="#6d6357"
+    ),
+}
+
+_DASHES = ("solid", "12 4", "4 3", "14 4 3 4", "8 3 2 3 2 3")
+
+
+@dataclass(frozen=True)
+class Line:
+    """How a curve is drawn."""
+
+    colour: str
+    dash: str
+    width: float
+
+
+def line_of(name: str, palette: Palette, trusted: bool) -> Line:
+    """A model keeps its line wherever it is drawn; it is thin where the model is not to be trusted."""
+    if name == REFERENCE:
+        return Line(palette.text, "solid", 2.5 if trusted else 1.2)
+    index = list(catalogue).index(name)
+    return numbered(index - 1, trusted)
+
+
+def numbered(index: int, trusted: bool) -> Line:
+    """The line of a number, the same in grey by its dashes."""
+    dash = _DASHES[(index + index // len(COLOURS)) % len(_DASHES)]
+    return Line(COLOURS[index % len(COLOURS)], dash, 2.2 if trusted else 1.1)
+
+
+def chart(x: str, y: str, palette: Palette, height: int = 300, **options: Any) -> Any:
+    """An empty Bokeh figure as wide as its place, without a frame, transparent."""
+    made = figure(
+        height=height,
+        sizing_mode="stretch_width",
+        x_axis_label=x,
+        y_axis_label=y,
+        tools="pan,wheel_zoom,box_zoom,reset",
+        active_scroll=None,
+        toolbar_location="above",
+        background_fill_alpha=0.0,
+        border_fill_alpha=0.0,
+        outline_line_color=None,
+        min_border_left=10,
+        **options,
+    )
+    made.toolbar.logo = None
+    made.toolbar.autohide = True
+    made.grid.grid_line_color = palette.grid
+    for axis in made.axis:
+        axis.axis_line_color = axis.major_tick_line_color = palette.text
+        axis.minor_tick_line_color = None
+        axis.major_label_text_color = axis.axis_label_text_color = palette.text
+        axis.axis_label_text_font_style = "normal"
+    return made
+
+
+def from_zero(high: float) -> Range1d:
+    """A range that starts at zero."""
+    return Range1d(0.0, high)

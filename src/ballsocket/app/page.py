@@ -1,0 +1,178 @@
+"""The page: controls beside one view at a time; a change anywhere becomes a new screen, and the screen is shown."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from html import escape
+from typing import Any
+from urllib.parse import parse_qs
+
+import panel as pn
+from bokeh.models import CustomJS
+from bokeh.models.widgets import TextInput
+
+from ..files import JointFile, parse_joint
+from .controls import JointControls
+from .downloads import Downloads
+from .pressing import pressed
+from .screen import ANGLES, SIZES, START, Screen, link_of, read_link
+from .style import asset, html
+from .view import View
+from .views.compare import Compare
+from .views.design_map import DesignMap
+from .views.judge import Judge
+from .views.press import Press
+
+_KINDS: dict[str, type[Press] | type[DesignMap] | type[Compare] | type[Judge]] = {
+    "press": Press,
+    "map": DesignMap,
+    "compare": Compare,
+    "judge": Judge,
+}
+_SETTLE = 15  # ms in which what a slider still sends is gathered
+_UPLOAD = 100_000
+
+
+class Page:
+    """One user's page.
+
+    Parameters
+    ----------
+    query : str
+        The part of the address after the question mark. What is wrong with it is said on the page.
+    """
+
+    def __init__(self, query: str) -> None:
+        self._trouble = html()
+        self.screen = self._read(query)
+        self._pending = False
+        self._views: dict[str, View] = {}
+        self._controls = JointControls(lambda file: self.ask(file=file), self._refuse, self._same_load)
+        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
+        self._view = pn.widgets.RadioButtonGroup(
+            name="view", options={kind.title: name for name, kind in _KINDS.items()}, **wide
+        )
+        self._view.param.watch(lambda event: self.ask(view=event.new), "value")
+        self._angle = pn.widgets.RadioButtonGroup(name="angles in", options=list(ANGLES), **wide)
+        self._size = pn.widgets.RadioButtonGroup(name="balls by", options=list(SIZES), **wide)
+        self._angle.param.watch(lambda event: self._turn(event.new), "value")
+        self._size.param.watch(lambda event: self.ask(size=event.new), "value")
+        self._downloads = Downloads(self)
+        self._link = TextInput(name="link", value=link_of(self.screen), visible=False)
+        self._link.js_on_change("value", CustomJS(code="window.ballsocket.linked(cb_obj.value)"))
+        self._upload = TextInput(name="upload", value="", visible=False)
+        self._upload.on_change("value", lambda attribute, old, new: self._uploaded(new))
+        self.main = pn.Column(**wide)
+        self.side = pn.Column(
+            self._controls.panel, pn.Column(self._angle, self._size, **wide), self._downloads.panel, **wide
+        )
+        self.head = pn.Column(self._view, self._trouble, pn.pane.Bokeh(self._link), pn.pane.Bokeh(self._upload), **wide)
+        self._refresh()
+
+    def _read(self, query: str) -> Screen:
+        """The screen of a link; the start where it cannot be read."""
+        if not query:
+            return START
+        try:
+            return read_link(parse_qs(query, keep_blank_values=True, max_num_fields=200))
+        except ValueError as error:
+            self._refuse(f"This link cannot be read: {error}")
+            return START
+
+    def _refuse(self, sentence: str) -> None:
+        self._trouble.object = f"<p class='refused' role='alert'>{escape(sentence)}</p>" if sentence else ""
+
+    def ask(self, **changes: Any) -> None:
+        """Put other things on the screen; shown a moment later, with what else has changed by then."""
+        self.screen = replace(self.screen, **changes)
+        self._refuse("")
+        if self._pending:
+            return
+        document = pn.state.curdoc
+        if document is None or document.session_context is None:
+            self._refresh()
+            return
+        self._pending = True
+        document.add_timeout_callback(self._refresh, _SETTLE)
+
+    def _turn(self, angle: str) -> None:
+        """Axes have their units from the beginning: views are made anew."""
+        if angle == self.screen.angle:
+            return
+        self.leave()
+        self._views.clear()
+        self.main.clear()
+        self.ask(angle=angle)
+
+    def _refresh(self) -> None:
+        self._pending = False
+        with pn.io.hold():
+            self._controls.put(self.screen)
+            self._view.value, self._angle.value, self._size.value = (
+                self.screen.view,
+                self.screen.angle,
+                self.screen.size,
+            )
+            seen = self.view
+            for view in self._views.values():
+                view.panel.visible = view is seen
+            seen.show(self.screen)
+            self._link.value = link_of(self.screen)
+
+    @property
+    def view(self) -> View:
+        """The one that is seen, made when it is first looked at."""
+        name = self.screen.view
+        if name not in self._views:
+            self._views[name] = _KINDS[name](self.ask, self.screen)
+            self.main.append(self._views[name].panel)
+        return self._views[name]
+
+    def _same_load(self, kind: str) -> dict[str, float]:
+        """The load of another kind that presses as much as now, by the model on top."""
+        found = pressed(self.screen.file, (self.screen.answered_by,))
+        contact = found.contacts.get(self.screen.answered_by)
+        value = float("nan") if contact is None else float(getattr(contact, kind))
+        usual = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}
+        return {kind: float(f"{value:.6g}") if value > 0 else usual[kind]}
+
+    def _uploaded(self, text: str) -> None:
+        """A joint file from the browser, by the reader of the command line."""
+        if not text:
+            return
+        self._upload.value = ""
+        raw = text.encode("utf-8")
+        if len(raw) > _UPLOAD:
+            self._refuse(f"the file is larger than {_UPLOAD} bytes; a joint file is a few lines")
+            return
+        try:
+            file: JointFile = parse_joint(raw, "the file")
+        except ValueError as error:
+            self._refuse(str(error))
+            return
+        self.ask(file=file if file.load else replace(file, load=self.screen.file.load))
+
+    def link(self) -> str:
+        """The whole address of what is on the screen."""
+        location = pn.state.location
+        base = (
+            "" if location is None else f"{location.protocol}//{location.hostname}:{location.port}{location.pathname}"
+        )
+        return f"{base}?{link_of(self.screen)}"
+
+    def leave(self) -> None:
+        """The page is closed."""
+        for view in self._views.values():
+            view.leave()
+
+
+def template(page: Page) -> Any:
+    """The page with its style and script, all of it from here."""
+    made = pn.Template(asset("page.html"))
+    made.add_variable("style", asset("page.css"))
+    made.add_variable("script", asset("page.js"))
+    made.add_variable("theme", page.screen.theme)
+    made.add_panel("head", page.head)
+    made.add_panel("side", page.side)
+    made.add_panel("main", page.main)
+    return made

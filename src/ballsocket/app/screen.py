@@ -1,0 +1,231 @@
+"""What is on the screen, as plain data: to and from a link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Any
+from urllib.parse import urlencode
+
+from ..all_models import catalogue
+from ..compare import REFERENCE
+from ..files import JointFile, check_names, joint_of
+from ..joint_text import Tables, tables_of
+from ..phrases import limit_of, range_of
+from ..presets import joints
+from ..studies.limits import Limit
+from ..studies.task import QUANTITIES
+
+VIEWS = ("press", "map", "compare", "judge")
+THEMES = ("light", "dark")
+ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
+QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
+"""Models that press a map's points at once."""
+
+LONGEST_LINK = 8000
+BESIDE = 2
+_TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")
+_PREFIXES = tuple(f"beside{number}" for number in range(1, BESIDE + 1))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """An axis of the map: a parameter of a study from `low` to `high`, in mm, N, MPa, rad."""
+
+    name: str
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        return f"{self.name}={_bare(self.name, self.low)}..{_bare(self.name, self.high)}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Screen:
+    """Everything that a link carries.
+
+    Attributes
+    ----------
+    view : str
+        One of VIEWS.
+    file : JointFile
+        The joint, its load and its cup.
+    beside : tuple of JointFile
+        At most two more, for comparison.
+    answered_by : str
+        The model whose numbers are on top.
+    shown : tuple of str
+        Models that are drawn.
+    across, up : Axis
+        Of the map.
+    map_model, quantity : str
+        What the map shows, by which model.
+    limits : tuple of Limit
+        Of the map.
+    angle, size, theme : str
+        "degrees" or "radians"; balls by "radius" or "diameter"; "light" or "dark".
+    """
+
+    view: str = "press"
+    file: JointFile
+    beside: tuple[JointFile, ...] = ()
+    answered_by: str = REFERENCE
+    shown: tuple[str, ...] = (REFERENCE, "hess-forsbach", "refined", "hertz")
+    across: Axis = Axis(name="ball_radius", low=11.0, high=23.0)
+    up: Axis = Axis(name="liner_thickness", low=3.0, high=15.0)
+    map_model: str = "tabulated"
+    quantity: str = "max_pressure"
+    limits: tuple[Limit, ...] = ()
+    angle: str = "degrees"
+    size: str = "radius"
+    theme: str = "light"
+
+    def __post_init__(self) -> None:
+        for name, known in _KNOWN.items():
+            chosen = getattr(self, name)
+            check_names(chosen if isinstance(chosen, tuple) else (chosen,), known, f"as {name}")
+        if len(self.beside) > BESIDE:
+            raise ValueError(f"at most {BESIDE} joints are put beside this one, got {len(self.beside)}")
+        if not self.file.load:
+            raise ValueError("a load is needed: force, indentation or half_angle")
+        if self.across.name == self.up.name:
+            raise ValueError(f"a map has two axes, and both are {self.up.name}")
+
+
+_KNOWN: Mapping[str, Sequence[str]] = {
+    "view": VIEWS,
+    "answered_by": tuple(catalogue),
+    "shown": tuple(catalogue),
+    "map_model": QUICK,
+    "quantity": QUANTITIES,
+    "angle": ANGLES,
+    "size": SIZES,
+    "theme": THEMES,
+}
+
+START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
+"""What a page without a link shows."""
+
+
+def link_of(screen: Screen) -> str:
+    """The part of a link after the question mark: what differs from the start, and the joint."""
+    pairs: list[tuple[str, str]] = []
+    for name in ("view", "answered_by", "map_model", "quantity", "angle", "size"):
+        if getattr(screen, name) != getattr(START, name):
+            pairs.append((name, getattr(screen, name)))
+    if screen.shown != START.shown:
+        pairs.append(("shown", ",".join(screen.shown)))
+    for name in ("across", "up"):
+        if getattr(screen, name) != getattr(START, name):
+            pairs.append((name, str(getattr(screen, name))))
+    pairs += [("limit", phrase) for limit in screen.limits for phrase in _phrases(limit)]
+    pairs += _flat(_tables(screen.file), "")
+    for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
+        pairs += _flat(_tables(file), f"{prefix}.")
+    return urlencode([*pairs, ("theme", screen.theme)])
+
+
+def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
+    """What a link says: parsed by the same strict reader as joint files and the command line.
+
+    Parameters
+    ----------
+    pairs : mapping of str to sequence of str
+        Every value of every name.
+
+    Raises
+    ------
+    ValueError
+        One sentence: what is wrong in it.
+    """
+    if sum(len(name) + len(value) for name, values in pairs.items() for value in values) > LONGEST_LINK:
+        raise ValueError(f"the link is longer than {LONGEST_LINK} characters")
+    plain = {name: values for name, values in pairs.items() if name.split(".")[0] not in (*_TABLES, *_PREFIXES)}
+    check_names(plain, (*_KNOWN, "across", "up", "limit"), "in the link")
+    for name, values in pairs.items():
+        if len(values) != 1 and name != "limit":
+            raise ValueError(f"{name} is given {len(values)} times in the link; one is needed")
+    words: dict[str, Any] = {name: pairs[name][0] for name in _KNOWN if name in pairs}
+    if "shown" in words:
+        words["shown"] = tuple(dict.fromkeys(words["shown"].split(",")))
+    words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
+    words["limits"] = tuple(map(limit_of, pairs.get("limit", ())))
+    joint = {name: values[0] for name, values in pairs.items() if name.split(".")[0] in _TABLES}
+    others = [_part(pairs, prefix) for prefix in _PREFIXES]
+    words["file"] = _joint(joint) if joint else START.file
+    words["beside"] = tuple(_joint(part) for part in others if part)
+    return Screen(**words)
+
+
+def _part(pairs: Mapping[str, Sequence[str]], prefix: str) -> dict[str, str]:
+    return {name[len(prefix) + 1 :]: values[0] for name, values in pairs.items() if name.startswith(f"{prefix}.")}
+
+
+def _axis(phrase: str) -> Axis:
+    name, low, high = range_of(phrase)
+    return Axis(name=name, low=low, high=high)
+
+
+def _joint(flat: Mapping[str, str]) -> JointFile:
+    """A joint from names with dots; the load of the start where it has none."""
+    tables = _nested({name: value for name, value in flat.items() if name != "preset"})
+    if "preset" in flat:
+        check_names([flat["preset"]], joints, "as preset")
+        check_names(tables, ("cup", "load"), "beside a preset")
+        tables |= tables_of(JointFile(joints[flat["preset"]], {}))
+    file = joint_of(tables)
+    return file if file.load else replace(file, load=START.file.load)
+
+
+def _tables(file: JointFile) -> Tables:
+    """Of a joint file; short where the joint is a preset."""
+    tables = tables_of(file)
+    for name, joint in joints.items():
+        if file.joint == joint:
+            return {"preset": name, **{key: tables[key] for key in ("cup", "load") if key in tables}}
+    return tables
+
+
+def _flat(part: Any, prefix: str) -> list[tuple[str, str]]:
+    """Tables as names with dots; layers by their numbers."""
+    items: Iterable[tuple[Any, Any]] = enumerate(part) if isinstance(part, list) else part.items()
+    found = []
+    for name, value in items:
+        if isinstance(value, dict | list):
+            found += _flat(value, f"{prefix}{name}.")
+        else:
+            found.append((f"{prefix}{name}", str(value)))
+    return found
+
+
+def _nested(flat: Mapping[str, str]) -> Tables:
+    tables: Tables = {}
+    layers: dict[int, dict[str, str]] = {}
+    for name, value in flat.items():
+        table, _, rest = name.partition(".")
+        number, _, key = rest.partition(".")
+        if table == "backing":
+            if not (number.isdecimal() and key):
+                raise ValueError(f"{name!r} in the link is not known; a layer is 'backing.0.thickness' and so on")
+            layers.setdefault(int(number), {})[key] = value
+        elif rest:
+            part = tables.setdefault(table, {})
+            if not isinstance(part, dict):
+                raise ValueError(f"{table} is given as text and as a table in the link")
+            part[rest] = value
+        else:
+            tables[table] = value
+    if layers:
+        tables["backing"] = [layers[number] for number in sorted(layers)]
+    return tables
+
+
+def _phrases(limit: Limit) -> list[str]:
+    low = [f"{limit.name}>={_bare(limit.name, limit.low)}"] if limit.low > -inf else []
+    return low + ([f"{limit.name}<={_bare(limit.name, limit.high)}"] if limit.high < inf else [])
+
+
+def _bare(name: str, value: float) -> str:
+    """As `units.parse` takes it: a bare angle would be degrees."""
+    return f"{value!r} rad" if name == "half_angle" else repr(value)

@@ -1,0 +1,90 @@
+"""The server of the explorer: on this machine unless told otherwise, and with limits."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Sequence
+from html import escape
+from typing import Any
+
+import panel as pn
+
+from ..checks import require
+from .page import Page, template
+from .pressing import pressed
+from .screen import START
+
+LOOPBACK = "127.0.0.1"
+MOST_SESSIONS = 200
+"""Pages that are open at once."""
+
+_MESSAGE = 400_000
+"""Bytes of one message from a browser: an upload is smaller."""
+
+_IDLE = 60_000  # ms after which a page that was closed is forgotten
+
+
+def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (), show: bool = False) -> Any:
+    """The server, not yet started.
+
+    Parameters
+    ----------
+    port : int
+        0 takes any that is free.
+    address : str
+        Of the interface it listens on; other machines reach it only if this is not the loopback.
+    origins : sequence of str
+        Hosts under which browsers may reach it, "hips.example.org:5006", beside this machine's own names.
+    show : bool
+        Open a browser.
+
+    Raises
+    ------
+    ValueError
+        A port that is none.
+    OSError
+        The port is taken.
+    """
+    require("port", port, 0 <= port <= 65535, "a port is 0 to 65535")
+    pn.extension(notifications=False)
+    pressed(START.file, (START.answered_by, *START.shown))  # what is loaded at the first press is loaded now
+    port = port or _free_port(address)
+    own = [f"{LOOPBACK}:{port}", f"localhost:{port}"]
+    return pn.serve(
+        {"/": _session},
+        port=port,
+        address=address,
+        websocket_origin=[*own, *origins],
+        show=show,
+        start=False,
+        title="ballsocket",
+        websocket_max_message_size=_MESSAGE,
+        unused_session_lifetime_milliseconds=_IDLE,
+        check_unused_sessions_milliseconds=_IDLE // 4,
+        http_server_kwargs={"max_buffer_size": _MESSAGE, "max_body_size": _MESSAGE},
+    )
+
+
+def _free_port(address: str) -> int:
+    with socket.socket() as found:
+        found.bind((address, 0))
+        return int(found.getsockname()[1])
+
+
+_open: set[int] = set()
+
+
+def _session() -> Any:
+    """A page for whoever asks, unless there are too many."""
+    if len(_open) >= MOST_SESSIONS:
+        return pn.pane.HTML(f"<p>{escape(f'{MOST_SESSIONS} pages are open here already: try again later')}</p>")
+    location = pn.state.location
+    page = Page((location.search if location is not None else "").lstrip("?"))
+    _open.add(id(page))
+
+    def left(context: Any) -> None:
+        _open.discard(id(page))
+        page.leave()
+
+    pn.state.on_session_destroyed(left)
+    return template(page)

@@ -1,0 +1,44 @@
+"""What a view is, and what can be taken away from it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from .screen import Screen
+
+Ask = Callable[..., None]
+"""Changes the screen: called with fields of `Screen` by name."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Document:
+    """What is on the screen, for a file.
+
+    `picture` draws it as "png" or "svg" with the figures of the command line, where there is something to draw; `rows`
+    are a table with its head first; `sections` are the parts of a page of HTML, a title and HTML by their id.
+    """
+
+    picture: Callable[[str], bytes] | None = None
+    rows: Sequence[Sequence[Any]] = ()
+    sections: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+
+
+class View(Protocol):
+    """One question, answered for the screen."""
+
+    title: str
+    panel: Any
+
+    def show(self, screen: Screen) -> None:
+        """Answer for what is on the screen now."""
+        ...
+
+    def document(self, screen: Screen) -> Document:
+        """The same for a file."""
+        ...
+
+    def leave(self) -> None:
+        """The page is closed: stop what is running."""
+        ...

@@ -1,0 +1,190 @@
+"""Compare: two or three joints side by side, answered by one model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from html import escape
+from typing import Any
+
+import panel as pn
+
+from ...all_models import catalogue
+from ...compare import force_curves
+from ...contact import Contact
+from ...describe import COLUMNS
+from ...figures import press_figure
+from ...files import JointFile
+from ...html_page import drawn, table
+from ...presets import joints
+from ..drawing import SectionDrawing
+from ..look import PALETTES, numbered
+from ..press_charts import PressCharts
+from ..pressing import pressed
+from ..screen import BESIDE, Screen
+from ..style import html
+from ..view import Ask, Document
+from ..words import number_text, percent, quantities
+
+_CHOOSE = "– choose –"
+
+
+class Compare:
+    """The joint on the screen, and up to two that were put beside it."""
+
+    title = "Compare"
+
+    def __init__(self, ask: Ask, screen: Screen) -> None:
+        self._ask, self._screen = ask, screen
+        self._palette = PALETTES[screen.theme]
+        self._keep = pn.widgets.Button(name="Put this joint beside", width=180)
+        self._preset = pn.widgets.Select(name="Put beside", options=[_CHOOSE, *joints], width=220)
+        self._drop = [pn.widgets.Button(name="", width=200, visible=False) for _ in range(BESIDE)]
+        self._keep.on_click(lambda event: self._add(self._screen.file))
+        self._preset.param.watch(self._chosen, "value")
+        for number, button in enumerate(self._drop):
+            button.on_click(lambda event, number=number: self._remove(number))
+        self._told, self._table = html(), html()
+        self._drawings = [SectionDrawing(self._palette, 260) for _ in range(BESIDE + 1)]
+        self._charts = PressCharts(self._palette, screen.angle)
+        self._heads = [html() for _ in self._drawings]
+        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
+        self._places = [
+            pn.Column(head, pn.pane.Bokeh(drawing.figure, **wide), min_width=260, styles={"flex": "1 1 260px"})
+            for head, drawing in zip(self._heads, self._drawings, strict=True)
+        ]
+        self.panel = pn.Column(
+            pn.FlexBox(self._preset, self._keep, *self._drop, align_items="end", gap="12px", **wide),
+            self._told,
+            self._table,
+            pn.FlexBox(*self._places, gap="8px", **wide),
+            pn.FlexBox(
+                *(
+                    pn.Column(pn.pane.Bokeh(chart, **wide), min_width=300, styles={"flex": "1 1 340px"})
+                    for chart in self._charts.figures
+                ),
+                gap="8px",
+                **wide,
+            ),
+            **wide,
+        )
+
+    def _add(self, file: JointFile) -> None:
+        if len(self._screen.beside) >= BESIDE:
+            self._told.object = f"<p class='refused' role='alert'>There is room for {BESIDE}: take one away first.</p>"
+            return
+        self._ask(beside=(*self._screen.beside, file))
+
+    def _chosen(self, event: Any) -> None:
+        if event.new != _CHOOSE:
+            self._add(JointFile(joints[event.new], self._screen.file.load))
+            self._preset.value = _CHOOSE
+
+    def _remove(self, number: int) -> None:
+        beside = self._screen.beside
+        self._ask(beside=(*beside[:number], *beside[number + 1 :]))
+
+    def show(self, screen: Screen) -> None:
+        self._screen = screen
+        files = labelled(screen)
+        for number, button in enumerate(self._drop):
+            button.visible = number < len(screen.beside)
+            button.name = f"Take {list(files)[number + 1]} away" if button.visible else "–"
+        self._told.object = (
+            "" if screen.beside else "<p class='quiet'>Put this joint or a preset beside, then change this one.</p>"
+        )
+        contacts = answers(files, screen.answered_by)
+        self._table.object = _side_by_side(files, contacts, screen)
+        for number, (place, drawing) in enumerate(zip(self._places, self._drawings, strict=True)):
+            place.visible = number < len(files)
+            if place.visible:
+                name = list(files)[number]
+                self._heads[number].object = f"<h3>{escape(name)}</h3>"
+                drawing.show(files[name], contacts.get(name))
+        lines = {name: numbered(list(files).index(name), bool(contact.valid)) for name, contact in contacts.items()}
+        self._charts.show(contacts, lines)
+
+    def document(self, screen: Screen) -> Document:
+        files = labelled(screen)
+        contacts = answers(files, screen.answered_by)
+        models = dict.fromkeys(contacts, catalogue[screen.answered_by])
+        title = f"answered by {screen.answered_by}"
+        rows = [["joint", *(column.name for column in COLUMNS), "valid"]]
+        rows += [
+            [name, *(float(column.of(contact)) for column in COLUMNS), bool(contact.valid)]  # type: ignore[list-item]
+            for name, contact in contacts.items()
+        ]
+        return Document(
+            picture=(lambda form: drawn(press_figure(contacts, force_curves(contacts, models), title), form))
+            if contacts
+            else None,
+            rows=rows,
+            sections={"joints": ("Joints", table(*_text_table(files, contacts, screen)))},
+        )
+
+    def leave(self) -> None:
+        """Nothing runs on."""
+
+
+def labelled(screen: Screen) -> dict[str, JointFile]:
+    """The joints by what they are called here, each once; all under the load of the one on the screen."""
+    found = {"this joint": screen.file}
+    for file in screen.beside:
+        base = name = file.joint.name or "kept joint"
+        number = 2
+        while name in found:
+            name, number = f"{base} ({number})", number + 1
+        found[name] = replace(file, load=screen.file.load)
+    return found
+
+
+def answers(files: Mapping[str, JointFile], model: str) -> dict[str, Contact]:
+    """Of the joints for which the model has one."""
+    found = {}
+    for name, file in files.items():
+        comparison = pressed(file, (model,))
+        if model in comparison and not comparison[model].status.failed:
+            found[name] = comparison[model]
+    return found
+
+
+_DIMENSIONS = (
+    ("R1 [mm]", "ball_radius"),
+    ("ΔR [mm]", "clearance"),
+    ("L [mm]", "liner_thickness"),
+)
+
+
+def _text_table(
+    files: Mapping[str, JointFile], contacts: Mapping[str, Contact], screen: Screen
+) -> tuple[list[str], list[list[str]]]:
+    """A column a joint; answers of the others with their difference from the first."""
+    rows = [[head, *(f"{float(getattr(file.joint, name)):g}" for file in files.values())] for head, name in _DIMENSIONS]
+    rows.append(["liner", *(str(file.joint.liner) for file in files.values())])
+    rows.append(["ball", *("rigid" if file.joint.ball is None else str(file.joint.ball) for file in files.values())])
+    first = contacts.get(next(iter(files)))
+    for each in quantities(screen.angle):
+        row = [f"{each.title} {each.head}"]
+        for name in files:
+            contact = contacts.get(name)
+            if contact is None:
+                row.append("no answer")
+                continue
+            number = each.number(contact)
+            apart = "" if first is None or contact is first else f" ({percent(number / each.number(first) - 1, '+')})"
+            row.append(f"{number_text(number)}{apart}")
+        rows.append(row)
+    rows.append(["trust it here?", *(_trusted(contacts.get(name)) for name in files)])
+    return [screen.answered_by, *files], rows
+
+
+def _trusted(contact: Contact | None) -> str:
+    if contact is None:
+        return "–"
+    return "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
+
+
+def _side_by_side(files: Mapping[str, JointFile], contacts: Mapping[str, Contact], screen: Screen) -> str:
+    return table(*_text_table(files, contacts, screen)).replace(
+        "<div class='wide'>", "<div class='wide' tabindex='0' role='region' aria-label='joints'>"
+    )

@@ -1,0 +1,173 @@
+"""Judge: the joint on the screen by finite elements, with its rim and support, beside the exact answer."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from html import escape
+from math import degrees
+from typing import Any
+
+import panel as pn
+
+from ...fem.cup import Interface
+from ...files import JointFile, read_cup
+from ...html_page import picture, table
+from ...joint_text import cup_table
+from ..judging import LONGEST, Judged, Reached, Refused, Run
+from ..screen import Screen
+from ..style import html
+from ..view import Ask, Document
+from ..words import number_text, percent, quantities
+
+_EVERY = 150  # ms between two questions for news
+
+
+class Judge:
+    """Runs when asked; a joint that has changed since is said to have."""
+
+    title = "Judge"
+
+    def __init__(self, ask: Ask, screen: Screen) -> None:
+        self._ask, self._screen, self._putting = ask, screen, False
+        self._run: Run | None = None
+        self._asking: Any = None
+        self._found: tuple[JointFile, Judged] | None = None
+        self._go = pn.widgets.Button(name="Run finite elements", button_type="primary", width=180)
+        self._halt = pn.widgets.Button(name="Stop", width=90, disabled=True)
+        self._bar = pn.indicators.Progress(name="progress", value=0, max=100, width=220, visible=False)
+        self._arc = pn.widgets.FloatInput(name="Arc of cover [°]", start=40, end=340, step=5, width=140)
+        self._chamfer = pn.widgets.FloatInput(name="Chamfer [mm]", start=0, step=0.5, width=120)
+        self._interface = pn.widgets.Select(
+            name="Liner on its backing", options=[one.value for one in Interface], width=160
+        )
+        self._said, self._numbers, self._picture = html(), html(), html()
+        self._go.on_click(lambda event: self._begin())
+        self._halt.on_click(lambda event: self._stopped())
+        for widget, key in ((self._arc, "arc_of_cover"), (self._chamfer, "chamfer"), (self._interface, "interface")):
+            widget.param.watch(lambda event, key=key: self._cup(key, event.new), "value")
+        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
+        self.panel = pn.Column(
+            pn.FlexBox(self._arc, self._chamfer, self._interface, align_items="end", gap="12px", **wide),
+            pn.FlexBox(self._go, self._halt, self._bar, align_items="center", gap="12px", **wide),
+            self._said,
+            self._numbers,
+            self._picture,
+            **wide,
+        )
+
+    def show(self, screen: Screen) -> None:
+        self._screen = screen
+        self._putting = True
+        cup = screen.file.cup
+        self._arc.value, self._chamfer.value = round(degrees(cup.arc_of_cover), 9), cup.chamfer
+        self._interface.value = cup.interface.value
+        self._putting = False
+        if self._run is None:
+            self._say(self._state())
+        if self._found is not None:
+            self._numbers.object = _numbers(self._found[1], screen)
+
+    def _state(self) -> str:
+        if self._found is None:
+            return f"Nothing has run yet. A run takes a second or two, at most {LONGEST:g} s."
+        if self._found[0] != self._screen.file:
+            return "The joint has changed since this run."
+        return ""
+
+    def _say(self, words: str) -> None:
+        self._said.object = f"<p class='quiet' role='status'>{escape(words)}</p>" if words else ""
+
+    def _refuse(self, why: str) -> None:
+        self._said.object = f"<p class='refused' role='alert'>{escape(why)}</p>"
+
+    def _cup(self, key: str, value: Any) -> None:
+        if self._putting or value is None:
+            return
+        try:
+            cup = read_cup({**cup_table(self._screen.file.cup), key: value})
+        except ValueError as error:
+            self._refuse(str(error))
+            return
+        self._ask(file=replace(self._screen.file, cup=cup))
+
+    def _begin(self) -> None:
+        if self._run is not None:
+            return
+        self._run = Run(self._screen.file)
+        self._go.disabled, self._halt.disabled = True, False
+        self._bar.visible, self._bar.value = True, 0
+        self._asking = pn.state.add_periodic_callback(self._hear, period=_EVERY)
+
+    def _hear(self) -> None:
+        if self._run is None:
+            return
+        news = self._run.news()
+        if isinstance(news, Reached):
+            self._bar.value = int(100 * news.share)
+            self._say(news.words)
+        elif isinstance(news, Refused):
+            self._ended()
+            self._refuse(news.why)
+        elif isinstance(news, Judged):
+            self._found = (self._run.file, news)
+            self._ended()
+            self._numbers.object = _numbers(news, self._screen)
+            self._picture.object = picture(news.png, "mesh, von Mises stress, and pressure beside the exact one")
+            self._say(self._state())
+
+    def _stopped(self) -> None:
+        self._ended()
+        self._say("Stopped.")
+
+    def _ended(self) -> None:
+        if self._asking is not None:
+            self._asking.stop()
+        if self._run is not None:
+            self._run.stop()
+        self._run = self._asking = None
+        self._go.disabled, self._halt.disabled, self._bar.visible = False, True, False
+
+    def document(self, screen: Screen) -> Document:
+        if self._found is None:
+            raise ValueError("nothing has run yet: run the finite elements first")
+        _, judged = self._found
+        heads = ["quantity", "finite elements", "their error", "exact"]
+        rows = [
+            [name, value, judged.error.get(name.removesuffix("_deg"), ""), (judged.exact or {}).get(name, "")]
+            for name, value in judged.numbers.items()
+            if isinstance(value, float)
+        ]
+        body = table(heads, [[str(cell) for cell in row] for row in rows])
+        shown = picture(judged.png, "mesh, von Mises stress, and pressure beside the exact one")
+        return Document(
+            picture=lambda form: judged.svg if form == "svg" else judged.png,
+            rows=[heads, *rows],
+            sections={"judge": ("Finite elements", body + shown)},
+        )
+
+    def leave(self) -> None:
+        self._ended()
+
+
+def _numbers(judged: Judged, screen: Screen) -> str:
+    """Numbers with their error bars, beside the exact answer."""
+    rows = []
+    for each in quantities(screen.angle):
+        name, factor = each.column.name, each.column.factor
+        # summaries have the units of JSON: an angle in degrees, a length in mm
+        turn = 1 / degrees(1.0) * factor if name == "half_angle_deg" else factor
+        value = judged.numbers[name] * turn
+        bar = judged.error.get(each.column.attribute)
+        row = [f"{each.title} {each.head}", number_text(value), f"± {percent(bar)}" if bar else "–"]
+        if judged.exact is None:
+            row += ["–", "–"]
+        else:
+            exact = judged.exact[name] * turn
+            row += [number_text(exact), percent(value / exact - 1, "+")]
+        rows.append(row)
+    notes = "".join(f"<li>{escape(note)}</li>" for note in judged.notes)
+    heads = ["", "finite elements", "their error", "exact, a whole shell", "difference"]
+    return (
+        f"{table(heads, rows)}<p class='quiet'>{judged.elements} elements, {judged.seconds:.2g} s."
+        f"</p><ul class='notes'>{notes}</ul>"
+    )

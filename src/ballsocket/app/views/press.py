@@ -1,0 +1,119 @@
+"""Press: one joint under one load; every model beside the exact answer."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel as pn
+
+from ... import html_page as page
+from ...all_models import catalogue
+from ...compare import Comparison, answered, force_curves
+from ...describe import COLUMNS
+from ...figures import press_figure
+from ..drawing import SectionDrawing
+from ..look import PALETTES, line_of
+from ..press_charts import PressCharts
+from ..pressing import pressed
+from ..screen import Screen
+from ..style import html
+from ..view import Ask, Document
+from ..words import headline, models_table
+
+_EVERY = tuple(catalogue)
+_WRAPPED = ".bk-input-group.bk-inline { flex-wrap: wrap; gap: 2px 14px; }"
+_PATIENCE = 120  # ms until the table of all models follows
+
+
+class Press:
+    """Numbers, drawing and curves at once; the table of all models when the slider rests."""
+
+    title = "Press"
+
+    def __init__(self, ask: Ask, screen: Screen) -> None:
+        self._palette = PALETTES[screen.theme]
+        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
+        self._by = pn.widgets.Select(name="Answered by", options=list(_EVERY), value=screen.answered_by, width=220)
+        self._shown = pn.widgets.CheckBoxGroup(
+            name="drawn", options=list(_EVERY), value=list(screen.shown), inline=True, stylesheets=[_WRAPPED], **wide
+        )
+        self._by.param.watch(lambda event: ask(answered_by=event.new), "value")
+        self._shown.param.watch(lambda event: ask(shown=tuple(event.new)), "value")
+        self._numbers, self._table = html(), html()
+        self._drawing = SectionDrawing(self._palette)
+        self._charts = PressCharts(self._palette, screen.angle)
+        self.panel = pn.Column(
+            self._by,
+            self._numbers,
+            pn.FlexBox(
+                *(
+                    pn.Column(pn.pane.Bokeh(chart, **wide), min_width=280, styles={"flex": "1 1 280px"})
+                    for chart in (self._drawing.figure, *self._charts.figures)
+                ),
+                gap="8px",
+                **wide,
+            ),
+            html("<span class='label'>Drawn beside it:</span>"),
+            self._shown,
+            self._table,
+            **wide,
+        )
+        self._later: Any = None
+
+    def show(self, screen: Screen) -> None:
+        names = tuple(dict.fromkeys((screen.answered_by, *screen.shown)))
+        found = pressed(screen.file, names)
+        by = found.contacts.get(screen.answered_by)
+        if by is None:
+            self._numbers.object = f"<p class='trust no'>✗ {found.missing[screen.answered_by]}</p>"
+        else:
+            self._numbers.object = headline(by, screen.angle)
+        self._drawing.show(screen.file, None if by is None or by.status.failed else by)
+        drawn = {name: found[name] for name in screen.shown if name in answered(found)}
+        lines = {name: line_of(name, self._palette, bool(contact.valid)) for name, contact in drawn.items()}
+        self._charts.show(drawn, lines)
+        self._fill_later(screen)
+
+    def _fill_later(self, screen: Screen) -> None:
+        """The table of all models follows when nothing has moved for a while."""
+        document = pn.state.curdoc
+        if document is None:
+            self._fill(screen)
+            return
+        if self._later is not None:
+            document.remove_timeout_callback(self._later)
+        self._later = document.add_timeout_callback(lambda: self._fill(screen), _PATIENCE)
+
+    def _fill(self, screen: Screen) -> None:
+        self._later = None
+        self._table.object = models_table(pressed(screen.file, _EVERY), self._palette, screen.angle)
+
+    def document(self, screen: Screen) -> Document:
+        found = pressed(screen.file, _EVERY)
+        drawn = {name: found[name] for name in screen.shown if name in answered(found)}
+        return Document(
+            picture=(lambda form: page.drawn(press_figure(drawn, force_curves(drawn, catalogue)), form))
+            if drawn
+            else None,
+            rows=_rows(found),
+            sections={"models": ("Every model", page.table(_HEADS, found.rows()) + _notes(found))},
+        )
+
+    def leave(self) -> None:
+        """Nothing runs on."""
+
+
+_HEADS = ["model", "F [N]", "d [mm]", "ε [°]", "p0 [MPa]", "A [mm²]", "dF/dd [N/mm]", "valid"]
+
+
+def _rows(found: Comparison) -> list[list[Any]]:
+    heads = ["model", *(column.name for column in COLUMNS), "valid", "notes"]
+    rows = [
+        [name, *(float(column.of(contact)) for column in COLUMNS), bool(contact.valid), "; ".join(contact.notes)]
+        for name, contact in found.items()
+    ]
+    return [heads, *rows]
+
+
+def _notes(found: Comparison) -> str:
+    return "".join(f"<p class='quiet'>{note}</p>" for note in found.notes())

@@ -1,0 +1,31 @@
+"""`app`: the explorer, in a browser on this machine."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from ..checks import needs
+from .root import app
+
+
+@app.command(name="app")
+def explorer(
+    port: Annotated[int, typer.Option(help="0 takes any that is free.")] = 5006,
+    address: Annotated[str, typer.Option(help="Listen here; anything but 127.0.0.1 opens it to others.")] = "127.0.0.1",
+    origin: Annotated[
+        list[str] | None, typer.Option(help="'host:port' under which browsers reach it from elsewhere; repeat.")
+    ] = None,
+    browser: Annotated[bool, typer.Option(help="Open a browser.")] = True,
+) -> None:
+    """Open the explorer: sliders, drawings, maps and finite elements in a browser."""
+    needs("app", "panel", "tomli_w", "skfem", "xarray")
+    from ..app.serve import LOOPBACK, server  # takes its time to import
+
+    served = server(port, address, origin or (), show=browser)
+    typer.echo(f"http://{address}:{served.port}/ (Ctrl-C ends it)")
+    if address not in (LOOPBACK, "localhost"):
+        typer.echo("ballsocket: others can reach this page; it has no passwords", err=True)
+    served.start()
+    served.io_loop.start()
