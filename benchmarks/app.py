@@ -8,11 +8,13 @@ at once.
 
 from __future__ import annotations
 
+import asyncio
+import json
+import re
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from statistics import quantiles
@@ -130,38 +132,85 @@ def in_the_browser(ours: str, empty: str, view: Rows, moved: Rows) -> None:
         browser.close()
 
 
-def session(address: str, number: int) -> tuple[float, list[float]]:
-    """One user of fifty: seconds to open a session, and those from a slider to the new number."""
-    from bokeh.client import pull_session
+class Session:
+    """One user of fifty, as the browser's script would be: Bokeh's protocol over a websocket."""
 
-    start = time.perf_counter()
-    found = pull_session(url=f"{address}?preset=hip-28")
+    def __init__(self, address: str) -> None:
+        self._address = address
+        self._socket: Any = None
+
+    async def open(self) -> str:
+        """The identity of the slider of the clearance, once the whole page is there."""
+        from tornado.httpclient import AsyncHTTPClient, HTTPRequest
+        from tornado.websocket import websocket_connect
+
+        page = await AsyncHTTPClient(max_clients=SESSIONS).fetch(f"{self._address}?preset=hip-28", request_timeout=120)
+        (token,) = re.findall(r'"token":"([^"]+)"', page.body.decode())
+        place, headers = f"{self._address.replace('http', 'ws')}ws", {"Origin": self._address.rstrip("/")}
+        request = HTTPRequest(place, headers=headers, connect_timeout=120, request_timeout=120)
+        self._socket = await websocket_connect(request, subprotocols=["bokeh", token])
+        await self._receive()
+        await self._send("PULL-DOC-REQ", {})
+        while '"doc":' not in (document := await self._receive())[:20]:
+            pass
+        ready = {"type": "event", "name": "document_ready", "values": {"type": "map"}}
+        await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": ready})
+        (slider,) = (each["id"] for each in _sliders(json.loads(document)) if each["attributes"]["end"] == 0.5)
+        return str(slider)
+
+    async def move(self, slider: str, value: float) -> float:
+        """Seconds until another peak pressure comes."""
+        start = time.perf_counter()
+        await self._patch({"kind": "ModelChanged", "model": {"id": slider}, "attr": "value", "new": value})
+        while "data-name=&#x27;max_pressure" not in await self._receive():
+            pass
+        return time.perf_counter() - start
+
+    async def _patch(self, event: dict[str, Any]) -> None:
+        await self._send("PATCH-DOC", {"events": [event]})
+
+    async def _send(self, kind: str, content: dict[str, Any]) -> None:
+        for part in ({"msgid": str(time.time()), "msgtype": kind}, {}, content):
+            await self._socket.write_message(json.dumps(part))
+
+    async def _receive(self) -> str:
+        """The content of the next message."""
+        header = json.loads(await self._part())
+        await self._part()
+        content = await self._part()
+        for _ in range(2 * header.get("num_buffers", 0)):
+            await self._socket.read_message()
+        return content
+
+    async def _part(self) -> str:
+        part = await asyncio.wait_for(self._socket.read_message(), 60)
+        if part is None:
+            raise ConnectionError("the server closed a session")
+        return str(part)
+
+
+def _sliders(part: Any) -> Iterator[dict[str, Any]]:
+    """All in a document."""
+    if isinstance(part, dict) and part.get("name") == "Slider":
+        yield part
+    for inner in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
+        yield from _sliders(inner)
+
+
+async def user(address: str, number: int) -> tuple[float, list[float]]:
+    """Seconds to open a session, and those from a slider to the new number."""
+    start, one = time.perf_counter(), Session(address)
+    slider = await one.open()
     opening = time.perf_counter() - start
-    models = list(found.document.models)
-    (slider,) = (
-        child
-        for model in models
-        if "clearance" in (model.css_classes if hasattr(model, "css_classes") else [])
-        for child in model.references()
-        if type(child).__name__ == "Slider"
-    )
-    (place,) = (model for model in models if "data-name" in str(getattr(model, "text", "")))
-    taken = []
-    for turn in range(TURNS):
-        before, start = place.text, time.perf_counter()
-        slider.value = 0.05 + 0.005 * ((turn + number) % 40)
-        while place.text == before:
-            found.force_roundtrip()
-            if time.perf_counter() - start > 60:
-                raise TimeoutError("a session had no answer for a minute")
-        taken.append(time.perf_counter() - start)
-    found.close()
-    return opening, taken
+    return opening, [await one.move(slider, 0.0512 + 0.005 * ((turn + number) % 40)) for turn in range(TURNS)]
+
+
+async def crowd_of(address: str) -> list[tuple[float, list[float]]]:
+    return await asyncio.gather(*(user(address, number) for number in range(SESSIONS)))
 
 
 def many(address: str, rows: Rows) -> None:
-    with ThreadPoolExecutor(SESSIONS) as pool:
-        found = list(pool.map(lambda number: session(address, number), range(SESSIONS)))
+    found = asyncio.run(crowd_of(address))
     openings = [opening for opening, _ in found]
     taken = [seconds for _, each in found for seconds in each]
     rows.add("open a session", shares(openings), f"{max(openings):.1f}")

@@ -64,11 +64,12 @@ def stored(model: Model, design: Design, engine: Engine) -> float:
 
 def speed(rows: Rows) -> None:
     closed, tabulated, exact = bs.HessForsbach(), bs.Tabulated(), bs.Exact()
-    million = points(1_000_000, 100)
+    million, single = points(1_000_000, 100), points(1_000_000, 1)
     for name, model, design, engine, aim in (
         ("10^7, paper's model, one core", closed, points(10_000_000, 1000), Serial(), 10.0),
         ("10^6, tabulated, 100 loads a joint, one core", tabulated, million, Serial(), 5.0),
-        ("10^6, tabulated, a joint a press, one core", tabulated, points(1_000_000, 1), Serial(), 5.0),
+        ("10^6, tabulated, a joint a press, one core", tabulated, single, Serial(), 5.0),
+        ("10^6, tabulated, a joint a press, two processes", tabulated, single, Processes(workers=2), 5.0),
         ("10^4, exact, a joint a press, two processes", exact, points(10_000, 1), Processes(workers=2), 30.0),
         ("10^4, exact, 10 loads a joint, two processes", exact, points(10_000, 10), Processes(workers=2), 30.0),
     ):

@@ -290,8 +290,7 @@ def test_elements_that_cannot_be_built_say_why(user):
     user.page.locator("[role=alert]:visible").first.wait_for()
 
 
-@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize(("width", "dark"), [(1280, False), (390, True)], ids=["wide light", "narrow dark"])
 @pytest.mark.parametrize("view", ["press", "map", "compare", "judge"])
 def test_pages_fit_and_are_kept_as_pictures(browser, address, view, width, dark):
     someone = User(browser, address, width, dark).open(f"?view={view}&beside1.preset=hip-36")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from math import inf, isclose, isinf
+from dataclasses import replace
+from math import inf, isinf
 from typing import Any
 
 import panel as pn
@@ -13,23 +13,10 @@ from ..files import JointFile, joint_of
 from ..joint_text import Tables, tables_of
 from ..presets import joints, materials
 from .screen import Screen
+from .slider import Number, Slider
 
 _OWN, _RIGID = "– own numbers –", "rigid"
 _PRESET = "– choose –"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Number:
-    """A slider for one number of the tables, over a range that is usual; any other can be typed."""
-
-    table: str
-    key: str
-    label: str
-    low: float
-    high: float
-    step: float
-    form: str
-    factor: float = 1.0  # from the number in the table to the one that is shown
 
 
 def _number(table: str, key: str, label: str, ends: tuple[float, float], step: float, form: str) -> Number:
@@ -87,39 +74,35 @@ class JointControls:
         self._changed, self._refused, self._loaded = changed, refused, loaded
         self._putting = False
         self._file: JointFile
-        self._specs: dict[str, Number] = dict(_NUMBERS)
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self.preset = pn.widgets.Select(name="Start from", options=[_PRESET, *joints], **wide)
-        self.sliders = {name: _slider(spec, name) for name, spec in _NUMBERS.items()}
+        self.sliders = {name: Slider(spec, name, self._typed) for name, spec in _NUMBERS.items()}
         self.massive = pn.widgets.Checkbox(name="massive socket (L = ∞)")
         self.liner = pn.widgets.Select(name="Liner", options=[_OWN, *materials], **wide)
         self.ball = pn.widgets.Select(name="Ball", options=[_RIGID, _OWN, *materials], **wide)
         self.kind = pn.widgets.RadioButtonGroup(name="Load given as", options=_LOAD_NAMES, **wide)
-        self.load = _slider(_LOADS["force"], "load")
+        self.load = Slider(_LOADS["force"], "load", self._typed)
         self.backing = pn.pane.HTML("", **wide)
         self._watch()
         self.panel = pn.Column(
             self.preset,
-            self.sliders["ball_radius"],
-            self.sliders["clearance"],
-            self.sliders["liner_thickness"],
+            self.sliders["ball_radius"].panel,
+            self.sliders["clearance"].panel,
+            self.sliders["liner_thickness"].panel,
             self.massive,
             self.kind,
-            self.load,
+            self.load.panel,
             self.liner,
-            self.sliders["liner_young"],
-            self.sliders["liner_poisson"],
+            self.sliders["liner_young"].panel,
+            self.sliders["liner_poisson"].panel,
             self.ball,
-            self.sliders["ball_young"],
-            self.sliders["ball_poisson"],
+            self.sliders["ball_young"].panel,
+            self.sliders["ball_poisson"].panel,
             self.backing,
             **wide,
         )
 
     def _watch(self) -> None:
-        for name, slider in self.sliders.items():
-            slider.param.watch(lambda event, name=name: self._typed(self._specs[name], event.new), "value")
-        self.load.param.watch(lambda event: self._typed(self._load_spec, event.new), "value")
         self.kind.param.watch(self._load_kind, "value")
         self.preset.param.watch(self._start, "value")
         self.massive.param.watch(self._made_massive, "value")
@@ -137,21 +120,20 @@ class JointControls:
     def _put(self, screen: Screen) -> None:
         file, joint = screen.file, screen.file.joint
         self._file = file
-        self._specs["ball_radius"] = _DIAMETER if screen.size == "diameter" else _NUMBERS["ball_radius"]
         ((kind, _),) = file.load.items()
-        self._load_spec = _IN_RADIANS if (kind, screen.angle) == ("half_angle", "radians") else _LOADS[kind]
         tables = tables_of(file)
         for part in ("liner", "ball"):
             material = getattr(joint, part)
             if material is not None:
                 tables[part] = {"young": float(material.young), "poisson": float(material.poisson)}
         for name, slider in self.sliders.items():
-            spec = self._specs[name]
+            spec = _DIAMETER if (name, screen.size) == ("ball_radius", "diameter") else _NUMBERS[name]
             value = tables.get(spec.table, {}).get(spec.key)
-            slider.visible = value is not None and not isinf(value)
-            if slider.visible:
-                _set(slider, spec, value)
-        _set(self.load, self._load_spec, tables["load"][kind])
+            slider.panel.visible = value is not None and not isinf(value)
+            if slider.panel.visible:
+                slider.put(spec, value)
+        spec = _IN_RADIANS if (kind, screen.angle) == ("half_angle", "radians") else _LOADS[kind]
+        self.load.put(spec, tables["load"][kind])
         self.massive.value = isinf(float(joint.liner_thickness))
         self.massive.visible = not joint.backing
         self.kind.value = kind
@@ -219,31 +201,3 @@ class JointControls:
 def _chosen(table: Tables) -> str:
     """The material's name, unless a number differs from it."""
     return str(table["material"]) if list(table) == ["material"] else _OWN
-
-
-def _slider(spec: Number, name: str) -> Any:
-    return pn.widgets.EditableFloatSlider(
-        name=spec.label,
-        start=spec.low,
-        end=spec.high,
-        step=spec.step,
-        value=spec.low,
-        format=spec.form,
-        sizing_mode="stretch_width",
-        css_classes=["slider", name],
-    )
-
-
-def _set(slider: Any, spec: Number, value: float) -> None:
-    """What lies outside the usual range widens it; a slider that is being moved is left where it is."""
-    shown = value * spec.factor
-    if isclose(shown, slider.value, rel_tol=1e-9):
-        shown = slider.value
-    slider.param.update(
-        name=spec.label,
-        format=spec.form,
-        step=spec.step,
-        start=min(spec.low, shown),
-        end=max(spec.high, shown),
-        value=shown,
-    )

@@ -166,9 +166,21 @@ class Page:
             view.leave()
 
 
+class Template(pn.Template):
+    """Bokeh looks through a document once when all is in it, and not after every part."""
+
+    def server_doc(self, doc: Any = None, title: str | None = None, location: Any = True) -> Any:
+        document = doc or pn.state.curdoc
+        with document.models.freeze():
+            return super().server_doc(document, title, location)
+
+    def __repr__(self) -> str:
+        return "<the explorer's page>"  # Panel asks often, and would write all parts down each time
+
+
 def template(page: Page) -> Any:
     """The page with its style and script, all of it from here."""
-    made = pn.Template(asset("page.html"))
+    made = Template(asset("page.html"))
     made.add_variable("style", asset("page.css"))
     made.add_variable("script", asset("page.js"))
     made.add_variable("theme", page.screen.theme)

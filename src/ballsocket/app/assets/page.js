@@ -26,10 +26,9 @@
   }
   function named() {
     for (const slider of within(document, ".slider")) {
-      const label = within(slider.shadowRoot || slider, ".bk-clearfix").map((part) => part.textContent).find((text) => text);
-      for (const part of within(slider.shadowRoot || slider, ".noUi-handle, input")) {
-        if (label) part.setAttribute("aria-label", label.trim().replace(/:$/, ""));
-      }
+      const root = slider.shadowRoot || slider;
+      const label = within(root, "label")[0];
+      for (const handle of within(root, ".noUi-handle")) if (label) handle.setAttribute("aria-label", label.textContent.trim());
     }
   }
   window.setInterval(named, 700);

@@ -1,0 +1,86 @@
+"""A number that is moved or typed: a slider over what is usual, and a box for everything else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isclose
+from typing import Any
+
+import panel as pn
+
+from .style import asset
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number:
+    """A number of the tables of a joint file, and the range that is usual for it."""
+
+    table: str
+    key: str
+    label: str
+    low: float
+    high: float
+    step: float
+    form: str
+    factor: float = 1.0  # from the number in the table to the one that is shown
+
+
+class Slider:
+    """Both inputs of one number.
+
+    Parameters
+    ----------
+    spec : Number
+    name : str
+        By which the page's script and tests find it.
+    typed : callable
+        Told the number and the spec it belongs to, when a user has changed it.
+    """
+
+    def __init__(self, spec: Number, name: str, typed: Callable[[Number, float], None]) -> None:
+        self._spec, self._typed, self._putting = spec, typed, False
+        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
+        self._box = pn.widgets.FloatInput(
+            name=spec.label,
+            value=spec.low,
+            step=spec.step,
+            stylesheets=[asset("box.css")],
+            margin=(4, 10, 0, 10),
+            **wide,
+        )
+        self._bar = pn.widgets.FloatSlider(
+            name="",
+            start=spec.low,
+            end=spec.high,
+            step=spec.step,
+            value=spec.low,
+            show_value=False,
+            tooltips=False,
+            margin=(0, 10, 4, 10),
+            **wide,
+        )
+        for widget in (self._box, self._bar):
+            widget.param.watch(self._changed, "value")
+        self.panel = pn.Column(self._box, self._bar, css_classes=["slider", name], **wide)
+
+    def _changed(self, event: Any) -> None:
+        if not self._putting and event.new is not None:
+            self._typed(self._spec, event.new)
+
+    def put(self, spec: Number, value: float) -> None:
+        """Show a number of the tables; what lies outside the usual range widens it, and what is being moved stays."""
+        shown = value * spec.factor
+        self._putting, self._spec = True, spec
+        self._box.param.update(name=spec.label, format=spec.form, step=spec.step, value=_same(shown, self._box.value))
+        self._bar.param.update(
+            start=min(spec.low, shown),
+            end=max(spec.high, shown),
+            step=spec.step,
+            value=_same(shown, self._bar.value),
+        )
+        self._putting = False
+
+
+def _same(value: float, shown: float | None) -> float:
+    return shown if shown is not None and isclose(value, shown, rel_tol=1e-9) else value
