@@ -106,4 +106,5 @@ def _petals(file: JointFile, contact: Contact | None) -> dict[str, Any]:
     corners: list[tuple[Any, slice]] = [(radius, a), (radius, b), (reach[b], b), (reach[a], a)]
     x = numpy.stack([r * numpy.sin(angle[side]) for r, side in corners], axis=1)
     y = numpy.stack([-r * numpy.cos(angle[side]) for r, side in corners], axis=1)
-    return {"x": list(x), "y": list(y), "pressure": (pressure[a] + pressure[b]) / 2}
+    # as text: an array of its own for each petal would be a message of its own
+    return {"x": x.round(4).tolist(), "y": y.round(4).tolist(), "pressure": (pressure[a] + pressure[b]) / 2}

@@ -29,7 +29,6 @@ _KINDS: dict[str, type[Press] | type[DesignMap] | type[Compare] | type[Judge]] =
     "compare": Compare,
     "judge": Judge,
 }
-_SETTLE = 15  # ms in which what a slider still sends is gathered
 _UPLOAD = 100_000
 
 
@@ -45,7 +44,6 @@ class Page:
     def __init__(self, query: str) -> None:
         self._trouble = html()
         self.screen = self._read(query)
-        self._pending = False
         self._views: dict[str, View] = {}
         self._controls = JointControls(lambda file: self.ask(file=file), self._refuse, self._same_load)
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
@@ -83,17 +81,13 @@ class Page:
         self._trouble.object = f"<p class='refused' role='alert'>{escape(sentence)}</p>" if sentence else ""
 
     def ask(self, **changes: Any) -> None:
-        """Put other things on the screen; shown a moment later, with what else has changed by then."""
-        self.screen = replace(self.screen, **changes)
+        """Put other things on the screen, and show it."""
+        screen = replace(self.screen, **changes)
+        if screen == self.screen:
+            return
+        self.screen = screen
         self._refuse("")
-        if self._pending:
-            return
-        document = pn.state.curdoc
-        if document is None or document.session_context is None:
-            self._refresh()
-            return
-        self._pending = True
-        document.add_timeout_callback(self._refresh, _SETTLE)
+        self._refresh()
 
     def _turn(self, angle: str) -> None:
         """Axes have their units from the beginning: views are made anew."""
@@ -105,7 +99,6 @@ class Page:
         self.ask(angle=angle)
 
     def _refresh(self) -> None:
-        self._pending = False
         with pn.io.hold():
             self._controls.put(self.screen)
             self._view.value, self._angle.value, self._size.value = (

@@ -22,7 +22,7 @@ from ..words import headline, models_table
 
 _EVERY = tuple(catalogue)
 _WRAPPED = ".bk-input-group.bk-inline { flex-wrap: wrap; gap: 2px 14px; }"
-_PATIENCE = 120  # ms until the table of all models follows
+_PATIENCE = 300  # ms until the table of all models follows
 
 
 class Press:
