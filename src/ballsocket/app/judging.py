@@ -29,7 +29,8 @@ MEMORY = 4_000_000_000
 """Bytes that its process may ask for."""
 
 _SHARES = (0.25, 0.5, 0.75, 1.0)
-_PLACES = threading.BoundedSemaphore(max(1, available_cores()))
+PLACES = threading.BoundedSemaphore(max(1, available_cores()))
+"""As many runs at once as there are cores, whoever asks."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,7 +100,7 @@ class Run:
         return None
 
     def _begun(self) -> bool:
-        if not _PLACES.acquire(blocking=False):
+        if not PLACES.acquire(blocking=False):
             return False
         self._placed = True
         context = get_context("spawn")
@@ -120,7 +121,7 @@ class Run:
             self._pipe.close()
         if self._placed:
             self._placed = False
-            _PLACES.release()
+            PLACES.release()
 
 
 def _judge(pipe: Connection, file: JointFile) -> None:
