@@ -63,8 +63,8 @@ for clearance in (0.05, 0.10, 0.15):
     print(f"{clearance:.2f} mm: {contact.max_pressure:.2f} MPa, half angle {contact.half_angle * 57.2958:.1f}°")
 
 # %%
-# **The judge.** A cup is no whole shell: with a rim 5° short of the equator and a chamfer, finite elements say what that
-# changes.
+# **The judge.** A cup is no whole shell: with a rim 5° short of the equator and a chamfer, finite elements say what
+# that changes.
 
 cup = bs.Cup(arc_of_cover=radians(170.0), chamfer=1.0)
 contact = bs.FiniteElement(cup=cup).press(chosen, force=3000.0)

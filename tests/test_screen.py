@@ -56,7 +56,8 @@ axes = st.sampled_from([("ball_radius", "liner_thickness"), ("clearance", "force
 
 @st.composite
 def screens(draw):
-    across, up = (Axis(name=name, low=draw(lengths), high=draw(lengths)) for name in draw(axes))
+    ends = st.tuples(lengths, lengths).filter(lambda pair: pair[0] < pair[1])
+    across, up = (Axis(**dict(zip(("low", "high"), draw(ends), strict=True)), name=name) for name in draw(axes))
     return Screen(
         view=draw(st.sampled_from(VIEWS)),
         file=draw(made_files),
@@ -135,6 +136,7 @@ def test_arrays_are_no_joint_file():
         ("joint=2", "joint = '2' must be a table"),
         ("joint=2&joint.clearance=1", "joint is given as text and as a table in the link"),
         ("up=ball_radius=1..2", "a map has two axes, and both are ball_radius"),
+        ("up=clearance=2..1", "clearance from 2 to 1 is no range: it must go upwards"),
         ("load.force=1&load.force=2", "load.force is given 2 times in the link"),
         ("load.force=1&load.indentation=2&preset=hip-28", "one load is needed, got force, indentation"),
         ("shown=exact,frob", "'frob' as shown is not known"),

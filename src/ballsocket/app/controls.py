@@ -75,12 +75,12 @@ class JointControls:
         self._putting = False
         self._file: JointFile
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
-        self.preset = pn.widgets.Select(name="Start from", options=[_PRESET, *joints], **wide)
+        self.preset = pn.widgets.Select(label="Start from", options=[_PRESET, *joints], **wide)
         self.sliders = {name: Slider(spec, name, self._typed) for name, spec in _NUMBERS.items()}
-        self.massive = pn.widgets.Checkbox(name="massive socket (L = ∞)")
-        self.liner = pn.widgets.Select(name="Liner", options=[_OWN, *materials], **wide)
-        self.ball = pn.widgets.Select(name="Ball", options=[_RIGID, _OWN, *materials], **wide)
-        self.kind = pn.widgets.RadioButtonGroup(name="Load given as", options=_LOAD_NAMES, **wide)
+        self.massive = pn.widgets.Checkbox(label="massive socket (L = ∞)")
+        self.liner = pn.widgets.Select(label="Liner", options=[_OWN, *materials], **wide)
+        self.ball = pn.widgets.Select(label="Ball", options=[_RIGID, _OWN, *materials], **wide)
+        self.kind = pn.widgets.RadioButtonGroup(label="Load given as", options=_LOAD_NAMES, **wide)
         self.load = Slider(_LOADS["force"], "load", self._typed)
         self.backing = pn.pane.HTML("", **wide)
         self._watch()

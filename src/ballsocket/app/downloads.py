@@ -33,10 +33,9 @@ class Downloads:
         }
         buttons = [
             pn.widgets.FileDownload(
-                callback=lambda make=make: BytesIO(make()),
+                callback=lambda make=make: self._made(make),
                 filename=name,
                 label=kind,
-                button_type="default",
                 embed=False,
                 width=64,
                 margin=(2, 2),
@@ -48,6 +47,14 @@ class Downloads:
             pn.FlexBox(*buttons, flex_wrap="wrap"),
             sizing_mode="stretch_width",
         )
+
+    def _made(self, make: Callable[[], bytes]) -> BytesIO:
+        """The file; where there is none, the page says why."""
+        try:
+            return BytesIO(make())
+        except ValueError as error:
+            self._page.refuse(str(error))
+            raise
 
     def _document(self) -> Document:
         return self._page.view.document(self._page.screen)

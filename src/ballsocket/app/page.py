@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import replace
 from html import escape
 from typing import Any
@@ -30,6 +31,7 @@ _KINDS: dict[str, type[Press] | type[DesignMap] | type[Compare] | type[Judge]] =
     "judge": Judge,
 }
 _UPLOAD = 100_000
+_LOG = logging.getLogger(__name__)
 
 
 class Page:
@@ -45,14 +47,14 @@ class Page:
         self._trouble = html()
         self.screen = self._read(query)
         self._views: dict[str, View] = {}
-        self._controls = JointControls(lambda file: self.ask(file=file), self._refuse, self._same_load)
+        self._controls = JointControls(lambda file: self.ask(file=file), self.refuse, self._same_load)
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self._view = pn.widgets.RadioButtonGroup(
-            name="view", options={kind.title: name for name, kind in _KINDS.items()}, **wide
+            label="view", options={kind.title: name for name, kind in _KINDS.items()}, **wide
         )
         self._view.param.watch(lambda event: self.ask(view=event.new), "value")
-        self._angle = pn.widgets.RadioButtonGroup(name="angles in", options=list(ANGLES), **wide)
-        self._size = pn.widgets.RadioButtonGroup(name="balls by", options=list(SIZES), **wide)
+        self._angle = pn.widgets.RadioButtonGroup(label="angles in", options=list(ANGLES), **wide)
+        self._size = pn.widgets.RadioButtonGroup(label="balls by", options=list(SIZES), **wide)
         self._angle.param.watch(lambda event: self._turn(event.new), "value")
         self._size.param.watch(lambda event: self.ask(size=event.new), "value")
         self._downloads = Downloads(self)
@@ -74,10 +76,11 @@ class Page:
         try:
             return read_link(parse_qs(query, keep_blank_values=True, max_num_fields=200))
         except ValueError as error:
-            self._refuse(f"This link cannot be read: {error}")
+            self.refuse(f"This link cannot be read: {error}")
             return START
 
-    def _refuse(self, sentence: str) -> None:
+    def refuse(self, sentence: str) -> None:
+        """Say what cannot be done; an empty sentence says nothing."""
         self._trouble.object = f"<p class='refused' role='alert'>{escape(sentence)}</p>" if sentence else ""
 
     def ask(self, **changes: Any) -> None:
@@ -86,7 +89,7 @@ class Page:
         if screen == self.screen:
             return
         self.screen = screen
-        self._refuse("")
+        self.refuse("")
         self._refresh()
 
     def _turn(self, angle: str) -> None:
@@ -109,7 +112,11 @@ class Page:
             seen = self.view
             for view in self._views.values():
                 view.panel.visible = view is seen
-            seen.show(self.screen)
+            try:
+                seen.show(self.screen)
+            except Exception as error:  # a page must not fall silent, whatever it is
+                _LOG.exception("a view failed")
+                self.refuse(f"This cannot be shown: {error}")
             self._link.value = link_of(self.screen)
 
     @property
@@ -136,12 +143,12 @@ class Page:
         self._upload.value = ""
         raw = text.encode("utf-8")
         if len(raw) > _UPLOAD:
-            self._refuse(f"the file is larger than {_UPLOAD} bytes; a joint file is a few lines")
+            self.refuse(f"the file is larger than {_UPLOAD} bytes; a joint file is a few lines")
             return
         try:
             file: JointFile = parse_joint(raw, "the file")
         except ValueError as error:
-            self._refuse(str(error))
+            self.refuse(str(error))
             return
         self.ask(file=file if file.load else replace(file, load=self.screen.file.load))
 

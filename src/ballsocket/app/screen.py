@@ -37,6 +37,10 @@ class Axis:
     low: float
     high: float
 
+    def __post_init__(self) -> None:
+        if not self.low < self.high:
+            raise ValueError(f"{self.name} from {self.low:g} to {self.high:g} is no range: it must go upwards")
+
     def __str__(self) -> str:
         return f"{self.name}={_bare(self.name, self.low)}..{_bare(self.name, self.high)}"
 

@@ -48,7 +48,7 @@ class Slider:
         self._spec, self._typed, self._putting = spec, typed, False
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self._box = pn.widgets.FloatInput(
-            name=spec.label,
+            label=spec.label,
             value=spec.low,
             step=spec.step,
             stylesheets=[asset("box.css")],
@@ -56,7 +56,7 @@ class Slider:
             **wide,
         )
         self._bar = _Live(
-            name="",
+            label="",
             start=spec.low,
             end=spec.high,
             step=spec.step,
@@ -80,7 +80,7 @@ class Slider:
         if spec is self._spec and _same(shown, self._box.value) == self._box.value == self._bar.value:
             return
         self._putting, self._spec = True, spec
-        self._box.param.update(name=spec.label, format=spec.form, step=spec.step, value=_same(shown, self._box.value))
+        self._box.param.update(label=spec.label, format=spec.form, step=spec.step, value=_same(shown, self._box.value))
         self._bar.param.update(
             start=min(spec.low, shown),
             end=max(spec.high, shown),

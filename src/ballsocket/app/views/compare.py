@@ -37,9 +37,9 @@ class Compare:
     def __init__(self, ask: Ask, screen: Screen) -> None:
         self._ask, self._screen = ask, screen
         self._palette = PALETTES[screen.theme]
-        self._keep = pn.widgets.Button(name="Put this joint beside", width=180)
-        self._preset = pn.widgets.Select(name="Put beside", options=[_CHOOSE, *joints], width=220)
-        self._drop = [pn.widgets.Button(name="", width=200, visible=False) for _ in range(BESIDE)]
+        self._keep = pn.widgets.Button(label="Put this joint beside", width=180)
+        self._preset = pn.widgets.Select(label="Put beside", options=[_CHOOSE, *joints], width=220)
+        self._drop = [pn.widgets.Button(label="", width=200, visible=False) for _ in range(BESIDE)]
         self._keep.on_click(lambda event: self._add(self._screen.file))
         self._preset.param.watch(self._chosen, "value")
         for number, button in enumerate(self._drop):
@@ -89,7 +89,7 @@ class Compare:
         files = labelled(screen)
         for number, button in enumerate(self._drop):
             button.visible = number < len(screen.beside)
-            button.name = f"Take {list(files)[number + 1]} away" if button.visible else "–"
+            button.label = f"Take {list(files)[number + 1]} away" if button.visible else "–"
         self._told.object = (
             "" if screen.beside else "<p class='quiet'>Put this joint or a preset beside, then change this one.</p>"
         )

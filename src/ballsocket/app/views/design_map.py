@@ -42,16 +42,16 @@ class DesignMap:
         self._ask, self._screen, self._putting = ask, screen, False
         self._palette = PALETTES[screen.theme]
         names = [name for name in PARAMETERS if name != "half_angle"]
-        self._across = pn.widgets.Select(name="Across", options=names, width=170)
-        self._up = pn.widgets.Select(name="Upwards", options=names, width=170)
+        self._across = pn.widgets.Select(label="Across", options=names, width=170)
+        self._up = pn.widgets.Select(label="Upwards", options=names, width=170)
         self._ranges = {
-            "across": pn.widgets.TextInput(name="from..to", width=150),
-            "up": pn.widgets.TextInput(name="from..to", width=150),
+            "across": pn.widgets.TextInput(label="from..to", width=150),
+            "up": pn.widgets.TextInput(label="from..to", width=150),
         }
-        self._quantity = pn.widgets.Select(name="Shown", options={label(name): name for name in SHOWN}, width=220)
-        self._model = pn.widgets.Select(name="Answered by", options=list(QUICK), width=170)
+        self._quantity = pn.widgets.Select(label="Shown", options={label(name): name for name in SHOWN}, width=220)
+        self._model = pn.widgets.Select(label="Answered by", options=list(QUICK), width=170)
         self._limits = pn.widgets.TextInput(
-            name="Limits, with commas", placeholder="outer_radius<=26 mm, liner_thickness>=4 mm", width=330
+            label="Limits, with commas", placeholder="outer_radius<=26 mm, liner_thickness>=4 mm", width=330
         )
         self._watch()
         self._refused, self._told = html(), html()
@@ -199,7 +199,7 @@ class DesignMap:
         across, up, name = screen.across, screen.up, screen.quantity
         values = found[name].transpose(up.name, across.name).values * factor(name)
         if numpy.isnan(values).all():
-            raise ValueError(f"{screen.map_model} has no answer anywhere on this map")
+            raise ValueError(f"{screen.map_model} has no answer anywhere on this map: choose another model")
         good = _good(found, screen).transpose(up.name, across.name).values
         valid = found.valid.transpose(up.name, across.name).values
         x, y = found[across.name].values, found[up.name].values

@@ -32,13 +32,13 @@ class Judge:
         self._run: Run | None = None
         self._asking: Any = None
         self._found: tuple[JointFile, Judged] | None = None
-        self._go = pn.widgets.Button(name="Run finite elements", button_type="primary", width=180)
-        self._halt = pn.widgets.Button(name="Stop", width=90, disabled=True)
-        self._bar = pn.indicators.Progress(name="progress", value=0, max=100, width=220, visible=False)
-        self._arc = pn.widgets.FloatInput(name="Arc of cover [°]", start=40, end=340, step=5, width=140)
-        self._chamfer = pn.widgets.FloatInput(name="Chamfer [mm]", start=0, step=0.5, width=120)
+        self._go = pn.widgets.Button(label="Run finite elements", color="primary", width=180)
+        self._halt = pn.widgets.Button(label="Stop", width=90, disabled=True)
+        self._bar = pn.indicators.Progress(value=0, max=100, width=220, visible=False)
+        self._arc = pn.widgets.FloatInput(label="Arc of cover [°]", start=40, end=340, step=5, width=140)
+        self._chamfer = pn.widgets.FloatInput(label="Chamfer [mm]", start=0, step=0.5, width=120)
         self._interface = pn.widgets.Select(
-            name="Liner on its backing", options=[one.value for one in Interface], width=160
+            label="Liner on its backing", options=[one.value for one in Interface], width=160
         )
         self._said, self._numbers, self._picture = html(), html(), html()
         self._go.on_click(lambda event: self._begin())

@@ -33,9 +33,9 @@ class Press:
     def __init__(self, ask: Ask, screen: Screen) -> None:
         self._palette = PALETTES[screen.theme]
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
-        self._by = pn.widgets.Select(name="Answered by", options=list(_EVERY), value=screen.answered_by, width=220)
+        self._by = pn.widgets.Select(label="Answered by", options=list(_EVERY), value=screen.answered_by, width=220)
         self._shown = pn.widgets.CheckBoxGroup(
-            name="drawn", options=list(_EVERY), value=list(screen.shown), inline=True, stylesheets=[_WRAPPED], **wide
+            label="drawn", options=list(_EVERY), value=list(screen.shown), inline=True, stylesheets=[_WRAPPED], **wide
         )
         self._by.param.watch(lambda event: ask(answered_by=event.new), "value")
         self._shown.param.watch(lambda event: ask(shown=tuple(event.new)), "value")

@@ -1,0 +1,59 @@
+"""The explorer's page without a browser: what goes wrong inside is said on it."""
+
+import pytest
+
+import ballsocket as bs
+
+pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tomli_w")
+from ballsocket.app import serve
+from ballsocket.app.page import Page
+from ballsocket.app.views.press import Press
+
+
+def test_a_view_that_fails_says_so_and_is_logged(monkeypatch, caplog):
+    page = Page("")
+
+    def show(self, screen):
+        raise RuntimeError("no <luck>")
+
+    monkeypatch.setattr(Press, "show", show)
+    page.ask(shown=("exact",))
+    assert "This cannot be shown: no &lt;luck&gt;" in page._trouble.object
+    assert "a view failed" in caplog.text
+
+
+def test_a_file_that_cannot_be_made_says_why():
+    page = Page("view=judge")
+    with pytest.raises(ValueError, match="nothing has run yet"):
+        page._downloads._made(page._downloads._numbers)
+    assert "run the finite elements first" in page._trouble.object
+
+
+def test_what_does_not_change_is_not_shown_again(monkeypatch):
+    page, shown = Page(""), []
+    monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen))
+    page.ask(view="press")
+    assert not shown
+    page.ask(size="diameter")
+    assert [screen.size for screen in shown] == ["diameter"]
+
+
+@pytest.mark.parametrize("preset", bs.joints)
+@pytest.mark.parametrize("load", ["force=500", "indentation=0.01", "half_angle=20"])
+def test_every_preset_can_be_seen_under_every_load(preset, load):
+    for view in ("press", "map", "compare"):
+        model = "hertz" if preset == "tilting-pad-pivot" else "tabulated"
+        page = Page(f"view={view}&preset={preset}&load.{load}&map_model={model}")
+        assert page._trouble.object == ""
+        assert page.view.document(page.screen).rows
+
+
+def test_more_pages_than_there_is_room_for_are_refused(monkeypatch):
+    monkeypatch.setattr(serve, "MOST_SESSIONS", 0)
+    assert "0 pages are open here already" in serve._session().object
+
+
+def test_a_port_that_is_none_is_refused():
+    with pytest.raises(ValueError, match="port = 70000 is not allowed: a port is 0 to 65535"):
+        serve.server(70000)
