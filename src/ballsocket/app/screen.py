@@ -15,13 +15,15 @@ from ..joint_text import Tables, tables_of
 from ..phrases import limit_of, range_of
 from ..presets import joints
 from ..studies.limits import Limit
-from ..studies.task import QUANTITIES
 
 VIEWS = ("press", "map", "compare", "judge")
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
 """Models that press a map's points at once."""
+
+MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")
+"""What a map can show."""
 
 LONGEST_LINK = 8000
 BESIDE = 2
@@ -102,7 +104,7 @@ _KNOWN: Mapping[str, Sequence[str]] = {
     "answered_by": tuple(catalogue),
     "shown": tuple(catalogue),
     "map_model": QUICK,
-    "quantity": QUANTITIES,
+    "quantity": MAPPED,
     "angle": ANGLES,
     "size": SIZES,
     "theme": THEMES,

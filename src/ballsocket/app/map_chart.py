@@ -1,0 +1,111 @@
+"""A map with its contours, limits, doubts and the joint that is on the screen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy
+from bokeh.models import ColorBar, ColumnDataSource, HoverTool, LinearColorMapper
+from bokeh.plotting.contour import contour_data
+
+from ..study_figures import factor, label
+from .look import Palette, chart
+from .mapping import good, margin, now
+from .screen import Screen
+
+_LEVELS = 14
+
+
+class MapChart:
+    """A coloured map; `tapped` is told where it was clicked, in the units of its axes."""
+
+    def __init__(self, palette: Palette, tapped: Callable[[float, float], None]) -> None:
+        self.figure = chart("", "", palette, 440)
+        self._colours = LinearColorMapper("Viridis256", low=0.0, high=1.0)
+        self._image = ColumnDataSource({"image": [], "x": [], "y": [], "dw": [], "dh": []})
+        self._pale = ColumnDataSource({"image": [], "x": [], "y": [], "dw": [], "dh": []})
+        box = {"x": "x", "y": "y", "dw": "dw", "dh": "dh"}
+        image: Any = self.figure.image("image", source=self._image, color_mapper=self._colours, **box)
+        self._hover = HoverTool(renderers=[image], tooltips=[("", "@image{0.000}")])
+        self.figure.add_tools(self._hover)
+        veil = LinearColorMapper([palette.paper], low=0.5, high=1.5, low_color="#00000000")
+        self.figure.image("image", source=self._pale, color_mapper=veil, global_alpha=0.65, **box)
+        flat = numpy.add.outer(numpy.arange(3.0), numpy.arange(3.0))
+        self._lines = self.figure.contour(
+            *(numpy.arange(3.0),) * 2, flat, levels=[1.0, 2.0], line_color="white", line_width=0.8
+        )
+        self._ends = self.figure.contour(
+            *(numpy.arange(3.0),) * 2, flat, levels=[1.0, 2.0], line_color="white", line_width=2.0, line_dash="dotted"
+        )
+        self._doubt = ColumnDataSource({"x": [], "y": []})
+        self.figure.scatter("x", "y", source=self._doubt, marker="x", size=5, color="white", line_width=1.2)
+        self._here = ColumnDataSource({"x": [], "y": []})
+        self.figure.scatter(
+            "x", "y", source=self._here, size=11, fill_color="white", line_color="black", line_width=1.5
+        )
+        text = palette.text
+        self._bar = ColorBar(
+            color_mapper=self._colours,
+            width=12,
+            background_fill_alpha=0.0,
+            title_text_color=text,
+            major_label_text_color=text,
+            title_text_font_style="normal",
+        )
+        self.figure.add_layout(self._bar, "right")
+        self.figure.on_event("tap", lambda event: tapped(event.x, event.y))
+
+    def show(self, found: Any, screen: Screen) -> None:
+        """Draw a map.
+
+        Raises
+        ------
+        ValueError
+            It has no answer anywhere.
+        """
+        across, up, name = screen.across, screen.up, screen.quantity
+        values = found[name].transpose(up.name, across.name).values * factor(name)
+        if numpy.isnan(values).all():
+            raise ValueError(f"{screen.map_model} has no answer anywhere on this map: choose another model")
+        fine = good(found, screen).transpose(up.name, across.name).values
+        valid = found.valid.transpose(up.name, across.name).values
+        x, y = found[across.name].values, found[up.name].values
+        box = _box(x, y)
+        self._colours.update(low=float(numpy.nanmin(values)), high=float(numpy.nanmax(values)))
+        self._image.data = {"image": [values], **box}
+        self._pale.data = {"image": [(~fine).astype(float)], **box}
+        levels = _levels(values)
+        self._lines.set_data(contour_data(x, y, values, levels, want_fill=False))
+        self._ends.set_data(contour_data(x, y, margin(found, screen), [0.0], want_fill=False))
+        grid_x, grid_y = numpy.meshgrid(x, y)
+        thinned = (~valid) & (numpy.add.outer(numpy.arange(len(y)), numpy.arange(len(x))) % 4 == 0)
+        self._doubt.data = {"x": grid_x[thinned], "y": grid_y[thinned]}
+        here = {which: now(screen.file, getattr(screen, which).name) for which in ("across", "up")}
+        self._here.data = {"x": [here["across"]], "y": [here["up"]]}
+        self.figure.x_range.update(start=box["x"][0], end=box["x"][0] + box["dw"][0])
+        self.figure.y_range.update(start=box["y"][0], end=box["y"][0] + box["dh"][0])
+        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = label(across.name), label(up.name)
+        self._bar.title = label(name)
+        axes = ((across.name, "$x{0.000}"), (up.name, "$y{0.000}"), (name, "@image{0.000}"))
+        self._hover.tooltips = [(label(each), form) for each, form in axes]
+
+
+def _box(x: numpy.ndarray, y: numpy.ndarray) -> dict[str, list[float]]:
+    """Pixels are centred on the points."""
+    dx, dy = x[1] - x[0], y[1] - y[0]
+    return {
+        "x": [float(x[0] - dx / 2)],
+        "y": [float(y[0] - dy / 2)],
+        "dw": [float(x[-1] - x[0] + dx)],
+        "dh": [float(y[-1] - y[0] + dy)],
+    }
+
+
+def _levels(values: numpy.ndarray) -> list[float]:
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = float(numpy.nanmin(values)), float(numpy.nanmax(values))
+    if not low < high:
+        return [low, low + max(abs(low), 1.0)]
+    return [float(level) for level in MaxNLocator(_LEVELS).tick_values(low, high)]

@@ -1,0 +1,120 @@
+"""What a design map holds: a study over two numbers of the joint on the screen, and what its limits leave."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from html import escape
+from typing import Any
+
+import numpy
+
+from ..all_models import catalogue
+from ..files import JointFile
+from ..joint import Joint
+from ..studies.design import Span, grid
+from ..studies.limits import Limit, allowed
+from ..studies.parameters import LOADS, PARAMETERS, pressable
+from ..studies.run import study
+from ..study_figures import factor, label
+from .screen import MAPPED, Axis, Screen
+
+_POINTS = 61
+
+
+@lru_cache(maxsize=16)
+def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: Axis, up: Axis, model: str) -> Any:
+    axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, _POINTS) for axis in (across, up)}
+    varied = any(name in axes for name in LOADS)
+    design = grid(**axes, **({} if varied else dict(load)))
+    return study(catalogue[model], joint, design, quantities=MAPPED)
+
+
+def mapped(file: JointFile, across: Axis, up: Axis, model: str) -> Any:
+    """The study behind a map."""
+    return _mapped(file.joint, tuple(file.load.items()), across, up, model)
+
+
+def limits_of(screen: Screen) -> tuple[Limit, ...]:
+    """Distances from the edge are those of this cup."""
+    return tuple(replace(limit, rim=screen.file.cup.rim) for limit in screen.limits)
+
+
+def good(found: Any, screen: Screen) -> Any:
+    """Where there is an answer that no limit forbids."""
+    return allowed(found, limits_of(screen)).broadcast_like(found.max_pressure)
+
+
+def margin(found: Any, screen: Screen) -> numpy.ndarray:
+    """How far inside the nearest limit each point is; far where there is none."""
+    nearest = numpy.ones((found.sizes[screen.up.name], found.sizes[screen.across.name]))
+    for limit in limits_of(screen):
+        spread = limit.margin(found) + 0.0 * found[screen.across.name] + 0.0 * found[screen.up.name]
+        values = spread.transpose(screen.up.name, screen.across.name).values
+        nearest = numpy.minimum(nearest, values / max(float(numpy.nanmax(numpy.abs(values))), 1e-300))
+    return nearest
+
+
+def told(found: Any, screen: Screen) -> str:
+    """What the map says, as HTML: the share that is allowed, and the least value there."""
+    fine = good(found, screen)
+    name = screen.quantity
+    words = [f"{100 * float(fine.mean()):.3g} % of the map is allowed by the limits."]
+    if bool(fine.any()):
+        least = found[name].where(fine)
+        place = least.argmin(...)
+        at = {axis: float(found[axis].isel({axis: place[axis]})) for axis in (screen.across.name, screen.up.name)}
+        where = ", ".join(f"{PARAMETERS[axis].symbol} {value:.4g} {_unit(axis)}" for axis, value in at.items())
+        words.append(f"Least {label(name)} there: <b>{float(least.min()) * factor(name):.4g}</b> at {escape(where)}.")
+    if not bool(found.valid.all()):
+        words.append("Crosses: the model is not to be trusted there.")
+    if not bool(fine.all()):
+        words.append("Faded: a limit is broken, or there is no answer.")
+    words.append("Click a point to press the joint that is there; the circle is the joint now.")
+    return f"<p class='quiet'>{' '.join(words)}</p>"
+
+
+def _unit(name: str) -> str:
+    unit = PARAMETERS[name].unit
+    return "" if unit == "1" else unit
+
+
+def now(file: JointFile, name: str) -> float:
+    """What the joint on the screen has there; NaN where it has no such number."""
+    joint = file.joint
+    known = {
+        "socket_radius": joint.socket_radius,
+        "outer_radius": joint.socket_radius + joint.liner_thickness,
+        "liner_young": joint.liner.young,
+        "liner_poisson": joint.liner.poisson,
+        "ball_young": None if joint.ball is None else joint.ball.young,
+        "ball_poisson": None if joint.ball is None else joint.ball.poisson,
+        **file.load,
+    }
+    value = known.get(name, getattr(joint, name, None))
+    return float("nan") if value is None else float(value)
+
+
+def around(name: str, middle: float) -> Axis:
+    """A range for a parameter: half to twice what it is now, where that is a number."""
+    if name.endswith("poisson"):
+        return Axis(name=name, low=0.3, high=0.48)
+    middle = middle if 0 < middle < 1e9 else {"force": 3000.0, "indentation": 0.05, "clearance": 0.1}.get(name, 10.0)
+    return Axis(name=name, low=float(f"{middle / 2:.2g}"), high=float(f"{2 * middle:.2g}"))
+
+
+def joint_at(file: JointFile, chosen: dict[str, float]) -> JointFile:
+    """The joint of a point of the map, to four digits; its load, where that is an axis."""
+    rounded = {name: float(f"{value:.4g}") for name, value in chosen.items()}
+    made, load, possible = pressable(file.joint, rounded)
+    if not bool(possible):
+        raise ValueError("these numbers make no joint: no liner or no clearance is left")
+    plain = replace(
+        made,
+        ball_radius=round(float(made.ball_radius), 9),
+        clearance=round(float(made.clearance), 9),
+        liner_thickness=round(float(made.liner_thickness), 9),
+        name="",
+        source="",
+    )
+    return replace(file, joint=plain, load={name: float(value) for name, value in load.items()} or file.load)
