@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy
 from bokeh.models import ColumnDataSource, HoverTool
 
-from .look import Line, Palette, chart, from_zero
+from .look import THICK, THIN, Line, Palette, chart, from_zero
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Points of one curve, how it is drawn, and a point to mark on it, if any."""
+    """Points of one curve, where they can be trusted, how it is drawn, and a point to mark on it, if any."""
 
     x: numpy.ndarray
     y: numpy.ndarray
+    trusted: numpy.ndarray
     line: Line
     mark: tuple[float, float] | None = None
 
@@ -56,14 +57,20 @@ class CurveChart:
 
 
 def _lines(curves: Mapping[str, Curve]) -> dict[str, list[Any]]:
+    """Thick where a curve can be trusted, thin all the way where it cannot."""
+    rows = [row for name, curve in curves.items() for row in _rows(name, curve)]
     return {
-        "name": list(curves),
-        "x": [curve.x.astype(numpy.float32) for curve in curves.values()],
-        "y": [curve.y.astype(numpy.float32) for curve in curves.values()],
-        "colour": [curve.line.colour for curve in curves.values()],
-        "dash": [curve.line.dash for curve in curves.values()],
-        "width": [curve.line.width for curve in curves.values()],
+        head: [row[place] for row in rows] for place, head in enumerate(("name", "x", "y", "width", "colour", "dash"))
     }
+
+
+def _rows(name: str, curve: Curve) -> Iterator[tuple[Any, ...]]:
+    x, y = curve.x.astype(numpy.float32), curve.y.astype(numpy.float32)
+    style = (curve.line.colour, curve.line.dash)
+    if curve.trusted.any():
+        yield (name, x, numpy.where(curve.trusted, y, numpy.float32("nan")), THICK, *style)
+    if not curve.trusted.all():
+        yield (name, x, y, THIN, *style)
 
 
 def _marks(curves: Mapping[str, Curve]) -> dict[str, list[Any]]:

@@ -37,27 +37,26 @@ PALETTES = {
 _DASHES = ("solid", "12 4", "4 3", "14 4 3 4", "8 3 2 3 2 3")
 
 
+THICK, THIN = 2.2, 0.9
+"""Where a model can be trusted, and where not."""
+
+
 @dataclass(frozen=True)
 class Line:
     """How a curve is drawn."""
 
     colour: str
     dash: str
-    width: float
 
 
-def line_of(name: str, palette: Palette, trusted: bool) -> Line:
-    """A model keeps its line wherever it is drawn; it is thin where the model is not to be trusted."""
-    if name == REFERENCE:
-        return Line(palette.text, "solid", 2.5 if trusted else 1.2)
-    index = list(catalogue).index(name)
-    return numbered(index - 1, trusted)
+def line_of(name: str, palette: Palette) -> Line:
+    """A model keeps its line wherever it is drawn."""
+    return Line(palette.text, "solid") if name == REFERENCE else numbered(list(catalogue).index(name) - 1)
 
 
-def numbered(index: int, trusted: bool) -> Line:
-    """The line of a number, the same in grey by its dashes."""
-    dash = _DASHES[(index + index // len(COLOURS)) % len(_DASHES)]
-    return Line(COLOURS[index % len(COLOURS)], dash, 2.2 if trusted else 1.1)
+def numbered(index: int) -> Line:
+    """The line of a number, told from others by its dashes too."""
+    return Line(COLOURS[index % len(COLOURS)], _DASHES[(index + index // len(COLOURS)) % len(_DASHES)])
 
 
 def chart(x: str, y: str, palette: Palette, height: int = 300, **options: Any) -> Any:

@@ -43,12 +43,14 @@ class PressCharts:
 
     def _profile(self, contact: Contact, line: Line) -> Curve:
         angle = min(float(contact.half_angle), pi / 2) * _ANGLES
-        return Curve(angle * self._turn, numpy.asarray(contact.pressure(angle)), line)
+        trusted = numpy.full(angle.shape, bool(contact.valid))
+        return Curve(angle * self._turn, numpy.asarray(contact.pressure(angle)), trusted, line)
 
 
 def _curve(contact: Contact, largest: float, line: Line) -> Curve:
     mark = (float(contact.indentation) * 1e3, float(contact.force) / 1e3)
     press = curve(contact.joint, contact.model.name, largest)
     if press is None:
-        return Curve(numpy.empty(0), numpy.empty(0), line, mark)
-    return Curve(numpy.asarray(press.indentation) * 1e3, numpy.asarray(press.force) / 1e3, line, mark)
+        return Curve(numpy.empty(0), numpy.empty(0), numpy.empty(0, dtype=bool), line, mark)
+    x, y = numpy.asarray(press.indentation) * 1e3, numpy.asarray(press.force) / 1e3
+    return Curve(x, y, numpy.asarray(press.valid), line, mark)

@@ -116,7 +116,7 @@ def _row(comparison: Comparison, name: str, shown: list[Quantity], palette: Pale
     contact, apart = comparison[name], comparison.deviation(name)
     cells = "".join(f"<td>{each.text(contact)}{_apart(apart, each.column.name)}</td>" for each in shown)
     why = "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
-    colour = line_of(name, palette, bool(contact.valid)).colour
+    colour = line_of(name, palette).colour
     swatch = f"<span class='swatch' style='background:{colour}'></span>"
     kind = "reference" if name == REFERENCE else "valid" if bool(contact.valid) else "doubtful"
     return (

@@ -101,8 +101,7 @@ class Compare:
                 name = list(files)[number]
                 self._heads[number].object = f"<h3>{escape(name)}</h3>"
                 drawing.show(files[name], contacts.get(name))
-        lines = {name: numbered(list(files).index(name), bool(contact.valid)) for name, contact in contacts.items()}
-        self._charts.show(contacts, lines)
+        self._charts.show(contacts, {name: numbered(list(files).index(name)) for name in contacts})
 
     def document(self, screen: Screen) -> Document:
         files = labelled(screen)

@@ -70,8 +70,7 @@ class Press:
             self._numbers.object = headline(by, screen.angle)
         self._drawing.show(screen.file, None if by is None or by.status.failed else by)
         drawn = {name: found[name] for name in screen.shown if name in answered(found)}
-        lines = {name: line_of(name, self._palette, bool(contact.valid)) for name, contact in drawn.items()}
-        self._charts.show(drawn, lines)
+        self._charts.show(drawn, {name: line_of(name, self._palette) for name in drawn})
         self._fill_later(screen)
 
     def _fill_later(self, screen: Screen) -> None:
