@@ -130,6 +130,7 @@ def test_a_number_that_no_joint_has_is_refused_in_words_and_the_page_goes_on(use
     box.fill("0.7")
     box.press("Enter")
     assert user.says("poisson = 0.7 is not allowed")
+    assert box.input_value() == "0.4"
     user.nudge("clearance")
     assert user.shows("max_pressure", bs.Exact().press(replace(HIP, clearance=0.105), force=3000.0).max_pressure)
 
@@ -202,6 +203,8 @@ def test_joint_files_are_read_by_the_strict_reader(user):
     assert user.says("is not TOML")
     upload(user, "large.toml", b"#" * 200_000)
     assert user.says("large.toml is larger than 100000 bytes")
+    upload(user, "deep.toml", b"a=" + b"[" * 30_000)
+    assert user.says("its brackets are nested too deeply")
     upload(user, "binary.toml", bytes(range(128, 256)))
     assert user.says("is not TOML")
     good = Path(__file__).parents[1] / "examples" / "metal_backed_hip.toml"
@@ -238,6 +241,26 @@ def test_a_click_on_the_map_presses_the_joint_that_is_there(user):
     assert user.shows("max_pressure", bs.Exact().press(there, force=3000.0).max_pressure)
 
 
+def test_the_best_joint_of_a_map_is_pressed(user):
+    user.open("?view=map&limit=outer_radius<=26")
+    assert user.says("of the map is allowed by the limits")
+    canvas = user.page.locator("#view .bk-Figure:visible").first.bounding_box()
+    user.page.mouse.click(canvas["x"] + 5, canvas["y"] + 0.5 * canvas["height"])  # beside the map: nothing there
+    user.page.locator(".bk-btn", has_text="Press the best joint").click()
+    user.page.locator("dd[data-name=max_pressure]").wait_for()
+    assert user.number("max_pressure") < 10.5
+
+
+def test_a_cup_that_is_none_is_refused_and_the_box_shows_what_is_meant(user):
+    user.open("?view=judge")
+    box = user.page.get_by_label("Arc of cover [°]")
+    box.fill("20")
+    box.press("Enter")
+    assert user.says("arc_of_cover = 20")
+    user.page.wait_for_timeout(300)
+    assert box.input_value() == "180"
+
+
 def test_a_limit_that_is_none_is_refused_in_words(user):
     user.open("?view=map")
     box = user.page.get_by_label("Limits, with commas")
@@ -252,7 +275,9 @@ def test_joints_stand_side_by_side(user):
     assert user.says("Take hip-36 away")
     cells = user.page.locator("tr", has_text="peak pressure").locator("td")
     expected = bs.Exact().press(bs.joints["hip-36"], force=3000.0).max_pressure
-    assert cells.nth(2).inner_text().startswith(f"{expected:.4g} (")
+    assert cells.nth(2).inner_text() == f"{expected:.4g}"
+    share = bs.Exact().press(HIP, force=3000.0).max_pressure / expected - 1
+    assert cells.nth(1).inner_text().endswith(f"({100 * share:+.0f} %)")
     user.page.locator(".bk-btn", has_text="Put this joint beside").click()
     assert user.says("Take hip-28 away")
     user.page.locator(".bk-btn", has_text="Take hip-36 away").click()
@@ -326,6 +351,14 @@ def test_on_a_narrow_screen_the_answers_come_first_and_stay_in_sight(browser, ad
     assert someone.shows("max_pressure", bs.Exact().press(replace(HIP, clearance=0.105), force=3000.0).max_pressure)
     assert someone.page.locator("dd[data-name=force]").bounding_box()["y"] < 800
     someone.context.close()
+
+
+def test_nobody_can_choose_the_name_of_anothers_session(address):
+    from urllib.error import HTTPError
+    from urllib.request import urlopen
+
+    with pytest.raises(HTTPError, match="403"):
+        urlopen(f"{address}?bokeh-session-id=chosen")
 
 
 def test_other_machines_names_do_not_reach_it(address):

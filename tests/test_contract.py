@@ -209,3 +209,11 @@ def test_any_joint_presses_back_and_forth(model, joint, share, two):
     deeper = model.press(joint, indentation=1.01 * d)
     assert deeper.force > contact.force
     assert deeper.half_angle >= contact.half_angle or model.name in {"bartel", "bonded-layer-exact"}
+
+
+def test_a_deviation_is_blank_where_there_is_no_truth_to_deviate_from():
+    joint = bs.joints["hip-28"]
+    apart = bs.compare(joint, force=np.array([0.0, 3000.0, 1e9])).deviation("hess-forsbach")
+    assert np.isnan(apart["max_pressure"]).tolist() == [False, False, True]
+    assert apart["max_pressure"][0] == 0.0
+    assert np.isnan(bs.compare(joint, half_angle=0.0).deviation("adhesive")["force"])

@@ -28,20 +28,10 @@ def until_the_end(run, seconds=60.0):
     pytest.fail("the run said nothing for a minute")
 
 
-def free_places():
-    count = 0
-    while judging.PLACES.acquire(blocking=False):
-        count += 1
-    for _ in range(count):
-        judging.PLACES.release()
-    return count
-
-
 @pytest.fixture(autouse=True)
 def all_places_are_given_back():
-    before = free_places()
     yield
-    assert free_places() == before
+    assert len(judging.LINE) == 0
 
 
 def test_a_run_answers_what_a_press_answers():
@@ -76,15 +66,23 @@ def test_a_run_that_is_stopped_gives_its_place_back():
     assert not run._process.is_alive()
 
 
-def test_runs_wait_for_a_free_place_and_can_be_stopped_while_they_wait():
-    taken = free_places()
-    for _ in range(taken):
-        judging.PLACES.acquire()
-    run = Run(HIP)
-    assert run.news().words == "waiting for a free place: others are running"
-    run.stop()
-    for _ in range(taken):
-        judging.PLACES.release()
+def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
+    monkeypatch.setattr(judging, "LINE", judging.Line(1))
+    first, second, third = Run(HIP), Run(HIP), Run(HIP)
+    first.news()
+    for run in (second, third):
+        assert run.news().words == "waiting for a free place: others are running"
+    second.stop()
+    assert isinstance(until_the_end(first)[-1], Judged)
+    assert isinstance(until_the_end(third)[-1], Judged)
+
+
+def test_a_process_that_cannot_be_started_is_said(monkeypatch):
+    def begin(self):
+        raise OSError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(Run, "_begin", begin)
+    assert Run(HIP).news() == Refused(why="no process could be started: Resource temporarily unavailable")
 
 
 def test_what_cannot_be_meshed_is_said():

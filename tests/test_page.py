@@ -9,6 +9,7 @@ pytest.importorskip("tomli_w")
 from ballsocket.app import serve
 from ballsocket.app.page import Page
 from ballsocket.app.views.press import Press
+from ballsocket.joint_text import toml_of
 
 
 def test_a_view_that_fails_says_so_and_is_logged(monkeypatch, caplog):
@@ -46,7 +47,31 @@ def test_every_preset_can_be_seen_under_every_load(preset, load):
         model = "hertz" if preset == "tilting-pad-pivot" else "tabulated"
         page = Page(f"view={view}&preset={preset}&load.{load}&map_model={model}")
         assert page._trouble.object == ""
-        assert page.view.document(page.screen).rows
+        assert page.view.document(page.screen).rows()
+
+
+def test_a_load_of_zero_is_compared_without_shares():
+    page = Page("view=compare&preset=hip-28&load.force=0&beside1.preset=hip-36")
+    assert page._trouble.object == ""
+    assert page.view.document(page.screen).rows()
+
+
+def test_what_is_too_long_for_a_link_does_not_come_on_the_screen():
+    page = Page("")
+    before = page.screen
+    page._uploaded('1\nname = "' + "x" * 9000 + '"\n' + toml_of(before.file).partition("source")[2].partition("\n")[2])
+    assert page.screen == before
+    assert "a link to this would be longer than 8000 characters" in page._trouble.object
+
+
+def test_names_that_are_formulas_elsewhere_are_text_in_files():
+    page = Page(
+        "view=compare&preset=hip-28&beside1.name==1%2B1 $\\frac{a$&beside1.joint.ball_radius=14"
+        "&beside1.joint.clearance=.1&beside1.joint.liner_thickness=5&beside1.liner.material=pom"
+    )
+    assert page._trouble.object == ""
+    assert b"'=1+1" in page._downloads._numbers()
+    assert page._downloads._picture("png").startswith(b"\x89PNG")
 
 
 def test_more_pages_than_there_is_room_for_are_refused(monkeypatch):

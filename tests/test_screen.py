@@ -101,6 +101,10 @@ def test_a_link_leads_back(screen):
     assert replace(screen, file=START.file, beside=()) == replace(again, file=START.file, beside=())
 
 
+def test_a_load_alone_presses_the_joint_of_the_start():
+    assert read_link({"load.force": ["5000"]}) == replace(START, file=replace(START.file, load={"force": 5000.0}))
+
+
 def test_a_massive_socket_is_written():
     file = JointFile(bs.joints["tilting-pad-pivot"], {"force": 1e3})
     assert "liner_thickness = inf" in toml_of(file)
@@ -137,6 +141,7 @@ def test_arrays_are_no_joint_file():
         ("joint=2&joint.clearance=1", "joint is given as text and as a table in the link"),
         ("up=ball_radius=1..2", "a map has two axes, and both are ball_radius"),
         ("up=clearance=2..1", "clearance from 2 to 1 is no range: it must go upwards"),
+        ("across=half_angle=10..40", "'half_angle' among the axes of a map is not known"),
         ("load.force=1&load.force=2", "load.force is given 2 times in the link"),
         ("load.force=1&load.indentation=2&preset=hip-28", "one load is needed, got force, indentation"),
         ("shown=exact,frob", "'frob' as shown is not known"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
+from math import inf
 from typing import Any
 
 import numpy
@@ -66,7 +67,7 @@ class Comparison(Mapping[str, Contact]):
         if exact is None or name == REFERENCE or name not in self.contacts:
             return None
         contact = self.contacts[name]
-        return {column.name: _relative(column.of(contact), column.of(exact)) for column in COLUMNS}
+        return {column.name: relative(column.of(contact), column.of(exact)) for column in COLUMNS}
 
     def rows(self) -> list[tuple[str, ...]]:
         """Text for a table: model, force, indentation, half angle, max pressure, area, stiffness, valid."""
@@ -105,8 +106,10 @@ REFERENCE = "exact"
 """The model that the others are measured by."""
 
 
-def _relative(value: Array, truth: Array) -> Array:
-    return where(truth == value, 0.0, value / divisor(truth) - 1)
+def relative(value: Array, truth: Array) -> Array:
+    """value/truth - 1: 0 where they are equal, NaN where the truth is 0, infinite or not known."""
+    known = (truth > -inf) & (truth < inf) & (truth != 0)
+    return where(truth == value, 0.0, where(known, value / divisor(where(known, truth, 1.0)) - 1, float("nan")))
 
 
 def _listed(deviation: dict[str, Array] | None) -> dict[str, Any] | None:

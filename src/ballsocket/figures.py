@@ -49,7 +49,7 @@ def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact],
     for index, (name, contact) in enumerate(contacts.items()):
         style = _REFERENCE_STYLE if name == REFERENCE else _style(index, bool(contact.valid))
         angle = _angles(contact)
-        left.plot(numpy.degrees(angle), contact.pressure(angle), label=name, **style)
+        left.plot(numpy.degrees(angle), contact.pressure(angle), label=_said(name), **style)
         curve = curves[name]
         right.plot(arrays.to_numpy(curve.indentation) * 1e3, arrays.to_numpy(curve.force) / 1e3, **style)
         right.plot(contact.indentation * 1e3, contact.force / 1e3, "o", color=style["color"], markersize=4.5)
@@ -62,9 +62,16 @@ def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact],
     right.set_xlim(0.0, 1.12e3 * max(contact.indentation for contact in contacts.values()) or 1.0)
     right.set_ylim(0.0, 1.6e-3 * max(contact.force for contact in contacts.values()) or 1.0)
     columns = min(len(contacts), 4)
-    figure.legend(loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
-    figure.suptitle(title or _title(next(iter(contacts.values()))), fontsize=10)
+    legend = figure.legend(loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+    figure.suptitle(title or _title(next(iter(contacts.values()))), fontsize=10, parse_math=False)
     return figure
+
+
+def _said(name: str) -> str:
+    """Matplotlib leaves out what begins with an underscore; names of joints may."""
+    return f"\u200b{name}" if name.startswith("_") else name
 
 
 def check_format(path: Path) -> None:

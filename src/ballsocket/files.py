@@ -80,6 +80,8 @@ def parse_joint(raw: bytes, title: str) -> JointFile:
         raise ValueError(f"{title} is not text in UTF-8: {error.reason} at byte {error.start}") from error
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{title} is not TOML: {error}") from error
+    except RecursionError as error:
+        raise ValueError(f"{title} is no joint file: its brackets are nested too deeply") from error
     try:
         return joint_of(table)
     except ValueError as error:

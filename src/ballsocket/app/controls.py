@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from html import escape
 from math import inf, isinf
 from typing import Any
 
@@ -14,6 +15,7 @@ from ..joint_text import Tables, tables_of
 from ..presets import joints, materials
 from .screen import Screen
 from .slider import Number, Slider
+from .style import inputs
 
 _OWN, _RIGID = "– own numbers –", "rigid"
 _PRESET = "– choose –"
@@ -24,21 +26,21 @@ def _number(table: str, key: str, label: str, ends: tuple[float, float], step: f
 
 
 _NUMBERS = {
-    "ball_radius": _number("joint", "ball_radius", "Ball radius R1 [mm]", (5.0, 30.0), 0.1, "0.[000]"),
-    "clearance": _number("joint", "clearance", "Radial clearance ΔR [mm]", (0.0, 0.5), 0.005, "0.[0000]"),
-    "liner_thickness": _number("joint", "liner_thickness", "Liner thickness L [mm]", (0.5, 20.0), 0.1, "0.[000]"),
-    "liner_young": _number("liner", "young", "Liner: Young's modulus E [MPa]", (100.0, 5000.0), 10.0, "0.[0]"),
-    "liner_poisson": _number("liner", "poisson", "Liner: Poisson's ratio ν", (0.0, 0.4995), 0.005, "0.[0000]"),
-    "ball_young": _number("ball", "young", "Ball: Young's modulus E1 [MPa]", (1e3, 4e5), 1e3, "0.[0]"),
-    "ball_poisson": _number("ball", "poisson", "Ball: Poisson's ratio ν1", (0.0, 0.4995), 0.005, "0.[0000]"),
+    "ball_radius": _number("joint", "ball_radius", "Ball radius R1 [mm]", (5.0, 30.0), 0.1, "0.[000000]"),
+    "clearance": _number("joint", "clearance", "Radial clearance ΔR [mm]", (0.0, 0.5), 0.005, "0.[000000]"),
+    "liner_thickness": _number("joint", "liner_thickness", "Liner thickness L [mm]", (0.5, 20.0), 0.1, "0.[000000]"),
+    "liner_young": _number("liner", "young", "Liner: Young's modulus E [MPa]", (100.0, 5000.0), 10.0, "0.[000000]"),
+    "liner_poisson": _number("liner", "poisson", "Liner: Poisson's ratio ν", (0.0, 0.4995), 0.005, "0.[000000]"),
+    "ball_young": _number("ball", "young", "Ball: Young's modulus E1 [MPa]", (1e3, 4e5), 1e3, "0.[000000]"),
+    "ball_poisson": _number("ball", "poisson", "Ball: Poisson's ratio ν1", (0.0, 0.4995), 0.005, "0.[000000]"),
 }
 _DIAMETER = replace(_NUMBERS["ball_radius"], label="Ball diameter 2 R1 [mm]", low=10.0, high=60.0, step=0.2, factor=2.0)
 _LOADS = {
-    "force": _number("load", "force", "Force F [N]", (50.0, 5000.0), 50.0, "0.[0]"),
+    "force": _number("load", "force", "Force F [N]", (50.0, 5000.0), 50.0, "0.[000000]"),
     "indentation": replace(
-        _number("load", "indentation", "Indentation d [µm]", (1.0, 200.0), 1.0, "0.[00]"), factor=1e3
+        _number("load", "indentation", "Indentation d [µm]", (1.0, 200.0), 1.0, "0.[000000]"), factor=1e3
     ),
-    "half_angle": _number("load", "half_angle", "Half angle ε [°]", (1.0, 80.0), 0.5, "0.[000]"),
+    "half_angle": _number("load", "half_angle", "Half angle ε [°]", (1.0, 80.0), 0.5, "0.[000000]"),
 }
 _IN_RADIANS = replace(
     _LOADS["half_angle"],
@@ -73,14 +75,17 @@ class JointControls:
     ) -> None:
         self._changed, self._refused, self._loaded = changed, refused, loaded
         self._putting = False
+        self._screen: Screen
         self._file: JointFile
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
-        self.preset = pn.widgets.Select(label="Start from", options=[_PRESET, *joints], **wide)
+        self.preset = pn.widgets.Select(label="Start from", options=[_PRESET, *joints], stylesheets=inputs(), **wide)
         self.sliders = {name: Slider(spec, name, self._typed) for name, spec in _NUMBERS.items()}
         self.massive = pn.widgets.Checkbox(label="massive socket (L = ∞)")
-        self.liner = pn.widgets.Select(label="Liner", options=[_OWN, *materials], **wide)
-        self.ball = pn.widgets.Select(label="Ball", options=[_RIGID, _OWN, *materials], **wide)
-        self.kind = pn.widgets.RadioButtonGroup(label="Load given as", options=_LOAD_NAMES, **wide)
+        self.liner = pn.widgets.Select(label="Liner", options=[_OWN, *materials], stylesheets=inputs(), **wide)
+        self.ball = pn.widgets.Select(label="Ball", options=[_RIGID, _OWN, *materials], stylesheets=inputs(), **wide)
+        self.kind = pn.widgets.RadioButtonGroup(
+            label="Load given as", options=_LOAD_NAMES, stylesheets=inputs(), **wide
+        )
         self.load = Slider(_LOADS["force"], "load", self._typed)
         self.backing = pn.pane.HTML("", **wide)
         self._watch()
@@ -119,7 +124,7 @@ class JointControls:
 
     def _put(self, screen: Screen) -> None:
         file, joint = screen.file, screen.file.joint
-        self._file = file
+        self._screen, self._file = screen, file
         ((kind, _),) = file.load.items()
         tables = tables_of(file)
         for part in ("liner", "ball"):
@@ -140,7 +145,7 @@ class JointControls:
         self.liner.value = _chosen(tables_of(file)["liner"])
         self.ball.value = _RIGID if joint.ball is None else _chosen(tables_of(file)["ball"])
         self.preset.value = joint.name if joints.get(joint.name) == joint else _PRESET
-        behind = "".join(f"<li>{layer}</li>" for layer in joint.backing)
+        behind = "".join(f"<li>{escape(str(layer))}</li>" for layer in joint.backing)
         self.backing.object = f"<p>Behind the liner:</p><ul>{behind}</ul>" if behind else ""
 
     def _edit(self, change: Callable[[Tables], None], load: dict[str, float] | None = None) -> None:
@@ -157,6 +162,7 @@ class JointControls:
                 tables.pop("source", None)
                 file = joint_of(tables)
         except ValueError as error:
+            self.put(self._screen)
             self._refused(str(error))
             return
         if load is not None:

@@ -41,7 +41,7 @@ class CurveChart:
             legend_field="name",
         )
         self.figure.scatter("x", "y", source=self._marks, color="colour", size=7)
-        tips = [("", "@name"), (x, f"$data_x{{{formats[0]}}}"), (y, f"$data_y{{{formats[1]}}}")]
+        tips = [("", "@name"), (x or "φ", f"$data_x{{{formats[0]}}}"), (y, f"$data_y{{{formats[1]}}}")]
         self.figure.add_tools(HoverTool(renderers=[lines], tooltips=tips, line_policy="interp"))
         legend = self.legend = self.figure.legend[0]
         legend.background_fill_alpha = legend.border_line_alpha = 0.0

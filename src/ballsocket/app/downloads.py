@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from html import escape
 from io import BytesIO, StringIO
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import panel as pn
 
@@ -67,7 +67,7 @@ class Downloads:
 
     def _numbers(self) -> bytes:
         stream = StringIO()
-        csv.writer(stream, lineterminator="\n").writerows(self._document().rows)
+        csv.writer(stream, lineterminator="\n").writerows(_safe(row) for row in self._document().rows())
         return stream.getvalue().encode("utf-8")
 
     def _joint(self) -> bytes:
@@ -84,4 +84,9 @@ class Downloads:
             f"<p>{escape(str(joint))}</p><pre>{escape(toml_of(screen.file))}</pre>"
             f"<p class='quiet'>Seen in the explorer: <code>{escape(link)}</code></p>"
         )
-        return html_page(title, lede, {"figure": ("Figure", figure), **document.sections}).encode("utf-8")
+        return html_page(title, lede, {"figure": ("Figure", figure), **document.sections()}).encode("utf-8")
+
+
+def _safe(row: Sequence[Any]) -> list[Any]:
+    """Text that a spreadsheet would take for a formula is marked as text."""
+    return [f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@") else cell for cell in row]

@@ -37,6 +37,8 @@ class SectionDrawing:
             fill_color={"field": "pressure", "transform": self._colours},
             line_color=None,
         )
+        self._corners = ColumnDataSource({"x": [], "y": []})
+        self.figure.scatter("x", "y", source=self._corners, alpha=0.0)
         bar = ColorBar(
             color_mapper=self._colours,
             title="contact pressure [MPa]",
@@ -48,8 +50,13 @@ class SectionDrawing:
         )
         self.figure.add_layout(bar, "right")
 
-    def show(self, file: JointFile, contact: Contact | None) -> None:
-        """Draw a joint; without a contact nothing is painted on it."""
+    def show(
+        self, file: JointFile, contact: Contact | None, extent: float | None = None, highest: float | None = None
+    ) -> None:
+        """Draw a joint; without a contact nothing is painted on it.
+
+        `extent` (mm) and `highest` (MPa) are those of several drawings that are to be compared, this joint's without.
+        """
         rings = _rings(file)
         parts = [_sector(inner, out, file.cup.rim) for out, inner in _pairs(file, rings)]
         fills = [self._palette.liner, *[self._palette.backing] * (len(parts) - 1)]
@@ -61,7 +68,14 @@ class SectionDrawing:
             "fill": [*fills, self._palette.ball],
         }
         self._petals.data = _petals(file, contact)
-        self._colours.high = 1.0 if contact is None else float(contact.max_pressure)
+        half = extent or extent_of(file)
+        self._corners.data = {"x": [-half, half], "y": [-half, half]}
+        self._colours.high = highest or (1.0 if contact is None else float(contact.max_pressure) or 1.0)
+
+
+def extent_of(file: JointFile) -> float:
+    """Half the width of the drawing in mm."""
+    return _rings(file)[-1][0]
 
 
 def _rings(file: JointFile) -> list[tuple[float, bool]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -29,7 +28,31 @@ MEMORY = 4_000_000_000
 """Bytes that its process may ask for."""
 
 _SHARES = (0.25, 0.5, 0.75, 1.0)
-PLACES = threading.BoundedSemaphore(max(1, available_cores()))
+
+
+class Line:
+    """Runs in the order in which they came; so many of the first are at work."""
+
+    def __init__(self, places: int) -> None:
+        self._places = places
+        self._runs: list[Run] = []
+
+    def __len__(self) -> int:
+        return len(self._runs)
+
+    def turn(self, run: Run) -> bool:
+        """Whether it may work; who is not in line stands behind the others."""
+        if run not in self._runs:
+            self._runs.append(run)
+        return self._runs.index(run) < self._places
+
+    def leave(self, run: Run) -> None:
+        """Make room."""
+        if run in self._runs:
+            self._runs.remove(run)
+
+
+LINE = Line(max(1, available_cores()))
 """As many runs at once as there are cores, whoever asks."""
 
 
@@ -79,12 +102,17 @@ class Run:
     _process: Any = field(default=None, init=False)
     _pipe: Connection | None = field(default=None, init=False)
     _start: float = field(default=0.0, init=False)
-    _placed: bool = field(default=False, init=False)
 
     def news(self) -> Reached | Judged | Refused | None:
         """What has happened since it was last asked; None if nothing. The last is `Judged` or `Refused`."""
-        if self._process is None and not self._begun():
-            return Reached(share=0.0, words="waiting for a free place: others are running")
+        if self._process is None:
+            if not LINE.turn(self):
+                return Reached(share=0.0, words="waiting for a free place: others are running")
+            try:
+                self._begin()
+            except OSError as error:
+                self.stop()
+                return Refused(why=f"no process could be started: {error.strerror or error}")
         assert self._pipe is not None
         if self._pipe.poll():
             try:
@@ -99,29 +127,23 @@ class Run:
             return Refused(why=f"stopped after {self.longest:g} s, the longest that a run may take here")
         return None
 
-    def _begun(self) -> bool:
-        if not PLACES.acquire(blocking=False):
-            return False
-        self._placed = True
+    def _begin(self) -> None:
         context = get_context("spawn")
-        self._pipe, there = context.Pipe(duplex=False)
-        self._process = context.Process(target=_judge, args=(there, self.file), daemon=True)
+        pipe, there = context.Pipe(duplex=False)
+        process = context.Process(target=_judge, args=(there, self.file), daemon=True)
         with one_thread_each():
-            self._process.start()
+            process.start()
         there.close()
-        self._start = time.monotonic()
-        return True
+        self._process, self._pipe, self._start = process, pipe, time.monotonic()
 
     def stop(self) -> None:
-        """End it, wherever it is, and give its place back."""
+        """End it, wherever it is, and give its place to the next."""
+        LINE.leave(self)
         if self._process is not None:
             self._process.kill()
             self._process.join()
         if self._pipe is not None:
             self._pipe.close()
-        if self._placed:
-            self._placed = False
-            PLACES.release()
 
 
 def _judge(pipe: Connection, file: JointFile) -> None:

@@ -56,6 +56,15 @@ class MapChart:
         self.figure.add_layout(self._bar, "right")
         self.figure.on_event("tap", lambda event: tapped(event.x, event.y))
 
+    def clear(self) -> None:
+        """Draw nothing."""
+        for source in (self._image, self._pale):
+            source.data = {"image": [], "x": [], "y": [], "dw": [], "dh": []}
+        self._doubt.data = self._here.data = {"x": [], "y": []}
+        nothing = numpy.zeros((3, 3))
+        for lines in (self._lines, self._ends):
+            lines.set_data(contour_data(*(numpy.arange(3.0),) * 2, nothing, [1.0], want_fill=False))
+
     def show(self, found: Any, screen: Screen) -> None:
         """Draw a map.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from html import escape
@@ -55,17 +56,28 @@ def margin(found: Any, screen: Screen) -> numpy.ndarray:
     return nearest
 
 
+def best(found: Any, screen: Screen) -> dict[str, float] | None:
+    """The parameters of the point with the least value among those that are allowed, if any is."""
+    fine = good(found, screen)
+    if not bool(fine.any()):
+        return None
+    place = found[screen.quantity].where(fine).argmin(...)
+    return {axis: float(found[axis].isel({axis: place[axis]})) for axis in (screen.across.name, screen.up.name)}
+
+
 def told(found: Any, screen: Screen) -> str:
     """What the map says, as HTML: the share that is allowed, and the least value there."""
-    fine = good(found, screen)
-    name = screen.quantity
-    words = [f"{100 * float(fine.mean()):.3g} % of the map is allowed by the limits."]
-    if bool(fine.any()):
-        least = found[name].where(fine)
-        place = least.argmin(...)
-        at = {axis: float(found[axis].isel({axis: place[axis]})) for axis in (screen.across.name, screen.up.name)}
-        where = ", ".join(f"{PARAMETERS[axis].symbol} {value:.4g} {_unit(axis)}" for axis, value in at.items())
-        words.append(f"Least {label(name)} there: <b>{float(least.min()) * factor(name):.4g}</b> at {escape(where)}.")
+    fine, point, name = good(found, screen), best(found, screen), screen.quantity
+    words = []
+    if screen.limits:
+        words.append(f"{100 * float(fine.mean()):.3g} % of the map is allowed by the limits.")
+    if point is not None:
+        where = ", ".join(
+            f"{PARAMETERS[axis].symbol} {value:.4g} {_unit(axis)}".strip() for axis, value in point.items()
+        )
+        least = float(found[name].sel(point)) * factor(name)
+        steps = ", ".join(f"{(axis.high - axis.low) / (_POINTS - 1):.2g}" for axis in (screen.across, screen.up))
+        words.append(f"Least {label(name)} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")
     if not bool(found.valid.all()):
         words.append("Crosses: the model is not to be trusted there.")
     if not bool(fine.all()):
@@ -103,7 +115,7 @@ def around(name: str, middle: float) -> Axis:
     return Axis(name=name, low=float(f"{middle / 2:.2g}"), high=float(f"{2 * middle:.2g}"))
 
 
-def joint_at(file: JointFile, chosen: dict[str, float]) -> JointFile:
+def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
     """The joint of a point of the map, to four digits; its load, where that is an axis."""
     rounded = {name: float(f"{value:.4g}") for name, value in chosen.items()}
     made, load, possible = pressable(file.joint, rounded)

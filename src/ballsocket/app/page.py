@@ -16,8 +16,8 @@ from ..files import JointFile, parse_joint
 from .controls import JointControls
 from .downloads import Downloads
 from .pressing import pressed
-from .screen import ANGLES, SIZES, START, Screen, link_of, read_link
-from .style import asset, html
+from .screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, link_of, read_link
+from .style import asset, html, inputs
 from .view import View
 from .views.compare import Compare
 from .views.design_map import DesignMap
@@ -50,12 +50,12 @@ class Page:
         self._controls = JointControls(lambda file: self.ask(file=file), self.refuse, self._same_load)
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self._view = pn.widgets.RadioButtonGroup(
-            label="view", options={kind.title: name for name, kind in _KINDS.items()}, **wide
+            label="view", options={kind.title: name for name, kind in _KINDS.items()}, stylesheets=inputs(), **wide
         )
         self._view.param.watch(lambda event: self.ask(view=event.new), "value")
-        self._angle = pn.widgets.RadioButtonGroup(label="angles in", options=list(ANGLES), **wide)
-        self._size = pn.widgets.RadioButtonGroup(label="balls by", options=list(SIZES), **wide)
-        self._angle.param.watch(lambda event: self._turn(event.new), "value")
+        self._angle = pn.widgets.RadioButtonGroup(label="angles in", options=list(ANGLES), stylesheets=inputs(), **wide)
+        self._size = pn.widgets.RadioButtonGroup(label="balls by", options=list(SIZES), stylesheets=inputs(), **wide)
+        self._angle.param.watch(lambda event: self.ask(angle=event.new), "value")
         self._size.param.watch(lambda event: self.ask(size=event.new), "value")
         self._downloads = Downloads(self)
         self._link = TextInput(name="link", value=link_of(self.screen), visible=False)
@@ -74,7 +74,9 @@ class Page:
         if not query:
             return START
         try:
-            return read_link(parse_qs(query, keep_blank_values=True, max_num_fields=200))
+            if len(query) > 3 * LONGEST_LINK:  # a character may take three in an address
+                raise ValueError(f"it is longer than {LONGEST_LINK} characters")
+            return read_link(parse_qs(query, keep_blank_values=True))
         except ValueError as error:
             self.refuse(f"This link cannot be read: {error}")
             return START
@@ -88,18 +90,12 @@ class Page:
         screen = replace(self.screen, **changes)
         if screen == self.screen:
             return
+        if len(link_of(screen)) > LONGEST_LINK:
+            self.refuse(f"a link to this would be longer than {LONGEST_LINK} characters: shorten the names in the file")
+            return
         self.screen = screen
         self.refuse("")
         self._refresh()
-
-    def _turn(self, angle: str) -> None:
-        """Axes have their units from the beginning: views are made anew."""
-        if angle == self.screen.angle:
-            return
-        self.leave()
-        self._views.clear()
-        self.main.clear()
-        self.ask(angle=angle)
 
     def _refresh(self) -> None:
         with pn.io.hold():
@@ -137,11 +133,8 @@ class Page:
         return {kind: float(f"{value:.6g}") if value > 0 else usual[kind]}
 
     def _uploaded(self, text: str) -> None:
-        """A joint file from the browser, by the reader of the command line."""
-        if not text:
-            return
-        self._upload.value = ""
-        raw = text.encode("utf-8")
+        """A joint file from the browser, after a line that makes each upload another; by the reader of files."""
+        raw = text.partition("\n")[2].encode("utf-8")
         if len(raw) > _UPLOAD:
             self.refuse(f"the file is larger than {_UPLOAD} bytes; a joint file is a few lines")
             return

@@ -16,17 +16,18 @@ _ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 60))
 
 
 class PressCharts:
-    """Two charts; angles in "degrees" or "radians"."""
+    """Two charts."""
 
-    def __init__(self, palette: Palette, angle: str) -> None:
-        unit, self._turn = ("°", degrees(1.0)) if angle == "degrees" else ("rad", 1.0)
-        self._pressure = CurveChart(f"polar angle φ [{unit}]", "contact pressure [MPa]", palette, ("0.00", "0.00"))
+    def __init__(self, palette: Palette) -> None:
+        self._pressure = CurveChart("", "contact pressure [MPa]", palette, ("0.00", "0.00"))
         self._force = CurveChart("indentation d [µm]", "force F [kN]", palette, ("0.0", "0.00"))
         self._force.legend.visible = False  # that of the pressure says it
         self.figures = (self._pressure.figure, self._force.figure)
 
-    def show(self, contacts: Mapping[str, Contact], lines: Mapping[str, Line]) -> None:
-        """Draw contacts that have an answer, each with the curve of its own model."""
+    def show(self, contacts: Mapping[str, Contact], lines: Mapping[str, Line], angle: str) -> None:
+        """Draw contacts that have an answer, each with the curve of its own model; angles in "degrees" or "radians"."""
+        unit, turn = ("°", degrees(1.0)) if angle == "degrees" else ("rad", 1.0)
+        self._pressure.figure.xaxis.axis_label = f"polar angle φ [{unit}]"
         if not contacts:
             self._pressure.show({}, 1.0, 1.0)
             self._force.show({}, 1.0, 1.0)
@@ -34,17 +35,18 @@ class PressCharts:
         each = contacts.values()
         widest = min(max(float(contact.half_angle) for contact in each), pi / 2)
         highest = max(float(contact.max_pressure) for contact in each)
-        profiles = {name: self._profile(contact, lines[name]) for name, contact in contacts.items()}
-        self._pressure.show(profiles, rounded_up(1.02 * widest * self._turn), rounded_up(1.05 * highest))
+        profiles = {name: _profile(contact, turn, lines[name]) for name, contact in contacts.items()}
+        self._pressure.show(profiles, rounded_up(1.02 * widest * turn), rounded_up(1.05 * highest))
         largest = rounded_up(1.2 * max(float(contact.force) for contact in each))
         deepest = max(float(contact.indentation) for contact in each)
         curves = {name: _curve(contact, largest, lines[name]) for name, contact in contacts.items()}
         self._force.show(curves, rounded_up(1.3e3 * deepest), largest / 1e3)
 
-    def _profile(self, contact: Contact, line: Line) -> Curve:
-        angle = min(float(contact.half_angle), pi / 2) * _ANGLES
-        trusted = numpy.full(angle.shape, bool(contact.valid))
-        return Curve(angle * self._turn, numpy.asarray(contact.pressure(angle)), trusted, line)
+
+def _profile(contact: Contact, turn: float, line: Line) -> Curve:
+    angle = min(float(contact.half_angle), pi / 2) * _ANGLES
+    trusted = numpy.full(angle.shape, bool(contact.valid))
+    return Curve(angle * turn, numpy.asarray(contact.pressure(angle)), trusted, line)
 
 
 def _curve(contact: Contact, largest: float, line: Line) -> Curve:

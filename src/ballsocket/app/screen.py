@@ -15,6 +15,7 @@ from ..joint_text import Tables, tables_of
 from ..phrases import limit_of, range_of
 from ..presets import joints
 from ..studies.limits import Limit
+from ..studies.parameters import PARAMETERS
 
 VIEWS = ("press", "map", "compare", "judge")
 THEMES = ("light", "dark")
@@ -24,6 +25,9 @@ QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press
 
 MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")
 """What a map can show."""
+
+AXES = tuple(name for name in PARAMETERS if name != "half_angle")
+"""What a map can vary."""
 
 LONGEST_LINK = 8000
 BESIDE = 2
@@ -40,8 +44,11 @@ class Axis:
     high: float
 
     def __post_init__(self) -> None:
-        if not self.low < self.high:
-            raise ValueError(f"{self.name} from {self.low:g} to {self.high:g} is no range: it must go upwards")
+        check_names([self.name], AXES, "among the axes of a map")
+        if not -inf < self.low < self.high < inf:
+            raise ValueError(
+                f"{self.name} from {self.low:g} to {self.high:g} is no range: it must go upwards, to an end"
+            )
 
     def __str__(self) -> str:
         return f"{self.name}={_bare(self.name, self.low)}..{_bare(self.name, self.high)}"
@@ -77,7 +84,7 @@ class Screen:
     file: JointFile
     beside: tuple[JointFile, ...] = ()
     answered_by: str = REFERENCE
-    shown: tuple[str, ...] = (REFERENCE, "hess-forsbach", "refined", "hertz")
+    shown: tuple[str, ...] = (REFERENCE, "hess-forsbach", "bartel", "hertz")
     across: Axis = Axis(name="ball_radius", low=11.0, high=23.0)
     up: Axis = Axis(name="liner_thickness", low=3.0, high=15.0)
     map_model: str = "tabulated"
@@ -180,6 +187,8 @@ def _joint(flat: Mapping[str, str]) -> JointFile:
         check_names([flat["preset"]], joints, "as preset")
         check_names(tables, ("cup", "load"), "beside a preset")
         tables |= tables_of(JointFile(joints[flat["preset"]], {}))
+    elif not set(tables) - {"cup", "load"}:
+        tables |= tables_of(JointFile(START.file.joint, {}))
     file = joint_of(tables)
     return file if file.load else replace(file, load=START.file.load)
 

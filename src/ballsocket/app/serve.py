@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 from collections.abc import Sequence
 from html import escape
+from secrets import token_bytes
 from typing import Any
 
 import panel as pn
@@ -14,7 +15,7 @@ from .page import Page, template
 from .pressing import pressed
 from .screen import START
 
-LOOPBACK = "127.0.0.1"
+LOOPBACK, EVERYWHERE = "127.0.0.1", "0.0.0.0"
 MOST_SESSIONS = 200
 """Pages that are open at once."""
 
@@ -49,12 +50,14 @@ def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (
     pn.extension(notifications=False)
     pressed(START.file, (START.answered_by, *START.shown))  # what is loaded at the first press is loaded now
     port = port or _free_port(address)
-    own = [f"{LOOPBACK}:{port}", f"localhost:{port}"]
+    own = [f"{name}:{port}" for name in dict.fromkeys((LOOPBACK, "localhost", address))]
     return pn.serve(
         {"/": _session},
         port=port,
         address=address,
         websocket_origin=[*own, *origins],
+        sign_sessions=True,  # or whoever made up a session's name could share it with the next one who follows a link
+        secret_key=token_bytes(32),
         show=show,
         start=False,
         title="ballsocket",

@@ -9,7 +9,7 @@ from typing import Any
 
 import panel as pn
 
-from .style import asset
+from .style import asset, inputs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,12 +46,13 @@ class Slider:
 
     def __init__(self, spec: Number, name: str, typed: Callable[[Number, float], None]) -> None:
         self._spec, self._typed, self._putting = spec, typed, False
+        self._value = spec.low
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self._box = pn.widgets.FloatInput(
             label=spec.label,
             value=spec.low,
             step=spec.step,
-            stylesheets=[asset("box.css")],
+            stylesheets=[asset("box.css"), *inputs()],
             margin=(4, 10, 0, 10),
             **wide,
         )
@@ -71,12 +72,16 @@ class Slider:
         self.panel = pn.Column(self._box, self._bar, css_classes=["slider", name], **wide)
 
     def _changed(self, event: Any) -> None:
-        if not self._putting and event.new is not None:
+        if self._putting:
+            return
+        if event.new is None or event.new != event.new:  # an emptied box: what was there is still true
+            self.put(self._spec, self._value)
+        else:
             self._typed(self._spec, event.new)
 
     def put(self, spec: Number, value: float) -> None:
         """Show a number of the tables; what lies outside the usual range widens it, and what is being moved stays."""
-        shown = value * spec.factor
+        self._value, shown = value, value * spec.factor
         if spec is self._spec and _same(shown, self._box.value) == self._box.value == self._bar.value:
             return
         self._putting, self._spec = True, spec

@@ -18,3 +18,8 @@ def asset(name: str) -> str:
 def html(content: str = "") -> Any:
     """A place for HTML in the page's style."""
     return pn.pane.HTML(content, sizing_mode="stretch_width", stylesheets=[asset("parts.css")])
+
+
+def inputs() -> list[str]:
+    """The style of lists, boxes and rows of buttons: readable on dark pages too, and what is chosen stands out."""
+    return [asset("inputs.css")]

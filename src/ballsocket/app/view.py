@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from .screen import Screen
@@ -16,13 +16,14 @@ Ask = Callable[..., None]
 class Document:
     """What is on the screen, for a file.
 
-    `picture` draws it as "png" or "svg" with the figures of the command line, where there is something to draw; `rows`
-    are a table with its head first; `sections` are the parts of a page of HTML, a title and HTML by their id.
+    Each is made when it is asked for. `picture` draws it as "png" or "svg" with the figures of the command line, where
+    there is something to draw; `rows` are a table with its head first; `sections` are the parts of a page of HTML, a
+    title and HTML by their id.
     """
 
     picture: Callable[[str], bytes] | None = None
-    rows: Sequence[Sequence[Any]] = ()
-    sections: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    rows: Callable[[], Sequence[Sequence[Any]]]
+    sections: Callable[[], Mapping[str, tuple[str, str]]]
 
 
 class View(Protocol):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from html import escape
-from math import floor, isnan, log10
+from math import floor, isfinite, isnan, log10
 from typing import Any
 
 from ..compare import REFERENCE, Comparison
@@ -64,7 +64,10 @@ def _in_units(column: Column, angle: str) -> Column:
 
 
 def number_text(value: float) -> str:
-    return "no answer" if isnan(value) else f"{value:.{_DIGITS}g}"
+    """Four digits; what has no answer, and what is infinite, in words."""
+    if isnan(value):
+        return "no answer"
+    return f"{value:.{_DIGITS}g}" if isfinite(value) else "∞"
 
 
 def headline(contact: Contact, angle: str) -> str:
@@ -125,14 +128,16 @@ def _row(comparison: Comparison, name: str, shown: list[Quantity], palette: Pale
 
 
 def _apart(deviation: Mapping[str, Any] | None, name: str) -> str:
-    if deviation is None or isnan(float(deviation[name])):
-        return ""
-    return f"<small>{percent(float(deviation[name]), '+')}</small>"
+    return "" if deviation is None else f"<small>{percent(float(deviation[name]), '+')}</small>"
 
 
 def percent(share: float, sign: str = "") -> str:
     """A small share of one, in percent, without more digits than it deserves."""
+    if not isfinite(share):
+        return ""
+    if share == 0:
+        return "0 %"
     if abs(share) < 1e-5:
-        return "below 0.001 %" if not sign else "0 %"
+        return "below 0.001 %"
     digits = max(0, 1 - floor(log10(abs(100 * share))))
     return f"{100 * share:{sign}.{digits}f} %"

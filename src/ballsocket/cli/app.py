@@ -21,11 +21,14 @@ def explorer(
 ) -> None:
     """Open the explorer: sliders, drawings, maps and finite elements in a browser."""
     needs("app", "panel", "tomli_w", "skfem", "xarray")
-    from ..app.serve import LOOPBACK, server  # takes its time to import
+    from ..app.serve import EVERYWHERE, LOOPBACK, server  # takes its time to import
 
     served = server(port, address, origin or (), show=browser)
-    typer.echo(f"http://{address}:{served.port}/ (Ctrl-C ends it)")
+    name = LOOPBACK if address == EVERYWHERE else address
+    typer.echo(f"http://{name}:{served.port}/ (Ctrl-C ends it)")
     if address not in (LOOPBACK, "localhost"):
         typer.echo("ballsocket: others can reach this page; it has no passwords", err=True)
+    if address == EVERYWHERE and not origin:
+        typer.echo("ballsocket: browsers elsewhere need the name that they use: --origin host:port", err=True)
     served.start()
     served.io_loop.start()

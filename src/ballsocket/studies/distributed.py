@@ -101,7 +101,7 @@ def local_cluster(workers: int, retries: int = 3) -> Iterator[LocalCluster]:
     """Workers on this machine, of one thread each, which keep the memory that they will need again.
 
     Dask has its workers hand memory back to the system at every turn, which makes exact presses a third slower;
-    workers elsewhere do without if MALLOC_TRIM_THRESHOLD_ is large in their environment.
+    workers elsewhere do without if `MALLOC_TRIM_THRESHOLD_` is large in their environment.
     """
     import dask
     from distributed import LocalCluster

@@ -83,6 +83,8 @@ def read_study(path: str | Path) -> StudyFile:
         raise ValueError(f"{path.name} is not text in UTF-8: {error.reason} at byte {error.start}") from error
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{path.name} is not TOML: {error}") from error
+    except RecursionError as error:
+        raise ValueError(f"{path.name} is no study file: its brackets are nested too deeply") from error
     try:
         return _study(content, path.parent)
     except ValueError as error:

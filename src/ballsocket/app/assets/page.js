@@ -15,7 +15,7 @@
   function upload(text) {
     for (const doc of Bokeh.documents) {
       const model = doc.get_model_by_name("upload");
-      if (model) { model.value = text; return; }
+      if (model) { model.value = `${Date.now()}\n${text}`; return; }
     }
   }
   // sliders are made of parts that do not know their label: a screen reader is told it

@@ -10,19 +10,19 @@ from typing import Any
 import panel as pn
 
 from ...all_models import catalogue
-from ...compare import force_curves
+from ...compare import force_curves, relative
 from ...contact import Contact
 from ...describe import COLUMNS
 from ...figures import press_figure
 from ...files import JointFile
 from ...html_page import drawn, table
 from ...presets import joints
-from ..drawing import SectionDrawing
+from ..drawing import SectionDrawing, extent_of
 from ..look import PALETTES, numbered
 from ..press_charts import PressCharts
 from ..pressing import pressed
 from ..screen import BESIDE, Screen
-from ..style import html
+from ..style import html, inputs
 from ..view import Ask, Document
 from ..words import number_text, percent, quantities
 
@@ -38,7 +38,9 @@ class Compare:
         self._ask, self._screen = ask, screen
         self._palette = PALETTES[screen.theme]
         self._keep = pn.widgets.Button(label="Put this joint beside", width=180)
-        self._preset = pn.widgets.Select(label="Put beside", options=[_CHOOSE, *joints], width=220)
+        self._preset = pn.widgets.Select(
+            label="Put beside", options=[_CHOOSE, *joints], width=220, stylesheets=inputs()
+        )
         self._drop = [pn.widgets.Button(label="", width=200, visible=False) for _ in range(BESIDE)]
         self._keep.on_click(lambda event: self._add(self._screen.file))
         self._preset.param.watch(self._chosen, "value")
@@ -46,7 +48,7 @@ class Compare:
             button.on_click(lambda event, number=number: self._remove(number))
         self._told, self._table = html(), html()
         self._drawings = [SectionDrawing(self._palette, 260) for _ in range(BESIDE + 1)]
-        self._charts = PressCharts(self._palette, screen.angle)
+        self._charts = PressCharts(self._palette)
         self._heads = [html() for _ in self._drawings]
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self._places = [
@@ -95,13 +97,15 @@ class Compare:
         )
         contacts = answers(files, screen.answered_by)
         self._table.object = _side_by_side(files, contacts, screen)
+        extent = max(map(extent_of, files.values()))
+        highest = max((float(contact.max_pressure) for contact in contacts.values()), default=1.0)
         for number, (place, drawing) in enumerate(zip(self._places, self._drawings, strict=True)):
             place.visible = number < len(files)
             if place.visible:
                 name = list(files)[number]
                 self._heads[number].object = f"<h3>{escape(name)}</h3>"
-                drawing.show(files[name], contacts.get(name))
-        self._charts.show(contacts, {name: numbered(list(files).index(name)) for name in contacts})
+                drawing.show(files[name], contacts.get(name), extent, highest)
+        self._charts.show(contacts, {name: numbered(list(files).index(name)) for name in contacts}, screen.angle)
 
     def document(self, screen: Screen) -> Document:
         files = labelled(screen)
@@ -117,8 +121,8 @@ class Compare:
             picture=(lambda form: drawn(press_figure(contacts, force_curves(contacts, models), title), form))
             if contacts
             else None,
-            rows=rows,
-            sections={"joints": ("Joints", table(*_text_table(files, contacts, screen)))},
+            rows=lambda: rows,
+            sections=lambda: {"joints": ("Joints", table(*_text_table(files, contacts, screen)))},
         )
 
     def leave(self) -> None:
@@ -157,11 +161,14 @@ _DIMENSIONS = (
 def _text_table(
     files: Mapping[str, JointFile], contacts: Mapping[str, Contact], screen: Screen
 ) -> tuple[list[str], list[list[str]]]:
-    """A column a joint; answers of the others with their difference from the first."""
+    """A column a joint; answers with their difference from the first that was put beside."""
     rows = [[head, *(f"{float(getattr(file.joint, name)):g}" for file in files.values())] for head, name in _DIMENSIONS]
+    if screen.size == "diameter":
+        rows[0] = ["2 R1 [mm]", *(f"{2 * float(file.joint.ball_radius):g}" for file in files.values())]
     rows.append(["liner", *(str(file.joint.liner) for file in files.values())])
     rows.append(["ball", *("rigid" if file.joint.ball is None else str(file.joint.ball) for file in files.values())])
-    first = contacts.get(next(iter(files)))
+    reference = list(files)[min(1, len(files) - 1)]
+    first = contacts.get(reference)
     for each in quantities(screen.angle):
         row = [f"{each.title} {each.head}"]
         for name in files:
@@ -170,7 +177,8 @@ def _text_table(
                 row.append("no answer")
                 continue
             number = each.number(contact)
-            apart = "" if first is None or contact is first else f" ({percent(number / each.number(first) - 1, '+')})"
+            share = "" if first is None or contact is first else percent(relative(number, each.number(first)), "+")
+            apart = f" ({share})" if share else ""
             row.append(f"{number_text(number)}{apart}")
         rows.append(row)
     rows.append(["trust it here?", *(_trusted(contacts.get(name)) for name in files)])

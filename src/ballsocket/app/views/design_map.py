@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from html import escape
 from math import degrees, inf
 from typing import Any
@@ -17,9 +19,9 @@ from ...study_figures import design_map, label
 from ...study_tables import map_rows
 from ..look import PALETTES
 from ..map_chart import MapChart
-from ..mapping import around, joint_at, limits_of, mapped, now, told
-from ..screen import MAPPED, QUICK, Axis, Screen
-from ..style import html
+from ..mapping import around, best, joint_at, limits_of, mapped, now, told
+from ..screen import AXES, MAPPED, QUICK, Axis, Screen
+from ..style import html, inputs
 from ..view import Ask, Document
 
 
@@ -30,18 +32,24 @@ class DesignMap:
 
     def __init__(self, ask: Ask, screen: Screen) -> None:
         self._ask, self._screen, self._putting = ask, screen, False
-        names = [name for name in PARAMETERS if name != "half_angle"]
-        self._across = pn.widgets.Select(label="Across", options=names, width=170)
-        self._up = pn.widgets.Select(label="Upwards", options=names, width=170)
+        titles = {PARAMETERS[name].title: name for name in AXES}
+        self._across = pn.widgets.Select(label="Across", options=titles, width=200, stylesheets=inputs())
+        self._up = pn.widgets.Select(label="Upwards", options=titles, width=200, stylesheets=inputs())
         self._ranges = {
-            "across": pn.widgets.TextInput(label="from..to", width=150),
-            "up": pn.widgets.TextInput(label="from..to", width=150),
+            "across": pn.widgets.TextInput(label="from..to", width=150, stylesheets=inputs()),
+            "up": pn.widgets.TextInput(label="from..to", width=150, stylesheets=inputs()),
         }
-        self._quantity = pn.widgets.Select(label="Shown", options={label(name): name for name in MAPPED}, width=220)
-        self._model = pn.widgets.Select(label="Answered by", options=list(QUICK), width=170)
-        self._limits = pn.widgets.TextInput(
-            label="Limits, with commas", placeholder="outer_radius<=26 mm, liner_thickness>=4 mm", width=330
+        self._quantity = pn.widgets.Select(
+            label="Shown", options={label(name): name for name in MAPPED}, width=220, stylesheets=inputs()
         )
+        self._model = pn.widgets.Select(label="Answered by", options=list(QUICK), width=170, stylesheets=inputs())
+        self._limits = pn.widgets.TextInput(
+            label="Limits, with commas",
+            placeholder="outer_radius<=26 mm, liner_thickness>=4 mm",
+            width=330,
+            stylesheets=inputs(),
+        )
+        self._best = pn.widgets.Button(label="Press the best joint", width=180)
         self._watch()
         self._refused, self._told = html(), html()
         self._chart = MapChart(PALETTES[screen.theme], self._tapped)
@@ -62,63 +70,79 @@ class DesignMap:
             self._refused,
             pn.pane.Bokeh(self._chart.figure, **wide),
             self._told,
+            self._best,
             **wide,
         )
 
     def _watch(self) -> None:
         for name, choice in (("across", self._across), ("up", self._up)):
-            choice.param.watch(lambda event, name=name: self._axis(name, event.new), "value")
-            self._ranges[name].param.watch(lambda event, name=name: self._range(name, event.new), "value")
-        self._quantity.param.watch(lambda event: self._change(quantity=event.new), "value")
-        self._model.param.watch(lambda event: self._change(map_model=event.new), "value")
-        self._limits.param.watch(self._limited, "value")
+            self._told_by(choice, partial(self._axis, name))
+            self._told_by(self._ranges[name], partial(self._range, name))
+        self._told_by(self._quantity, lambda event: self._change(quantity=event.new))
+        self._told_by(self._model, lambda event: self._change(map_model=event.new))
+        self._told_by(self._limits, self._limited)
+        self._best.on_click(lambda event: self._press_best())
+
+    def _told_by(self, widget: Any, changed: Callable[[Any], None]) -> None:
+        """Only what a user changes counts."""
+        widget.param.watch(lambda event: None if self._putting else changed(event), "value")
 
     def _change(self, **fields: Any) -> None:
-        if self._putting:
-            return
+        """Ask for another map, if there is one; else say why not, and leave all as it is."""
         try:
-            replace(self._screen, **fields)
+            wanted = replace(self._screen, **fields)
+            mapped(wanted.file, wanted.across, wanted.up, wanted.map_model)
         except ValueError as error:
-            self._refuse(str(error))
+            self._refuse(error)
             return
         self._ask(**fields)
 
-    def _refuse(self, sentence: str) -> None:
-        self._refused.object = f"<p class='refused' role='alert'>{escape(sentence)}</p>" if sentence else ""
+    def _refuse(self, error: ValueError) -> None:
+        self._put(self._screen)
+        self._refused.object = f"<p class='refused' role='alert'>{escape(str(error))}</p>"
 
-    def _axis(self, which: str, name: str) -> None:
+    def _axis(self, which: str, event: Any) -> None:
         """Another parameter, over half to twice what the joint has now."""
-        if not self._putting:
-            self._change(**{which: around(name, now(self._screen.file, name))})
+        self._change(**{which: around(event.new, now(self._screen.file, event.new))})
 
-    def _range(self, which: str, text: str) -> None:
-        if self._putting:
-            return
+    def _range(self, which: str, event: Any) -> None:
         name = getattr(self._screen, which).name
         try:
-            _, low, high = range_of(f"{name}={text}")
+            _, low, high = range_of(f"{name}={event.new}")
+            axis = Axis(name=name, low=low, high=high)
         except ValueError as error:
-            self._refuse(str(error))
+            self._refuse(error)
             return
-        self._change(**{which: Axis(name=name, low=low, high=high)})
+        self._change(**{which: axis})
 
     def _limited(self, event: Any) -> None:
-        if self._putting:
-            return
         try:
             limits = tuple(limit_of(phrase) for phrase in event.new.split(",") if phrase.strip())
         except ValueError as error:
-            self._refuse(str(error))
+            self._refuse(error)
             return
         self._change(limits=limits)
 
     def _tapped(self, x: float, y: float) -> None:
-        """The joint at the point that was clicked goes on the screen."""
-        chosen = {self._screen.across.name: x, self._screen.up.name: y}
+        """The joint at the point that was clicked goes on the screen; beside the map there is none."""
+        across, up = self._screen.across, self._screen.up
+        if across.low <= x <= across.high and up.low <= y <= up.high:
+            self._press({across.name: x, up.name: y})
+
+    def _press_best(self) -> None:
+        point = best(
+            mapped(self._screen.file, self._screen.across, self._screen.up, self._screen.map_model), self._screen
+        )
+        if point is None:
+            self._refuse(ValueError("no point of the map is allowed by the limits"))
+        else:
+            self._press(point)
+
+    def _press(self, point: Mapping[str, float]) -> None:
         try:
-            file = joint_at(self._screen.file, chosen)
+            file = joint_at(self._screen.file, point)
         except ValueError as error:
-            self._refuse(str(error))
+            self._refuse(error)
             return
         self._ask(file=file, view="press")
 
@@ -129,9 +153,11 @@ class DesignMap:
             found = mapped(screen.file, screen.across, screen.up, screen.map_model)
             self._chart.show(found, screen)
         except ValueError as error:
-            self._refuse(str(error))
+            self._chart.clear()
+            self._told.object = ""
+            self._refuse(error)
             return
-        self._refuse("")
+        self._refused.object = ""
         self._told.object = told(found, screen)
 
     def _put(self, screen: Screen) -> None:
@@ -150,13 +176,16 @@ class DesignMap:
 
     def document(self, screen: Screen) -> Document:
         found = mapped(screen.file, screen.across, screen.up, screen.map_model)
-        flat = found.to_dataframe().reset_index()
         limits = list(limits_of(screen))
-        heads, rows = map_rows(found, limits)
+
+        def rows() -> list[list[Any]]:
+            flat = found.to_dataframe().reset_index()
+            return [list(flat.columns), *flat.to_numpy(dtype=object).tolist()]
+
         return Document(
             picture=lambda form: drawn(design_map(found, limits), form),
-            rows=[list(flat.columns), *flat.to_numpy(dtype=object).tolist()],
-            sections={"map": ("Design map", table(heads, rows))},
+            rows=rows,
+            sections=lambda: {"map": ("Design map", table(*map_rows(found, limits)))},
         )
 
     def leave(self) -> None:

@@ -9,13 +9,14 @@ from typing import Any
 
 import panel as pn
 
+from ...compare import relative
 from ...fem.cup import Interface
 from ...files import JointFile, read_cup
 from ...html_page import picture, table
 from ...joint_text import cup_table
 from ..judging import LONGEST, Judged, Reached, Refused, Run
 from ..screen import Screen
-from ..style import html
+from ..style import html, inputs
 from ..view import Ask, Document
 from ..words import number_text, percent, quantities
 
@@ -35,10 +36,10 @@ class Judge:
         self._go = pn.widgets.Button(label="Run finite elements", color="primary", width=180)
         self._halt = pn.widgets.Button(label="Stop", width=90, disabled=True)
         self._bar = pn.indicators.Progress(value=0, max=100, width=220, visible=False)
-        self._arc = pn.widgets.FloatInput(label="Arc of cover [°]", start=40, end=340, step=5, width=140)
-        self._chamfer = pn.widgets.FloatInput(label="Chamfer [mm]", start=0, step=0.5, width=120)
+        self._arc = pn.widgets.FloatInput(label="Arc of cover [°]", step=5, width=140, stylesheets=inputs())
+        self._chamfer = pn.widgets.FloatInput(label="Chamfer [mm]", step=0.5, width=120, stylesheets=inputs())
         self._interface = pn.widgets.Select(
-            label="Liner on its backing", options=[one.value for one in Interface], width=160
+            label="Liner on its backing", options=[one.value for one in Interface], width=160, stylesheets=inputs()
         )
         self._said, self._numbers, self._picture = html(), html(), html()
         self._go.on_click(lambda event: self._begin())
@@ -57,15 +58,18 @@ class Judge:
 
     def show(self, screen: Screen) -> None:
         self._screen = screen
-        self._putting = True
-        cup = screen.file.cup
-        self._arc.value, self._chamfer.value = round(degrees(cup.arc_of_cover), 9), cup.chamfer
-        self._interface.value = cup.interface.value
-        self._putting = False
+        self._put(screen)
         if self._run is None:
             self._say(self._state())
         if self._found is not None:
             self._numbers.object = _numbers(self._found[1], screen)
+
+    def _put(self, screen: Screen) -> None:
+        """Set the cup's inputs, without an answer."""
+        self._putting, cup = True, screen.file.cup
+        self._arc.value, self._chamfer.value = round(degrees(cup.arc_of_cover), 9), cup.chamfer
+        self._interface.value = cup.interface.value
+        self._putting = False
 
     def _state(self) -> str:
         if self._found is None:
@@ -81,11 +85,12 @@ class Judge:
         self._said.object = f"<p class='refused' role='alert'>{escape(why)}</p>"
 
     def _cup(self, key: str, value: Any) -> None:
-        if self._putting or value is None:
+        if self._putting:
             return
         try:
             cup = read_cup({**cup_table(self._screen.file.cup), key: value})
         except ValueError as error:
+            self._put(self._screen)
             self._refuse(str(error))
             return
         self._ask(file=replace(self._screen.file, cup=cup))
@@ -100,6 +105,9 @@ class Judge:
 
     def _hear(self) -> None:
         if self._run is None:
+            return
+        if not _looked_at():
+            self._ended()
             return
         news = self._run.news()
         if isinstance(news, Reached):
@@ -141,12 +149,19 @@ class Judge:
         shown = picture(judged.png, "mesh, von Mises stress, and pressure beside the exact one")
         return Document(
             picture=lambda form: judged.svg if form == "svg" else judged.png,
-            rows=[heads, *rows],
-            sections={"judge": ("Finite elements", body + shown)},
+            rows=lambda: [heads, *rows],
+            sections=lambda: {"judge": ("Finite elements", body + shown)},
         )
 
     def leave(self) -> None:
         self._ended()
+
+
+def _looked_at() -> bool:
+    """Whether somebody still has the page open: nobody else waits for an answer."""
+    document = pn.state.curdoc
+    context = None if document is None else document.session_context
+    return context is None or context.session is None or context.session.connection_count > 0
 
 
 def _numbers(judged: Judged, screen: Screen) -> str:
@@ -163,7 +178,7 @@ def _numbers(judged: Judged, screen: Screen) -> str:
             row += ["–", "–"]
         else:
             exact = judged.exact[name] * turn
-            row += [number_text(exact), percent(value / exact - 1, "+")]
+            row += [number_text(exact), percent(float(relative(value, exact)), "+")]
         rows.append(row)
     notes = "".join(f"<li>{escape(note)}</li>" for note in judged.notes)
     heads = ["", "finite elements", "their error", "exact, a whole shell", "difference"]

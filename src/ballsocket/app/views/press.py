@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import Any
 
 import panel as pn
@@ -16,7 +17,7 @@ from ..look import PALETTES, line_of
 from ..press_charts import PressCharts
 from ..pressing import pressed
 from ..screen import Screen
-from ..style import html
+from ..style import html, inputs
 from ..view import Ask, Document
 from ..words import headline, models_table
 
@@ -33,7 +34,9 @@ class Press:
     def __init__(self, ask: Ask, screen: Screen) -> None:
         self._palette = PALETTES[screen.theme]
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
-        self._by = pn.widgets.Select(label="Answered by", options=list(_EVERY), value=screen.answered_by, width=220)
+        self._by = pn.widgets.Select(
+            label="Answered by", options=list(_EVERY), value=screen.answered_by, width=220, stylesheets=inputs()
+        )
         self._shown = pn.widgets.CheckBoxGroup(
             label="drawn", options=list(_EVERY), value=list(screen.shown), inline=True, stylesheets=[_WRAPPED], **wide
         )
@@ -41,7 +44,7 @@ class Press:
         self._shown.param.watch(lambda event: ask(shown=tuple(event.new)), "value")
         self._numbers, self._table = html(), html()
         self._drawing = SectionDrawing(self._palette)
-        self._charts = PressCharts(self._palette, screen.angle)
+        self._charts = PressCharts(self._palette)
         self.panel = pn.Column(
             self._by,
             self._numbers,
@@ -65,12 +68,12 @@ class Press:
         found = pressed(screen.file, names)
         by = found.contacts.get(screen.answered_by)
         if by is None:
-            self._numbers.object = f"<p class='trust no'>✗ {found.missing[screen.answered_by]}</p>"
+            self._numbers.object = f"<p class='trust no'>✗ {escape(found.missing[screen.answered_by])}</p>"
         else:
             self._numbers.object = headline(by, screen.angle)
         self._drawing.show(screen.file, None if by is None or by.status.failed else by)
         drawn = {name: found[name] for name in screen.shown if name in answered(found)}
-        self._charts.show(drawn, {name: line_of(name, self._palette) for name in drawn})
+        self._charts.show(drawn, {name: line_of(name, self._palette) for name in drawn}, screen.angle)
         self._fill_later(screen)
 
     def _fill_later(self, screen: Screen) -> None:
@@ -94,8 +97,8 @@ class Press:
             picture=(lambda form: page.drawn(press_figure(drawn, force_curves(drawn, catalogue)), form))
             if drawn
             else None,
-            rows=_rows(found),
-            sections={"models": ("Every model", page.table(_HEADS, found.rows()) + _notes(found))},
+            rows=lambda: _rows(found),
+            sections=lambda: {"models": ("Every model", page.table(_HEADS, found.rows()) + _notes(found))},
         )
 
     def leave(self) -> None:
@@ -115,4 +118,4 @@ def _rows(found: Comparison) -> list[list[Any]]:
 
 
 def _notes(found: Comparison) -> str:
-    return "".join(f"<p class='quiet'>{note}</p>" for note in found.notes())
+    return "".join(f"<p class='quiet'>{escape(note)}</p>" for note in found.notes())
