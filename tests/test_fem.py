@@ -96,6 +96,13 @@ def test_stresses_are_the_exact_ones(force):
         assert difference.max() < 0.01 * exact.max_pressure, name
 
 
+def test_the_peak_stress_of_a_massive_socket_lies_under_the_contact():
+    pivot = bs.joints["tilting-pad-pivot"]
+    ours, exact = (model.press(pivot, force=3000.0) for model in (bs.FiniteElement(meshes=1), bs.Exact()))
+    assert ours.peak_stress.von_mises == pytest.approx(exact.peak_stress.von_mises, rel=2e-2)
+    assert ours.peak_stress.depth == pytest.approx(exact.peak_stress.depth, abs=0.25)
+
+
 def test_displacements_of_the_bore_are_the_exact_ones():
     ours, exact = bs.FiniteElement(cup=FULL).press(RIGID, force=3000.0), bs.Exact().press(RIGID, force=3000.0)
     liner = ours.section["liner"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isinf
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -44,9 +45,11 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
     _draw_section(figure, left, contact)
     _draw_pressure(right, contact, exact)
     joint = contact.joint
+    thickness = float(joint.liner_thickness)
+    lined = "massive socket" if isinf(thickness) else f"liner {thickness:g} mm"
     figure.suptitle(
-        f"R1 {float(joint.ball_radius):g} mm, clearance {float(joint.clearance):g} mm, liner "
-        f"{float(joint.liner_thickness):g} mm; {contact.force:.4g} N, {contact.mesh.elements} elements",
+        f"R1 {float(joint.ball_radius):g} mm, clearance {float(joint.clearance):g} mm, {lined}; {contact.force:.4g} N, "
+        f"{contact.mesh.elements} elements",
         fontsize=10,
     )
     return figure

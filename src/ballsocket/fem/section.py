@@ -19,7 +19,7 @@ from .shapes import socket_shape
 
 Array = numpy.ndarray
 
-_CORNER = 0.25  # of the liner's thickness
+_CORNER = 0.25  # of the liner's thickness, or of the socket's radius where that is less
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -82,8 +82,8 @@ class Section:
         corner = numpy.isclose(liner.angle, liner.angle.max())
         corners = liner.place[:, [numpy.flatnonzero(corner)[i] for i in (0, -1)]]
         away = numpy.min(numpy.hypot(*(liner.place[..., None] - corners[:, None])), axis=-1)
-        thickness = liner.radius.max() - liner.radius.min()
-        at = int(numpy.argmax(numpy.where(away > _CORNER * thickness, liner.stress.von_mises, 0.0)))
+        size = min(liner.radius.max() - liner.radius.min(), liner.radius.min())  # a massive socket has no thickness
+        at = int(numpy.argmax(numpy.where(away > _CORNER * size, liner.stress.von_mises, 0.0)))
         return Peak(
             von_mises=float(liner.stress.von_mises[at]),
             depth=float(liner.radius[at]) - self.socket_radius,
