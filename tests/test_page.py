@@ -7,6 +7,7 @@ import ballsocket as bs
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
 from ballsocket.app import serve
+from ballsocket.app.mapping import mapped
 from ballsocket.app.page import Page
 from ballsocket.app.views.press import Press
 from ballsocket.joint_text import toml_of
@@ -48,6 +49,14 @@ def test_every_preset_can_be_seen_under_every_load(preset, load):
         page = Page(f"view={view}&preset={preset}&load.{load}&map_model={model}")
         assert page._trouble.object == ""
         assert page.view.document(page.screen).rows()
+
+
+@pytest.mark.parametrize(("angle", "unit", "factor"), [("degrees", "°", 57.29577951308232), ("radians", "rad", 1.0)])
+def test_a_map_of_angles_has_the_unit_that_is_chosen(angle, unit, factor):
+    page = Page(f"view=map&quantity=half_angle&angle={angle}&preset=hip-28")
+    found = mapped(page.screen.file, page.screen.across, page.screen.up, page.screen.map_model)
+    least = float(found.half_angle.min()) * factor
+    assert f"ε [{unit}] there: <b>{least:.4g}</b>" in page.view._told.object
 
 
 def test_a_load_of_zero_is_compared_without_shares():

@@ -9,9 +9,9 @@ import numpy
 from bokeh.models import ColorBar, ColumnDataSource, HoverTool, LinearColorMapper
 from bokeh.plotting.contour import contour_data
 
-from ..study_figures import factor, label
+from ..study_figures import label
 from .look import Palette, chart
-from .mapping import good, margin, now
+from .mapping import good, head, margin, now
 from .screen import Screen
 
 _LEVELS = 14
@@ -74,7 +74,8 @@ class MapChart:
             It has no answer anywhere.
         """
         across, up, name = screen.across, screen.up, screen.quantity
-        values = found[name].transpose(up.name, across.name).values * factor(name)
+        title, turn = head(name, screen)
+        values = found[name].transpose(up.name, across.name).values * turn
         if numpy.isnan(values).all():
             raise ValueError(f"{screen.map_model} has no answer anywhere on this map: choose another model")
         fine = good(found, screen).transpose(up.name, across.name).values
@@ -95,9 +96,9 @@ class MapChart:
         self.figure.x_range.update(start=box["x"][0], end=box["x"][0] + box["dw"][0])
         self.figure.y_range.update(start=box["y"][0], end=box["y"][0] + box["dh"][0])
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = label(across.name), label(up.name)
-        self._bar.title = label(name)
-        axes = ((across.name, "$x{0.000}"), (up.name, "$y{0.000}"), (name, "@image{0.000}"))
-        self._hover.tooltips = [(label(each), form) for each, form in axes]
+        self._bar.title = title
+        axes = ((label(across.name), "$x{0.000}"), (label(up.name), "$y{0.000}"), (title, "@image{0.000}"))
+        self._hover.tooltips = list(axes)
 
 
 def _box(x: numpy.ndarray, y: numpy.ndarray) -> dict[str, list[float]]:

@@ -56,6 +56,13 @@ def margin(found: Any, screen: Screen) -> numpy.ndarray:
     return nearest
 
 
+def head(name: str, screen: Screen) -> tuple[str, float]:
+    """How a quantity is called, with the unit that is chosen for it, and the factor to it from that of a study."""
+    if name == "half_angle" and screen.angle == "radians":
+        return label(name).replace("[°]", "[rad]"), 1.0
+    return label(name), factor(name)
+
+
 def best(found: Any, screen: Screen) -> dict[str, float] | None:
     """The parameters of the point with the least value among those that are allowed, if any is."""
     fine = good(found, screen)
@@ -75,9 +82,10 @@ def told(found: Any, screen: Screen) -> str:
         where = ", ".join(
             f"{PARAMETERS[axis].symbol} {value:.4g} {_unit(axis)}".strip() for axis, value in point.items()
         )
-        least = float(found[name].sel(point)) * factor(name)
+        title, turn = head(name, screen)
+        least = float(found[name].sel(point)) * turn
         steps = ", ".join(f"{(axis.high - axis.low) / (_POINTS - 1):.2g}" for axis in (screen.across, screen.up))
-        words.append(f"Least {label(name)} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")
+        words.append(f"Least {title} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")
     if not bool(found.valid.all()):
         words.append("Crosses: the model is not to be trusted there.")
     if not bool(fine.all()):
