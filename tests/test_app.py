@@ -79,6 +79,11 @@ class User:
         self.page.locator(f"text={words}").first.wait_for()
         return True
 
+    def map(self):
+        """The chart of the map that is seen, as a box on the screen."""
+        assert self.says("of the map is allowed by the limits")
+        return self.page.locator("#view .bk-Figure:visible").first.bounding_box()
+
     def saved(self, kind):
         with self.page.expect_download() as coming:
             self.page.locator(".side a", has_text=kind).click()
@@ -227,9 +232,7 @@ def test_two_users_do_not_see_each_other(user, browser, address):
 
 def test_a_click_on_the_map_presses_the_joint_that_is_there(user):
     user.open("?view=map&limit=outer_radius<=26")
-    assert user.says("of the map is allowed by the limits")
-    canvas = user.page.locator("#view .bk-Figure:visible").first
-    box = canvas.bounding_box()
+    box = user.map()
     user.page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
     user.page.locator("dd[data-name=max_pressure]").wait_for()
     user.page.wait_for_function("!window.location.search.includes('view=map')")
@@ -243,9 +246,8 @@ def test_a_click_on_the_map_presses_the_joint_that_is_there(user):
 
 def test_the_best_joint_of_a_map_is_pressed(user):
     user.open("?view=map&limit=outer_radius<=26")
-    assert user.says("of the map is allowed by the limits")
-    canvas = user.page.locator("#view .bk-Figure:visible").first.bounding_box()
-    user.page.mouse.click(canvas["x"] + 5, canvas["y"] + 0.5 * canvas["height"])  # beside the map: nothing there
+    box = user.map()
+    user.page.mouse.click(box["x"] + 5, box["y"] + 0.5 * box["height"])  # beside the map: nothing there
     user.page.locator(".bk-btn", has_text="Press the best joint").click()
     user.page.locator("dd[data-name=max_pressure]").wait_for()
     assert user.number("max_pressure") < 10.5

@@ -11,7 +11,7 @@ from typing import Any
 import numpy
 
 from .all_models import catalogue
-from .arrays import Array, divisor, to_list, where
+from .arrays import Array, to_list, where
 from .checks import one_load
 from .contact import Contact
 from .describe import COLUMNS, count, number_text
@@ -87,8 +87,8 @@ class Comparison(Mapping[str, Contact]):
         return {"version": __version__, "joint": self.joint.summary(), "results": [*answers, *missing]}
 
     def __repr__(self) -> str:
-        table = [_HEAD, *self.rows()]
-        widths = [max(len(row[i]) for row in table) for i in range(len(_HEAD))]
+        table = [HEADS, *self.rows()]
+        widths = [max(len(row[i]) for row in table) for i in range(len(HEADS))]
         lines = [
             "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(pairs))
             for pairs in (list(zip(row, widths, strict=True)) for row in table)
@@ -96,7 +96,7 @@ class Comparison(Mapping[str, Contact]):
         return "\n".join([str(self.joint), *lines, *self.notes()])
 
     def _repr_html_(self) -> str:
-        cells = "".join(f"<th>{escape(text)}</th>" for text in _HEAD)
+        cells = "".join(f"<th>{escape(text)}</th>" for text in HEADS)
         rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in self.rows())
         notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.notes())
         return f"<div>{escape(str(self.joint))}</div><table><tr>{cells}</tr>{rows}</table>{notes}"
@@ -109,7 +109,7 @@ REFERENCE = "exact"
 def relative(value: Array, truth: Array) -> Array:
     """value/truth - 1: 0 where they are equal, NaN where the truth is 0, infinite or not known."""
     known = (truth > -inf) & (truth < inf) & (truth != 0)
-    return where(truth == value, 0.0, where(known, value / divisor(where(known, truth, 1.0)) - 1, float("nan")))
+    return where(truth == value, 0.0, where(known, value / where(known, truth, 1.0) - 1, float("nan")))
 
 
 def _listed(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
@@ -117,7 +117,8 @@ def _listed(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
 
 
 _SHOWN = COLUMNS[:6]
-_HEAD = ("model", *(f"{column.symbol} [{column.unit}]" for column in _SHOWN), "valid")
+HEADS = ("model", *(f"{column.symbol} [{column.unit}]" for column in _SHOWN), "valid")
+"""Of the columns of `Comparison.rows`."""
 
 
 def compare(

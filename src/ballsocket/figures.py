@@ -12,6 +12,7 @@ import numpy
 from . import arrays
 from .compare import REFERENCE
 from .contact import Contact
+from .joint import Joint
 from .written import at_once
 
 if TYPE_CHECKING:
@@ -120,14 +121,18 @@ def finish(axes: Axes, x: str, y: str) -> None:
 
 def _title(contact: Contact) -> str:
     joint = contact.joint
-    thickness = float(joint.liner_thickness)
-    lined = "massive socket" if isinf(thickness) else f"liner {thickness:g} mm"
     ball = "rigid ball" if joint.ball is None else f"ball {float(joint.ball.young) / 1e3:g} GPa"
     return (
-        f"R1 {float(joint.ball_radius):g} mm, clearance {float(joint.clearance):g} mm, "
-        f"{lined} of {float(joint.liner.young) / 1e3:g} GPa, "
+        f"{dimensions(joint)} of {float(joint.liner.young) / 1e3:g} GPa, "
         f"ν {float(joint.liner.poisson):g}; {ball}; ● at {_load(contact)}"
     )
+
+
+def dimensions(joint: Joint) -> str:
+    """Ball, clearance and what lines the socket, of a joint of plain numbers."""
+    thickness = float(joint.liner_thickness)
+    lined = "massive socket" if isinf(thickness) else f"liner {thickness:g} mm"
+    return f"R1 {float(joint.ball_radius):g} mm, clearance {float(joint.clearance):g} mm, {lined}"
 
 
 def _load(contact: Contact) -> str:

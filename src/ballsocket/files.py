@@ -67,13 +67,13 @@ def read_joint(path: str | Path) -> JointFile:
     path = Path(path)
     with path.open("rb") as stream:
         raw = stream.read(_MAX_BYTES + 1)
-    if len(raw) > _MAX_BYTES:
-        raise ValueError(f"{path.name} is larger than {_MAX_BYTES} bytes; a joint file is a few lines")
     return parse_joint(raw, path.name)
 
 
 def parse_joint(raw: bytes, title: str) -> JointFile:
     """A joint file's content; see `read_joint`."""
+    if len(raw) > _MAX_BYTES:
+        raise ValueError(f"{title} is larger than {_MAX_BYTES} bytes; a joint file is a few lines")
     try:
         table = tomllib.loads(raw.decode("utf-8"))
     except UnicodeDecodeError as error:

@@ -59,7 +59,7 @@ def drawn(figure: Figure, form: str = "png") -> bytes:
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table of text, which may be wider than the page."""
+    """A table of text, which may be wider than the page: then the arrow keys move it."""
     head = "".join(f"<th>{escape(text)}</th>" for text in heads)
     body = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows)
-    return f"<div class='wide'><table><tr>{head}</tr>{body}</table></div>"
+    return f"<div class='wide' tabindex='0' role='region' aria-label='table'><table><tr>{head}</tr>{body}</table></div>"

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from math import isinf
 from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from .contact import Contact
 from .fem.contact import MeshedContact
-from .figures import finish
+from .figures import dimensions, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,14 +43,8 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
     left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     _draw_section(figure, left, contact)
     _draw_pressure(right, contact, exact)
-    joint = contact.joint
-    thickness = float(joint.liner_thickness)
-    lined = "massive socket" if isinf(thickness) else f"liner {thickness:g} mm"
-    figure.suptitle(
-        f"R1 {float(joint.ball_radius):g} mm, clearance {float(joint.clearance):g} mm, {lined}; {contact.force:.4g} N, "
-        f"{contact.mesh.elements} elements",
-        fontsize=10,
-    )
+    title = f"{dimensions(contact.joint)}; {contact.force:.4g} N, {contact.mesh.elements} elements"
+    figure.suptitle(title, fontsize=10)
     return figure
 
 

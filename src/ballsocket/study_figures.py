@@ -10,7 +10,7 @@ import numpy
 
 from .figures import COLOURS, finish
 from .studies.labels import described
-from .studies.limits import Limit, allowed
+from .studies.limits import Limit, allowed, margin_over
 
 if TYPE_CHECKING:
     import xarray
@@ -87,8 +87,7 @@ def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
 
 def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], across: str, up: str) -> None:
     for limit in limits:
-        spread = limit.margin(study) + 0.0 * study[across] + 0.0 * study[up]
-        values = spread.transpose(up, across).values
+        values = margin_over(study, limit, across, up)
         if numpy.nanmin(values) < 0 < numpy.nanmax(values):
             axes.contour(study[across].values, study[up].values, values, levels=[0.0], colors="black", linestyles=":")
 

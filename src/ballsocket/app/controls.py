@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from html import escape
-from math import inf, isinf
+from math import inf, isinf, radians
 from typing import Any
 
 import panel as pn
@@ -21,26 +21,24 @@ _OWN, _RIGID = "– own numbers –", "rigid"
 _PRESET = "– choose –"
 
 
-def _number(table: str, key: str, label: str, ends: tuple[float, float], step: float, form: str) -> Number:
-    return Number(table=table, key=key, label=label, low=ends[0], high=ends[1], step=step, form=form)
+def _number(table: str, key: str, label: str, ends: tuple[float, float], step: float) -> Number:
+    return Number(table=table, key=key, label=label, low=ends[0], high=ends[1], step=step)
 
 
 _NUMBERS = {
-    "ball_radius": _number("joint", "ball_radius", "Ball radius R1 [mm]", (5.0, 30.0), 0.1, "0.[000000]"),
-    "clearance": _number("joint", "clearance", "Radial clearance ΔR [mm]", (0.0, 0.5), 0.005, "0.[000000]"),
-    "liner_thickness": _number("joint", "liner_thickness", "Liner thickness L [mm]", (0.5, 20.0), 0.1, "0.[000000]"),
-    "liner_young": _number("liner", "young", "Liner: Young's modulus E [MPa]", (100.0, 5000.0), 10.0, "0.[000000]"),
-    "liner_poisson": _number("liner", "poisson", "Liner: Poisson's ratio ν", (0.0, 0.4995), 0.005, "0.[000000]"),
-    "ball_young": _number("ball", "young", "Ball: Young's modulus E1 [MPa]", (1e3, 4e5), 1e3, "0.[000000]"),
-    "ball_poisson": _number("ball", "poisson", "Ball: Poisson's ratio ν1", (0.0, 0.4995), 0.005, "0.[000000]"),
+    "ball_radius": _number("joint", "ball_radius", "Ball radius R1 [mm]", (5.0, 30.0), 0.1),
+    "clearance": _number("joint", "clearance", "Radial clearance ΔR [mm]", (0.0, 0.5), 0.005),
+    "liner_thickness": _number("joint", "liner_thickness", "Liner thickness L [mm]", (0.5, 20.0), 0.1),
+    "liner_young": _number("liner", "young", "Liner: Young's modulus E [MPa]", (100.0, 5000.0), 10.0),
+    "liner_poisson": _number("liner", "poisson", "Liner: Poisson's ratio ν", (0.0, 0.4995), 0.005),
+    "ball_young": _number("ball", "young", "Ball: Young's modulus E1 [MPa]", (1e3, 4e5), 1e3),
+    "ball_poisson": _number("ball", "poisson", "Ball: Poisson's ratio ν1", (0.0, 0.4995), 0.005),
 }
 _DIAMETER = replace(_NUMBERS["ball_radius"], label="Ball diameter 2 R1 [mm]", low=10.0, high=60.0, step=0.2, factor=2.0)
 _LOADS = {
-    "force": _number("load", "force", "Force F [N]", (50.0, 5000.0), 50.0, "0.[000000]"),
-    "indentation": replace(
-        _number("load", "indentation", "Indentation d [µm]", (1.0, 200.0), 1.0, "0.[000000]"), factor=1e3
-    ),
-    "half_angle": _number("load", "half_angle", "Half angle ε [°]", (1.0, 80.0), 0.5, "0.[000000]"),
+    "force": _number("load", "force", "Force F [N]", (50.0, 5000.0), 50.0),
+    "indentation": replace(_number("load", "indentation", "Indentation d [µm]", (1.0, 200.0), 1.0), factor=1e3),
+    "half_angle": _number("load", "half_angle", "Half angle ε [°]", (1.0, 80.0), 0.5),
 }
 _IN_RADIANS = replace(
     _LOADS["half_angle"],
@@ -49,7 +47,7 @@ _IN_RADIANS = replace(
     high=1.4,
     step=0.01,
     form="0.[00000]",
-    factor=0.017453292519943295,
+    factor=radians(1.0),
 )
 _LOAD_NAMES = {"force": "force", "indentation": "indentation", "half angle": "half_angle"}
 
@@ -126,7 +124,8 @@ class JointControls:
         file, joint = screen.file, screen.file.joint
         self._screen, self._file = screen, file
         ((kind, _),) = file.load.items()
-        tables = tables_of(file)
+        named = tables_of(file)
+        tables = dict(named)
         for part in ("liner", "ball"):
             material = getattr(joint, part)
             if material is not None:
@@ -142,8 +141,8 @@ class JointControls:
         self.massive.value = isinf(float(joint.liner_thickness))
         self.massive.visible = not joint.backing
         self.kind.value = kind
-        self.liner.value = _chosen(tables_of(file)["liner"])
-        self.ball.value = _RIGID if joint.ball is None else _chosen(tables_of(file)["ball"])
+        self.liner.value = _chosen(named["liner"])
+        self.ball.value = _RIGID if joint.ball is None else _chosen(named["ball"])
         self.preset.value = joint.name if joints.get(joint.name) == joint else _PRESET
         behind = "".join(f"<li>{escape(str(layer))}</li>" for layer in joint.backing)
         self.backing.object = f"<p>Behind the liner:</p><ul>{behind}</ul>" if behind else ""

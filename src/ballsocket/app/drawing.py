@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import isinf, pi
 from typing import Any
 
 import numpy
-from bokeh.models import ColorBar, ColumnDataSource, LinearColorMapper
+from bokeh.models import ColumnDataSource, LinearColorMapper
 
 from ..contact import Contact
 from ..files import JointFile
-from .look import Palette, chart
+from .look import Palette, chart, colour_bar
 
 _MASSIVE = 0.8  # of the socket's radius is drawn of what has no end
 _PETALS = 48
@@ -39,16 +40,7 @@ class SectionDrawing:
         )
         self._corners = ColumnDataSource({"x": [], "y": []})
         self.figure.scatter("x", "y", source=self._corners, alpha=0.0)
-        bar = ColorBar(
-            color_mapper=self._colours,
-            title="contact pressure [MPa]",
-            width=10,
-            background_fill_alpha=0.0,
-            title_text_color=palette.text,
-            major_label_text_color=palette.text,
-            title_text_font_style="normal",
-        )
-        self.figure.add_layout(bar, "right")
+        self.figure.add_layout(colour_bar(self._colours, palette, "contact pressure [MPa]"), "right")
 
     def show(
         self, file: JointFile, contact: Contact | None, extent: float | None = None, highest: float | None = None
@@ -57,8 +49,8 @@ class SectionDrawing:
 
         `extent` (mm) and `highest` (MPa) are those of several drawings that are to be compared, this joint's without.
         """
-        rings = _rings(file)
-        parts = [_sector(inner, out, file.cup.rim) for out, inner in _pairs(file, rings)]
+        radii = _radii(file)
+        parts = [_sector(inner, outer, file.cup.rim) for inner, outer in pairwise(radii)]
         fills = [self._palette.liner, *[self._palette.backing] * (len(parts) - 1)]
         depth = 0.0 if contact is None else float(contact.indentation)
         parts.append(_ball(float(file.joint.ball_radius), float(file.joint.clearance) + depth))
@@ -75,24 +67,15 @@ class SectionDrawing:
 
 def extent_of(file: JointFile) -> float:
     """Half the width of the drawing in mm."""
-    return _rings(file)[-1][0]
+    return _radii(file)[-1]
 
 
-def _rings(file: JointFile) -> list[tuple[float, bool]]:
-    """Outer radii of liner and layers from the inside, and whether they go on beyond."""
-    radius = float(file.joint.socket_radius)
-    rings = []
+def _radii(file: JointFile) -> list[float]:
+    """Of the bore, and from there outwards behind the liner and each layer."""
+    radii = [float(file.joint.socket_radius)]
     for thickness in (file.joint.liner_thickness, *(layer.thickness for layer in file.joint.backing)):
-        endless = isinf(float(thickness))
-        radius += _MASSIVE * float(file.joint.socket_radius) if endless else float(thickness)
-        rings.append((radius, endless))
-    return rings
-
-
-def _pairs(file: JointFile, rings: list[tuple[float, bool]]) -> list[tuple[float, float]]:
-    """Outer and inner radius of each ring."""
-    outer = [radius for radius, _ in rings]
-    return list(zip(outer, [float(file.joint.socket_radius), *outer[:-1]], strict=True))
+        radii.append(radii[-1] + (_MASSIVE * radii[0] if isinf(float(thickness)) else float(thickness)))
+    return radii
 
 
 def _sector(inner: float, outer: float, rim: float) -> tuple[numpy.ndarray, numpy.ndarray]:

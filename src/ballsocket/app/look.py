@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from bokeh.models import Range1d
+from bokeh.models import ColorBar, LinearColorMapper, Range1d
 from bokeh.plotting import figure
 
 from ..all_models import catalogue
@@ -89,3 +89,16 @@ def chart(x: str, y: str, palette: Palette, height: int = 300, **options: Any) -
 def from_zero(high: float) -> Range1d:
     """A range that starts at zero."""
     return Range1d(0.0, high)
+
+
+def colour_bar(mapper: LinearColorMapper, palette: Palette, title: str = "") -> Any:
+    """The scale of a colour map, for the right of a chart."""
+    return ColorBar(
+        color_mapper=mapper,
+        title=title,
+        width=11,
+        background_fill_alpha=0.0,
+        title_text_color=palette.text,
+        major_label_text_color=palette.text,
+        title_text_font_style="normal",
+    )

@@ -6,15 +6,16 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy
-from bokeh.models import ColorBar, ColumnDataSource, HoverTool, LinearColorMapper
+from bokeh.models import ColumnDataSource, HoverTool, LinearColorMapper
 from bokeh.plotting.contour import contour_data
 
 from ..study_figures import label
-from .look import Palette, chart
+from .look import Palette, chart, colour_bar
 from .mapping import good, head, margin, now
 from .screen import Screen
 
 _LEVELS = 14
+_NO_IMAGE: dict[str, list[Any]] = {"image": [], "x": [], "y": [], "dw": [], "dh": []}
 
 
 class MapChart:
@@ -23,8 +24,7 @@ class MapChart:
     def __init__(self, palette: Palette, tapped: Callable[[float, float], None]) -> None:
         self.figure = chart("", "", palette, 440)
         self._colours = LinearColorMapper("Viridis256", low=0.0, high=1.0)
-        self._image = ColumnDataSource({"image": [], "x": [], "y": [], "dw": [], "dh": []})
-        self._pale = ColumnDataSource({"image": [], "x": [], "y": [], "dw": [], "dh": []})
+        self._image, self._pale = ColumnDataSource(dict(_NO_IMAGE)), ColumnDataSource(dict(_NO_IMAGE))
         box = {"x": "x", "y": "y", "dw": "dw", "dh": "dh"}
         image: Any = self.figure.image("image", source=self._image, color_mapper=self._colours, **box)
         self._hover = HoverTool(renderers=[image], tooltips=[("", "@image{0.000}")])
@@ -44,22 +44,14 @@ class MapChart:
         self.figure.scatter(
             "x", "y", source=self._here, size=11, fill_color="white", line_color="black", line_width=1.5
         )
-        text = palette.text
-        self._bar = ColorBar(
-            color_mapper=self._colours,
-            width=12,
-            background_fill_alpha=0.0,
-            title_text_color=text,
-            major_label_text_color=text,
-            title_text_font_style="normal",
-        )
+        self._bar = colour_bar(self._colours, palette)
         self.figure.add_layout(self._bar, "right")
         self.figure.on_event("tap", lambda event: tapped(event.x, event.y))
 
     def clear(self) -> None:
         """Draw nothing."""
         for source in (self._image, self._pale):
-            source.data = {"image": [], "x": [], "y": [], "dw": [], "dh": []}
+            source.data = dict(_NO_IMAGE)
         self._doubt.data = self._here.data = {"x": [], "y": []}
         nothing = numpy.zeros((3, 3))
         for lines in (self._lines, self._ends):
@@ -91,14 +83,13 @@ class MapChart:
         grid_x, grid_y = numpy.meshgrid(x, y)
         thinned = (~valid) & (numpy.add.outer(numpy.arange(len(y)), numpy.arange(len(x))) % 4 == 0)
         self._doubt.data = {"x": grid_x[thinned], "y": grid_y[thinned]}
-        here = {which: now(screen.file, getattr(screen, which).name) for which in ("across", "up")}
-        self._here.data = {"x": [here["across"]], "y": [here["up"]]}
+        self._here.data = {"x": [now(screen.file, across.name)], "y": [now(screen.file, up.name)]}
         self.figure.x_range.update(start=box["x"][0], end=box["x"][0] + box["dw"][0])
         self.figure.y_range.update(start=box["y"][0], end=box["y"][0] + box["dh"][0])
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = label(across.name), label(up.name)
         self._bar.title = title
-        axes = ((label(across.name), "$x{0.000}"), (label(up.name), "$y{0.000}"), (title, "@image{0.000}"))
-        self._hover.tooltips = list(axes)
+        places = [(label(across.name), "$x{0.000}"), (label(up.name), "$y{0.000}")]
+        self._hover.tooltips = [*places, (title, "@image{0.000}")]
 
 
 def _box(x: numpy.ndarray, y: numpy.ndarray) -> dict[str, list[float]]:

@@ -14,7 +14,7 @@ from ..all_models import catalogue
 from ..files import JointFile
 from ..joint import Joint
 from ..studies.design import Span, grid
-from ..studies.limits import Limit, allowed
+from ..studies.limits import Limit, allowed, margin_over
 from ..studies.parameters import LOADS, PARAMETERS, pressable
 from ..studies.run import study
 from ..study_figures import factor, label
@@ -50,8 +50,7 @@ def margin(found: Any, screen: Screen) -> numpy.ndarray:
     """How far inside the nearest limit each point is; far where there is none."""
     nearest = numpy.ones((found.sizes[screen.up.name], found.sizes[screen.across.name]))
     for limit in limits_of(screen):
-        spread = limit.margin(found) + 0.0 * found[screen.across.name] + 0.0 * found[screen.up.name]
-        values = spread.transpose(screen.up.name, screen.across.name).values
+        values = margin_over(found, limit, screen.across.name, screen.up.name)
         nearest = numpy.minimum(nearest, values / max(float(numpy.nanmax(numpy.abs(values))), 1e-300))
     return nearest
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from dataclasses import replace
-from html import escape
 from typing import Any
 from urllib.parse import parse_qs
 
@@ -23,6 +22,7 @@ from .views.compare import Compare
 from .views.design_map import DesignMap
 from .views.judge import Judge
 from .views.press import Press
+from .words import alert
 
 _KINDS: dict[str, type[Press] | type[DesignMap] | type[Compare] | type[Judge]] = {
     "press": Press,
@@ -30,7 +30,6 @@ _KINDS: dict[str, type[Press] | type[DesignMap] | type[Compare] | type[Judge]] =
     "compare": Compare,
     "judge": Judge,
 }
-_UPLOAD = 100_000
 _LOG = logging.getLogger(__name__)
 
 
@@ -83,7 +82,7 @@ class Page:
 
     def refuse(self, sentence: str) -> None:
         """Say what cannot be done; an empty sentence says nothing."""
-        self._trouble.object = f"<p class='refused' role='alert'>{escape(sentence)}</p>" if sentence else ""
+        self._trouble.object = alert(sentence) if sentence else ""
 
     def ask(self, **changes: Any) -> None:
         """Put other things on the screen, and show it."""
@@ -135,9 +134,6 @@ class Page:
     def _uploaded(self, text: str) -> None:
         """A joint file from the browser, after a line that makes each upload another; by the reader of files."""
         raw = text.partition("\n")[2].encode("utf-8")
-        if len(raw) > _UPLOAD:
-            self.refuse(f"the file is larger than {_UPLOAD} bytes; a joint file is a few lines")
-            return
         try:
             file: JointFile = parse_joint(raw, "the file")
         except ValueError as error:

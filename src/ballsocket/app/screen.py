@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, isfinite
 from typing import Any
 from urllib.parse import urlencode
 
@@ -132,7 +132,7 @@ def link_of(screen: Screen) -> str:
     for name in ("across", "up"):
         if getattr(screen, name) != getattr(START, name):
             pairs.append((name, str(getattr(screen, name))))
-    pairs += [("limit", phrase) for limit in screen.limits for phrase in _phrases(limit)]
+    pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
     pairs += _flat(_tables(screen.file), "")
     for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
         pairs += _flat(_tables(file), f"{prefix}.")
@@ -236,11 +236,12 @@ def _nested(flat: Mapping[str, str]) -> Tables:
     return tables
 
 
-def _phrases(limit: Limit) -> list[str]:
-    low = [f"{limit.name}>={_bare(limit.name, limit.low)}"] if limit.low > -inf else []
-    return low + ([f"{limit.name}<={_bare(limit.name, limit.high)}"] if limit.high < inf else [])
-
-
 def _bare(name: str, value: float) -> str:
-    """As `units.parse` takes it: a bare angle would be degrees."""
+    """As `units.parse` takes it, to the last digit: a bare angle would be degrees."""
     return f"{value!r} rad" if name == "half_angle" else repr(value)
+
+
+def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> list[str]:
+    """What `limit_of` reads, for each end; numbers are `written` by their name and value."""
+    ends = ((">=", limit.low), ("<=", limit.high))
+    return [f"{limit.name}{sign}{written(limit.name, end)}" for sign, end in ends if isfinite(end)]

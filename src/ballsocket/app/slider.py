@@ -22,7 +22,7 @@ class Number:
     low: float
     high: float
     step: float
-    form: str
+    form: str = "0.[000000]"
     factor: float = 1.0  # from the number in the table to the one that is shown
 
 

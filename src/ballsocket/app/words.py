@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from html import escape
 from math import floor, isfinite, isnan, log10
@@ -70,6 +70,16 @@ def number_text(value: float) -> str:
     return f"{value:.{_DIGITS}g}" if isfinite(value) else "∞"
 
 
+def alert(sentence: str) -> str:
+    """A sentence that says why something cannot be done."""
+    return f"<p class='refused' role='alert'>{escape(sentence)}</p>"
+
+
+def notes_list(notes: Iterable[str]) -> str:
+    """What a model says of its answer."""
+    return f"<ul class='notes'>{''.join(f'<li>{escape(note)}</li>' for note in notes)}</ul>"
+
+
 def headline(contact: Contact, angle: str) -> str:
     """The numbers of one contact as a list, with whether it can be trusted."""
     errors: Mapping[str, Any] = getattr(contact, "error", {})
@@ -90,12 +100,10 @@ def _cell(each: Quantity, contact: Contact, errors: Mapping[str, Any]) -> str:
 
 def trust(contact: Contact) -> str:
     """Whether the model trusts itself here, and if not why, in words and not by colour alone."""
-    notes = "".join(f"<li>{escape(note)}</li>" for note in contact.notes)
     if bool(contact.valid):
         return "<p class='trust yes'>✓ inside the range in which this model can be trusted</p>"
-    return (
-        f"<p class='trust no'>✗ outside the range in which this model can be trusted</p><ul class='notes'>{notes}</ul>"
-    )
+    sentence = "✗ outside the range in which this model can be trusted"
+    return f"<p class='trust no'>{sentence}</p>{notes_list(contact.notes)}"
 
 
 def models_table(comparison: Comparison, palette: Palette, angle: str) -> str:
@@ -141,3 +149,12 @@ def percent(share: float, sign: str = "") -> str:
         return "below 0.001 %"
     digits = max(0, 1 - floor(log10(abs(100 * share))))
     return f"{100 * share:{sign}.{digits}f} %"
+
+
+def number_rows(head: str, contacts: Mapping[str, Contact]) -> list[list[Any]]:
+    """A table with its head: a row a contact, its numbers named and in the units of JSON."""
+    rows = [
+        [name, *(float(column.of(contact)) for column in COLUMNS), bool(contact.valid)]
+        for name, contact in contacts.items()
+    ]
+    return [[head, *(column.name for column in COLUMNS), "valid"], *rows]

@@ -103,6 +103,13 @@ def dimension(study: xarray.Dataset, name: str) -> Any:
     return float(value)
 
 
+def margin_over(study: xarray.Dataset, limit: Limit, across: str, up: str) -> numpy.ndarray:
+    """The margin of a limit at every point of a plane, whatever it depends on: an array (up, across)."""
+    spread = limit.margin(study) + 0.0 * study[across] + 0.0 * study[up]
+    values: numpy.ndarray = spread.transpose(up, across).values
+    return values
+
+
 def allowed(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:
     """Where a study has an answer and every limit holds."""
     first = next(iter(study.data_vars))

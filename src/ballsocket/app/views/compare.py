@@ -10,9 +10,8 @@ from typing import Any
 import panel as pn
 
 from ...all_models import catalogue
-from ...compare import force_curves, relative
+from ...compare import answered, force_curves, relative
 from ...contact import Contact
-from ...describe import COLUMNS
 from ...figures import press_figure
 from ...files import JointFile
 from ...html_page import drawn, table
@@ -24,7 +23,7 @@ from ..pressing import pressed
 from ..screen import BESIDE, Screen
 from ..style import html, inputs
 from ..view import Ask, Document
-from ..words import number_text, percent, quantities
+from ..words import alert, number_rows, number_text, percent, quantities
 
 _CHOOSE = "– choose –"
 
@@ -73,7 +72,7 @@ class Compare:
 
     def _add(self, file: JointFile) -> None:
         if len(self._screen.beside) >= BESIDE:
-            self._told.object = f"<p class='refused' role='alert'>There is room for {BESIDE}: take one away first.</p>"
+            self._told.object = alert(f"There is room for {BESIDE}: take one away first.")
             return
         self._ask(beside=(*self._screen.beside, file))
 
@@ -96,7 +95,7 @@ class Compare:
             "" if screen.beside else "<p class='quiet'>Put this joint or a preset beside, then change this one.</p>"
         )
         contacts = answers(files, screen.answered_by)
-        self._table.object = _side_by_side(files, contacts, screen)
+        self._table.object = table(*_text_table(files, contacts, screen))
         extent = max(map(extent_of, files.values()))
         highest = max((float(contact.max_pressure) for contact in contacts.values()), default=1.0)
         for number, (place, drawing) in enumerate(zip(self._places, self._drawings, strict=True)):
@@ -112,16 +111,11 @@ class Compare:
         contacts = answers(files, screen.answered_by)
         models = dict.fromkeys(contacts, catalogue[screen.answered_by])
         title = f"answered by {screen.answered_by}"
-        rows = [["joint", *(column.name for column in COLUMNS), "valid"]]
-        rows += [
-            [name, *(float(column.of(contact)) for column in COLUMNS), bool(contact.valid)]  # type: ignore[list-item]
-            for name, contact in contacts.items()
-        ]
         return Document(
             picture=(lambda form: drawn(press_figure(contacts, force_curves(contacts, models), title), form))
             if contacts
             else None,
-            rows=lambda: rows,
+            rows=lambda: number_rows("joint", contacts),
             sections=lambda: {"joints": ("Joints", table(*_text_table(files, contacts, screen)))},
         )
 
@@ -143,12 +137,8 @@ def labelled(screen: Screen) -> dict[str, JointFile]:
 
 def answers(files: Mapping[str, JointFile], model: str) -> dict[str, Contact]:
     """Of the joints for which the model has one."""
-    found = {}
-    for name, file in files.items():
-        comparison = pressed(file, (model,))
-        if model in comparison and not comparison[model].status.failed:
-            found[name] = comparison[model]
-    return found
+    found = {name: answered(pressed(file, (model,))) for name, file in files.items()}
+    return {name: contacts[model] for name, contacts in found.items() if model in contacts}
 
 
 _DIMENSIONS = (
@@ -189,9 +179,3 @@ def _trusted(contact: Contact | None) -> str:
     if contact is None:
         return "–"
     return "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
-
-
-def _side_by_side(files: Mapping[str, JointFile], contacts: Mapping[str, Contact], screen: Screen) -> str:
-    return table(*_text_table(files, contacts, screen)).replace(
-        "<div class='wide'>", "<div class='wide' tabindex='0' role='region' aria-label='joints'>"
-    )

@@ -5,24 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from html import escape
-from math import degrees, inf
+from math import degrees
 from typing import Any
 
 import panel as pn
 
 from ...html_page import drawn, table
 from ...phrases import limit_of, range_of
-from ...studies.limits import Limit
 from ...studies.parameters import PARAMETERS
 from ...study_figures import design_map, label
 from ...study_tables import map_rows
 from ..look import PALETTES
 from ..map_chart import MapChart
 from ..mapping import around, best, joint_at, limits_of, mapped, now, told
-from ..screen import AXES, MAPPED, QUICK, Axis, Screen
+from ..screen import AXES, MAPPED, QUICK, Axis, Screen, phrases_of
 from ..style import html, inputs
 from ..view import Ask, Document
+from ..words import alert
 
 
 class DesignMap:
@@ -99,7 +98,7 @@ class DesignMap:
 
     def _refuse(self, error: ValueError) -> None:
         self._put(self._screen)
-        self._refused.object = f"<p class='refused' role='alert'>{escape(str(error))}</p>"
+        self._refused.object = alert(str(error))
 
     def _axis(self, which: str, event: Any) -> None:
         """Another parameter, over half to twice what the joint has now."""
@@ -170,7 +169,7 @@ class DesignMap:
                 self._ranges[which].value = f"{axis.low:g}..{axis.high:g} {'' if unit == '1' else unit}".strip()
             self._quantity.value = screen.quantity
             self._model.value = screen.map_model
-            self._limits.value = ", ".join(map(_phrase, screen.limits))
+            self._limits.value = ", ".join(phrase for limit in screen.limits for phrase in phrases_of(limit, _typed))
         finally:
             self._putting = False
 
@@ -192,10 +191,6 @@ class DesignMap:
         """Nothing runs on."""
 
 
-def _phrase(limit: Limit) -> str:
-    """As it would be typed."""
-    angle = limit.name == "half_angle"
-    low, high = (degrees(end) if angle else end for end in (limit.low, limit.high))
-    unit = " deg" if angle else ""
-    ends = [f"{limit.name}>={low:.6g}{unit}"] if low > -inf else []
-    return ", ".join(ends + ([f"{limit.name}<={high:.6g}{unit}"] if high < inf else []))
+def _typed(name: str, value: float) -> str:
+    """A number as it would be typed."""
+    return f"{degrees(value):.6g} deg" if name == "half_angle" else f"{value:.6g}"

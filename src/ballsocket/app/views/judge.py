@@ -18,7 +18,7 @@ from ..judging import LONGEST, Judged, Reached, Refused, Run
 from ..screen import Screen
 from ..style import html, inputs
 from ..view import Ask, Document
-from ..words import number_text, percent, quantities
+from ..words import alert, notes_list, number_text, percent, quantities
 
 _EVERY = 150  # ms between two questions for news
 
@@ -82,7 +82,7 @@ class Judge:
         self._said.object = f"<p class='quiet' role='status'>{escape(words)}</p>" if words else ""
 
     def _refuse(self, why: str) -> None:
-        self._said.object = f"<p class='refused' role='alert'>{escape(why)}</p>"
+        self._said.object = alert(why)
 
     def _cup(self, key: str, value: Any) -> None:
         if self._putting:
@@ -180,9 +180,8 @@ def _numbers(judged: Judged, screen: Screen) -> str:
             exact = judged.exact[name] * turn
             row += [number_text(exact), percent(float(relative(value, exact)), "+")]
         rows.append(row)
-    notes = "".join(f"<li>{escape(note)}</li>" for note in judged.notes)
     heads = ["", "finite elements", "their error", "exact, a whole shell", "difference"]
     return (
         f"{table(heads, rows)}<p class='quiet'>{judged.elements} elements, {judged.seconds:.2g} s."
-        f"</p><ul class='notes'>{notes}</ul>"
+        f"</p>{notes_list(judged.notes)}"
     )

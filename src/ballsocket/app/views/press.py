@@ -9,8 +9,7 @@ import panel as pn
 
 from ... import html_page as page
 from ...all_models import catalogue
-from ...compare import Comparison, answered, force_curves
-from ...describe import COLUMNS
+from ...compare import HEADS, Comparison, answered, force_curves
 from ...figures import press_figure
 from ..drawing import SectionDrawing
 from ..look import PALETTES, line_of
@@ -19,7 +18,7 @@ from ..pressing import pressed
 from ..screen import Screen
 from ..style import html, inputs
 from ..view import Ask, Document
-from ..words import headline, models_table
+from ..words import headline, models_table, number_rows
 
 _EVERY = tuple(catalogue)
 _WRAPPED = ".bk-input-group.bk-inline { flex-wrap: wrap; gap: 2px 14px; }"
@@ -98,23 +97,17 @@ class Press:
             if drawn
             else None,
             rows=lambda: _rows(found),
-            sections=lambda: {"models": ("Every model", page.table(_HEADS, found.rows()) + _notes(found))},
+            sections=lambda: {"models": ("Every model", page.table(HEADS, found.rows()) + _notes(found))},
         )
 
     def leave(self) -> None:
         """Nothing runs on."""
 
 
-_HEADS = ["model", "F [N]", "d [mm]", "ε [°]", "p0 [MPa]", "A [mm²]", "dF/dd [N/mm]", "valid"]
-
-
 def _rows(found: Comparison) -> list[list[Any]]:
-    heads = ["model", *(column.name for column in COLUMNS), "valid", "notes"]
-    rows = [
-        [name, *(float(column.of(contact)) for column in COLUMNS), bool(contact.valid), "; ".join(contact.notes)]
-        for name, contact in found.items()
-    ]
-    return [heads, *rows]
+    """With why a model is not to be trusted."""
+    heads, *rows = number_rows("model", found)
+    return [[*heads, "notes"], *([*row, "; ".join(found[row[0]].notes)] for row in rows)]
 
 
 def _notes(found: Comparison) -> str:
