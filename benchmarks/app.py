@@ -106,7 +106,7 @@ def shares(seconds: list[float]) -> str:
 
 def in_the_browser(ours: str, empty: str, view: Rows, moved: Rows) -> None:
     from playwright.sync_api import sync_playwright
-    from tests.browser import ARGUMENTS, chromium
+    from tests.app.browser import ARGUMENTS, chromium
 
     with sync_playwright() as tools:
         browser = tools.chromium.launch(executable_path=chromium(), args=ARGUMENTS)

@@ -20,7 +20,7 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.elastic.axisymmetric import _curve
+from ballsocket.elastic.exact import _curve
 
 from .calculix_rival import Calculix, Mesh, Steps
 from .report import Report, Rows

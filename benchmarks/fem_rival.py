@@ -11,8 +11,9 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.fem import bodies, ccx, solver
-from ballsocket.fem.deck import deck_of
+from ballsocket.fem import bodies, solver
+from ballsocket.fem.export import calculix as ccx
+from ballsocket.fem.export.deck import deck_of
 
 from .calculix_rival import Calculix, Mesh
 from .report import Rows

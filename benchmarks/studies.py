@@ -14,11 +14,11 @@ from tempfile import TemporaryDirectory
 import numpy
 
 import ballsocket as bs
-from ballsocket.engines import Engine, Processes, Serial
-from ballsocket.models.base import Model
+from ballsocket.engines import Distributed, Engine, Processes, Serial
+from ballsocket.engines.dask import local_cluster
+from ballsocket.model import Model
 from ballsocket.studies.blocks import Blocks
 from ballsocket.studies.design import Design, Span, grid
-from ballsocket.studies.distributed import Distributed, local_cluster
 from ballsocket.studies.task import DTYPES, USUAL
 
 from .report import Report, Rows
@@ -146,7 +146,8 @@ def measure() -> Report:
 def _draw(found: list[tuple[int, float, float]]) -> None:
     from matplotlib.figure import Figure
 
-    from ballsocket.figures import COLOURS, finish, save
+    from ballsocket.output.save import save
+    from ballsocket.output.style import COLOURS, finish
 
     presses = [10.0**power for power, _, _ in found]
     figure = Figure(figsize=(8.6, 3.8), layout="constrained")

@@ -8,7 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from tests.browser import opened_browser, served_explorer  # noqa: E402
+from tests.app.browser import opened_browser, served_explorer  # noqa: E402
 
 SHELL = "limit=outer_radius<=26&limit=liner_thickness>=4"
 VIEWS = {

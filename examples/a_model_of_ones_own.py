@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 import ballsocket as bs
-from ballsocket.figures import press_figure, save
+from ballsocket.output.press_plot import press_figure
+from ballsocket.output.save import save
 
 hip = bs.joints["hip-32"]
 models = {

@@ -12,14 +12,14 @@ from math import radians
 
 import ballsocket as bs
 from ballsocket.app.screen import START, Axis, link_of
-from ballsocket.figures import save
-from ballsocket.files import JointFile
-from ballsocket.joint_text import toml_of
-from ballsocket.phrases import limit_of
-from ballsocket.section_figure import section_figure
+from ballsocket.io.joint_file import JointFile
+from ballsocket.io.joint_toml import toml_of
+from ballsocket.output.save import save
+from ballsocket.output.section_plot import section_figure
+from ballsocket.output.study_plots import design_map
 from ballsocket.studies.design import Span
 from ballsocket.studies.limits import allowed
-from ballsocket.study_figures import design_map
+from ballsocket.studies.phrases import limit_of
 
 PAGE = "http://127.0.0.1:5006/?"
 

@@ -12,12 +12,12 @@ the rim when the load leans 20° out of the cup's axis.
 from math import radians
 
 import ballsocket as bs
-from ballsocket.figures import save
+from ballsocket.output.save import save
+from ballsocket.output.study_plots import design_map, front_figure
 from ballsocket.studies.design import Span
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.optimum import optimise
 from ballsocket.studies.pareto import pareto
-from ballsocket.study_figures import design_map, front_figure
 
 hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE, ball=bs.COCR)
 limits = (

@@ -8,13 +8,13 @@ import subprocess
 import sys
 from importlib.util import find_spec
 from os import environ
-from pathlib import Path
 
 import pytest
 
 import ballsocket as bs
 
-ROOT = Path(__file__).parents[1]
+from .places import ROOT
+
 DOCS = ROOT / "docs"
 PAGES = sorted(path for path in (DOCS / "index.md", *DOCS.glob("[etrh]*/*.md")) if "```" in path.read_text("utf-8"))
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS

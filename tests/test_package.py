@@ -5,7 +5,6 @@ import re
 import runpy
 import subprocess
 import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,13 +12,13 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.describe import COLUMNS
-from ballsocket.figures import press_figure, save
+from ballsocket.output.press_plot import press_figure
+from ballsocket.output.save import save
 from ballsocket.paper.claims import elsewhere
 from ballsocket.sources import bibliography
 
 from .joints import HIP
-
-ROOT = Path(__file__).parents[1]
+from .places import ROOT
 
 
 def test_import_brings_nothing_heavy():

@@ -9,10 +9,10 @@ from os import environ
 from pathlib import Path
 
 import ballsocket as bs
-from ballsocket.accuracy_table import markdown
-from ballsocket.all_models import judge
+from ballsocket.catalogue import judge
+from ballsocket.output.accuracy_table import markdown
+from ballsocket.output.report import write_report
 from ballsocket.paper.plan import quick_plan
-from ballsocket.report import write_report
 from ballsocket.sources import Source, bibliography
 
 _COLUMNS = 88  # of the terminal whose help texts are shown

@@ -8,21 +8,21 @@
 Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 """
 
-from .all_models import catalogue
-from .calibrate import as_constant, as_corrected_vessel, as_polynomial, calibrate
+from .catalogue import catalogue
 from .compare import compare
 from .contact import Contact
-from .elastic.axisymmetric import Exact
-from .elastic.table import Tabulated
-from .fem.cup import Cup, Interface
+from .cup import Cup, Interface
+from .elastic.exact import Exact
+from .elastic.tabulated.model import Tabulated
 from .fem.model import FiniteElement
 from .fem.spacing import Adapted, Element, Uniform
-from .files import read_joint
 from .gaps import CircularGap, LinearGap
+from .identify.modulus import as_constant, as_corrected_vessel, as_polynomial, calibrate
+from .io.joint_file import read_joint
 from .joint import Joint, Layer, Material, Support
+from .model import Model
 from .models.adhesion import AdhesiveSocket
-from .models.base import ClosedForm, Model
-from .models.cylinder import PinInHole
+from .models.closed_form import ClosedForm
 from .models.foundation import (
     Bartel,
     BondedLayer,
@@ -36,6 +36,7 @@ from .models.half_space import Hertz, Steuermann
 from .models.kinematics import cosine_kinematics, exact_kinematics, linear_kinematics
 from .models.liu import LiuReconstruction
 from .models.modulus import bonded_layer, constant, corrected_vessel, hess_forsbach, polynomial, spherical_vessel
+from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
 from .presets import (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from difflib import get_close_matches
 from importlib.util import find_spec
 from typing import Any
 
@@ -93,3 +95,16 @@ def needs(extra: str, *modules: str) -> None:
     for module in modules:
         if find_spec(module) is None:
             raise ImportError(f"{module} is not installed: pip install 'ballsocket[{extra}]'", name=module)
+
+
+def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
+    """Raise ValueError for the first of `names` that is not `known`."""
+    for name in names:
+        if name not in known:
+            raise ValueError(f"{name!r} {where} is not known{nearest(name, known)}")
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """A hint: the nearest known name, or all of them."""
+    close = get_close_matches(name, list(known), n=1, cutoff=0.5)
+    return f"; did you mean {close[0]!r}?" if close else f"; known: {', '.join(known)}"

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy
 
-from .all_models import catalogue
 from .arrays import Array, to_list, where
+from .catalogue import catalogue, reference
 from .checks import one_load
 from .contact import Contact
 from .describe import COLUMNS, count, number_text
 from .joint import Joint
-from .models.base import Model
+from .model import Model
 from .sources import Source
 from .validity import OutsideDomainError
 from .version import __version__
@@ -63,8 +63,8 @@ class Comparison(Mapping[str, Contact]):
 
         None without an exact answer.
         """
-        exact = self.contacts.get(REFERENCE)
-        if exact is None or name == REFERENCE or name not in self.contacts:
+        exact = self.contacts.get(reference.name)
+        if exact is None or name == reference.name or name not in self.contacts:
             return None
         contact = self.contacts[name]
         return {column.name: relative(column.of(contact), column.of(exact)) for column in COLUMNS}
@@ -100,10 +100,6 @@ class Comparison(Mapping[str, Contact]):
         rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in self.rows())
         notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.notes())
         return f"<div>{escape(str(self.joint))}</div><table><tr>{cells}</tr>{rows}</table>{notes}"
-
-
-REFERENCE = "exact"
-"""The model that the others are measured by."""
 
 
 def relative(value: Array, truth: Array) -> Array:

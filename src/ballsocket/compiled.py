@@ -22,8 +22,8 @@ from . import arrays
 from .arrays import Array
 from .contact import Contact
 from .joint import Joint
+from .model import Answer, Model, checked_load, prepared
 from .models import kinematics
-from .models.base import Answer, Model, checked_load, prepared
 from .models.foundation import RadialFoundation
 from .models.kinematics import Kinematics
 from .models.modulus import Formula, eq_18

@@ -13,7 +13,7 @@ from typing import Any
 from jax.tree_util import register_pytree_node
 
 from .contact import Contact
-from .elastic.table import TableSolution
+from .elastic.tabulated.solution import TableSolution
 from .joint import Joint, Layer, Material, unchecked
 from .models.plane_layer import LayerSolution
 from .models.refined import RefinedSolution

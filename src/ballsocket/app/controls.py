@@ -10,8 +10,8 @@ from typing import Any
 
 import panel as pn
 
-from ..files import JointFile, joint_of
-from ..joint_text import Tables, tables_of
+from ..io.joint_file import JointFile, joint_of
+from ..io.joint_toml import Tables, tables_of
 from ..presets import joints, materials
 from .screen import Screen
 from .slider import Number, Slider

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import panel as pn
 
-from ..html_page import page as html_page
-from ..html_page import picture
-from ..joint_text import toml_of
+from ..io.joint_toml import toml_of
+from ..output.html import page as html_page
+from ..output.html import picture
 from .view import Document
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy
 from bokeh.models import ColumnDataSource, LinearColorMapper
 
 from ..contact import Contact
-from ..files import JointFile
+from ..io.joint_file import JointFile
 from .look import Palette, chart, colour_bar
 
 _MASSIVE = 0.8  # of the socket's radius is drawn of what has no end

@@ -9,16 +9,15 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
-from ..all_models import catalogue
-from ..compare import REFERENCE
+from ..catalogue import reference
 from ..contact import Contact
 from ..describe import summary
-from ..engines import available_cores, one_thread_each
+from ..engines.local import available_cores, one_thread_each
 from ..fem.contact import MeshedContact
 from ..fem.model import FiniteElement
-from ..files import JointFile
-from ..html_page import drawn
-from ..section_figure import section_figure
+from ..io.joint_file import JointFile
+from ..output.html import drawn
+from ..output.section_plot import section_figure
 from ..validity import OutsideDomainError
 
 LONGEST = 60.0
@@ -193,7 +192,7 @@ def _judged(file: JointFile, told: Callable[[float, str], None]) -> Judged | Ref
 
 def _exact(file: JointFile) -> Contact | None:
     try:
-        contact = catalogue[REFERENCE].press(file.joint, **file.load)
+        contact = reference.press(file.joint, **file.load)
     except OutsideDomainError:
         return None
     return None if contact.status.failed else contact

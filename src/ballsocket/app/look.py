@@ -8,9 +8,8 @@ from typing import Any
 from bokeh.models import ColorBar, LinearColorMapper, Range1d
 from bokeh.plotting import figure
 
-from ..all_models import catalogue
-from ..compare import REFERENCE
-from ..figures import COLOURS
+from ..catalogue import catalogue, reference
+from ..output.style import COLOURS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +50,7 @@ class Line:
 
 def line_of(name: str, palette: Palette) -> Line:
     """A model keeps its line wherever it is drawn."""
-    return Line(palette.text, "solid") if name == REFERENCE else numbered(list(catalogue).index(name) - 1)
+    return Line(palette.text, "solid") if name == reference.name else numbered(list(catalogue).index(name) - 1)
 
 
 def numbered(index: int) -> Line:

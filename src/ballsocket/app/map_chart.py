@@ -9,7 +9,7 @@ import numpy
 from bokeh.models import ColumnDataSource, HoverTool, LinearColorMapper
 from bokeh.plotting.contour import contour_data
 
-from ..study_figures import label
+from ..output.study_plots import label
 from .look import Palette, chart, colour_bar
 from .mapping import good, head, margin, now
 from .screen import Screen

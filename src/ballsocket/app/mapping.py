@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy
 
-from ..all_models import catalogue
-from ..files import JointFile
+from ..catalogue import catalogue
+from ..io.joint_file import JointFile
 from ..joint import Joint
+from ..output.study_plots import factor, label
 from ..studies.design import Span, grid
 from ..studies.limits import Limit, allowed, margin_over
 from ..studies.parameters import LOADS, PARAMETERS, pressable
 from ..studies.run import study
-from ..study_figures import factor, label
 from .screen import MAPPED, Axis, Screen
 
 _POINTS = 61

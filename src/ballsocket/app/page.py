@@ -11,7 +11,7 @@ import panel as pn
 from bokeh.models import CustomJS
 from bokeh.models.widgets import TextInput
 
-from ..files import JointFile, parse_joint
+from ..io.joint_file import JointFile, parse_joint
 from .controls import JointControls
 from .downloads import Downloads
 from .pressing import pressed

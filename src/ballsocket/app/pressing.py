@@ -7,10 +7,10 @@ from math import ceil, log10
 
 import numpy
 
-from ..all_models import catalogue
+from ..catalogue import catalogue
 from ..compare import Comparison, compare
 from ..contact import Contact
-from ..files import JointFile
+from ..io.joint_file import JointFile
 from ..joint import Joint
 from ..validity import OutsideDomainError
 

@@ -8,14 +8,14 @@ from math import inf, isfinite
 from typing import Any
 from urllib.parse import urlencode
 
-from ..all_models import catalogue
-from ..compare import REFERENCE
-from ..files import JointFile, check_names, joint_of
-from ..joint_text import Tables, tables_of
-from ..phrases import limit_of, range_of
+from ..catalogue import catalogue, reference
+from ..checks import check_names
+from ..io.joint_file import JointFile, joint_of
+from ..io.joint_toml import Tables, tables_of
 from ..presets import joints
 from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS
+from ..studies.phrases import limit_of, range_of
 
 VIEWS = ("press", "map", "compare", "judge")
 THEMES = ("light", "dark")
@@ -83,8 +83,8 @@ class Screen:
     view: str = "press"
     file: JointFile
     beside: tuple[JointFile, ...] = ()
-    answered_by: str = REFERENCE
-    shown: tuple[str, ...] = (REFERENCE, "hess-forsbach", "bartel", "hertz")
+    answered_by: str = reference.name
+    shown: tuple[str, ...] = (reference.name, "hess-forsbach", "bartel", "hertz")
     across: Axis = Axis(name="ball_radius", low=11.0, high=23.0)
     up: Axis = Axis(name="liner_thickness", low=3.0, high=15.0)
     map_model: str = "tabulated"

@@ -8,7 +8,8 @@ from html import escape
 from math import floor, isfinite, isnan, log10
 from typing import Any
 
-from ..compare import REFERENCE, Comparison
+from ..catalogue import reference
+from ..compare import Comparison
 from ..contact import Contact
 from ..describe import COLUMNS, Column
 from .look import Palette, line_of
@@ -129,7 +130,7 @@ def _row(comparison: Comparison, name: str, shown: list[Quantity], palette: Pale
     why = "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
     colour = line_of(name, palette).colour
     swatch = f"<span class='swatch' style='background:{colour}'></span>"
-    kind = "reference" if name == REFERENCE else "valid" if bool(contact.valid) else "doubtful"
+    kind = "reference" if name == reference.name else "valid" if bool(contact.valid) else "doubtful"
     return (
         f"<tr class='{kind}'><th scope='row'>{swatch}{escape(name)}</th>{cells}<td class='text'>{escape(why)}</td></tr>"
     )

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from .. import tables
+from ..output import terminal
 from . import elements
 from .root import app
 from .words import load_of, named_joint
@@ -45,10 +45,10 @@ def deck(
     contact, _ = elements.timed(elements.finite_elements(words, file.cup), file.joint, load)
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))
-    from ..fem.ccx import run as run_ccx
-    from ..fem.deck import deck_of
+    from ..fem.export.calculix import run as run_ccx
+    from ..fem.export.deck import deck_of
 
     made = deck_of(contact, steps=steps, scale=scale)
     typer.echo(f"{made.write(out)}: {contact.mesh.elements} elements, {steps} steps")
     if run:
-        tables.print_rival(made.expected, run_ccx(out))
+        terminal.print_rival(made.expected, run_ccx(out))

@@ -10,19 +10,19 @@ from typing import Any
 
 from rich.console import Console
 
-from .. import section_figure
-from ..all_models import judge
-from ..checks import require
+from ..catalogue import judge
+from ..checks import nearest, require
 from ..contact import Contact
+from ..cup import Cup
 from ..describe import COLUMNS
 from ..fem.contact import MeshedContact
-from ..fem.cup import Cup
 from ..fem.model import FiniteElement
 from ..fem.progress import listening
 from ..fem.spacing import Adapted, Element, Spacing, Uniform
-from ..figures import check_format, save
-from ..files import nearest, read_cup
-from ..units import parse
+from ..io.joint_file import read_cup
+from ..io.units import parse
+from ..output import section_plot
+from ..output.save import check_format, save
 
 Words = Mapping[str, str | None]
 
@@ -41,7 +41,7 @@ class Output:
         if self.section is not None:
             check_format(self.section)
         if self.vtk is not None:
-            from ..fem.vtk import check_suffix
+            from ..fem.export.vtk import check_suffix
 
             check_suffix(self.vtk)
 
@@ -52,9 +52,9 @@ class Output:
                 Console(stderr=True).print("ballsocket: without a contact there is nothing to draw or write")
             return
         if self.section is not None:
-            save(section_figure.section_figure(contact, exact), self.section)
+            save(section_plot.section_figure(contact, exact), self.section)
         if self.vtk is not None:
-            from ..fem.vtk import write_vtk
+            from ..fem.export.vtk import write_vtk
 
             write_vtk(contact.section, self.vtk)
 

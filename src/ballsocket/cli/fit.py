@@ -11,10 +11,11 @@ import typer
 
 import ballsocket as bs
 
-from .. import tables
-from ..calibrate import FORCES, Form, refit_table_3
-from ..files import nearest
-from ..units import parse
+from ..checks import nearest
+from ..identify.modulus import FORCES, Form
+from ..io.units import parse
+from ..output import terminal
+from ..paper.table_3 import refit_table_3
 from .root import app
 from .words import echo_json, named_joint
 
@@ -43,7 +44,7 @@ def calibrate(
         if as_json:
             echo_json({"version": bs.__version__, "table_3": [column.summary() for column in columns]})
         else:
-            tables.print_table_3(columns)
+            terminal.print_table_3(columns)
         return
     if form not in _FORMS:
         raise ValueError(f"form {form!r} is not known{nearest(form, _FORMS)}")
@@ -56,7 +57,7 @@ def calibrate(
     if as_json:
         echo_json({"version": bs.__version__, "joint": given.summary(), **fit.summary()})
     else:
-        tables.print_calibration(fit)
+        terminal.print_calibration(fit)
 
 
 @app.command()
@@ -67,7 +68,7 @@ def build_tables(
     check: Annotated[bool, typer.Option("--check", help="Check the tables that are there, and build none.")] = False,
 ) -> None:
     """Build the tables of `tabulated` from the exact answer (two minutes), and report how accurate they are."""
-    from ..elastic import build_tables as builder
+    from ..elastic.tabulated import build as builder
 
     path = builder.SHIPPED if out is None else out
     do = builder.check if check else builder.build

@@ -8,22 +8,22 @@ import typer
 
 import ballsocket as bs
 
-from .. import tables
-from ..all_models import judge
-from ..files import nearest
+from ..catalogue import judge
+from ..checks import nearest
+from ..output import terminal
 from .root import app
 
 
 @app.command()
 def models() -> None:
     """The catalogue: every model, where it can be trusted, and where it comes from."""
-    tables.print_models([*bs.catalogue.values(), judge, bs.PinInHole()])
+    terminal.print_models([*bs.catalogue.values(), judge, bs.PinInHole()])
 
 
 @app.command()
 def presets() -> None:
     """Materials and joints by name, with the sources of their numbers."""
-    tables.print_presets()
+    terminal.print_presets()
 
 
 @app.command()

@@ -10,11 +10,13 @@ import typer
 
 import ballsocket as bs
 
-from .. import figures, tables
-from ..all_models import judge
-from ..compare import REFERENCE, Comparison, answered, force_curves
-from ..files import nearest, read_load
-from ..models.base import Model
+from ..catalogue import judge, reference
+from ..checks import nearest
+from ..compare import Comparison, answered, force_curves
+from ..io.joint_file import read_load
+from ..model import Model
+from ..output import press_plot, terminal
+from ..output.save import check_format, save
 from ..validity import Status
 from . import elements
 from .root import FAILURE, app
@@ -71,7 +73,7 @@ def press(
     output = elements.Output(section=section, vtk=vtk)
     output.check()
     if figure is not None:
-        figures.check_format(figure)
+        check_format(figure)
     _check_known(names)
     file = joint_file(joint, described)
     load = load or file.load
@@ -82,17 +84,17 @@ def press(
         fem = elements.finite_elements({**cup, **mesh}, file.cup)
         chosen[judge.name] = fem
         remarks.append(elements.remark(*elements.timed(fem, file.joint, load)))
-    comparison = bs.compare(file.joint, models={**chosen, REFERENCE: bs.catalogue[REFERENCE]}, **load)
+    comparison = bs.compare(file.joint, models={**chosen, reference.name: reference}, **load)
     if not set(comparison) & set(chosen):
         raise ValueError("; ".join(why for name, why in comparison.missing.items() if name in chosen))
     if figure is not None:
         _draw(comparison, {**bs.catalogue, **chosen}, figure)
     if judge.name in comparison:
-        output.write(comparison[judge.name], answered(comparison).get(REFERENCE))
+        output.write(comparison[judge.name], answered(comparison).get(reference.name))
     if as_json:
         echo_json(comparison.summary())
     else:
-        tables.print_press(comparison, remarks)
+        terminal.print_press(comparison, remarks)
     failure = _failure(comparison, chosen)
     if failure:
         typer.echo(f"ballsocket: {failure}", err=True)
@@ -127,4 +129,4 @@ def _draw(comparison: Comparison, models: Mapping[str, Model], path: Path) -> No
     if not shown:
         return
     curves = force_curves(shown, {name: models[name] for name in shown})
-    figures.save(figures.press_figure(shown, curves), path)
+    save(press_plot.press_figure(shown, curves), path)

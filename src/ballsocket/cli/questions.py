@@ -11,17 +11,18 @@ import typer
 
 import ballsocket as bs
 
-from .. import figures, study_figures, study_tables
 from ..fem.model import FiniteElement
-from ..files import JointFile
-from ..models.base import Model
-from ..phrases import axis_of, limit_of, range_of, spread_of
+from ..io.joint_file import JointFile
+from ..model import Model
+from ..output import study_plots, study_terminal
+from ..output.save import check_format, save
 from ..studies.design import grid
 from ..studies.file import named_model
 from ..studies.limits import Limit
 from ..studies.optimum import optimise as find_optimum
 from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
+from ..studies.phrases import axis_of, limit_of, range_of, spread_of
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
 from .root import app
@@ -66,7 +67,7 @@ def _once(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _shown(wishes: list[str]) -> list[str]:
-    return list(dict.fromkeys((*wishes, *study_figures.SHOWN)))
+    return list(dict.fromkeys((*wishes, *study_plots.SHOWN)))
 
 
 def _quantities(wishes: Iterable[str], limits: Iterable[Limit]) -> list[str]:
@@ -90,18 +91,18 @@ def design_map(
 ) -> None:
     """Map peak pressure, contact area and half angle over two numbers of a joint, with limits drawn."""
     if figure is not None:
-        figures.check_format(figure)
+        check_format(figure)
     file = named_joint(joint)
     limits = _limits(limit, file)
     axes = _once([axis_of(x, points), axis_of(y, points)])
     design = grid(**axes, **_load(force, indentation, file, axes))
     found = bs.study(_model(model, file), file.joint, design, quantities=_quantities((), limits))
     if as_json:
-        echo_json(study_tables.map_summary(found, limits))
+        echo_json(study_terminal.map_summary(found, limits))
     else:
-        study_tables.print_map(found, limits)
+        study_terminal.print_map(found, limits)
     if figure is not None:
-        figures.save(study_figures.design_map(found, limits), figure)
+        save(study_plots.design_map(found, limits), figure)
 
 
 @app.command()
@@ -121,7 +122,7 @@ def optimise(
 ) -> None:
     """Find the joint with the smallest answer within limits; with two answers, the joints that none beats in both."""
     if figure is not None:
-        figures.check_format(figure)
+        check_format(figure)
     file, chosen = named_joint(joint), minimise or ["max_pressure"]
     limits = _limits(limit, file)
     ranges = _once((name, (low, high)) for name, low, high in map(range_of, vary))
@@ -134,11 +135,11 @@ def optimise(
         found = bs.study(answers, file.joint, design, quantities=quantities)
         front = pareto(found, (chosen[0], chosen[1]), limits)
         if as_json:
-            echo_json(study_tables.front_summary(front))
+            echo_json(study_terminal.front_summary(front))
         else:
-            study_tables.print_front(front)
+            study_terminal.print_front(front)
         if figure is not None:
-            figures.save(study_figures.front_figure(found, front, (chosen[0], chosen[1]), limits), figure)
+            save(study_plots.front_figure(found, front, (chosen[0], chosen[1]), limits), figure)
         return
     if len(chosen) != 1:
         raise ValueError(f"one answer or two are minimised, got {len(chosen)}")
@@ -146,11 +147,11 @@ def optimise(
     if as_json:
         echo_json({"version": bs.__version__, **best.summary()})
     else:
-        study_tables.print_optimum(best)
+        study_terminal.print_optimum(best)
     if figure is not None:
         axes = dict(axis_of(phrase, points) for phrase in vary)
         found = bs.study(answers, file.joint, grid(**axes, **load), quantities=quantities)
-        figures.save(study_figures.design_map(found, limits, _shown(chosen), best=best.point), figure)
+        save(study_plots.design_map(found, limits, _shown(chosen), best=best.point), figure)
 
 
 @app.command()
@@ -166,14 +167,16 @@ def sensitivity(
 ) -> None:
     """Tell which number's scatter matters: Sobol indices with intervals, and elasticities."""
     if figure is not None:
-        figures.check_format(figure)
+        check_format(figure)
     file = named_joint(joint)
     scattered = _once(map(spread_of, spread))
     load = _load(force, indentation, file, scattered)
     found = find_sensitivity(_model(model, file), file.joint, scattered, count=count, load=load)
     if as_json:
-        echo_json({"version": bs.__version__, "model": found.attrs["model"], **study_tables.sensitivity_summary(found)})
+        echo_json(
+            {"version": bs.__version__, "model": found.attrs["model"], **study_terminal.sensitivity_summary(found)}
+        )
     else:
-        study_tables.print_sensitivity(found)
+        study_terminal.print_sensitivity(found)
     if figure is not None:
-        figures.save(study_figures.sensitivity_figure(found), figure)
+        save(study_plots.sensitivity_figure(found), figure)

@@ -11,9 +11,9 @@ from rich.console import Console
 from rich.progress import Progress
 
 from ..checks import needs
-from ..engines import Processes
+from ..engines.local import Processes
+from ..output.report import write_report
 from ..paper.plan import full_plan, quick_plan
-from ..report import write_report
 from .root import app
 
 

@@ -15,9 +15,10 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 import ballsocket as bs
 
-from .. import figures, study_figures, study_tables
-from ..engines import Engine, Processes
-from ..studies.distributed import Distributed
+from ..engines.dask import Distributed
+from ..engines.local import Engine, Processes
+from ..output import study_plots, study_terminal
+from ..output.save import check_format, save
 from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
 from ..studies.run import Listener
@@ -57,24 +58,24 @@ def study(
             engine=_engine(given, workers, scheduler),
             listen=listen,
         )
-    study_tables.print_study(found)
+    study_terminal.print_study(found)
     if kept is not None:
         typer.echo(str(kept))
     if out is not None:
         export(found, out)
         typer.echo(str(out))
     if draw is not None and figure is not None:
-        figures.save(draw(found), figure)
+        save(draw(found), figure)
         typer.echo(str(figure))
 
 
 def _drawing(given: StudyFile, path: Path) -> Callable[[Any], Figure]:
     """How the study is drawn, asked before it is run."""
-    figures.check_format(path)
+    check_format(path)
     long = [axis.name for axis in given.design.axes if len(axis) > 1]
     if len(long) != 2:
         raise ValueError(f"a figure needs two axes, or samples and an axis; this study has {', '.join(long) or 'none'}")
-    return study_figures.band_figure if "sample" in long else study_figures.design_map
+    return study_plots.band_figure if "sample" in long else study_plots.design_map
 
 
 def _engine(given: StudyFile, workers: int | None, scheduler: str | None) -> Engine:

@@ -8,7 +8,8 @@ from typing import Any
 
 import typer
 
-from ..files import JointFile, joint_of, nearest, read_joint, read_load
+from ..checks import nearest
+from ..io.joint_file import JointFile, joint_of, read_joint, read_load
 from ..presets import joints
 
 

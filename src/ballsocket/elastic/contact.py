@@ -10,10 +10,10 @@ import numpy
 from .. import arrays
 from ..arrays import Array
 from ..checks import numeric, require
-from ..models.by_joint import SolvedContact
+from ..per_joint import SolvedContact
 from ..stress import Peak, Stress
 from .abel import State
-from .inside import NARROWEST, peak, stress, surface_displacement
+from .subsurface import NARROWEST, peak, stress, surface_displacement
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)

@@ -9,7 +9,7 @@ from math import radians
 import numpy
 
 from ..gaps import Gap
-from ..models.by_joint import Piece
+from ..per_joint import Piece
 from .abel import State
 from .kernel import Kernel, grid
 

@@ -11,9 +11,9 @@ from math import inf
 
 import numpy
 
+from ..cup import Interface
 from ..joint import Support
 from .condense import Body
-from .cup import Interface
 from .elasticity import Elastic
 from .mesh import Block, block
 from .shapes import Resolution, SocketShape, ball_corners

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..arrays import to_numpy
 from ..joint import Joint
-from ..models.by_joint import SolvedContact
+from ..per_joint import SolvedContact
 from ..stress import Peak
 from ..validity import Status
 from .memory import MeshSize, mesh_size

@@ -11,11 +11,11 @@ import numpy
 
 from ..arrays import gauss_legendre
 from ..gaps import Gap
-from ..models.by_joint import QUANTITIES, Piece
-from .cap import Cap, cap
-from .ladder import Ladder, is_contact
-from .pair import Pair
-from .rim import Brimful
+from ..per_joint import QUANTITIES, Piece
+from .full_contact import Brimful
+from .load_search import Ladder, is_contact
+from .round_contact import Cap, cap
+from .surfaces import Pair
 
 Array = numpy.ndarray
 Solved = Cap | Brimful

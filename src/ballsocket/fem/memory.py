@@ -6,8 +6,8 @@ from dataclasses import asdict, dataclass
 from math import log2
 from typing import Any
 
+from ..cup import Cup
 from ..joint import Joint
-from .cup import Cup
 from .shapes import Resolution, ball_corners, socket_shape
 
 _GIB = 2**30

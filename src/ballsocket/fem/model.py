@@ -8,14 +8,14 @@ from typing import Any
 from .. import arrays
 from ..checks import needs, require
 from ..contact import Contact
+from ..cup import Cup
 from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint
-from ..models.base import Answer, Model
-from ..models.by_joint import taken_apart
+from ..model import Answer, Model
+from ..per_joint import taken_apart
 from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range
 from .contact import MeshedContact
-from .cup import Cup
 from .spacing import SPACINGS, Adapted, Element, Spacing
 
 Array = arrays.Array

@@ -8,11 +8,11 @@ from functools import cached_property
 
 import numpy
 
+from ..cup import Cup
 from ..joint import Joint
 from ..stress import Peak, Stress
 from .bodies import ball_body, socket_body
 from .condense import Body
-from .cup import Cup
 from .curve import Solved
 from .elasticity import shape_functions
 from .shapes import socket_shape

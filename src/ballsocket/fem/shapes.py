@@ -7,8 +7,8 @@ from math import inf, pi
 
 import numpy
 
+from ..cup import Cup, Interface
 from ..joint import Joint, Support
-from .cup import Cup, Interface
 from .mesh import bisected, graded, joined
 
 Array = numpy.ndarray

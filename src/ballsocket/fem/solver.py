@@ -7,16 +7,16 @@ from functools import lru_cache
 from math import inf, pi, radians
 
 from ..checks import require
+from ..cup import Cup, Interface
 from ..gaps import CircularGap, LinearGap
 from ..joint import Joint, Support
 from .bodies import ball_compliance, socket_compliance
-from .cup import Cup, Interface
 from .curve import COARSE, Curve
 from .memory import check_memory, mesh_size
-from .pair import Pair, Surface
 from .progress import tell
 from .shapes import Resolution, socket_shape
 from .spacing import Spacing, Uniform
+from .surfaces import Pair, Surface
 
 LIMIT = radians(88.0)
 """The widest contact where the socket reaches further."""

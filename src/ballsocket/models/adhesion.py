@@ -11,7 +11,7 @@ from ..checks import numeric, require
 from ..joint import Joint
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Range
-from .base import ClosedForm
+from .closed_form import ClosedForm
 from .kinematics import angle_of, linear_displacement, linear_indentation, versine_of
 from .modulus import Modulus, hess_forsbach
 

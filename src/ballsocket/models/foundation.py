@@ -8,7 +8,7 @@ from ..arrays import Array, cos, where
 from ..joint import Joint
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Range
-from .base import ClosedForm
+from .closed_form import ClosedForm
 from .kinematics import Kinematics, angle_of, cosine_kinematics, exact_kinematics, linear_kinematics, versine_of
 from .modulus import Modulus, bonded_layer, hess_forsbach, spherical_vessel
 

@@ -11,7 +11,7 @@ from ..arrays import Array, clip, power, sqrt, where
 from ..joint import Joint
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Nowhere, Range
-from .base import ClosedForm
+from .closed_form import ClosedForm
 
 
 class HalfSpace(ClosedForm):

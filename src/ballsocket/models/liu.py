@@ -10,7 +10,7 @@ from ..checks import require
 from ..joint import Joint
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Nowhere, Range
-from .base import ClosedForm
+from .closed_form import ClosedForm
 from .kinematics import angle_of, linear_indentation_of_versine, linear_versine, versine_of
 
 

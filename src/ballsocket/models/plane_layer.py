@@ -11,9 +11,9 @@ import numpy
 from .. import arrays
 from ..arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, integral, log, sin, sqrt, where
 from ..joint import Joint
+from ..model import Answer, Model
 from ..sources import Source
 from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Range
-from .base import Answer, Model
 
 
 @dataclass(frozen=True, kw_only=True)

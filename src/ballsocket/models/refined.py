@@ -13,11 +13,11 @@ from typing import NamedTuple
 from .. import arrays
 from ..arrays import Array, broadcast, clip, divisor, integral, sin, where
 from ..joint import Joint
+from ..model import Answer, Model
 from ..sources import Source
 from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Range
-from .base import Answer, Model
-from .dual import Dual
-from .spectrum import compliance
+from .dual_numbers import Dual
+from .liner_compliance import compliance
 
 WIDEST = radians(85.0)
 """The largest half angle that is answered."""

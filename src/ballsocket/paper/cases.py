@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy
 
-from ..accuracy import RANGES, THICKNESS
-from ..calibrate import paper_joint
 from ..joint import Joint, Material
 from ..presets import STEEL
+from .accuracy import RANGES, THICKNESS
+from .table_3 import paper_joint
 
 Array = numpy.ndarray
 

@@ -11,7 +11,7 @@ import numpy
 from ..arrays import to_numpy
 from ..contact import Contact
 from ..joint import Joint
-from ..models.base import Model
+from ..model import Model
 from ..models.foundation import HessForsbach
 from . import cases
 from .figure import Figure, Line, Map, Panel

@@ -11,18 +11,18 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from ..accuracy import accuracies
-from ..all_models import catalogue
-from ..calibrate import refit_column
-from ..elastic.axisymmetric import Exact
-from ..engines import Engine, Serial
+from ..atomic import write_text
+from ..catalogue import catalogue
+from ..elastic.exact import Exact
+from ..engines.local import Engine, Serial
 from ..fem.model import FiniteElement
 from ..fingerprint import fingerprint
-from ..models.base import Model
-from ..written import write_text
+from ..model import Model
 from . import cases, curves
+from .accuracy import accuracies
 from .claims import CLAIMS, ELSEWHERE, MESHED_CLAIMS, MESHED_ELSEWHERE, Claim, judged
 from .claims.agreement import dense_elements
+from .table_3 import refit_column
 
 Piece = Callable[[], Any]
 """Computes something that JSON can hold."""

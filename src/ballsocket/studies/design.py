@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy
 
-from ..checks import require
-from ..files import check_names
+from ..checks import check_names, require
 from .axes import Axis, GridAxis, Method, SampleAxis, Span, SpanAxis, column
 from .distributions import Distribution
 from .parameters import PARAMETERS, contradiction

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy
 
+from ..atomic import at_once
 from ..checks import needs
-from ..written import at_once
 from .pieces import blocks_of, dims_of, pieces
 
 if TYPE_CHECKING:

@@ -8,17 +8,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..all_models import catalogue, judge
-from ..engines import Engine, Processes, Serial
+from ..catalogue import catalogue, judge
+from ..checks import check_names, nearest
+from ..engines.dask import Distributed
+from ..engines.local import Engine, Processes, Serial
 from ..fem.model import FiniteElement
-from ..files import JointFile, check_names, joint_of, nearest, read_joint
+from ..io.joint_file import JointFile, joint_of, read_joint
+from ..io.units import as_given, parse
 from ..joint import Joint
-from ..models.base import Model
+from ..model import Model
 from ..presets import joints
-from ..units import as_given, parse
 from .axes import Method, Span
 from .design import Design, grid, sample
-from .distributed import Distributed
 from .distributions import Distribution, Normal, Rectangular, tolerance
 from .parameters import PARAMETERS
 from .rows import table

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..checks import require
-from ..files import check_names
+from ..checks import check_names, require
 from .parameters import PARAMETERS
 from .task import QUANTITIES
 

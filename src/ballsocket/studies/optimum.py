@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy
 
-from ..checks import needs, require
-from ..files import check_names
+from ..checks import check_names, needs, require
 from ..joint import Joint
-from ..models.base import Model
+from ..model import Model
 from .design import Design, grid, sample
 from .distributions import Rectangular
 from .limits import EDGE_DISTANCE, Limit, allowed

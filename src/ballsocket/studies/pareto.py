@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ..files import check_names
+from ..checks import check_names
 from .limits import Limit, allowed
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy
 
-from ..files import check_names
+from ..checks import check_names
 from .axes import TableAxis, column
 from .design import Design
 from .parameters import PARAMETERS

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..checks import needs
-from ..engines import Engine, Serial
-from ..files import check_names
+from ..checks import check_names, needs
+from ..engines.local import Engine, Serial
 from ..joint import Joint
-from ..models.base import Model
+from ..model import Model
 from .blocks import Blocks
 from .design import Design, check_values, grid, is_one
 from .labels import dataset

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..checks import needs, require
-from ..files import check_names
+from ..checks import check_names, needs, require
 from ..joint import Joint
-from ..models.base import Model
+from ..model import Model
 from .distributions import Distribution
 from .labels import described
 from .parameters import PARAMETERS, contradiction

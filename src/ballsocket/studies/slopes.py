@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy
 
-from ..checks import needs
-from ..files import check_names
+from ..checks import check_names, needs
 from ..joint import Joint
-from ..models.base import Model
+from ..model import Model
 from .parameters import LOADS, PARAMETERS, pressable
 from .task import QUANTITIES
 

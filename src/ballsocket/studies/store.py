@@ -14,8 +14,8 @@ from zlib import crc32
 
 import numpy
 
+from ..atomic import at_once
 from ..checks import needs
-from ..written import at_once
 from .identity import differences, identity
 from .labels import attributes, coordinates, described
 from .task import DTYPES, Task

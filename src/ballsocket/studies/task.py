@@ -11,7 +11,7 @@ import numpy
 from ..describe import COLUMNS
 from ..fingerprint import fingerprint
 from ..joint import Joint
-from ..models.base import Model
+from ..model import Model
 from ..validity import OutsideDomainError, Status
 from .blocks import Blocks
 from .design import Design

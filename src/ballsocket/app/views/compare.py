@@ -9,12 +9,12 @@ from typing import Any
 
 import panel as pn
 
-from ...all_models import catalogue
+from ...catalogue import catalogue
 from ...compare import answered, force_curves, relative
 from ...contact import Contact
-from ...figures import press_figure
-from ...files import JointFile
-from ...html_page import drawn, table
+from ...io.joint_file import JointFile
+from ...output.html import drawn, table
+from ...output.press_plot import press_figure
 from ...presets import joints
 from ..drawing import SectionDrawing, extent_of
 from ..look import PALETTES, numbered

@@ -10,11 +10,11 @@ from typing import Any
 
 import panel as pn
 
-from ...html_page import drawn, table
-from ...phrases import limit_of, range_of
+from ...output.html import drawn, table
+from ...output.study_plots import design_map, label
+from ...output.study_terminal import map_rows
 from ...studies.parameters import PARAMETERS
-from ...study_figures import design_map, label
-from ...study_tables import map_rows
+from ...studies.phrases import limit_of, range_of
 from ..look import PALETTES
 from ..map_chart import MapChart
 from ..mapping import around, best, joint_at, limits_of, mapped, now, told

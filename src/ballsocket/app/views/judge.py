@@ -10,10 +10,10 @@ from typing import Any
 import panel as pn
 
 from ...compare import relative
-from ...fem.cup import Interface
-from ...files import JointFile, read_cup
-from ...html_page import picture, table
-from ...joint_text import cup_table
+from ...cup import Interface
+from ...io.joint_file import JointFile, read_cup
+from ...io.joint_toml import cup_table
+from ...output.html import picture, table
 from ..judging import LONGEST, Judged, Reached, Refused, Run
 from ..screen import Screen
 from ..style import html, inputs

@@ -7,10 +7,10 @@ from typing import Any
 
 import panel as pn
 
-from ... import html_page as page
-from ...all_models import catalogue
+from ...catalogue import catalogue
 from ...compare import HEADS, Comparison, answered, force_curves
-from ...figures import press_figure
+from ...output import html as page
+from ...output.press_plot import press_figure
 from ..drawing import SectionDrawing
 from ..look import PALETTES, line_of
 from ..press_charts import PressCharts

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy
 
-from ...calibrate import worst_error
 from ...contact import Contact
 from ...fem.contact import MeshedContact
 from ...fem.model import FiniteElement
 from ...fem.spacing import Element, Uniform
-from ...models.base import Model
+from ...identify.modulus import worst_error
+from ...model import Model
 from ...models.foundation import Bartel, BondedLayer, HessForsbach
 from ...models.half_space import Hertz
 from .. import cases

@@ -7,7 +7,7 @@ from functools import cache
 import numpy
 
 from ...contact import Contact
-from ...models.base import Model
+from ...model import Model
 from .. import cases
 from .finding import Finding, named, true
 

@@ -7,12 +7,12 @@ from io import StringIO
 
 import numpy
 
-from ...calibrate import worst_error
-from ...elastic.axisymmetric import Exact
 from ...elastic.contact import ElasticContact
+from ...elastic.exact import Exact
 from ...fem.model import FiniteElement
+from ...identify.modulus import worst_error
 from ...joint import Joint, Material
-from ...models.base import Model
+from ...model import Model
 from ...presets import COCR, CROSSLINKED_PE, STEEL, UHMWPE
 from ...sources import Source
 from .finding import SHOWN, Finding, graded, percent, true

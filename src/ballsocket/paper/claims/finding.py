@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-from ...models.base import Model
+from ...model import Model
 
 
 class Verdict(Enum):

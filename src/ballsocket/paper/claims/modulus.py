@@ -6,11 +6,12 @@ from collections.abc import Iterable
 
 import numpy
 
-from ...calibrate import RATIOS, refit_table_3, worst_error
-from ...models.base import Model
+from ...identify.modulus import worst_error
+from ...model import Model
 from ...models.foundation import Bartel, Vessel
 from ...models.modulus import bonded_layer, spherical_vessel
 from .. import cases
+from ..table_3 import RATIOS, refit_table_3
 from .finding import SHOWN, Finding, graded, named, percent, true
 
 Array = numpy.ndarray

@@ -1,0 +1,40 @@
+"""The catalogue: every model that answers to `press`, by name."""
+
+from __future__ import annotations
+
+from .elastic.exact import Exact
+from .elastic.tabulated.model import Tabulated
+from .fem.model import FiniteElement
+from .model import Model
+from .models.adhesion import AdhesiveSocket
+from .models.foundation import Bartel, BondedLayer, BondedLayerExact, CosineLimit, HessForsbach, Vessel
+from .models.half_space import Hertz, Steuermann
+from .models.liu import LiuReconstruction
+from .models.plane_layer import PlaneLayer
+from .models.refined import Refined
+
+reference: Model = Exact()
+"""What every other model is measured by."""
+
+judge: Model = FiniteElement()
+"""The finite elements: asked by name, not along with the others."""
+
+_MODELS: tuple[Model, ...] = (
+    reference,
+    Tabulated(),
+    Refined(),
+    HessForsbach(),
+    Vessel(),
+    Bartel(),
+    BondedLayer(),
+    BondedLayerExact(),
+    CosineLimit(),
+    Hertz(),
+    Steuermann(),
+    PlaneLayer(),
+    LiuReconstruction(),
+    AdhesiveSocket(),
+)
+
+catalogue: dict[str, Model] = {model.name: model for model in _MODELS}
+"""Name -> model: what `--model` and files call them, all of them answering in milliseconds or less."""

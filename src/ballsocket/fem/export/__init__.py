@@ -1,0 +1,1 @@
+"""The finite-element model and its fields as files of other programs."""

@@ -1,0 +1,1 @@
+"""From results and measurements back to the numbers of a joint."""

@@ -1,0 +1,189 @@
+"""From any reference to a foundation modulus: what the closed form must be told, and the error it then makes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy
+
+from .. import arrays
+from ..catalogue import reference as exact
+from ..joint import Joint
+from ..model import Model
+from ..models.foundation import RadialFoundation
+from ..models.modulus import Modulus, constant, corrected_vessel, polynomial, spherical_vessel
+
+Array = arrays.Array
+Form = Callable[[Joint, numpy.ndarray], Modulus]
+"""From a joint (of numbers or arrays) and the K wanted there, in MPa/mm, to a modulus."""
+
+FORCES = (1000.0, 2000.0, 3000.0)
+"""Loads in N over which p0/d is averaged, as in the paper."""
+
+
+def as_constant(joint: Joint, wanted: numpy.ndarray) -> Modulus:
+    """One number in MPa/mm: the mean of `wanted`, the K of the joint (same shape) in MPa/mm."""
+    return constant(float(numpy.mean(wanted)))
+
+
+def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
+    """K R2/E = C1 + C2 (R2/L) + C3 (R2/L)², Eq. (18), by least squares of relative errors, constants 0 or more.
+
+    Raises
+    ------
+    ValueError
+        A joint of fewer than three thicknesses.
+    """
+    from scipy.optimize import nnls
+
+    thicknesses = numpy.unique(_values(joint.thickness_ratio)).size
+    if thicknesses < 3:
+        raise ValueError(
+            f"{thicknesses} thicknesses are not enough for the three constants of Eq. (18): give 3 or more"
+        )
+    ratio, scaled = numpy.broadcast_arrays(_values(joint.thickness_ratio), wanted * _values(joint.socket_radius))
+    scaled = scaled / _values(joint.liner.young)
+    basis = numpy.stack([ratio.ravel() ** k for k in range(3)], axis=-1) / scaled.ravel()[:, None]
+    constants, _ = nnls(basis, numpy.ones(scaled.size))
+    return polynomial(*map(float, constants), source="fitted")
+
+
+def as_corrected_vessel(joint: Joint, wanted: numpy.ndarray) -> Modulus:
+    """K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L), by least squares."""
+    ratio = _values(joint.thickness_ratio)
+    kappa, share = numpy.broadcast_arrays(ratio / (1 + ratio), wanted / _values(spherical_vessel(joint)))
+    powers = min(3, numpy.unique(kappa).size)  # one thickness tells one constant
+    basis = numpy.stack([kappa.ravel() ** k for k in range(powers)], axis=-1)
+    found = numpy.linalg.lstsq(basis, share.ravel(), rcond=None)[0]
+    return corrected_vessel(*map(float, numpy.pad(found, (0, 3 - powers))), source="this project's fit")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Calibration:
+    """A foundation modulus fitted to a reference.
+
+    Attributes
+    ----------
+    modulus : Modulus
+        What was fitted; `model` is the closed form that takes it.
+    joint : Joint
+        The joints it was fitted to (numbers or arrays).
+    force : array
+        The loads in N.
+    wanted : array
+        p0/d of the reference in MPa/mm, averaged over the loads; shape of the joint.
+    spread : float
+        Largest relative departure of a single load's p0/d from that mean: how far K is not a constant.
+    reference : Model
+    """
+
+    modulus: Modulus
+    joint: Joint
+    force: numpy.ndarray
+    wanted: numpy.ndarray
+    spread: float
+    reference: Model
+
+    @property
+    def model(self) -> RadialFoundation:
+        """The paper's closed form with the fitted modulus."""
+        return RadialFoundation(modulus=self.modulus)
+
+    @property
+    def residual(self) -> numpy.ndarray:
+        """Relative residual of the fit, fitted over wanted less 1; shape of the joint."""
+        return _values(self.modulus(self.joint)) / self.wanted - 1
+
+    @cached_property
+    def error(self) -> dict[str, float]:
+        """Worst relative error of the closed form over joints and loads.
+
+        In indentation, peak pressure and half angle at equal force; in force at equal indentation.
+        """
+        force = self.force.reshape(-1, *(1 for _ in numpy.shape(self.wanted)))
+        truth = self.reference.press(self.joint, force=force)
+        at_force = self.model.press(self.joint, force=force)
+        at_depth = self.model.press(self.joint, indentation=truth.indentation)
+        errors = {
+            name: worst_error(getattr(at_force, name), getattr(truth, name))
+            for name in ("indentation", "max_pressure", "half_angle")
+        }
+        return {**errors, "force": worst_error(at_depth.force, truth.force)}
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON."""
+        return {
+            "reference": self.reference.name,
+            "modulus": self.modulus.name,
+            "constants": [float(number) for number in self.modulus.constants],
+            "force": self.force.tolist(),
+            "foundation_modulus": numpy.asarray(self.wanted).tolist(),
+            "spread_over_load": self.spread,
+            "residual": float(numpy.max(abs(self.residual))),
+            "error": self.error,
+        }
+
+
+def calibrate(
+    joint: Joint, *, force: Array = FORCES, form: Form = as_constant, reference: Model | None = None
+) -> Calibration:
+    """Fit a foundation modulus to a reference, as the paper did to finite elements: by the mean of p0/d over loads.
+
+    Parameters
+    ----------
+    joint : Joint
+        One's own geometry and layers; arrays (say of thicknesses) for a modulus that covers a family of joints.
+    force : array
+        Loads in N, all above 0.
+    form : function
+        `as_constant`, `as_polynomial` or `as_corrected_vessel`.
+    reference : Model
+        `Exact()` by default.
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    ValueError
+        A load that is not above 0; a joint or load that the reference does not answer.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> hip = bs.joints["hess-forsbach"]
+    >>> fit = bs.calibrate(hip)
+    >>> round(fit.modulus(hip), 1), round(fit.model.press(hip, force=3000.0).max_pressure, 2)
+    (278.0, 11.29)
+    """
+    model = exact if reference is None else reference
+    loads = numpy.atleast_1d(numpy.asarray(force, dtype=float))
+    if loads.size == 0 or not numpy.all(loads > 0):
+        raise ValueError(f"force = {loads.tolist()} is not allowed: a calibration needs loads (N) above 0")
+    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in joint.numbers()))
+    answers = model.press(joint, force=loads.reshape(-1, *(1 for _ in shape)))
+    each = _values(answers.foundation_modulus)
+    if not numpy.all(numpy.isfinite(each)):
+        raise ValueError(f"{model.name} does not answer everywhere: {'; '.join(answers.notes)}")
+    wanted = numpy.mean(each, axis=0)
+    return Calibration(
+        modulus=form(joint, wanted),
+        joint=joint,
+        force=loads,
+        wanted=wanted,
+        spread=float(numpy.max(abs(each / wanted - 1))),
+        reference=model,
+    )
+
+
+def _values(x: Array) -> numpy.ndarray:
+    return numpy.asarray(arrays.to_numpy(x), dtype=float)
+
+
+def worst_error(value: Array, truth: Array) -> float:
+    """The largest relative error among all points."""
+    return float(numpy.max(abs(_values(value) / _values(truth) - 1)))

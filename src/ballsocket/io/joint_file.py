@@ -1,0 +1,201 @@
+"""A joint file: TOML with units in, `Joint` and load out. Strict: what is not known is named, with what is near it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from pathlib import Path
+from typing import Any
+
+from ..checks import check_names, nearest
+from ..cup import Cup, Interface
+from ..joint import Joint, Layer, Material, Support
+from ..model import checked_load
+from ..presets import materials
+from .units import as_given, parse
+
+_MAX_BYTES = 100_000
+_LENGTHS = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
+_TABLES = {
+    "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
+    "joint": (*_LENGTHS, "support"),
+    "liner": ("material", "young", "poisson"),
+    "ball": ("material", "young", "poisson"),
+    "cup": ("arc_of_cover", "chamfer", "interface"),
+    "load": ("force", "indentation", "half_angle"),
+}
+_LAYER = ("thickness", "material", "young", "poisson")
+_NUMBERS = {"young": "modulus", "poisson": "number"}
+_LOADS = {"force": "force", "indentation": "length", "half_angle": "angle"}
+
+
+@dataclass(frozen=True)
+class JointFile:
+    """What a joint file holds: the joint, its load (empty, or one of force, indentation, half_angle), and its cup."""
+
+    joint: Joint
+    load: dict[str, float]
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
+
+
+def read_joint(path: str | Path) -> JointFile:
+    """Read a joint file.
+
+    The file is TOML: a table `joint` with `liner_thickness` and two of `ball_radius`, `socket_radius`, `clearance`;
+    tables `liner` and (for a ball that is not rigid) `ball`, each with a `material` by name or `young` and `poisson`,
+    or both, where the numbers win; a table `load` with one of `force`, `indentation`, `half_angle`. What is behind the
+    liner is rigid, or is an array of tables `[[backing]]` from the liner outwards, each with a `thickness` and a
+    material as above; `support` in the table `joint` says whether its outermost surface is "fixed" (without a word) or
+    "free". A table `cup` holds what only finite elements ask for: `arc_of_cover`, `chamfer`, and `interface`, which is
+    "bonded" or "sliding". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N,
+    MPa, degrees.
+
+    Returns
+    -------
+    JointFile
+        With everything in mm, N, MPa and rad.
+
+    Raises
+    ------
+    ValueError
+        One sentence: what is wrong, and the nearest thing that is right.
+    OSError
+        The file cannot be read.
+    """
+    path = Path(path)
+    with path.open("rb") as stream:
+        raw = stream.read(_MAX_BYTES + 1)
+    return parse_joint(raw, path.name)
+
+
+def parse_joint(raw: bytes, title: str) -> JointFile:
+    """A joint file's content; see `read_joint`."""
+    if len(raw) > _MAX_BYTES:
+        raise ValueError(f"{title} is larger than {_MAX_BYTES} bytes; a joint file is a few lines")
+    try:
+        table = tomllib.loads(raw.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{title} is not text in UTF-8: {error.reason} at byte {error.start}") from error
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{title} is not TOML: {error}") from error
+    except RecursionError as error:
+        raise ValueError(f"{title} is no joint file: its brackets are nested too deeply") from error
+    try:
+        return joint_of(table)
+    except ValueError as error:
+        raise ValueError(f"{title}: {error}") from error
+
+
+def joint_of(table: Mapping[str, Any]) -> JointFile:
+    """Joint and load from the tables of a joint file, or of the command line; see `read_joint`."""
+    for name, known in _TABLES.items():
+        part = table.get(name, {}) if name else table
+        if not isinstance(part, Mapping):
+            raise ValueError(f"{name} = {part!r} must be a table: [{name}]")
+        check_names(part, known, f"in [{name}]" if name else "at the top")
+    for name in ("name", "source"):
+        if not isinstance(table.get(name, ""), str):
+            raise ValueError(f"{name} = {table[name]!r} must be text")
+    joint = _joint(
+        table.get("joint", {}),
+        liner=_material("liner", table.get("liner", {})),
+        ball=_material("ball", table["ball"]) if "ball" in table else None,
+        backing=_backing(table.get("backing", [])),
+        name=table.get("name", ""),
+        source=table.get("source", ""),
+    )
+    return JointFile(joint, read_load(table.get("load", {})), read_cup(table.get("cup", {})))
+
+
+def read_load(table: Mapping[str, Any]) -> dict[str, float]:
+    """At most one of force, indentation, half_angle, as the keyword of a press."""
+    if len(table) > 1:
+        raise ValueError(f"one load is needed, got {', '.join(table)}")
+    load = {name: parse(name, value, _LOADS[name]) for name, value in table.items()}
+    with as_given(table):
+        return dict([checked_load(**load)]) if load else {}
+
+
+def read_cup(table: Mapping[str, Any]) -> Cup:
+    """A cup from `arc_of_cover`, `chamfer` and `interface`, none of which is needed."""
+    kinds = {"arc_of_cover": "angle", "chamfer": "length"}
+    numbers: dict[str, Any] = {name: parse(name, table[name], kind) for name, kind in kinds.items() if name in table}
+    interface = Interface(_one_of("interface", table.get("interface", Interface.BONDED.value), Interface))
+    with as_given(table):
+        return Cup(**numbers, interface=interface)
+
+
+def _joint(table: Mapping[str, Any], **words: Any) -> Joint:
+    lengths = _lengths({name: value for name, value in table.items() if name != "support"})
+    support = Support(_one_of("support", table.get("support", Support.FIXED.value), Support))
+    with as_given(table):
+        return Joint(**lengths, support=support, **words)
+
+
+def _one_of(name: str, chosen: Any, kind: type[Enum]) -> Any:
+    """`chosen`, if one of the kind has that value."""
+    known = [one.value for one in kind]
+    if chosen not in known:
+        raise ValueError(f"{name} = {chosen!r} is not allowed: {' or '.join(map(repr, known))}")
+    return chosen
+
+
+def _backing(tables: Any) -> tuple[Layer, ...]:
+    if not (isinstance(tables, list | tuple) and all(isinstance(table, Mapping) for table in tables)):
+        raise ValueError(f"backing = {tables!r} must be an array of tables: [[backing]] before each layer")
+    return tuple(_layer(f"backing[{number}]", table) for number, table in enumerate(tables))
+
+
+def _layer(name: str, table: Mapping[str, Any]) -> Layer:
+    check_names(table, _LAYER, f"in {name}")
+    if "thickness" not in table:
+        raise ValueError(f"{name}.thickness is missing; inf is a massive body")
+    thickness = parse(f"{name}.thickness", table["thickness"], "length")
+    material = _material(name, table)
+    with as_given(table, f"{name}."):
+        return Layer(thickness=thickness, material=material)
+
+
+def _lengths(table: Mapping[str, Any]) -> dict[str, Any]:
+    lengths: dict[str, Any] = {name: parse(name, value, "length") for name, value in table.items()}
+    if "liner_thickness" not in lengths:
+        raise ValueError("liner_thickness is missing; inf is a massive socket")
+    given = [name for name in _LENGTHS[:3] if name in lengths]
+    if len(given) != 2:
+        got = ", ".join(given) or "none"
+        raise ValueError(f"two of ball_radius, socket_radius, clearance are needed, got {got}")
+    socket = lengths.pop("socket_radius", None)
+    if socket is not None:
+        if "clearance" in lengths:
+            lengths["ball_radius"] = _difference(socket, lengths["clearance"])
+        else:
+            lengths["clearance"] = _difference(socket, lengths["ball_radius"])
+    return lengths
+
+
+def _difference(larger: float, smaller: float) -> float:
+    """Rounded to a femtometre in a metre, so that 18 - 17.9 is 0.1."""
+    return round(larger - smaller, 12)
+
+
+def _material(name: str, table: Mapping[str, Any]) -> Material:
+    """A material from a table with `material` (by name) and/or `young` and `poisson`."""
+    numbers: dict[str, Any] = {
+        key: parse(f"{name}.{key}", table[key], kind) for key, kind in _NUMBERS.items() if key in table
+    }
+    missing = [key for key in _NUMBERS if key not in numbers]
+    if missing and "material" not in table:
+        raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
+    preset = _named_material(name, table["material"]) if "material" in table else None
+    with as_given(table, f"{name}."):
+        return replace(preset, **numbers) if preset else Material(**numbers)
+
+
+def _named_material(name: str, chosen: Any) -> Material:
+    """The preset material called `chosen`, in any spelling of capitals."""
+    key = str(chosen).lower().replace(" ", "-").replace("_", "-")
+    if key not in materials:
+        raise ValueError(f"{name} material {chosen!r} is not known{nearest(key, materials)}")
+    return materials[key]

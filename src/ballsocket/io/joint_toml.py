@@ -1,0 +1,109 @@
+"""A joint as the tables of a joint file, and as its text: what `files` reads, written."""
+
+from __future__ import annotations
+
+from math import degrees, isinf
+from typing import Any
+
+from ..arrays import is_plain
+from ..checks import needs
+from ..cup import Cup
+from ..joint import Layer, Material, Support
+from ..presets import materials
+from .joint_file import JointFile
+
+Tables = dict[str, Any]
+
+_UNITS = {
+    "ball_radius": "mm",
+    "clearance": "mm",
+    "liner_thickness": "mm",
+    "thickness": "mm",
+    "chamfer": "mm",
+    "young": "MPa",
+    "force": "N",
+    "indentation": "mm",
+    "half_angle": "deg",
+    "arc_of_cover": "deg",
+}
+
+
+def tables_of(file: JointFile) -> Tables:
+    """The tables of a joint file, with bare numbers in mm, N, MPa, degrees; `files.joint_of` takes them back.
+
+    Raises
+    ------
+    ValueError
+        A joint of arrays.
+    """
+    joint = file.joint
+    if not all(map(is_plain, joint.numbers())):
+        raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
+    tables: Tables = {
+        "joint": {name: float(getattr(joint, name)) for name in ("ball_radius", "clearance", "liner_thickness")},
+        "liner": _material(joint.liner),
+    }
+    tables |= {name: getattr(joint, name) for name in ("name", "source") if getattr(joint, name)}
+    if joint.support is not Support.FIXED:
+        tables["joint"]["support"] = joint.support.value
+    if joint.ball is not None:
+        tables["ball"] = _material(joint.ball)
+    if joint.backing:
+        tables["backing"] = [_layer(layer) for layer in joint.backing]
+    if file.cup != Cup():
+        tables["cup"] = cup_table(file.cup)
+    if file.load:
+        tables["load"] = {name: degrees(value) if name == "half_angle" else value for name, value in file.load.items()}
+    return tables
+
+
+def cup_table(cup: Cup) -> Tables:
+    """The table `cup` of a joint file."""
+    return {"arc_of_cover": degrees(cup.arc_of_cover), "chamfer": cup.chamfer, "interface": cup.interface.value}
+
+
+def toml_of(file: JointFile) -> str:
+    """The text of a joint file, with units.
+
+    Raises
+    ------
+    ImportError
+        The writer of TOML is not installed.
+    ValueError
+        A joint of arrays.
+    """
+    needs("app", "tomli_w")
+    import tomli_w
+
+    return tomli_w.dumps(_with_units(tables_of(file)))
+
+
+def _with_units(part: Any) -> Any:
+    if isinstance(part, list):
+        return [_with_units(each) for each in part]
+    return {
+        name: _with_units(value) if isinstance(value, dict | list) else _text(name, value)
+        for name, value in part.items()
+    }
+
+
+def _text(name: str, value: Any) -> Any:
+    if name not in _UNITS or isinf(value):
+        return value
+    return f"{value!r} {_UNITS[name]}"
+
+
+def _layer(layer: Layer) -> Tables:
+    return {"thickness": float(layer.thickness), **_material(layer.material)}
+
+
+def _material(material: Material) -> Tables:
+    """By its name where it is a preset; with the numbers that differ where it has a preset's name."""
+    numbers = {"young": float(material.young), "poisson": float(material.poisson)}
+    for key, preset in materials.items():
+        if preset.name == material.name:
+            return {
+                "material": key,
+                **{name: value for name, value in numbers.items() if getattr(preset, name) != value},
+            }
+    return numbers

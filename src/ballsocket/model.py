@@ -1,0 +1,202 @@
+"""What a model is: a frozen value that answers to `press`, from a few short laws."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from math import pi
+
+import numpy
+
+from . import arrays
+from .arrays import Array, where
+from .checks import numeric, one_load, require
+from .contact import Contact, Laws
+from .joint import Joint
+from .sources import Source
+from .validity import Range, Status, inside, missing
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Answer:
+    """What a solver hands back: force and indentation, masks of how it went, and where the rest comes from."""
+
+    laws: Laws
+    force: Array
+    indentation: Array
+    converged: Array
+    beyond_equator: Array
+    at_rim: Array | None = None
+    not_round: Array | None = None
+
+
+class Model(ABC):
+    """Anything that answers `press(joint, force=... | indentation=... | half_angle=...)` with a `Contact`.
+
+    Attributes
+    ----------
+    name, title : str
+        As in the catalogue; one line for people.
+    sources : tuple of Source
+        Where the formulas come from.
+    domain : tuple of Range
+        Open ranges outside of which there is no formula.
+    validity : tuple of Range
+        Closed ranges inside which the answer can be trusted: peak pressure and indentation within about 15 % of the
+        elastic answer.
+    contact_type : type
+        What `press` answers with: `Contact`, or a kind of it that knows more.
+    """
+
+    @property
+    def contact_type(self) -> type[Contact]:
+        return Contact
+
+    @property
+    @abstractmethod
+    def name(self) -> str: ...
+
+    @property
+    @abstractmethod
+    def title(self) -> str: ...
+
+    @property
+    @abstractmethod
+    def sources(self) -> tuple[Source, ...]: ...
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        return ()
+
+    @property
+    @abstractmethod
+    def validity(self) -> tuple[Range, ...]: ...
+
+    @property
+    def reach(self) -> str:
+        """What loads have an answer, in words for those that have none; empty where there is nothing to say."""
+        return ""
+
+    @property
+    def parameters(self) -> tuple[Array, ...]:
+        """Numbers of the model's own that may be arrays and broadcast against joint and load."""
+        return ()
+
+    @property
+    def differentiable(self) -> bool:
+        """Whether JAX can trace a press."""
+        return True
+
+    @property
+    def smooth_step(self) -> float:
+        """A share of a number over which answers change by more than they are uncertain: for differences."""
+        return 1e-4
+
+    @property
+    def seconds_a_press(self) -> float:
+        """Roughly, for one of many points on one core: studies cut their work by it."""
+        return 4e-7
+
+    def press(
+        self,
+        joint: Joint,
+        *,
+        force: Array | None = None,
+        indentation: Array | None = None,
+        half_angle: Array | None = None,
+    ) -> Contact:
+        """Press the ball into the socket by exactly one of three loads.
+
+        Parameters
+        ----------
+        joint : Joint
+        force : float or array, optional
+            Axial load in N, zero or more, finite.
+        indentation : float or array, optional
+            Approach of the centres from first touch in mm, zero or more, finite.
+        half_angle : float or array, optional
+            Contact half-angle in rad, from 0 to below π/2.
+
+        Returns
+        -------
+        Contact
+            Of the shape that joint and load broadcast to, in their array library, dtype and device.
+
+        Raises
+        ------
+        ValueError
+            Not exactly one load; a load that is not allowed; no point at all inside the model's domain.
+        """
+        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
+        plain, whole, load = prepared(joint, given, *self.parameters)
+        points = inside(self.domain, whole, self.name)
+        with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
+            answer = self._solve(whole, kind, load)
+            return _finished(self, joint if plain else whole, kind, load, points, answer, plain)
+
+    @abstractmethod
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        """The answer to a load of one kind ("force", "indentation", "half_angle"), all numbers being arrays."""
+
+    def force_vector(self, joint: Joint, displacement: Array) -> Array:
+        """Force (..., 3) in N on the ball whose centre is displaced by (..., 3) mm; see `Contact.force_vector`."""
+        xp = arrays.namespace(displacement)
+        square = xp.sum(displacement * displacement, axis=-1)
+        length = arrays.sqrt(arrays.divisor(square))
+        depth = length - joint.clearance
+        touching = (square > 0) & (depth > 0)
+        force = where(touching, self.press(joint, indentation=where(touching, depth, 0.0)).force, 0.0)
+        return -displacement * (force / length)[..., None]
+
+
+def checked_load(**loads: Array | None) -> tuple[str, Array]:
+    """The one load that was given, checked, with its name."""
+    kind, given = one_load(**loads)
+    load = numeric(kind, given)
+    if kind == "half_angle":
+        require(kind, load, (load >= 0) & (load < pi / 2), "a half angle (rad) is 0 or more and below pi/2")
+    else:
+        unit = "N" if kind == "force" else "mm"
+        allowed = f"{'a force' if kind == 'force' else 'an indentation'} ({unit}) is 0 or more and finite"
+        require(kind, load, (load >= 0) & (load < numpy.inf), allowed)
+    return kind, load
+
+
+def prepared(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
+    """Whether only plain numbers came in, and joint and load as arrays of one library and dtype.
+
+    A model's own `parameters` count for the library; they stay where they are.
+    """
+    numbers = (*joint.numbers(), load)
+    plain = all(arrays.is_plain(number) for number in (*numbers, *parameters))
+    joint_numbers = arrays.common(*numbers, *parameters)[: len(numbers)]
+    return plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
+
+
+def _finished(
+    model: Model, joint: Joint, kind: str, load: Array, points: Array, answer: Answer, plain: bool
+) -> Contact:
+    """The contact with its status: NaN where there is no answer."""
+    xp = arrays.namespace(load)
+    shape = (load, answer.force, answer.indentation, *joint.numbers())
+    F = arrays.broadcast(load if kind == "force" else answer.force, *shape)
+    d = arrays.broadcast(load if kind == "indentation" else answer.indentation, *shape)
+    found = arrays.isfinite(answer.force) & arrays.isfinite(answer.indentation)
+    status = xp.zeros_like(xp.astype(F > 0, xp.int8))
+    for wrong, code in (
+        (answer.beyond_equator, Status.BEYOND_EQUATOR),
+        *(
+            (mask, code)
+            for mask, code in ((answer.at_rim, Status.AT_RIM), (answer.not_round, Status.NOT_ROUND))
+            if mask is not None
+        ),
+        (~answer.converged, Status.NOT_CONVERGED),
+        (~found, Status.NOT_REACHED),
+        (~points, Status.OUTSIDE_DOMAIN),
+    ):
+        status = where(wrong, xp.asarray(int(code), dtype=xp.int8), status)
+    answered = ~missing(status)
+    F, d = where(answered | (kind == "force"), F, xp.nan), where(answered | (kind == "indentation"), d, xp.nan)
+    if plain:
+        F, d, status = float(F), float(d), Status(int(status))
+    return model.contact_type(model=model, laws=answer.laws, joint=joint, force=F, indentation=d, status=status)

@@ -1,0 +1,175 @@
+"""A pin in a hole: the plane relative of the ball in a socket, per unit of length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import degrees, pi
+
+import numpy
+
+from .. import arrays
+from ..arrays import Array, asinh, atan, broadcast, clip, divisor, increasing_root, log, sqrt, tan, where
+from ..checks import numeric, one_load, require
+from ..joint import Joint
+from ..model import prepared
+from ..sources import Source
+from ..validity import Range, Status
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinInHole:
+    """Persson 1964: a pin in a hole of nearly its radius in an infinite plate of the same material, plane strain.
+
+    With β = tan(ε/2) and E1 = E/(1 - ν²), the line load Q obeys
+    E1 c/Q = [2 - ln(1 + β²) - 2β⁴]/[π (1 + β²) β²]; the perfect fit (c = 0) has ε = 84.83° at any load.
+    A `Joint` describes it: `ball_radius` is the pin's, `clearance` radial, `liner` the material of both; the
+    thickness does not enter. There is no indentation: a line load has no finite approach in an infinite plate.
+
+    References
+    ----------
+    Persson 1964; Ciavarella & Decuzzi 2001, doi 10.1016/S0020-7683(00)00289-4.
+    """
+
+    @property
+    def name(self) -> str:
+        return "pin-in-hole"
+
+    @property
+    def title(self) -> str:
+        return "pin in a hole in an infinite plate, per length (2-D)"
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return (Source("persson1964"), Source("ciavarella2001"))
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        same = "pin and plate of one material (a rigid pin is none)"
+        massive = "an infinite plate"
+        return (
+            Range(quantity="joint.modulus_ratio", symbol="E/E_pin", low=0.99, high=1.01, why=same),
+            Range(quantity="joint.thickness_ratio", symbol="R2/L", high=0.1, why=massive),
+        )
+
+    def press(self, joint: Joint, *, line_load: Array | None = None, half_angle: Array | None = None) -> LineContact:
+        """Press by exactly one of a line load and a half angle.
+
+        Parameters
+        ----------
+        joint : Joint
+        line_load : float or array, optional
+            Q in N/mm, zero or more, finite.
+        half_angle : float or array, optional
+            In rad, from 0 to below 84.83 degrees, the perfect fit.
+
+        Returns
+        -------
+        LineContact
+            Of the shape that joint and load broadcast to.
+
+        Raises
+        ------
+        ValueError
+            Not exactly one load; a line load that is negative or infinite; a half angle outside 0 to 84.83 degrees.
+        """
+        kind, given = one_load(line_load=line_load, half_angle=half_angle)
+        load = numeric(kind, given)
+        if kind == "line_load":
+            require(kind, load, (load >= 0) & (load < numpy.inf), "a line load (N/mm) is 0 or more and finite")
+        else:
+            limit = f"a half angle (rad) is 0 or more and below {PERFECT_FIT:.6f} (perfect fit)"
+            require(kind, load, (load >= 0) & (load < PERFECT_FIT), limit)
+        plain, joint, load = prepared(joint, load)
+        with numpy.errstate(all="ignore"):
+            stiffness = joint.liner.young / (1 - joint.liner.poisson**2) * joint.clearance
+            if kind == "line_load":
+                angle = 2 * atan(sqrt(_squared_tangent(stiffness, load)))
+                return _line_contact(self, joint, plain, load, angle)
+            reached = where((stiffness > 0) | (load == 0), stiffness / _flexibility(tan(load / 2) ** 2), numpy.nan)
+            return _line_contact(self, joint, plain, reached, load)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class LineContact:
+    """What a pin does to its hole, per length: `line_load` in N/mm, `half_angle` in rad, `max_pressure` in MPa."""
+
+    model: PinInHole
+    joint: Joint
+    line_load: Array
+    half_angle: Array
+    status: Array
+
+    @cached_property
+    def max_pressure(self) -> Array:
+        """p(0) in MPa."""
+        return self.pressure(0.0)
+
+    @cached_property
+    def valid(self) -> Array:
+        """Whether the joint lies inside the model's validity, point by point."""
+        inside = self.status == int(Status.OK)
+        for limit in self.model.validity:
+            inside = inside & limit.holds(self)
+        return bool(inside) if isinstance(self.line_load, float) else inside
+
+    def pressure(self, angle: Array) -> Array:
+        """p(φ) in MPa, 0 outside the contact; `angle` in rad broadcasts against the contact's shape."""
+        square = tan(self.half_angle / 2) ** 2
+        y = tan(angle / 2) ** 2
+        rest = clip(square - y, 0.0, float("inf"))
+        ends = 1 + square
+        smooth = 2 / pi * sqrt(rest / ends) / (1 + y)
+        peak = asinh(sqrt(rest / (1 + y))) / (pi * divisor(square) * ends)
+        scaled = where((y < square) & (abs(angle) < pi), smooth + peak, 0.0)
+        pressure = self.line_load / self.joint.socket_radius * scaled
+        return float(pressure) if isinstance(self.line_load, float) and numpy.ndim(pressure) == 0 else pressure
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What has no answer, and what lies outside the model's validity, in words."""
+        failed = self.status != int(Status.OK)
+        notes = [Status.NOT_REACHED.sentence] if numpy.any(arrays.to_numpy(failed)) else []
+        for limit in self.model.validity:
+            notes += [] if numpy.all(arrays.to_numpy(limit.holds(self))) else [limit.sentence]
+        return tuple(notes)
+
+    def __repr__(self) -> str:
+        angle, peak = arrays.to_numpy(self.half_angle), arrays.to_numpy(self.max_pressure)
+        lines = [f"{self.model.name} on {self.joint}", f"  line_load     {arrays.to_numpy(self.line_load)} N/mm"]
+        lines += [f"  half_angle    {angle * degrees(1.0)} deg", f"  max_pressure  {peak} MPa"]
+        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
+
+
+def _flexibility(s: Array) -> Array:
+    """E1 c/Q at s = β²."""
+    return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * divisor(s))
+
+
+def _squared_tangent(stiffness: Array, load: Array) -> Array:
+    """β² that belongs to a line load, E1 c = stiffness."""
+    ratio = stiffness / divisor(load)
+
+    def law(s: Array) -> tuple[Array, Array]:
+        value = log(1 + s) + 2 * s * s - 2 + pi * (s + s * s) * ratio
+        return value, 1 / (1 + s) + 4 * s + pi * (1 + 2 * s) * ratio
+
+    ratio = broadcast(ratio, load)
+    start = 2 / (pi * ratio + 2.4)
+    found = increasing_root(law, 0.0 * ratio, 0.0 * ratio, 0.0 * ratio + 1.0, start)
+    return where(load > 0, found, 0.0 * found)
+
+
+def _line_contact(model: PinInHole, joint: Joint, plain: bool, load: Array, angle: Array) -> LineContact:
+    load, angle = broadcast(load, angle), broadcast(angle, load)
+    good = arrays.isfinite(load) & arrays.isfinite(angle)
+    status = where(good, int(Status.OK), int(Status.NOT_REACHED))
+    if plain:
+        return LineContact(
+            model=model, joint=joint, line_load=float(load), half_angle=float(angle), status=Status(int(status))
+        )
+    return LineContact(model=model, joint=joint, line_load=load, half_angle=angle, status=status)
+
+
+PERFECT_FIT = float(2 * atan(sqrt(_squared_tangent(numpy.float64(0.0), numpy.float64(1.0)))))
+"""Half angle in rad without clearance: 84.83 degrees."""

@@ -1,0 +1,1 @@
+"""Results become pictures, tables and pages. Nothing is solved here."""

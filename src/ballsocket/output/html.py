@@ -1,0 +1,65 @@
+"""One page of HTML that needs nothing beside it: its style, pictures inside, tables."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+from ..fingerprint import fingerprint
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_STYLE = """
+:root { color-scheme: light; }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 66rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+h1, h2 { line-height: 1.2; } h2 { margin-top: 2.5rem; border-bottom: 1px solid #ccc; }
+img { max-width: 100%; } figure { margin: 1rem 0; } figcaption, .quiet { color: #555; }
+.wide { overflow-x: auto; margin: 1rem 0; }
+table { border-collapse: collapse; font-size: 0.9rem; } td, th { padding: 0.25rem 0.7rem; text-align: right; }
+td:first-child, th:first-child, .text td, .text th { text-align: left; vertical-align: top; }
+.text td:first-child { min-width: 14rem; } .text td:last-child { min-width: 17rem; }
+.text td:nth-child(2) { white-space: nowrap; } small { color: #555; }
+code { overflow-wrap: anywhere; } .text { width: 100%; }
+tr { border-bottom: 1px solid #e5e5e5; } nav a { margin-right: 1rem; white-space: nowrap; }
+.holds { color: #00684f; font-weight: 600; } .nearly { color: #8a5a00; font-weight: 600; }
+.fails { color: #b3261e; font-weight: 600; }
+"""
+
+
+def page(title: str, lede: str, sections: Mapping[str, tuple[str, str]]) -> str:
+    """A page with links to its sections: by their id a title and HTML."""
+    links = " ".join(f"<a href='#{name}'>{escape(head.split(':')[0])}</a>" for name, (head, _) in sections.items())
+    body = "".join(f"<h2 id='{name}'>{escape(head)}</h2>{text}" for name, (head, text) in sections.items())
+    return (
+        f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>{escape(title)}</title>"
+        f"<meta name='viewport' content='width=device-width'><style>{_STYLE}</style></head><body>"
+        f"<h1>{escape(title)}</h1>{lede}<nav>{links}</nav>{body}"
+        f"<p class='quiet'>ballsocket {fingerprint()}</p></body></html>"
+    )
+
+
+def picture(data: bytes, title: str, caption: str = "") -> str:
+    """A PNG inside the page; the caption is HTML."""
+    code = b64encode(data).decode("ascii")
+    return (
+        f"<figure><img alt='{escape(title)}' src='data:image/png;base64,{code}'>"
+        f"<figcaption>{caption}</figcaption></figure>"
+    )
+
+
+def drawn(figure: Figure, form: str = "png") -> bytes:
+    """A figure as the bytes of a PNG or SVG."""
+    stream = BytesIO()
+    figure.savefig(stream, format=form, dpi=140)
+    return stream.getvalue()
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of text, which may be wider than the page: then the arrow keys move it."""
+    head = "".join(f"<th>{escape(text)}</th>" for text in heads)
+    body = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows)
+    return f"<div class='wide' tabindex='0' role='region' aria-label='table'><table><tr>{head}</tr>{body}</table></div>"

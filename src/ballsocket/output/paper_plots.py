@@ -1,0 +1,203 @@
+"""The paper's figures and the accuracy of the catalogue, drawn from their numbers. Nothing is computed here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..paper.cases import OUTER_RADII
+from ..paper.curves import FIT
+from ..paper.figure import Figure, Line, Map, Panel
+from .accuracy_table import HEADS, spread
+from .style import finish
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+_STYLES: dict[str, dict[str, Any]] = {
+    "exact": {"color": "black", "linestyle": "-", "linewidth": 1.6},
+    "finite elements": {
+        "color": "#CC79A7",
+        "linestyle": "",
+        "marker": "o",
+        "markersize": 3.5,
+        "markerfacecolor": "none",
+        "markevery": 3,
+    },
+    "hess-forsbach": {"color": "#D55E00", "linestyle": (0, (6, 2)), "linewidth": 1.6},
+    "bartel": {"color": "#0072B2", "linestyle": (0, (2, 1.5)), "linewidth": 1.6},
+    "bonded-layer": {"color": "#009E73", "linestyle": (0, (7, 2, 1.5, 2)), "linewidth": 1.6},
+    "hertz": {"color": "#56B4E9", "linestyle": "-", "linewidth": 1.0},
+    "refined": {"color": "#E69F00", "linestyle": (0, (1, 1)), "linewidth": 2.0},
+    FIT: {"color": "0.5", "linestyle": ":", "linewidth": 1.8, "zorder": 3},
+}
+_WIDTH = 10.8  # inches: a page's width, with letters as large as the text's
+
+
+def draw(figure: Figure) -> Drawing:
+    """One of the paper's figures."""
+    from matplotlib.figure import Figure as Drawing
+
+    parts: list[Panel | Map] = [*figure.panels, *figure.maps]
+    rows = -(-len(parts) // figure.columns)
+    drawing = Drawing()
+    for axes, part in zip(
+        _grid(drawing, rows, figure.columns, bottom=0.95 if figure.panels else 0.55), parts, strict=False
+    ):
+        axes.set_visible(True)
+        if isinstance(part, Map):
+            _draw_map(axes, part)
+            continue
+        _draw_panel(axes, part)
+        if not _have_same_cases(figure.panels):
+            _name_cases(axes, part)
+    _name_models(drawing, figure)
+    return drawing
+
+
+def _grid(drawing: Drawing, rows: int, columns: int, bottom: float) -> Iterator[Axes]:
+    """Axes of the same size, invisible yet. Margins are known, so that no layout need be searched for: seconds less."""
+    left, between, right, top, apart = 0.75, 0.75, 0.15, 0.35, 0.85
+    width = (_WIDTH - left - right - (columns - 1) * between) / columns
+    height = 0.72 * width
+    whole = top + rows * height + (rows - 1) * apart + bottom
+    drawing.set_size_inches(_WIDTH, whole)
+    drawing.subplots_adjust(
+        left=left / _WIDTH,
+        right=1 - right / _WIDTH,
+        top=1 - top / whole,
+        bottom=bottom / whole,
+        wspace=between / width,
+        hspace=apart / height,
+    )
+    for axes in drawing.subplots(rows, columns, squeeze=False).ravel():
+        axes.set_visible(False)
+        yield axes
+
+
+def _name_models(drawing: Drawing, figure: Figure) -> None:
+    """A legend of the models below, and of the cases where all panels have the same."""
+    from matplotlib.lines import Line2D
+
+    lines = [line for panel in figure.panels for line in panel.lines]
+    if not lines:
+        return
+    models, cases = (
+        list(dict.fromkeys(names)) for names in zip(*((line.model, line.case) for line in lines), strict=True)
+    )
+    styles = {model: _STYLES[model] if len(cases) == 1 else {**_STYLES[model], "color": "0.3"} for model in models}
+    if len(cases) > 1 and _have_same_cases(figure.panels):
+        styles |= {case: {"color": colour, "linewidth": 4.0} for case, colour in _case_colours(cases).items()}
+    handles = [Line2D([], [], label=name, **style) for name, style in styles.items()]
+    drawing.legend(handles=handles, loc="lower center", ncols=min(len(handles), 8), frameon=False, fontsize=9)
+
+
+def _have_same_cases(panels: Sequence[Panel]) -> bool:
+    return len({frozenset(line.case for line in panel.lines) for panel in panels}) == 1
+
+
+def _draw_panel(axes: Axes, panel: Panel) -> None:
+    cases = list(dict.fromkeys(line.case for line in panel.lines))
+    for line in panel.lines:
+        axes.plot(line.x, line.y, **_style(line, cases))
+    finish(axes, panel.x, panel.y)
+    axes.locator_params(nbins=5)
+    axes.set_title(panel.title, fontsize=10)
+    _limit(axes, panel)
+
+
+def _limit(axes: Axes, panel: Panel) -> None:
+    """Axes begin at zero where the lines nearly do; what is far off leaves the panel."""
+    known = [line for line in panel.lines if line.model != "hertz"]
+    longest = max(line.x[-1] for line in known)
+    if min(line.x[0] for line in panel.lines) < 0.1 * longest:
+        axes.set_xlim(left=0.0)
+    if "force" in panel.y:
+        axes.set_ylim(0.0, 4000.0)
+        axes.set_xlim(0.0, 1.15 * longest)
+    else:
+        axes.set_ylim(0.0, 1.1 * max(max(line.y) for line in known))
+
+
+def _name_cases(axes: Axes, panel: Panel) -> None:
+    from matplotlib.lines import Line2D
+
+    cases = dict.fromkeys(line.case for line in panel.lines)
+    handles = [Line2D([], [], label=case, color=colour) for case, colour in _case_colours(list(cases)).items()]
+    axes.legend(handles=handles, frameon=False, fontsize=8)
+
+
+def _case_colours(cases: Sequence[str]) -> dict[str, Any]:
+    """From dark to light, so that they are told apart in grey too."""
+    from matplotlib import colormaps
+
+    return dict(zip(cases, colormaps["viridis"](numpy.linspace(0.0, 0.82, len(cases))), strict=True))
+
+
+def _style(line: Line, cases: list[str]) -> dict[str, Any]:
+    """The model's own, with a colour for each case where there are several."""
+    style = dict(_STYLES[line.model])
+    if len(cases) > 1:
+        style["color"] = _case_colours(cases)[line.case]
+    return style
+
+
+def _draw_map(axes: Axes, each: Map) -> None:
+    values = numpy.array([[numpy.nan if value is None else value for value in row] for row in each.z], dtype=float)
+    colours = _about_zero() if each.about_zero else {"cmap": "viridis", "levels": 9}
+    filled = axes.contourf(each.x, each.y, values, **colours)
+    lines = axes.contour(each.x, each.y, values, levels=filled.levels, colors="black", linewidths=0.5, linestyles="-")
+    for text in axes.clabel(lines, fontsize=7):
+        text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.6})
+    radius = numpy.array(each.x)
+    for outer in OUTER_RADII:
+        axes.plot(radius, outer - radius, color="black", linestyle=":", linewidth=1.5)
+    axes.set_ylim(each.y[0], each.y[-1])
+    axes.set_xlabel(each.x_label)
+    axes.set_ylabel(each.y_label)
+    axes.set_title(each.title, fontsize=10)
+
+
+_ENDS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+_LEVELS = (*(-end for end in reversed(_ENDS)), *_ENDS)
+
+
+def _about_zero() -> dict[str, Any]:
+    """The same levels in every map, so that a colour means the same error everywhere."""
+    from matplotlib.colors import SymLogNorm
+
+    norm = SymLogNorm(linthresh=1.0, vmin=-300.0, vmax=300.0)
+    return {"levels": _LEVELS, "cmap": "RdBu_r", "norm": norm, "extend": "both"}
+
+
+def heat_map(rows: Sequence[Mapping[str, Any]]) -> Drawing:
+    """Errors of every model by quantity, of `Accuracy.summary()`: the colour is the 95th percentile."""
+    from matplotlib.colors import LogNorm
+    from matplotlib.figure import Figure as Drawing
+
+    errors = [[row["errors"][name] for name in HEADS] for row in rows]
+    high = numpy.array([[100 * error["percentile_95"] for error in line] for line in errors])
+    drawing = Drawing(figsize=(8.6, 0.42 * len(rows) + 1.3), layout="constrained")
+    axes = drawing.subplots()
+    norm = LogNorm(*_HEAT_ENDS)
+    image = axes.imshow(high, cmap="YlOrRd", norm=norm, aspect="auto")
+    for i, line in enumerate(errors):
+        for j, error in enumerate(line):
+            dark = norm(high[i, j]) > _DARK
+            axes.text(j, i, spread(error), ha="center", va="center", fontsize=8.5, color="white" if dark else "black")
+    axes.set_xticks(range(len(HEADS)), list(HEADS.values()))
+    axes.xaxis.tick_top()
+    axes.set_yticks(range(len(rows)), [row["model"] for row in rows])
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+    bar = drawing.colorbar(image, ax=axes, extend="both", pad=0.01)
+    bar.set_label("95th percentile [%]")
+    axes.set_xlabel("median / 95th percentile / worst error in %")
+    return drawing
+
+
+_HEAT_ENDS = (0.1, 300.0)  # %
+_DARK = 0.72  # of the colours

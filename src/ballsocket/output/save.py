@@ -1,0 +1,36 @@
+"""Figures as files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..atomic import at_once
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+FORMATS = ("png", "svg", "pdf")
+
+
+def check_format(path: Path) -> None:
+    """Raise ValueError unless `path` ends in .png, .svg or .pdf."""
+    if path.suffix.lower().lstrip(".") not in FORMATS:
+        raise ValueError(f"figure {str(path)!r} must end in {', '.join('.' + name for name in FORMATS)}")
+
+
+def save(figure: Figure, path: str | Path) -> None:
+    """Write a figure as PNG, SVG or PDF, by the ending of `path`; one that cannot be drawn leaves no file.
+
+    Raises
+    ------
+    ValueError
+        Another ending.
+    OSError
+        A path that cannot be written to.
+    """
+    path = Path(path)
+    check_format(path)
+    with at_once(path) as draft:
+        figure.savefig(draft, dpi=160)

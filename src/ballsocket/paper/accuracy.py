@@ -1,0 +1,172 @@
+"""How far every model is from the exact answer, over all the joints that the paper had in mind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy
+
+from ..catalogue import catalogue, reference
+from ..contact import Contact
+from ..joint import Joint, Material
+from ..model import Model
+from ..presets import STEEL
+from ..validity import OutsideDomainError
+
+Array = numpy.ndarray
+
+RANGES = {"ball_radius": (11.0, 23.0), "outer_radius": (16.0, 26.0), "clearance": (0.05, 0.2), "poisson": (0.3, 0.49)}
+"""Table 1 of Heß & Forsbach 2021 in mm, and the Poisson's ratios of Table 3."""
+
+THICKNESS = (3.0, 15.0)
+FORCES = numpy.array([500.0, 1000.0, 2000.0, 3000.0, 4000.0])
+"""Loads in N."""
+
+QUANTITIES = ("indentation", "max_pressure", "half_angle", "force")
+"""The first three at given force, the force at the exact answer's indentation."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spread:
+    """Relative errors of one quantity over all joints and loads, and where the worst is."""
+
+    median: float
+    high: float
+    worst: float
+    joint: Joint
+    load: float
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON; `high` is the 95th percentile, `load` in N."""
+        return {
+            "median": self.median,
+            "percentile_95": self.high,
+            "worst": self.worst,
+            "worst_at": {"joint": self.joint.summary(), "force": self.load},
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Accuracy:
+    """One model: a `Spread` for each of `QUANTITIES`, and the shares of contacts that it answers and trusts."""
+
+    model: str
+    spreads: dict[str, Spread]
+    answered: float
+    valid: float
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON."""
+        errors = {name: spread.summary() for name, spread in self.spreads.items()}
+        return {"model": self.model, "answered": self.answered, "valid": self.valid, "errors": errors}
+
+
+def edge_joints() -> Joint:
+    """Joints on the ends of the paper's ranges, where errors are worst: as arrays of shape (joints,).
+
+    Every combination of the ends and the middle of the head's radius, of what liners the outer radius leaves it, and
+    of the ends of the clearance, at ν 0.3, 0.4 and 0.49.
+    """
+    clearances = RANGES["clearance"]
+    largest = RANGES["outer_radius"][1] - THICKNESS[0] - max(clearances)  # leaves the thinnest liner
+    radii = numpy.linspace(RANGES["ball_radius"][0], largest, 3)
+    R1, c, poisson, share = (
+        grid.ravel() for grid in numpy.meshgrid(radii, clearances, (0.3, 0.4, 0.49), (0.0, 0.5, 1.0), indexing="ij")
+    )
+    thinnest, thickest = (numpy.clip(outer - R1 - c, *THICKNESS) for outer in RANGES["outer_radius"])
+    return _joints(R1, c, thinnest + share * (thickest - thinnest), poisson)
+
+
+def paper_joints(count: int = 128) -> Joint:
+    """Joints that fill the paper's ranges evenly, as arrays of shape (joints,): steel on 1 GPa.
+
+    `count` points of Sobol's sequence, less those whose liner would be too thin or too thick; a power of two.
+    """
+    from scipy.stats.qmc import Sobol, scale
+
+    low, high = zip(*RANGES.values(), strict=True)
+    points = scale(Sobol(len(RANGES), scramble=False).random(count), low, high)
+    R1, outer, clearance, poisson = points.T
+    thickness = outer - R1 - clearance
+    kept = (thickness >= THICKNESS[0]) & (thickness <= THICKNESS[1])
+    return _joints(R1[kept], clearance[kept], thickness[kept], poisson[kept])
+
+
+def _joints(R1: Array, clearance: Array, thickness: Array, poisson: Array) -> Joint:
+    return Joint(
+        ball_radius=R1,
+        clearance=clearance,
+        liner_thickness=thickness,
+        liner=Material(young=1000.0, poisson=poisson),
+        ball=STEEL,
+    )
+
+
+def accuracies(
+    models: Mapping[str, Model] | None = None, joints: Joint | None = None, edges: Joint | None = None
+) -> tuple[Accuracy, ...]:
+    """The errors of models against the exact answer, the most accurate in peak pressure first.
+
+    Parameters
+    ----------
+    models : mapping of str to Model, optional
+        By default the whole catalogue. A model that answers no joint at all is left out.
+    joints : Joint, optional
+        Arrays of shape (joints,), over which median and percentile are taken; `paper_joints()` by default.
+    edges : Joint, optional
+        More of them, among which the worst is looked for too; `edge_joints()` by default.
+    """
+    chosen = catalogue if models is None else models
+    within = paper_joints() if joints is None else joints
+    family = _together(within, edge_joints() if edges is None else edges)
+    inner = slice(0, len(within.ball_radius))
+    exact = reference.press(family, force=FORCES[:, None])
+    rows = []
+    for name, model in chosen.items():
+        if name == reference.name:
+            continue
+        try:
+            pressed = model.press(family, force=FORCES[:, None])
+            pushed = model.press(family, indentation=exact.indentation)
+        except OutsideDomainError:
+            continue
+        rows.append(_accuracy(name, family, inner, exact, pressed, pushed))
+    return tuple(sorted(rows, key=lambda row: row.spreads["max_pressure"].median))
+
+
+def _together(one: Joint, other: Joint) -> Joint:
+    """Joints of two families, both of arrays."""
+    pairs = zip(one.numbers(), other.numbers(), strict=True)
+    shapes = [numpy.ones(len(joint.ball_radius)) for joint in (one, other)]
+    return one.with_numbers([numpy.concatenate([a * shapes[0], b * shapes[1]]) for a, b in pairs])
+
+
+def _accuracy(name: str, joints: Joint, inner: slice, exact: Contact, pressed: Contact, pushed: Contact) -> Accuracy:
+    contacts = {"force": pushed}
+    spreads = {}
+    for quantity in QUANTITIES:
+        value = getattr(contacts.get(quantity, pressed), quantity)
+        spreads[quantity] = _spread(abs(value / getattr(exact, quantity) - 1), joints, inner)
+    return Accuracy(
+        model=name,
+        spreads=spreads,
+        answered=float(numpy.mean(numpy.isfinite(pressed.indentation))),
+        valid=float(numpy.mean(pressed.valid)),
+    )
+
+
+def _spread(error: Array, joints: Joint, inner: slice) -> Spread:
+    """Of errors (loads, joints): the usual ones over the inner joints, the worst over all."""
+    usual = error[:, inner]
+    known = usual[numpy.isfinite(usual)]
+    load, which = numpy.unravel_index(int(numpy.nanargmax(error)), error.shape)
+    numbers = [float(numpy.broadcast_to(number, error.shape[1:])[which]) for number in joints.numbers()]
+    return Spread(
+        median=float(numpy.median(known)),
+        high=float(numpy.percentile(known, 95)),
+        worst=float(error[load, which]),
+        joint=joints.with_numbers(numbers),
+        load=float(FORCES[load]),
+    )

@@ -1,0 +1,194 @@
+"""Models that are solved joint by joint: arrays of joints and loads are taken apart, and the answers put together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf, prod
+from types import SimpleNamespace
+from typing import Any
+
+import numpy
+
+from . import arrays
+from .arrays import Array
+from .contact import Contact
+from .joint import Joint
+from .model import Model
+
+QUANTITIES = ("force", "indentation", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
+"""What a state knows, one number a contact."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Piece:
+    """Contacts of one joint.
+
+    `state` has those that are `touching` (a mask of the loads): `QUANTITIES` and `pressure(angle)` of them. `reached`
+    marks the ones that have an answer, and `error` is the relative error of each quantity.
+    """
+
+    load: numpy.ndarray
+    touching: numpy.ndarray
+    state: Any
+    reached: numpy.ndarray
+    error: dict[str, numpy.ndarray]
+
+    def spread(self, values: numpy.ndarray) -> numpy.ndarray:
+        """Values of the touching contacts in the order of the loads: 0 without a load, NaN where none was reached."""
+        whole = numpy.zeros((*values.shape[:-1], len(self.load)))
+        whole[..., self.touching] = numpy.where(self.reached, values, numpy.nan)
+        return whole
+
+
+Solve = Callable[[Joint, numpy.ndarray], Piece]
+"""From a joint of plain numbers and its loads to their contacts."""
+
+
+def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve) -> PiecedSolution:
+    """The contacts of all joints that lie in the model's domain; every one is solved with all of its loads at once.
+
+    Raises
+    ------
+    TypeError
+        Numbers that are not known yet (inside `jax.jit`, `jax.grad`).
+    """
+    numbers = [_values(model, number) for number in joint.numbers()]
+    loads = _values(model, load)
+    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, loads)))
+    loads = numpy.broadcast_to(loads, shape).ravel().astype(float)
+    pieces = []
+    for column, place in _columns(numbers, shape):
+        one = joint.with_numbers(column)
+        if all(limit.strictly_holds(SimpleNamespace(joint=one)) for limit in model.domain):
+            pieces.append((place, solve(one, loads[place])))
+    return PiecedSolution(like=load, shape=shape, pieces=tuple(pieces))
+
+
+def _columns(numbers: list[numpy.ndarray], shape: tuple[int, ...]) -> Iterator[tuple[list[float], numpy.ndarray]]:
+    """Each joint's numbers, with the places in the flat shape where it stands."""
+    if all(number.size == 1 for number in numbers):
+        yield [float(number.item()) for number in numbers], numpy.arange(prod(shape))
+        return
+    table = numpy.stack([numpy.broadcast_to(number, shape).ravel() for number in numbers]).astype(float)
+    joints, which = numpy.unique(table, axis=1, return_inverse=True)
+    order = numpy.argsort(which.ravel(), kind="stable")
+    ends = numpy.cumsum(numpy.bincount(which.ravel(), minlength=joints.shape[1]))
+    for column, place in zip(joints.T, numpy.split(order, ends[:-1]), strict=False):
+        yield column.tolist(), place
+
+
+def _values(model: Model, number: Array) -> numpy.ndarray:
+    values = arrays.known(number)
+    if values is None:
+        raise TypeError(f"{model.name} cannot be traced by JAX: tabulated and refined can")
+    return values
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PiecedSolution:
+    """The contacts of all joints, as the `Laws` of the contact they belong to, in the caller's array library."""
+
+    like: Array
+    shape: tuple[int, ...]
+    pieces: tuple[tuple[numpy.ndarray, Piece], ...]
+
+    def spread(self, quantity: Callable[[Piece], numpy.ndarray]) -> Array:
+        """A quantity of every piece at its place; NaN where there is none."""
+        return self._own(self._flat(lambda place, piece: quantity(piece)))
+
+    def _flat(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray], rows: int = 1) -> numpy.ndarray:
+        whole = numpy.full((rows, prod(self.shape)), numpy.nan)
+        for place, piece in self.pieces:
+            whole[:, place] = piece.spread(quantity(place, piece))
+        return whole
+
+    def _own(self, whole: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
+        """NumPy values in the shape, library, dtype and device of the load."""
+        values = whole.reshape((*shape, *self.shape))
+        xp = arrays.namespace(self.like)
+        return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
+
+    def _of_state(self, name: str) -> Array:
+        return self.spread(lambda piece: getattr(piece.state, name))
+
+    def _error(self, name: str) -> Array:
+        return self.spread(lambda piece: piece.error[name])
+
+    @property
+    def worst(self) -> Array:
+        """The largest of the estimated errors, point by point."""
+        return self.spread(lambda piece: numpy.max(list(piece.error.values()), axis=0))
+
+    @property
+    def error(self) -> dict[str, Array]:
+        """Estimated relative error of each quantity."""
+        return {name: self._error(name) for name in QUANTITIES}
+
+    def force(self, joint: Joint, indentation: Array) -> Array:
+        return self._of_state("force")
+
+    def indentation(self, joint: Joint, indentation: Array) -> Array:
+        return self._of_state("indentation")
+
+    def half_angle(self, joint: Joint, indentation: Array) -> Array:
+        return self._of_state("half_angle")
+
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        return self._of_state("max_pressure")
+
+    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+        return self._of_state("stiffness")
+
+    def energy(self, joint: Joint, indentation: Array) -> Array:
+        return self._of_state("energy")
+
+    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
+        return self._of_state("pressure_integral")
+
+    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
+        quotient = self.max_pressure(joint, indentation) / arrays.divisor(indentation)
+        return arrays.where(indentation == 0, inf, quotient)
+
+    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        """p(φ) at angles that broadcast against the contact's shape."""
+        given = arrays.to_numpy(angle)
+        shape = numpy.broadcast_shapes(given.shape, self.shape)
+        front = shape[: len(shape) - len(self.shape)]
+        rows = numpy.broadcast_to(given, (*front, *self.shape)).reshape(prod(front), prod(self.shape))
+        return self._own(
+            self._flat(lambda place, piece: piece.state.pressure(rows[:, place[piece.touching]]), rows=len(rows)), front
+        )
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class SolvedContact(Contact):
+    """A `Contact` whose model solved it joint by joint, and estimated how well."""
+
+    laws: PiecedSolution
+
+    @cached_property
+    def error(self) -> dict[str, Array]:
+        """Estimated relative error of each quantity, by name, from the solution itself."""
+        return {name: self._plain(error) for name, error in self.laws.error.items()}
+
+    @property
+    def single_state(self) -> Any:
+        """The solver's own answer, of one contact under load.
+
+        Raises
+        ------
+        ValueError
+            More than one contact, or one without load or answer.
+        """
+        if prod(self.laws.shape) != 1:
+            raise ValueError(f"displacements and stresses are for one contact, not {self.laws.shape}: press it alone")
+        if not bool(arrays.to_numpy(self.indentation > 0).all()):
+            raise ValueError("displacements and stresses need a contact under load")
+        return self.laws.pieces[0][1].state
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON, with the error estimates."""
+        error = {name: arrays.to_list(value) for name, value in self.error.items()}
+        return {**super().summary(), "error": error}

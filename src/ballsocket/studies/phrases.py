@@ -1,0 +1,96 @@
+"""Short phrases of shells and links: ranges, limits and tolerances of named numbers."""
+
+from __future__ import annotations
+
+import re
+
+from ..checks import check_names
+from ..io.units import parse
+from .axes import Span
+from .distributions import Distribution, Rectangular, tolerance
+from .labels import described
+from .limits import EDGE_DISTANCE, Limit
+from .limits import NAMES as LIMITED
+from .parameters import PARAMETERS
+from .task import QUANTITIES
+
+_ANSWERS = {
+    "max_pressure": "modulus",
+    "half_angle": "angle",
+    "indentation": "length",
+    "force": "force",
+}
+
+
+def range_of(phrase: str) -> tuple[str, float, float]:
+    """A name with two ends, from "ball_radius=11..23 mm".
+
+    Raises
+    ------
+    ValueError
+        Another form, or a name that is not known.
+    """
+    found = re.fullmatch(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", phrase)
+    if found is None:
+        raise ValueError(f"{phrase!r} is not a range, such as 'ball_radius=11..23 mm'")
+    name, low, high = found.groups()
+    check_names([name], PARAMETERS, "among what can vary")
+    kind = PARAMETERS[name].kind
+    return name, parse(name, _with_unit(low, high), kind), parse(name, high, kind)
+
+
+def axis_of(phrase: str, count: int) -> tuple[str, Span]:
+    """An axis of so many values, from the same form."""
+    name, low, high = range_of(phrase)
+    return name, Span(low, high, count)
+
+
+def spread_of(phrase: str) -> tuple[str, Distribution]:
+    """A name that scatters, from "clearance=0.10+-0.05 mm" (a tolerance) or "liner_poisson=0.38..0.46" (uniform).
+
+    Raises
+    ------
+    ValueError
+        Another form, or a name that is not known.
+    """
+    found = re.fullmatch(r"\s*(\w+)\s*=\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+?)\s*", phrase)
+    if found is None:
+        name, low, high = range_of(phrase)
+        return name, Rectangular(low=low, high=high)
+    name, middle, half = found.groups()
+    check_names([name], PARAMETERS, "among what can scatter")
+    kind = PARAMETERS[name].kind
+    return name, tolerance(parse(name, _with_unit(middle, half), kind), parse(name, half, kind))
+
+
+def limit_of(phrase: str) -> Limit:
+    """A limit, from "outer_radius<=26 mm" or "edge_distance>=5 mm".
+
+    Raises
+    ------
+    ValueError
+        Another form, or a name that is not known.
+    """
+    found = re.fullmatch(r"\s*(\w+)\s*(<=|>=|≤|≥)\s*(.+?)\s*", phrase)
+    if found is None:
+        raise ValueError(f"{phrase!r} is not a limit, such as 'outer_radius<=26 mm'")
+    name, sign, end = found.groups()
+    check_names([name], LIMITED, "among what can be limited")
+    if name in QUANTITIES:
+        unit = str(described(name)["units"])
+        end = end.removesuffix(unit).removesuffix(unit.replace("2", "²")) if name not in _ANSWERS else end
+    value = parse(name, end.strip(), _kind(name))
+    return Limit(name=name, high=value) if sign in ("<=", "≤") else Limit(name=name, low=value)
+
+
+def _kind(name: str) -> str:
+    if name == EDGE_DISTANCE:
+        return "length"
+    return PARAMETERS[name].kind if name in PARAMETERS else _ANSWERS.get(name, "number")
+
+
+def _with_unit(first: str, last: str) -> str:
+    """The first number with the unit of the last, where it has none of its own."""
+    unit = re.fullmatch(r"[-+\d.eE]+\s*(.*)", last)
+    bare = re.fullmatch(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?", first)
+    return f"{first} {unit.group(1)}".strip() if unit and bare else first

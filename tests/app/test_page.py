@@ -1,0 +1,93 @@
+"""The explorer's page without a browser: what goes wrong inside is said on it."""
+
+import pytest
+
+import ballsocket as bs
+
+pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tomli_w")
+from ballsocket.app import serve
+from ballsocket.app.mapping import mapped
+from ballsocket.app.page import Page
+from ballsocket.app.views.press import Press
+from ballsocket.io.joint_toml import toml_of
+
+
+def test_a_view_that_fails_says_so_and_is_logged(monkeypatch, caplog):
+    page = Page("")
+
+    def show(self, screen):
+        raise RuntimeError("no <luck>")
+
+    monkeypatch.setattr(Press, "show", show)
+    page.ask(shown=("exact",))
+    assert "This cannot be shown: no &lt;luck&gt;" in page._trouble.object
+    assert "a view failed" in caplog.text
+
+
+def test_a_file_that_cannot_be_made_says_why():
+    page = Page("view=judge")
+    with pytest.raises(ValueError, match="nothing has run yet"):
+        page._downloads._made(page._downloads._numbers)
+    assert "run the finite elements first" in page._trouble.object
+
+
+def test_what_does_not_change_is_not_shown_again(monkeypatch):
+    page, shown = Page(""), []
+    monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen))
+    page.ask(view="press")
+    assert not shown
+    page.ask(size="diameter")
+    assert [screen.size for screen in shown] == ["diameter"]
+
+
+@pytest.mark.parametrize("preset", bs.joints)
+@pytest.mark.parametrize("load", ["force=500", "indentation=0.01", "half_angle=20"])
+def test_every_preset_can_be_seen_under_every_load(preset, load):
+    for view in ("press", "map", "compare"):
+        model = "hertz" if preset == "tilting-pad-pivot" else "tabulated"
+        page = Page(f"view={view}&preset={preset}&load.{load}&map_model={model}")
+        assert page._trouble.object == ""
+        assert page.view.document(page.screen).rows()
+
+
+@pytest.mark.parametrize(("angle", "unit", "factor"), [("degrees", "°", 57.29577951308232), ("radians", "rad", 1.0)])
+def test_a_map_of_angles_has_the_unit_that_is_chosen(angle, unit, factor):
+    page = Page(f"view=map&quantity=half_angle&angle={angle}&preset=hip-28")
+    found = mapped(page.screen.file, page.screen.across, page.screen.up, page.screen.map_model)
+    least = float(found.half_angle.min()) * factor
+    assert f"ε [{unit}] there: <b>{least:.4g}</b>" in page.view._told.object
+
+
+def test_a_load_of_zero_is_compared_without_shares():
+    page = Page("view=compare&preset=hip-28&load.force=0&beside1.preset=hip-36")
+    assert page._trouble.object == ""
+    assert page.view.document(page.screen).rows()
+
+
+def test_what_is_too_long_for_a_link_does_not_come_on_the_screen():
+    page = Page("")
+    before = page.screen
+    page._uploaded('1\nname = "' + "x" * 9000 + '"\n' + toml_of(before.file).partition("source")[2].partition("\n")[2])
+    assert page.screen == before
+    assert "a link to this would be longer than 8000 characters" in page._trouble.object
+
+
+def test_names_that_are_formulas_elsewhere_are_text_in_files():
+    page = Page(
+        "view=compare&preset=hip-28&beside1.name==1%2B1 $\\frac{a$&beside1.joint.ball_radius=14"
+        "&beside1.joint.clearance=.1&beside1.joint.liner_thickness=5&beside1.liner.material=pom"
+    )
+    assert page._trouble.object == ""
+    assert b"'=1+1" in page._downloads._numbers()
+    assert page._downloads._picture("png").startswith(b"\x89PNG")
+
+
+def test_more_pages_than_there_is_room_for_are_refused(monkeypatch):
+    monkeypatch.setattr(serve, "MOST_SESSIONS", 0)
+    assert "0 pages are open here already" in serve._session().object
+
+
+def test_a_port_that_is_none_is_refused():
+    with pytest.raises(ValueError, match="port = 70000 is not allowed: a port is 0 to 65535"):
+        serve.server(70000)

@@ -1,0 +1,159 @@
+"""What is on the explorer's screen, as a link and as a joint file: what goes in comes out."""
+
+from dataclasses import replace
+from math import inf
+from urllib.parse import parse_qs
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import ballsocket as bs
+from ballsocket.cup import Cup, Interface
+from ballsocket.io.joint_file import JointFile, parse_joint
+from ballsocket.io.joint_toml import toml_of
+from ballsocket.presets import materials
+
+pytest.importorskip("tomli_w")
+pytest.importorskip("xarray")
+from ballsocket.app.screen import ANGLES, QUICK, SIZES, START, THEMES, VIEWS, Axis, Screen, link_of, read_link
+
+REST = "joint.clearance=1&joint.liner_thickness=2&liner.material=pom"
+lengths = st.floats(1e-3, 1e3)
+presets = st.sampled_from(list(materials.values()))
+made_materials = st.one_of(
+    presets,
+    st.builds(bs.Material, young=st.floats(1.0, 1e6), poisson=st.floats(-0.9, 0.5)),
+    st.builds(
+        lambda one, young: replace(one, young=young), st.sampled_from(list(materials.values())), st.floats(1.0, 1e6)
+    ),
+)
+layers = st.builds(bs.Layer, thickness=lengths, material=made_materials)
+made_joints = st.builds(
+    bs.Joint,
+    ball_radius=lengths,
+    clearance=st.floats(0.0, 10.0),
+    liner_thickness=lengths,
+    liner=made_materials,
+    ball=st.one_of(st.none(), made_materials),
+    backing=st.lists(layers, max_size=2).map(tuple),
+    support=st.sampled_from(list(bs.Support)),
+    name=st.text(max_size=8),
+    source=st.text(max_size=8),
+)
+cups = st.builds(
+    Cup, arc_of_cover=st.floats(0.8, 5.9), chamfer=st.floats(0.0, 2.0), interface=st.sampled_from(list(Interface))
+)
+loads = st.one_of(
+    st.builds(lambda value: {"force": value}, st.floats(1e-3, 1e5)),
+    st.builds(lambda value: {"indentation": value}, st.floats(1e-6, 1.0)),
+    st.builds(lambda value: {"half_angle": value}, st.floats(0.01, 1.5)),
+)
+made_files = st.builds(JointFile, made_joints, loads, cups)
+axes = st.sampled_from([("ball_radius", "liner_thickness"), ("clearance", "force"), ("liner_poisson", "outer_radius")])
+
+
+@st.composite
+def screens(draw):
+    ends = st.tuples(lengths, lengths).filter(lambda pair: pair[0] < pair[1])
+    across, up = (Axis(**dict(zip(("low", "high"), draw(ends), strict=True)), name=name) for name in draw(axes))
+    return Screen(
+        view=draw(st.sampled_from(VIEWS)),
+        file=draw(made_files),
+        beside=tuple(draw(st.lists(made_files, max_size=2))),
+        shown=tuple(draw(st.lists(st.sampled_from(list(bs.catalogue)), min_size=1, max_size=3, unique=True))),
+        answered_by=draw(st.sampled_from(list(bs.catalogue))),
+        across=across,
+        up=up,
+        map_model=draw(st.sampled_from(QUICK)),
+        angle=draw(st.sampled_from(ANGLES)),
+        size=draw(st.sampled_from(SIZES)),
+        theme=draw(st.sampled_from(THEMES)),
+    )
+
+
+def near(one, other):
+    """Angles turn to degrees and back; all else is the same."""
+    (kind, value), (_, again) = *one.load.items(), *other.load.items()
+    return (
+        one.joint == other.joint
+        and kind in other.load
+        and again == pytest.approx(value, rel=1e-14)
+        and one.cup.interface == other.cup.interface
+        and other.cup.arc_of_cover == pytest.approx(one.cup.arc_of_cover, rel=1e-14)
+        and one.cup.chamfer == other.cup.chamfer
+    )
+
+
+@settings(deadline=None)
+@given(made_files)
+def test_a_joint_file_that_is_written_is_read(file):
+    assert near(file, parse_joint(toml_of(file).encode(), "file"))
+
+
+@settings(deadline=None)
+@given(screens())
+def test_a_link_leads_back(screen):
+    again = read_link(parse_qs(link_of(screen), keep_blank_values=True))
+    assert near(screen.file, again.file)
+    assert all(near(*pair) for pair in zip(screen.beside, again.beside, strict=True))
+    assert replace(screen, file=START.file, beside=()) == replace(again, file=START.file, beside=())
+
+
+def test_a_load_alone_presses_the_joint_of_the_start():
+    assert read_link({"load.force": ["5000"]}) == replace(START, file=replace(START.file, load={"force": 5000.0}))
+
+
+def test_a_massive_socket_is_written():
+    file = JointFile(bs.joints["tilting-pad-pivot"], {"force": 1e3})
+    assert "liner_thickness = inf" in toml_of(file)
+    assert parse_joint(toml_of(file).encode(), "file").joint.liner_thickness == inf
+
+
+def test_presets_make_short_links():
+    assert link_of(START) == "preset=hip-28&load.force=3000.0&theme=light"
+    assert read_link(parse_qs(link_of(START))) == START
+
+
+def test_arrays_are_no_joint_file():
+    many = replace(bs.joints["hip-28"], clearance=np.array([0.1, 0.2]))
+    with pytest.raises(ValueError, match="a joint file holds one joint"):
+        toml_of(JointFile(many, {}))
+
+
+@pytest.mark.parametrize(
+    ("link", "message"),
+    [
+        ("view=pres", "'pres' as view is not known; did you mean 'press'?"),
+        ("frob=2", "'frob' in the link is not known"),
+        ("joint.ball_radiuss=3", "'ball_radiuss' in .joint. is not known; did you mean 'ball_radius'?"),
+        (
+            "joint.ball_radius=-1&joint.clearance=1&joint.liner_thickness=2&liner.material=pom",
+            "ball_radius = '-1' is not",
+        ),
+        ("preset=hip-29", "'hip-29' as preset is not known; did you mean"),
+        ("preset=hip-28&liner.young=3", "'liner' beside a preset is not known"),
+        ("backing.thickness=2", "a layer is 'backing.0.thickness' and so on"),
+        ("limit=3", "'3' is not a limit"),
+        ("limit=frob<=3", "'frob' among what can be limited is not known"),
+        ("joint=2", "joint = '2' must be a table"),
+        ("joint=2&joint.clearance=1", "joint is given as text and as a table in the link"),
+        ("up=ball_radius=1..2", "a map has two axes, and both are ball_radius"),
+        ("up=clearance=2..1", "clearance from 2 to 1 is no range: it must go upwards"),
+        ("across=half_angle=10..40", "'half_angle' among the axes of a map is not known"),
+        ("load.force=1&load.force=2", "load.force is given 2 times in the link"),
+        ("load.force=1&load.indentation=2&preset=hip-28", "one load is needed, got force, indentation"),
+        ("shown=exact,frob", "'frob' as shown is not known"),
+        ("map_model=exact", "'exact' as map_model is not known"),
+        ("name=" + "x" * 9000, "the link is longer than 8000 characters"),
+        ("joint.ball_radius=1e999", "the liner needs a material"),
+        (
+            "joint.ball_radius=__import__('os')&joint.clearance=1&joint.liner_thickness=2&liner.material=pom",
+            "is not a length",
+        ),
+    ],
+)
+def test_a_bad_link_is_one_sentence(link, message):
+    with pytest.raises(ValueError, match=message):
+        read_link(parse_qs(link))

@@ -1,0 +1,259 @@
+"""The same answer in every array library, in the caller's dtype, with derivatives."""
+
+from dataclasses import replace
+
+import array_api_strict
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from ..joints import HIP
+
+FORCES = [0.0, 100.0, 3000.0]
+NAMES = (
+    "force",
+    "indentation",
+    "half_angle",
+    "max_pressure",
+    "area",
+    "stiffness",
+    "energy",
+    "foundation_modulus",
+    "pressure_integral",
+)
+EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+DIFFERENTIABLE = pytest.mark.parametrize(
+    "model",
+    [model for model in bs.catalogue.values() if model.name != "exact"],
+    ids=[n for n in bs.catalogue if n != "exact"],
+)
+INPUTS = (3000.0, 17.9, 0.1, 6.75, 1000.0, 0.41, 230000.0, 0.3)  # 0.41: between the columns of Table 3
+
+
+def of_numbers(model, force, radius, clearance, thickness, young, poisson, ball_young, ball_poisson):
+    joint = bs.Joint(
+        ball_radius=radius,
+        clearance=clearance,
+        liner_thickness=thickness,
+        liner=bs.Material(young=young, poisson=poisson),
+        ball=bs.Material(young=ball_young, poisson=ball_poisson),
+    )
+    return model.press(joint, force=force).max_pressure
+
+
+def central_differences(model):
+    slopes = []
+    for index, value in enumerate(INPUTS):
+        step = 1e-5 * value
+        above, below = list(INPUTS), list(INPUTS)
+        above[index] += step
+        below[index] -= step
+        slopes.append((of_numbers(model, *above) - of_numbers(model, *below)) / (2 * step))
+    return np.array(slopes)
+
+
+@EVERY
+def test_the_strict_standard_is_enough(model):
+    expected = model.press(HIP, force=np.array(FORCES))
+    contact = model.press(HIP, force=array_api_strict.asarray(FORCES))
+    for name in NAMES:
+        value = getattr(contact, name)
+        assert type(value) is type(contact.force), name
+        assert value.dtype == array_api_strict.float64
+        np.testing.assert_allclose(np.from_dlpack(value), getattr(expected, name), rtol=1e-12, err_msg=name)
+    angle = array_api_strict.asarray([0.1, 0.2, 0.3])
+    np.testing.assert_allclose(np.from_dlpack(contact.pressure(angle)), expected.pressure(np.array([0.1, 0.2, 0.3])))
+    np.testing.assert_allclose(np.from_dlpack(contact.friction_torque(0.05)), expected.friction_torque(0.05))
+    displacement = array_api_strict.asarray([[0.1, 0.1, 0.0]])
+    assert contact.force_vector(displacement).shape == (1, 3)
+    for load in ("indentation", "half_angle"):
+        assert model.press(HIP, **{load: array_api_strict.asarray([0.01])}).force.dtype == array_api_strict.float64
+    assert contact.summary()["model"] == model.name
+    assert model.name in repr(contact)
+
+
+@EVERY
+def test_single_precision_stays_single(model):
+    contact = model.press(HIP, force=np.array(FORCES, dtype=np.float32))
+    expected = model.press(HIP, force=np.array(FORCES))
+    for name in NAMES:
+        assert getattr(contact, name).dtype == np.float32, name
+        np.testing.assert_allclose(getattr(contact, name)[1:], getattr(expected, name)[1:], rtol=2e-4, err_msg=name)
+    assert np.all(contact.status == bs.Status.OK) or model.name == "cosine-limit"
+
+
+def test_lists_and_integers_are_floats():
+    contact = bs.HessForsbach().press(HIP, force=[1000, 3000])
+    assert contact.max_pressure.dtype == np.float64
+    assert bs.HessForsbach().press(HIP, force=3000).max_pressure == contact.max_pressure[1]
+    assert isinstance(bs.HessForsbach().press(HIP, force=3000).max_pressure, float)
+
+
+def test_libraries_do_not_mix():
+    joint = bs.Joint(ball_radius=np.array([16.0]), clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+    with pytest.raises(TypeError, match="arrays of one library are needed, got array_api_strict.Array, numpy.ndarray"):
+        bs.Hertz().press(joint, force=array_api_strict.asarray([1.0]))
+
+
+@DIFFERENTIABLE
+def test_jax_gradient_and_jit(model):
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        numbers = [jax.numpy.asarray(value) for value in INPUTS]
+        gradient = jax.grad(lambda *values: of_numbers(model, *values), argnums=tuple(range(len(INPUTS))))
+        slopes = np.array(gradient(*numbers))
+        expected = central_differences(model)
+        scale = np.abs(of_numbers(model, *INPUTS) / np.array(INPUTS))
+        assert np.max(np.abs(slopes - expected) / scale) < 1e-7
+        compiled = jax.jit(lambda *values: of_numbers(model, *values))
+        assert float(compiled(*numbers)) == pytest.approx(of_numbers(model, *INPUTS), rel=1e-9)
+        if model.name != "plane-layer":  # its compilation takes a quarter of a minute
+            np.testing.assert_allclose(np.array(jax.jit(gradient)(*numbers)), slopes, rtol=1e-8, atol=1e-12)
+
+
+def test_jax_arrays_stay_in_jax_and_bad_loads_become_a_status_under_jit():
+    jax = pytest.importorskip("jax")
+    contact = bs.HessForsbach().press(HIP, force=jax.numpy.asarray(FORCES))
+    assert isinstance(contact.energy, jax.Array)
+    assert contact.energy.dtype == jax.numpy.asarray(FORCES).dtype
+    negative = jax.jit(lambda force: bs.HessForsbach().press(HIP, force=force).status)(-1.0)
+    assert negative == bs.Status.NOT_REACHED
+
+
+def test_jax_trees():
+    jax = pytest.importorskip("jax")
+    import ballsocket.pytrees  # noqa: F401 - registers the words
+
+    with jax.enable_x64(True):
+        slopes = jax.grad(lambda joint: bs.HessForsbach().press(joint, force=3000.0).max_pressure)(HIP)
+        assert isinstance(slopes, bs.Joint)
+        assert float(slopes.ball.young) == 0.0  # the paper's model has a rigid ball
+        assert float(slopes.clearance) == pytest.approx(central_differences_of_clearance(), rel=1e-6)
+        for model in (bs.HessForsbach(), bs.PlaneLayer()):
+            pressed = jax.jit(lambda joint, model=model: model.press(joint, force=3000.0))(HIP)
+            assert isinstance(pressed, bs.Contact)
+            assert float(pressed.max_pressure) == pytest.approx(model.press(HIP, force=3000.0).max_pressure, rel=1e-9)
+        many = jax.vmap(lambda force: bs.Bartel().press(HIP, force=force).max_pressure)(jax.numpy.asarray(FORCES[1:]))
+        np.testing.assert_allclose(many, bs.Bartel().press(HIP, force=np.array(FORCES[1:])).max_pressure, rtol=1e-12)
+
+
+BACKED = replace(
+    HIP,
+    backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM), bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)),
+)
+
+
+def test_a_backed_joint_is_a_jax_tree():
+    jax = pytest.importorskip("jax")
+    import ballsocket.pytrees  # noqa: F401 - registers the words
+
+    assert jax.tree_util.tree_leaves(BACKED) == list(BACKED.numbers())
+    slopes = jax.grad(lambda joint: joint.backing_ratio)(BACKED)
+    softest = slopes.backing[1].material
+    assert float(softest.young) == pytest.approx(-1000.0 / 2300.0**2)
+    assert float(slopes.backing[0].material.young) == 0.0
+    free = jax.jit(lambda joint: joint.backing_ratio)(replace(BACKED, support=bs.Support.FREE))
+    assert float(free) == np.inf
+    assert not bool(jax.jit(lambda joint: bs.Vessel().press(joint, force=3000.0).valid)(BACKED))
+
+
+def test_a_backing_of_arrays_is_validated_in_their_library():
+    torch = pytest.importorskip("torch")
+    for asarray in (np.asarray, array_api_strict.asarray, torch.tensor):
+        young = asarray([1e3, 1e5])
+        layer = bs.Layer(thickness=asarray([2.0, np.inf]), material=bs.Material(young=young, poisson=0.3))
+        for support, expected in ((bs.Support.FIXED, [False, True]), (bs.Support.FREE, [False, True])):
+            contact = bs.Vessel().press(replace(HIP, backing=(layer,), support=support), force=3000.0)
+            assert type(contact.max_pressure) is type(young)
+            assert np.asarray(contact.valid).tolist() == expected
+
+
+def central_differences_of_clearance():
+    pressures = [
+        bs.HessForsbach()
+        .press(bs.Joint(ball_radius=17.9, clearance=c, liner_thickness=6.75, liner=bs.UHMWPE), force=3000.0)
+        .max_pressure
+        for c in (0.1 + 1e-6, 0.1 - 1e-6)
+    ]
+    return (pressures[0] - pressures[1]) / 2e-6
+
+
+@DIFFERENTIABLE
+def test_torch_gradient(model):
+    torch = pytest.importorskip("torch")
+    numbers = [torch.tensor(value, dtype=torch.float64, requires_grad=True) for value in INPUTS]
+    of_numbers(model, *numbers).backward()
+    slopes = np.array([0.0 if number.grad is None else float(number.grad) for number in numbers])
+    scale = np.abs(of_numbers(model, *INPUTS) / np.array(INPUTS))
+    assert np.max(np.abs(slopes - central_differences(model)) / scale) < 1e-7
+
+
+@EVERY
+def test_torch_keeps_dtype(model):
+    torch = pytest.importorskip("torch")
+    contact = model.press(HIP, force=torch.tensor(FORCES))
+    for name in NAMES:
+        assert getattr(contact, name).dtype == torch.float32, name
+    assert contact.valid.shape == (3,)
+
+
+def test_second_derivatives_of_an_implicit_answer():
+    """d²d/dF² = -S'/S³, through the bracketed inversion of the adhesive socket."""
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        model = bs.AdhesiveSocket(work_of_adhesion=1e-3)
+
+        def indentation(force):
+            return model.press(HIP, force=force).indentation
+
+        second = jax.grad(jax.grad(indentation))(3000.0)
+        step = 1.0
+        slopes = [1 / model.press(HIP, force=force).stiffness for force in (3000.0 + step, 3000.0 - step)]
+        assert float(second) == pytest.approx((slopes[0] - slopes[1]) / (2 * step), rel=1e-5)
+
+
+@DIFFERENTIABLE
+def test_a_point_without_load_does_not_spoil_the_derivatives_of_the_others(model):
+    """d/d(joint) of a sum over loads that contains a zero, and of pressures beyond the edge, is finite."""
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        forces = jax.numpy.array([0.0, 3000.0])
+
+        def total(clearance):
+            joint = bs.Joint(ball_radius=17.9, clearance=clearance, liner_thickness=6.75, liner=bs.UHMWPE)
+            contact = model.press(joint, force=forces)
+            return contact.max_pressure.sum() + contact.pressure(1.4).sum()
+
+        assert np.isfinite(float(jax.grad(total)(0.1)))
+
+
+def test_a_massive_socket_has_derivatives():
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+
+        def pressure(radius):
+            joint = bs.Joint(ball_radius=radius, clearance=0.1, liner_thickness=np.inf, liner=bs.UHMWPE)
+            return bs.Vessel().press(joint, force=3000.0).max_pressure
+
+        assert np.isfinite(float(jax.grad(pressure)(17.9)))
+
+
+def test_a_plain_contact_is_asked_with_other_arrays():
+    jax = pytest.importorskip("jax")
+    torch = pytest.importorskip("torch")
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
+    expected = contact.pressure(0.3)
+    assert float(contact.pressure(jax.numpy.asarray(0.3))) == pytest.approx(expected, rel=1e-5)
+    assert float(contact.pressure(torch.tensor(0.3))) == pytest.approx(expected, rel=1e-5)
+    pushed = contact.force_vector(torch.tensor([0.0, 0.0, -0.14], dtype=torch.float64))
+    assert isinstance(pushed, torch.Tensor)
+    np.testing.assert_allclose(
+        np.asarray(contact.force_vector(jax.numpy.asarray([0.0, 0.0, -0.14]))), pushed.numpy(), rtol=1e-4, atol=1e-2
+    )
+
+
+def test_the_exact_solution_says_that_it_cannot_be_traced():
+    jax = pytest.importorskip("jax")
+    with pytest.raises(TypeError, match="exact cannot be traced by JAX: tabulated and refined can"):
+        jax.grad(lambda force: bs.Exact().press(HIP, force=force).max_pressure)(3000.0)

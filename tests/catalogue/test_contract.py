@@ -1,0 +1,220 @@
+"""What every model of the catalogue must obey, whatever it is made of."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import ballsocket as bs
+from ballsocket.arrays import gauss_legendre
+
+from ..joints import CLOSED_FORMS, HIP, NUMERICAL, PLANE, floats, joints
+
+EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+CLOSED = pytest.mark.parametrize("model", CLOSED_FORMS.values(), ids=CLOSED_FORMS)
+FORCES = np.array([1.0, 30.0, 500.0, 1000.0, 3000.0, 4500.0])
+
+
+@EVERY
+def test_force_and_indentation_are_inverse(model):
+    by_force = model.press(HIP, force=FORCES)
+    by_indentation = model.press(HIP, indentation=by_force.indentation)
+    np.testing.assert_allclose(by_indentation.force, FORCES, rtol=1e-10 if model.name in NUMERICAL else 1e-12)
+
+
+@EVERY
+def test_half_angle_is_inverse(model):
+    angle = np.radians([20.0, 45.0, 70.0])
+    contact = model.press(HIP, half_angle=angle)
+    if model.name == "cosine-limit":  # every load has the half angle 90 degrees
+        assert np.all(contact.status == bs.Status.NOT_REACHED)
+        assert np.all(np.isnan(contact.indentation))
+        return
+    np.testing.assert_allclose(contact.half_angle, angle, rtol=1e-12)
+    np.testing.assert_allclose(model.press(HIP, force=contact.force).half_angle, angle, rtol=1e-8)
+
+
+@EVERY
+def test_force_is_the_slope_of_the_energy_and_stiffness_that_of_the_force(model):
+    d = np.array([0.002, 0.02, 0.06])
+    step = 1e-4 * d
+    above, here, below = (model.press(HIP, indentation=x) for x in (d + step, d, d - step))
+    np.testing.assert_allclose((above.energy - below.energy) / (2 * step), here.force, rtol=1e-7)
+    np.testing.assert_allclose((above.force - below.force) / (2 * step), here.stiffness, rtol=1e-7)
+
+
+@EVERY
+def test_vertical_pressure_integrates_to_the_force(model):
+    contact = model.press(HIP, force=np.array([300.0, 3000.0]))
+    nodes, weights = (np.array(part)[:, None] for part in gauss_legendre(80))
+    angle = contact.half_angle * np.sin(np.pi / 2 * nodes)
+    width = weights * contact.half_angle * np.pi / 2 * np.cos(np.pi / 2 * nodes)
+    ring = angle if model.name in PLANE else np.sin(angle) * np.cos(angle)
+    total = 2 * np.pi * HIP.socket_radius**2 * np.sum(contact.pressure(angle) * ring * width, axis=0)
+    np.testing.assert_allclose(total, contact.force, rtol=1e-9)
+
+
+@EVERY
+def test_pressure_integral_lies_between_force_and_one_and_a_half_times_it(model):
+    contact = model.press(HIP, force=FORCES)
+    share = contact.pressure_integral / contact.force
+    low = 0.98 if model.name == "adhesive" else 1.0  # tension at the edge takes some of it back
+    assert np.all((share >= low - 1e-12) & (share <= 1.5 + 1e-12))
+
+
+@EVERY
+def test_pressure_is_highest_where_it_says_and_vanishes_at_the_edge(model):
+    contact = model.press(HIP, force=3000.0)
+    assert contact.pressure(0.0) == pytest.approx(contact.max_pressure, rel=1e-12)
+    assert contact.pressure(contact.half_angle * 1.000001) == 0.0
+    if model.name != "adhesive":
+        assert 0.0 <= contact.pressure(contact.half_angle * 0.9999999) < 5e-3 * contact.max_pressure
+    if model.name not in {"steuermann", "adhesive"}:
+        profile = contact.pressure(np.linspace(0.0, contact.half_angle, 50))
+        assert np.all(np.diff(profile) < 1e-12)
+
+
+@EVERY
+def test_lengths_and_moduli_scale(model):
+    """Lengths times a and moduli times b give force times a² b (and a work of adhesion times a b)."""
+    a, b = 3.0, 0.2
+    larger = bs.Joint(
+        ball_radius=a * HIP.ball_radius,
+        clearance=a * HIP.clearance,
+        liner_thickness=a * HIP.liner_thickness,
+        liner=bs.Material(young=b * 1000.0, poisson=0.4),
+        ball=bs.Material(young=b * 230000.0, poisson=0.3),
+    )
+    scaled = bs.AdhesiveSocket(work_of_adhesion=5e-5 * a * b) if model.name == "adhesive" else model
+    one, other = model.press(HIP, force=3000.0), scaled.press(larger, force=3000.0 * a * a * b)
+    rtol = 1e-9
+    assert other.indentation == pytest.approx(a * one.indentation, rel=rtol)
+    assert other.half_angle == pytest.approx(one.half_angle, rel=rtol)
+    assert other.max_pressure == pytest.approx(b * one.max_pressure, rel=rtol)
+    assert other.area == pytest.approx(a * a * one.area, rel=rtol)
+    assert other.stiffness == pytest.approx(a * b * one.stiffness, rel=rtol)
+    assert other.energy == pytest.approx(a**3 * b * one.energy, rel=rtol)
+    assert other.foundation_modulus == pytest.approx(b / a * one.foundation_modulus, rel=rtol)
+
+
+@EVERY
+def test_everything_broadcasts(model):
+    joint = bs.Joint(
+        ball_radius=np.array([[14.0], [16.0]]),
+        clearance=0.1,
+        liner_thickness=6.0,
+        liner=bs.Material(young=np.array([800.0, 1000.0, 1200.0]), poisson=0.4),
+    )
+    contact = model.press(joint, force=np.array([500.0, 3000.0])[:, None, None])
+    for name in (
+        "force",
+        "indentation",
+        "half_angle",
+        "max_pressure",
+        "area",
+        "stiffness",
+        "energy",
+        "valid",
+        "status",
+    ):
+        assert getattr(contact, name).shape == (2, 2, 3), name
+    alone = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1200.0, poisson=0.4))
+    assert contact.max_pressure[1, 1, 2] == pytest.approx(model.press(alone, force=3000.0).max_pressure, rel=1e-10)
+
+
+@EVERY
+def test_no_load_is_no_contact(model):
+    contact = model.press(HIP, force=0.0)
+    if model.name == "adhesive":
+        assert contact.indentation > 0.0  # the surfaces pull the ball in
+        return
+    assert contact.indentation == 0.0
+    assert contact.half_angle == 0.0
+    assert contact.max_pressure == 0.0
+    assert contact.area == 0.0
+    assert contact.energy == 0.0
+    assert contact.pressure(0.1) == 0.0
+    assert contact.status is bs.Status.OK
+
+
+@EVERY
+@pytest.mark.parametrize(
+    ("load", "message"),
+    [
+        ({"force": -1.0}, r"force = -1 is not allowed: a force \(N\) is 0 or more and finite"),
+        ({"force": np.inf}, "force = inf is not allowed"),
+        ({"force": np.nan}, "force = nan is not allowed"),
+        ({"force": np.array([1.0, 2.0, -3.0, -4.0])}, r"force\[2\] = -3 \(and 1 more\) is not allowed"),
+        ({"indentation": -0.1}, "indentation = -0.1 is not allowed"),
+        ({"half_angle": np.pi / 2}, "half_angle = 1.5708 is not allowed"),
+        ({}, "exactly one of force, indentation, half_angle is needed, got none"),
+        ({"force": 1.0, "half_angle": 0.1}, "got force, half_angle"),
+    ],
+)
+def test_a_load_that_is_not_allowed_is_named(model, load, message):
+    with pytest.raises(ValueError, match=message):
+        model.press(HIP, **load)
+
+
+@EVERY
+def test_text_is_not_a_load(model):
+    with pytest.raises(TypeError, match=r"force must be a number .* got '3 kN'; text with units belongs"):
+        model.press(HIP, force="3 kN")
+
+
+@EVERY
+def test_models_are_frozen_and_sourced(model):
+    with pytest.raises(AttributeError):
+        model.name = "other"
+    assert model.sources
+    assert model.validity
+    assert "@" in bs.cite(model)
+    assert all(limit.why for limit in (*model.validity, *model.domain))
+
+
+@EVERY
+def test_off_axis_force_points_back_to_the_centre(model):
+    rng = np.random.default_rng(7)
+    contact = model.press(HIP, force=3000.0)
+    direction = rng.normal(size=(20, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    force = contact.force_vector((HIP.clearance + contact.indentation) * direction)
+    np.testing.assert_allclose(force, -3000.0 * direction, rtol=1e-9, atol=1e-8)
+    assert np.all(contact.force_vector(0.99 * HIP.clearance * direction) == 0.0)
+    assert np.all(contact.force_vector(np.zeros(3)) == 0.0)
+
+
+@EVERY
+def test_friction_torque_is_bounded_and_known_for_spin(model):
+    contact = model.press(HIP, force=3000.0)
+    flexion, spin = contact.friction_torque(0.06), contact.friction_torque(0.06, axis_angle=0.0)
+    assert 0.0 < spin < flexion <= 0.06 * HIP.ball_radius * contact.pressure_integral * 1.000001
+    nodes, weights = gauss_legendre(64)
+    angle = contact.half_angle * np.array(nodes)
+    ring = contact.pressure(angle) * np.sin(angle) ** 2 * np.array(weights) * contact.half_angle
+    expected = 0.06 * HIP.ball_radius * 2 * np.pi * HIP.socket_radius**2 * ring.sum()
+    assert spin == pytest.approx(expected, rel=1e-3)
+
+
+@CLOSED
+@settings(max_examples=60, deadline=None)
+@given(joint=joints, share=floats(-7.0, -2.0), two=st.booleans())
+def test_any_joint_presses_back_and_forth(model, joint, share, two):
+    d = joint.ball_radius * 10.0**share * (2.0 if two else 1.0)
+    contact = model.press(joint, indentation=d)
+    assume(contact.force > 0)
+    again = model.press(joint, force=contact.force)
+    assert again.status in (bs.Status.OK, bs.Status.BEYOND_EQUATOR)
+    assert model.press(joint, indentation=again.indentation).force == pytest.approx(contact.force, rel=1e-12)
+    deeper = model.press(joint, indentation=1.01 * d)
+    assume(not deeper.status.failed)  # refined ends at 85 degrees
+    assert deeper.force > contact.force
+    assert deeper.half_angle >= contact.half_angle or model.name in {"bartel", "bonded-layer-exact"}
+
+
+def test_a_deviation_is_blank_where_there_is_no_truth_to_deviate_from():
+    joint = bs.joints["hip-28"]
+    apart = bs.compare(joint, force=np.array([0.0, 3000.0, 1e9])).deviation("hess-forsbach")
+    assert np.isnan(apart["max_pressure"]).tolist() == [False, False, True]
+    assert apart["max_pressure"][0] == 0.0
+    assert np.isnan(bs.compare(joint, half_angle=0.0).deviation("adhesive")["force"])

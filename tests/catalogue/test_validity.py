@@ -1,0 +1,82 @@
+"""What "valid" promises: two models that both say so agree, and agree with the elastic answer."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from ..joints import CLOSED_FORMS, HIP
+from ..places import DATA
+
+CASES = json.loads((DATA / "exact.json").read_text())["cases"]
+PROMISE = 0.18  # 15 % against the elastic answer; the corner ν 0.49 of the paper's own table reaches 17 % in d
+
+
+def joint_of(case: dict) -> bs.Joint:
+    lengths = {name: case[name] for name in ("ball_radius", "clearance", "liner_thickness")}
+    return bs.Joint(**lengths, liner=bs.Material(young=case["young"], poisson=case["poisson"]))
+
+
+@pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+def test_a_valid_answer_is_close_to_the_elastic_one(model):
+    for case in CASES:
+        for step in case["steps"]:
+            contact = model.press(joint_of(case), force=step["force"])
+            if contact.valid:
+                assert contact.max_pressure == pytest.approx(step["max_pressure"], rel=PROMISE)
+                assert contact.indentation == pytest.approx(step["indentation"], rel=PROMISE)
+
+
+def test_valid_models_agree_on_random_joints_of_the_papers_range():
+    rng = np.random.default_rng(5)
+    size = 4000
+    joint = bs.Joint(
+        ball_radius=rng.uniform(5.0, 40.0, size),
+        clearance=10 ** rng.uniform(-2.5, -0.3, size),
+        liner_thickness=10 ** rng.uniform(-0.5, 2.0, size),
+        liner=bs.Material(young=1000.0, poisson=rng.uniform(0.0, 0.499, size)),
+        ball=bs.STEEL,
+    )
+    force = 10 ** rng.uniform(0.0, 4.0, size)
+    dry = [model for model in CLOSED_FORMS.values() if model.name != "adhesive"]
+    answers = [model.press(joint, force=force) for model in dry]
+    compared = 0
+    for i, one in enumerate(answers):
+        for other in answers[:i]:
+            both = one.valid & other.valid
+            compared += int(both.sum())
+            worst = np.max(np.abs(np.log(one.max_pressure / other.max_pressure))[both], initial=0.0)
+            assert worst < 0.3, (one.model.name, other.model.name, worst)
+    assert compared > 500
+
+
+def test_a_reconstruction_is_never_valid():
+    contact = bs.LiuReconstruction().press(HIP, force=np.array([1.0, 3000.0]))
+    assert not np.any(contact.valid)
+    assert contact.notes[0].startswith("2 of 2: not to be trusted anywhere: a reconstruction")
+
+
+SPRINGS = (bs.HessForsbach(), bs.Vessel(), bs.BondedLayerExact())
+
+
+@pytest.mark.parametrize("model", [*SPRINGS, bs.PlaneLayer()], ids=str)
+def test_a_soft_backing_is_not_taken_for_a_rigid_one(model):
+    told = "outside E/E_backing ≤ 0.01: the model takes the liner's backing as rigid"
+
+    def notes(**changes) -> str:
+        return " ".join(model.press(replace(HIP, **changes), force=3000.0).notes)
+
+    shell, cement = (bs.Layer(thickness=3.0, material=material) for material in (bs.TITANIUM, bs.BONE_CEMENT))
+    assert told not in notes()
+    assert told not in notes(backing=(shell,))
+    for changes in ({"backing": (shell, cement)}, {"support": bs.Support.FREE}):
+        assert told in notes(**changes)
+        assert not model.press(replace(HIP, **changes), force=3000.0).valid
+
+
+def test_springs_are_not_trusted_at_first_touch():
+    for model in (bs.HessForsbach(), bs.Vessel(), bs.Bartel(), bs.BondedLayer()):
+        assert not model.press(HIP, force=1.0).valid

@@ -1,0 +1,359 @@
+"""The command, driven as a process."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+import ballsocket as bs
+from ballsocket import cli
+
+from ..places import EXAMPLES
+
+EXAMPLE = str(EXAMPLES / "hip.toml")
+NUMBERS = ("--ball-radius", "16", "--clearance", "0.1", "--liner-thickness", "6")
+NUMBERS += ("--young", "1GPa", "--poisson", "0.4", "--force", "3kN")
+
+
+def run(*words: str, columns: int = 100, encoding: str = "utf-8") -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "ballsocket", *words],
+        capture_output=True,
+        encoding="utf-8",
+        timeout=120,
+        check=False,
+        env={**os.environ, "COLUMNS": str(columns), "PYTHONIOENCODING": encoding},
+    )
+
+
+def test_press_a_file():
+    done = run("press", EXAMPLE)
+    assert done.returncode == 0
+    assert done.stderr == ""
+    for text in ("Fig. 3", "hess-forsbach", "40.73", "44.72", "11.27", "582.7", "yes", "█"):
+        assert text in done.stdout
+
+
+@pytest.mark.parametrize("columns", [40, 50, 60, 80, 100, 160])
+def test_the_table_fits_the_terminal(columns):
+    done = run("press", EXAMPLE, "--all", columns=columns)
+    lines = done.stdout.split("\n")
+    assert max(map(len, lines)) <= columns
+    assert "…" not in done.stdout
+    assert re.search(r"^model .* p0 .*valid", done.stdout, flags=re.MULTILINE)
+    for name in bs.catalogue:
+        assert re.search(rf"^{name} .* (yes|no)", done.stdout, flags=re.MULTILINE)
+    assert ("█" in done.stdout) == (columns >= 80)
+
+
+@pytest.mark.parametrize("words", [("models",), ("presets",)])
+def test_the_lists_fit_the_terminal(words):
+    for columns in (40, 80):
+        lines = run(*words, columns=columns).stdout.split("\n")
+        assert max(map(len, lines)) <= columns
+    narrow = run(*words, columns=40).stdout
+    assert ("kinematics" in narrow) or ("clearance" in narrow)
+
+
+def test_a_terminal_without_greek_gets_ascii():
+    done = run("press", EXAMPLE, "--all", encoding="ascii")
+    assert done.returncode == 0
+    assert "#" in done.stdout
+    assert "outside e <= 10o" in done.stdout
+    assert run("models", encoding="ascii").returncode == 0
+    answer = run("press", EXAMPLE, "--json", "--model", "bonded-layer", encoding="ascii")
+    assert json.loads(answer.stdout)["joint"]["name"] == "hip, Heß & Forsbach 2021, Fig. 3"
+    refused = run("press", EXAMPLE, "--force", "3 ħ", encoding="ascii")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert "is not a force" in refused.stderr
+
+
+def test_a_massive_socket_is_called_so():
+    done = run("press", "tilting-pad-pivot", "--force", "3 kN", "--model", "hertz")
+    assert "massive" in done.stdout
+    assert "inf mm" not in done.stdout
+
+
+@pytest.mark.parametrize("load", ["--force=-0", "--indentation=-0.0", "--half-angle=-0"])
+def test_minus_nothing_is_nothing(load):
+    assert "-0" not in re.sub(r"hip-28", "", run("press", "hip-28", load, "--model", "hertz").stdout)
+    assert "-0" not in run("press", "hip-28", load, "--model", "hertz", "--json").stdout
+
+
+def test_json():
+    done = run("press", EXAMPLE, "--model", "hess-forsbach", "--model", "bartel", "--json")
+    answer = json.loads(done.stdout)
+    assert list(answer) == ["version", "joint", "results"]
+    assert answer["version"] == bs.__version__
+    assert answer["joint"]["socket_radius"] == pytest.approx(18.0)
+    assert answer["joint"]["ball"]["young"] == 230000.0
+    assert [result["model"] for result in answer["results"]] == ["hess-forsbach", "bartel", "exact"]
+    paper = answer["results"][0]
+    assert set(paper) == {
+        *("model", "force", "indentation", "half_angle_deg", "max_pressure", "area", "stiffness", "energy"),
+        *("foundation_modulus", "valid", "notes", "deviation"),
+    }
+    assert answer["results"][2]["deviation"] is None
+    exact = bs.Exact().press(bs.read_joint(EXAMPLE).joint, force=3000.0)
+    assert paper["deviation"]["max_pressure"] == pytest.approx(paper["max_pressure"] / exact.max_pressure - 1)
+    file = bs.read_joint(EXAMPLE)
+    contact = bs.HessForsbach().press(file.joint, **file.load)
+    assert paper["max_pressure"] == contact.max_pressure
+    assert paper["valid"] is True
+    assert paper["notes"] == []
+
+
+def test_json_of_a_massive_socket_is_json():
+    done = run("press", "tilting-pad-pivot", "--force", "3 kN", "--all", "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == 0
+    assert answer["joint"]["liner_thickness"] == "inf"
+    missing = next(result for result in answer["results"] if result["model"] == "bonded-layer")
+    assert missing["max_pressure"] is None
+    assert missing["valid"] is False
+    assert "infinite thickness" in missing["notes"][0]
+
+
+def test_the_joint_in_words():
+    done = run("press", *NUMBERS, "--json")
+    joint = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+    expected = bs.HessForsbach().press(joint, force=3000.0).indentation
+    assert json.loads(done.stdout)["results"][0]["indentation"] == expected
+    by_material = run("press", *NUMBERS[:6], "--liner", "UHMWPE", "--ball", "steel", "--force", "3kN", "--json")
+    assert json.loads(by_material.stdout)["joint"]["ball"]["young"] == 230000.0
+
+
+@pytest.mark.parametrize(
+    ("load", "name", "value"),
+    [
+        ("--indentation=40um", "indentation", 0.04),
+        ("--half-angle=30", "half_angle_deg", 30.0),
+        ("--force=1kN", "force", 1e3),
+    ],
+)
+def test_loads_with_units_go_before_the_files(load, name, value):
+    done = run("press", EXAMPLE, load, "--json")
+    assert json.loads(done.stdout)["results"][0][name] == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_figure(tmp_path, ending):
+    path = tmp_path / f"press.{ending}"
+    done = run("press", EXAMPLE, "--all", "--figure", str(path))
+    assert done.returncode == 0
+    assert path.stat().st_size > 5_000
+    start = path.read_bytes()[:5]
+    assert start == {"png": b"\x89PNG\r", "svg": b"<?xml", "pdf": b"%PDF-"}[ending]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["press"], "a joint is needed: a file, a preset's name, or --ball-radius"),
+        (["press", "nothing.toml"], "'nothing.toml' is neither a file nor a preset"),
+        (["press", "hip-29", "--force", "1"], "did you mean 'hip-"),
+        (["press", "hip-28"], "a load is needed: --force, --indentation or --half-angle"),
+        (["press", EXAMPLE, "--force", "3 kg"], "force = '3 kg' is not a force, such as '3 kN'"),
+        (["press", EXAMPLE, "--force", "-3"], "force = '-3' is not allowed: a force (N) is 0 or more and finite"),
+        (["press", EXAMPLE, "--force", "1", "--indentation", "1"], "one load is needed, got force, indentation"),
+        (
+            ["press", EXAMPLE, "--half-angle", "95"],
+            "half_angle = '95' is not allowed: a half angle (deg) is 0 or more and below 90",
+        ),
+        (["press", EXAMPLE, "--indentation=-2 um"], "indentation = '-2 um' is not allowed"),
+        (["press", *NUMBERS, "--clearance=-100um"], "clearance = '-100um' is not allowed: a radial clearance (mm) is"),
+        (["press", *NUMBERS, "--ball-young=-1GPa", "--ball-poisson=0"], "ball.young = '-1GPa' is not allowed"),
+        (["press", "", "--force", "1"], "the joint's name is empty"),
+        (["press", EXAMPLE, "--model", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
+        (["press", EXAMPLE, "--figure", "a.jpg"], "figure 'a.jpg' must end in .png, .svg, .pdf"),
+        (["press", EXAMPLE, "--figure", "/no/such/folder/a.png"], "No such file or directory"),
+        (["press", EXAMPLE, "--young", "1GPa"], "give a joint file or the joint's numbers, not both"),
+        (["press", EXAMPLE, "--colour"], "No such option: --colour"),
+        (["press", ".", "--force", "1"], "is a folder; a joint file is needed"),
+        (["press", *NUMBERS[:4], *NUMBERS[6:]], "liner_thickness is missing"),
+        (["press", *NUMBERS[:6], "--force", "1"], "the liner needs a material, or young and poisson"),
+        (["press", *NUMBERS[:8], "--poisson", "0.7", "--force", "1"], "liner.poisson = '0.7' is not allowed"),
+        (
+            ["press", *NUMBERS[:8], "--poisson", "0.5", "--force", "1", "--model", "bonded-layer"],
+            "bonded-layer has no answer for ν = 0.5: the modulus is unbounded",
+        ),
+        (["pres"], "No such command 'pres'"),
+        (["cite", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
+    ],
+)
+def test_misuse_is_one_line_that_says_what_to_change(words, message):
+    done = run(*words)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.startswith("ballsocket: ")
+    assert done.stderr.count("\n") == 1
+    assert done.stdout == ""
+
+
+def test_a_file_with_a_mistake(tmp_path):
+    path = tmp_path / "joint.toml"
+    path.write_text(Path(EXAMPLE).read_text().replace("clearance", "clearence"))
+    done = run("press", str(path))
+    assert done.returncode == 2
+    assert done.stderr == "ballsocket: joint.toml: 'clearence' in [joint] is not known; did you mean 'clearance'?\n"
+
+
+UNREACHED = "the model does not reach this load"
+
+
+def test_a_model_without_an_answer_beside_others_is_a_note(tmp_path):
+    words = ["press", EXAMPLE, "--force", "1e12", "--model", "bartel", "--model", "hess-forsbach"]
+    done = run(*words, "--figure", str(tmp_path / "a.svg"))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"bartel: {UNREACHED}" in done.stdout
+    assert "hess-forsbach" in done.stdout
+    assert (tmp_path / "a.svg").stat().st_size > 5_000
+    notes = {result["model"]: result["notes"] for result in json.loads(run(*words, "--json").stdout)["results"]}
+    assert notes["bartel"] == [UNREACHED]
+
+
+def test_every_model_at_a_half_angle_is_done():
+    done = run("press", "hip-28", "--half-angle", "30", "--all")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"cosine-limit: {UNREACHED}" in done.stdout
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]])
+def test_no_answer_at_all_is_3_and_no_figure(form, tmp_path):
+    path = tmp_path / "a.png"
+    done = run("press", EXAMPLE, "--force", "1e12", "--model", "bartel", "--figure", str(path), *form)
+    assert done.returncode == 3
+    assert done.stderr == "ballsocket: no answer from bartel (see the notes)\n"
+    assert UNREACHED in done.stdout
+    assert not path.exists()
+
+
+def test_an_iteration_that_did_not_converge_is_3(monkeypatch, capsys):
+    def unsettled(*_, **load):
+        contact = bs.HessForsbach().press(bs.joints["hip-28"], **load)
+        return replace(contact, indentation=float("nan"), status=bs.Status.NOT_CONVERGED)
+
+    model = SimpleNamespace(press=unsettled, name="unsettled")
+    monkeypatch.setattr(sys, "argv", ["ballsocket", "press", "hip-28", "--force=1", "--all"])
+    monkeypatch.setitem(bs.catalogue, "unsettled", model)
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == 3
+    assert "no convergence of unsettled" in capsys.readouterr().err
+
+
+def test_numbers_beyond_floating_point_are_no_crash():
+    numbers = ["--ball-radius", "1e308", "--clearance", "0.1", "--liner-thickness", "6", "--liner", "uhmwpe"]
+    done = run("press", *numbers, "--force", "1")
+    assert done.returncode in (0, 3)
+    assert "Traceback" not in done.stderr
+
+
+def test_a_figure_of_no_load_warns_of_nothing(tmp_path):
+    done = run("press", "hip-28", "--force", "0", "--figure", str(tmp_path / "a.png"))
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_models_presets_cite_version_help():
+    catalogue = run("models", columns=140)
+    for name in (*bs.catalogue, "pin-in-hole"):
+        assert name in catalogue.stdout
+    assert "ν 0.3 to 0.49" in catalogue.stdout
+    assert "Heß & Forsbach 2021" in catalogue.stdout
+    presets = run("presets")
+    assert "hip-28" in presets.stdout
+    assert "cocr" in presets.stdout
+    assert run("cite", "hertz").stdout.startswith("@article{hertz1882,")
+    assert "@phdthesis{persson1964" in run("cite").stdout
+    assert run("--version").stdout == f"ballsocket {bs.__version__}\n"
+    for words in ([], ["--help"], ["press", "--help"]):
+        assert "Usage" in run(*words).stdout
+
+
+def test_a_closed_pipe_is_no_crash():
+    command = f"{sys.executable} -m ballsocket models | head -1"
+    done = subprocess.run(command, shell=True, capture_output=True, encoding="utf-8", timeout=60, check=False)
+    assert "Traceback" not in done.stderr
+
+
+def test_press_by_finite_elements_shows_mesh_time_and_error_bars():
+    done = run("press", EXAMPLE, "--model", "fem", columns=160)
+    assert done.returncode == 0
+    assert done.stderr == ""
+    assert re.search(r"^fem +3000 +40\.07 +42\.4", done.stdout, flags=re.MULTILINE)
+    assert re.search(
+        r"^fem: \d+ elements, [\d.]+ mm at the contact, [\d.]+ s; d ±.* %, ε ±.* %, p0 ±", done.stdout, re.M
+    )
+    answer = json.loads(run("press", EXAMPLE, "--model", "fem", "--meshes", "1", "--json").stdout)["results"][0]
+    assert answer["model"] == "fem"
+    assert answer["error"]["indentation"] is None
+    assert answer["mesh"]["elements"] > 1000
+
+
+def test_press_by_finite_elements_with_a_cup_of_its_own(tmp_path):
+    file = tmp_path / "cup.toml"
+    file.write_text(Path(EXAMPLE).read_text(encoding="utf-8") + '\n[cup]\narc_of_cover = "100 deg"\nchamfer = "1 mm"\n')
+    files = ("--section", str(tmp_path / "cup.png"), "--vtk", str(tmp_path / "cup.vtu"))
+    done = run("press", str(file), "--model", "fem", "--force", "9 kN", *files, columns=160)
+    assert done.returncode == 0
+    assert "the contact fills the socket and reaches its rim" in done.stdout
+    assert (tmp_path / "cup.png").stat().st_size > 20_000
+    assert (tmp_path / "cup.vtu").stat().st_size > 20_000
+    wider = run("press", str(file), "--model", "fem", "--force", "9 kN", "--arc-of-cover", "180 deg", columns=160)
+    assert "reaches its rim" not in wider.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--arc-of-cover", "120 deg"), "--arc-of-cover is for the finite elements: add --model fem"),
+        (("--vtk", "a.vtu"), "--vtk is for the finite elements: add --model fem"),
+        (("--model", "fem", "--arc-of-cover", "2 mm"), "arc_of_cover = '2 mm' is not an angle, such as '40 deg'"),
+        (
+            ("--model", "fem", "--arc-of-cover", "20 deg"),
+            "arc_of_cover = '20 deg' is not allowed: an arc of cover is 40 to",
+        ),
+        (("--model", "fem", "--interface", "glued"), "interface = 'glued' is not allowed: 'bonded' or 'sliding'"),
+        (("--model", "fem", "--element", "triangle"), "element 'triangle' is not known"),
+        (
+            ("--model", "fem", "--element-size", "9 mm"),
+            "liner_thickness = 6.75 is not allowed: elements of 9 mm need two",
+        ),
+        (("--model", "fem", "--element-size", "0.0005 mm"), "GiB of memory"),
+        (("--model", "fem", "--vtk", "a.txt"), "'a.txt' must end in .vtu, .vtk"),
+        (("--model", "fem", "--section", "a.txt"), "must end in .png, .svg, .pdf"),
+        (
+            (
+                "--model",
+                "fme",
+            ),
+            "model 'fme' is not known; did you mean 'fem'?",
+        ),
+    ],
+)
+def test_the_finite_elements_refuse_in_one_sentence(words, message):
+    done = run("press", EXAMPLE, *words)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_deck_writes_the_model_for_other_programs(tmp_path):
+    done = run("deck", EXAMPLE, "--out", str(tmp_path), "--steps", "2", "--force", "1 kN")
+    assert done.returncode == 0
+    assert re.search(r"ballsocket\.inp: \d+ elements, 2 steps", done.stdout.replace("\n", ""))
+    assert (tmp_path / "ballsocket.inp").read_text(encoding="ascii").count("*END STEP") == 2
+    for words, message in (
+        (("--steps", "0"), "--steps"),
+        (("--scale", "7"), "scale = 7 is not allowed"),
+        (("--force", "0"), "need a contact under load"),
+    ):
+        wrong = run("deck", EXAMPLE, "--out", str(tmp_path), *words)
+        assert wrong.returncode == 2
+        assert message in wrong.stderr

@@ -1,0 +1,239 @@
+"""The door: units and joint files."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import ballsocket as bs
+from ballsocket.io.joint_file import _LOADS, _NUMBERS, joint_of, parse_joint
+from ballsocket.io.units import _KINDS, parse
+
+from ..places import EXAMPLES
+
+EXAMPLE = EXAMPLES / "hip.toml"
+HIP = """
+[joint]
+ball_radius = 17.9
+clearance = "100 um"
+liner_thickness = "6.75 mm"
+[liner]
+material = "UHMWPE"
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "value"),
+    [
+        ("16 mm", "length", 16.0),
+        ("1.6 cm", "length", 16.0),
+        ("100 µm", "length", 0.1),
+        ("1e-1mm", "length", 0.1),
+        ("inf", "length", math.inf),
+        (16, "length", 16.0),
+        ("3 kN", "force", 3000.0),
+        ("1 GPa", "modulus", 1000.0),
+        ("1000 N/mm**2", "modulus", 1000.0),
+        ("1000 N/mm^2", "modulus", 1000.0),
+        ("45 deg", "angle", math.pi / 4),
+        ("45°", "angle", math.pi / 4),
+        (45, "angle", math.pi / 4),
+        ("0.5 rad", "angle", 0.5),
+        ("0.4", "number", 0.4),
+    ],
+)
+def test_quantities(text, kind, value):
+    assert parse("it", text, kind) == pytest.approx(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("16 kg", "length"),
+        ("16 mmm", "length"),
+        ("((", "force"),
+        ("9**9**9**9", "modulus"),
+        ("1 N**9", "force"),
+        ("3 kN + 2 kN", "force"),
+        ("__import__('os')", "length"),
+        ("", "length"),
+        ("0.4 mm", "number"),
+        (True, "length"),
+        (None, "length"),
+        ([1], "length"),
+        ("1 " + "m" * 10_000, "length"),
+    ],
+)
+def test_what_is_no_quantity_is_named(text, kind):
+    with pytest.raises(ValueError, match=r"^it = .* is not a"):
+        parse("it", text, kind)
+
+
+@given(st.text(max_size=40))
+def test_no_text_breaks_the_parser(text):
+    try:
+        value = parse("it", text, "length")
+    except ValueError as error:
+        value = str(error)
+    assert isinstance(value, float) or value.startswith("it = ")
+
+
+def test_the_example_is_the_papers_case():
+    file = bs.read_joint(EXAMPLE)
+    assert file.joint.socket_radius == pytest.approx(18.0, abs=1e-12)
+    assert file.joint.ball_radius == 17.9
+    assert file.joint.liner.poisson == 0.4
+    assert file.joint.ball == bs.STEEL
+    assert file.load == {"force": 3000.0}
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLE.parent.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_example_presses(path):
+    file = bs.read_joint(path)
+    contact = bs.HessForsbach().press(file.joint, **file.load)
+    assert contact.valid, contact.notes
+
+
+def test_the_backing_of_the_metal_backed_hip():
+    joint = bs.read_joint(EXAMPLE.with_name("metal_backed_hip.toml")).joint
+    assert joint.backing == (bs.Layer(thickness=3.0, material=bs.TITANIUM),)
+    assert joint.support is bs.Support.FIXED
+
+
+BACKED = (
+    HIP.replace("[liner]", 'support = "free"\n[liner]')
+    + """
+[[backing]]
+thickness = "0.4 cm"
+material = "Titanium"
+[[backing]]
+thickness = 2
+young = "2 GPa"
+poisson = 0.35
+[[backing]]
+thickness = "inf"
+material = "cortical bone"
+young = "16 GPa"
+"""
+)
+
+
+def test_a_backing_is_listed_from_the_liner_outwards():
+    joint = parse_joint(BACKED.encode(), "hip").joint
+    shell, cement, bone = joint.backing
+    assert shell == bs.Layer(thickness=4.0, material=bs.TITANIUM)
+    assert cement == bs.Layer(thickness=2.0, material=bs.Material(young=2000.0, poisson=0.35))
+    assert (bone.thickness, bone.material.young, bone.material.poisson) == (math.inf, 16000.0, 0.3)
+    assert joint.support is bs.Support.FREE
+
+
+def test_a_backing_goes_through_a_file_and_json():
+    """What a summary says of a joint, written as a file, is the joint."""
+    joint = parse_joint(BACKED.encode(), "hip").joint
+    told = joint.summary()
+    layers = [{name: value for name, value in layer.items() if name != "name"} for layer in told["backing"]]
+    table = {
+        "joint": {name: told[name] for name in ("ball_radius", "clearance", "liner_thickness", "support")},
+        "liner": {"material": told["liner"]["name"]},
+        "backing": layers,
+    }
+    again = joint_of(table).joint
+    assert again.numbers() == joint.numbers()
+    assert again.summary() | {"backing": layers} == told | {"backing": layers}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"free"', '"loose"', "hip: support = 'loose' is not allowed: 'fixed' or 'free'"),
+        ('"free"', "true", "hip: support = True is not allowed: 'fixed' or 'free'"),
+        ("support", "suport", "hip: 'suport' in .joint. is not known; did you mean 'support'"),
+        ("[[backing]]", "[[baking]]", "hip: 'baking' at the top is not known; did you mean 'backing'"),
+        ("thickness = 2", "thicknes = 2", r"hip: 'thicknes' in backing\[1\] is not known; did you mean 'thickness'"),
+        ("thickness = 2", "", r"hip: backing\[1\].thickness is missing; inf is a massive body"),
+        ("thickness = 2", "thickness = '-2 mm'", r"hip: backing\[1\].thickness = '-2 mm' is not allowed: a thickness"),
+        ("thickness = 2", "thickness = '2 kg'", r"hip: backing\[1\].thickness = '2 kg' is not a length"),
+        ("thickness = 2", "thickness = 'inf'", r"hip: backing\[1\].thickness = inf is not allowed: only the outermost"),
+        ('"6.75 mm"', '"inf"', "hip: liner_thickness = 'inf' is not allowed: only the outermost layer"),
+        ("poisson = 0.35", "", r"hip: the backing\[1\] needs a material, .* missing: poisson"),
+        ("poisson = 0.35", "poisson = 0.7", r"hip: backing\[1\].poisson = 0.7 is not allowed: Poisson's ratio"),
+        ('"Titanium"', '"titanum"', r"hip: backing\[0\] material 'titanum' is not known; did you mean 'titanium'"),
+    ],
+)
+def test_a_backing_that_is_wrong_is_told_how(old, new, message):
+    with pytest.raises(ValueError, match=message):
+        parse_joint(BACKED.replace(old, new, 3 if old == "[[backing]]" else 1).encode(), "hip")
+
+
+def test_a_backing_is_an_array_of_tables():
+    for wrong in ("[backing]\nthickness = 2", "backing = 3", 'backing = ["titanium"]'):
+        text = f"{HIP}{wrong}" if wrong.startswith("[") else f"{wrong}\n{HIP}"
+        with pytest.raises(ValueError, match=r"hip: backing = .* must be an array of tables: \[\[backing\]\]"):
+            parse_joint(text.encode(), "hip")
+
+
+def test_two_of_three_radii_and_named_materials():
+    file = parse_joint(HIP.encode(), "hip")
+    assert file.joint.socket_radius == 18.0
+    assert file.joint.liner == bs.UHMWPE
+    assert file.joint.ball is None
+    assert file.load == {}
+    other = parse_joint(HIP.replace('clearance = "100 um"', "socket_radius = 18").encode(), "hip")
+    assert other.joint.clearance == 0.1
+
+
+def test_numbers_win_over_the_material():
+    file = parse_joint(HIP.replace('"UHMWPE"', '"uhmwpe"\npoisson = 0.45').encode(), "hip")
+    assert file.joint.liner.poisson == 0.45
+    assert file.joint.liner.young == 1000.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("clearance", "clearence", "hip: 'clearence' in .joint. is not known; did you mean 'clearance'?"),
+        ("[liner]", "[linner]", "hip: 'linner' at the top is not known; did you mean 'liner'?"),
+        ("[joint]", "[ball]", "hip: 'ball_radius' in .ball. is not known"),
+        ("UHMWPE", "UHMPE", "hip: liner material 'UHMPE' is not known; did you mean 'uhmwpe'?"),
+        ('material = "UHMWPE"', "young = 1000", "hip: the liner needs a material, .* missing: poisson"),
+        ('"100 um"', '"-100 um"', "hip: clearance = '-100 um' is not allowed: a radial clearance"),
+        ('material = "UHMWPE"', "young = '-1 GPa'\npoisson = 0.3", "hip: liner.young = '-1 GPa' is not allowed"),
+        ("[joint]", "[load]\nhalf_angle = 95\n[joint]", "hip: half_angle = 95 is not allowed: .* .deg. .* below 90$"),
+        ("[joint]", "[load]\nforce = '-3 kN'\n[joint]", "hip: force = '-3 kN' is not allowed: a force .N. is 0 or"),
+        ('clearance = "100 um"', "socket_radius = 17", "hip: clearance = -0.9 is not allowed"),
+        ('"6.75 mm"', '"6.75 s"', "hip: liner_thickness = '6.75 s' is not a length, such as '16 mm'"),
+        ("ball_radius = 17.9", "", "hip: two of ball_radius, socket_radius, clearance are needed, got clearance"),
+        ("ball_radius = 17.9", "ball_radius = 17.9\nsocket_radius = 18", "needed, got ball_radius, socket_radius, cl"),
+        ('liner_thickness = "6.75 mm"', "", "hip: liner_thickness is missing"),
+        ("[liner]", "[liner", "hip is not TOML"),
+        ("[joint]", "load = 3\n[joint]", "hip: load = 3 must be a table"),
+        ("[joint]", "name = 3\n[joint]", "hip: name = 3 must be text"),
+        ("[joint]", "[load]\nforce = 1\nindentation = 2\n[joint]", "hip: one load is needed, got force, indentation"),
+    ],
+)
+def test_a_file_that_is_wrong_is_told_how(old, new, message):
+    with pytest.raises(ValueError, match=message):
+        parse_joint(HIP.replace(old, new, 1).encode(), "hip")
+
+
+def test_the_rules_for_angles_are_told_in_degrees():
+    """The words that `as_given` puts into degrees are those of the rule."""
+    with pytest.raises(ValueError, match=r"a half angle \(rad\) is 0 or more and below pi/2"):
+        bs.Hertz().press(bs.joints["hip-28"], half_angle=2.0)
+
+
+def test_no_kind_of_quantity_without_a_word_for_it():
+    assert set(_LOADS.values()) | set(_NUMBERS.values()) | {"length"} == set(_KINDS)
+    assert str(parse("it", "-0 mm", "length")) == "0.0"
+
+
+def test_files_that_are_no_joint_files(tmp_path):
+    with pytest.raises(ValueError, match="is not text in UTF-8"):
+        parse_joint(b"\xff\xfe\x00", "binary")
+    big = tmp_path / "big.toml"
+    big.write_bytes(b"#" * 200_000)
+    with pytest.raises(ValueError, match="big.toml is larger than 100000 bytes"):
+        bs.read_joint(big)
+    with pytest.raises(FileNotFoundError):
+        bs.read_joint(tmp_path / "none.toml")

@@ -1,0 +1,203 @@
+"""Where one model must become another."""
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.models.plane_layer import layer_ratio
+
+from ..joints import HIP
+
+
+def hip(**changes: object) -> bs.Joint:
+    fields = {"ball_radius": 17.9, "clearance": 0.1, "liner_thickness": 6.75, "liner": bs.UHMWPE, "ball": bs.STEEL}
+    return bs.Joint(**(fields | changes))
+
+
+FOUNDATIONS = [bs.HessForsbach(), bs.Vessel(), bs.BondedLayer()]
+
+
+@pytest.mark.parametrize("model", FOUNDATIONS, ids=lambda model: model.name)
+def test_small_indentation_is_quadratic(model):
+    """d << c: F -> π K (R2²/c) d²."""
+    contact = model.press(HIP, indentation=1e-9)
+    assert contact.force == pytest.approx(np.pi * model.modulus(HIP) * 18.0**2 / 0.1 * 1e-18, rel=1e-7)
+
+
+@pytest.mark.parametrize("model", FOUNDATIONS, ids=lambda model: model.name)
+def test_no_clearance_is_the_cosine(model):
+    """c = 0: ε = 90°, F = (2π/3) K R2² d, p = p0 cos φ, and half of the work of a constant force."""
+    contact = model.press(hip(clearance=0.0), force=3000.0)
+    assert np.degrees(contact.half_angle) == pytest.approx(90.0)
+    assert contact.force == pytest.approx(2 * np.pi / 3 * contact.foundation_modulus * 17.9**2 * contact.indentation)
+    angle = np.radians([0.0, 30.0, 60.0, 89.0])
+    np.testing.assert_allclose(contact.pressure(angle), contact.max_pressure * np.cos(angle), rtol=1e-12)
+    assert contact.energy == pytest.approx(contact.force * contact.indentation / 2)
+    assert contact.pressure_integral == pytest.approx(1.5 * contact.force)
+
+
+def test_small_clearance_comes_close_to_the_cosine_limit():
+    small = bs.HessForsbach().press(hip(clearance=1e-7), force=3000.0)
+    limit = bs.CosineLimit().press(hip(clearance=1e-7), force=3000.0)
+    assert limit.valid
+    assert small.indentation == pytest.approx(limit.indentation, rel=1e-4)
+    assert small.max_pressure == pytest.approx(limit.max_pressure, rel=1e-4)
+
+
+def test_without_clearance_the_half_angle_does_not_tell_the_load():
+    for model in (bs.HessForsbach(), bs.Bartel(), bs.LiuReconstruction(), bs.AdhesiveSocket(work_of_adhesion=0.0)):
+        contact = model.press(hip(clearance=0.0), half_angle=np.array([0.0, 0.5]))
+        np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.NOT_REACHED])
+        np.testing.assert_array_equal(contact.force, [0.0, np.nan])
+    line = bs.PinInHole().press(hip(clearance=0.0), half_angle=np.array([0.0, 0.5]))
+    np.testing.assert_array_equal(line.status, [bs.Status.OK, bs.Status.NOT_REACHED])
+    np.testing.assert_array_equal(line.line_load, [0.0, np.nan])
+
+
+@pytest.mark.parametrize("modulus", [bs.hess_forsbach, bs.spherical_vessel, bs.bonded_layer], ids=str)
+def test_exact_kinematics_come_close_to_linear_ones_in_a_large_socket(modulus):
+    """Eq. (5) becomes Eq. (6) when clearance and indentation are small against the radius."""
+    joint = hip(ball_radius=1e5, liner_thickness=4e4)
+    linear, exact = (
+        bs.RadialFoundation(modulus=modulus, kinematics=kinematics).press(joint, indentation=0.05)
+        for kinematics in (bs.linear_kinematics, bs.exact_kinematics)
+    )
+    assert exact.force == pytest.approx(linear.force, rel=1e-5)
+    assert exact.half_angle == pytest.approx(linear.half_angle, rel=1e-5)
+    assert exact.pressure_integral == pytest.approx(linear.pressure_integral, rel=1e-5)
+
+
+def test_exact_kinematics_deep_in_the_socket_says_that_there_is_no_answer():
+    contact = bs.Bartel().press(HIP, force=np.array([3000.0, 1e12]))
+    np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.NOT_REACHED])
+    assert np.isnan(contact.indentation[1])
+    assert contact.notes == ("1 of 2: the model does not reach this load",)
+
+
+def test_thin_liner_makes_the_vessel_a_bonded_layer():
+    joint = hip(liner_thickness=1e-3)
+    assert bs.spherical_vessel(joint) == pytest.approx(bs.bonded_layer(joint), rel=2e-4)
+
+
+def test_massive_socket():
+    joint = hip(liner_thickness=np.inf)
+    assert bs.spherical_vessel(joint) == pytest.approx(2 * 1000.0 / (1.4 * 18.0))
+    assert bs.hess_forsbach(joint) == pytest.approx(1.06 * 1000.0 / 18.0)
+    with pytest.raises(ValueError, match="bonded-layer has no answer for L = inf: a layer of infinite thickness"):
+        bs.BondedLayer().press(joint, force=1.0)
+    with pytest.raises(ValueError, match="ask hertz"):
+        bs.PlaneLayer().press(joint, force=1.0)
+
+
+def test_incompressible_liner_raises_where_the_modulus_is_unbounded():
+    stiff = hip(liner=bs.Material(young=1000.0, poisson=0.5))
+    for model in (bs.Vessel(), bs.Bartel(), bs.BondedLayer()):
+        with pytest.raises(ValueError, match=r"no answer for ν = 0.5: the modulus is unbounded"):
+            model.press(stiff, force=3000.0)
+    assert bs.HessForsbach().press(stiff, force=3000.0).max_pressure > 0
+
+
+def test_one_bad_point_among_many_is_a_status():
+    poisson = np.full(20_000, 0.4)
+    poisson[777] = 0.5
+    contact = bs.Bartel().press(hip(liner=bs.Material(young=1000.0, poisson=poisson)), force=3000.0)
+    assert contact.status[777] == bs.Status.OUTSIDE_DOMAIN
+    assert np.isnan(contact.max_pressure[777])
+    assert np.sum(contact.status == bs.Status.OK) == 19_999
+    assert contact.notes[0] == "1 of 20000: the model has no formula for this joint"
+
+
+def test_steuermann_of_order_one_is_hertz():
+    one, hertz = (model.press(HIP, force=3000.0) for model in (bs.Steuermann(exponent=1), bs.Hertz()))
+    angle = np.linspace(0.0, 1.2, 30)
+    np.testing.assert_allclose(one.pressure(angle), hertz.pressure(angle), rtol=1e-12)
+    assert one.energy == pytest.approx(hertz.energy)
+
+
+def test_hertz_is_the_textbook():
+    """F = 4/3 E* a³/R*, d = a²/R*, p0 = 3F/(2π a²)."""
+    contact = bs.Hertz().press(HIP, force=100.0)
+    R = 17.9 * 18.0 / 0.1
+    a = np.sqrt(R * contact.indentation)
+    assert contact.force == pytest.approx(4 / 3 * HIP.effective_modulus * a**3 / R)
+    assert contact.max_pressure == pytest.approx(1.5 * 100.0 / (np.pi * a**2))
+    assert contact.half_angle == pytest.approx(a / 18.0)
+
+
+def test_hertz_needs_a_clearance():
+    with pytest.raises(ValueError, match=r"hertz has no answer for c = 0: .* infinite without clearance"):
+        bs.Hertz().press(hip(clearance=0.0), force=1.0)
+
+
+def test_overloaded_half_space_passes_the_equator_and_says_so():
+    contact = bs.Hertz().press(HIP, force=1e6)
+    assert contact.status is bs.Status.BEYOND_EQUATOR
+    assert contact.max_pressure > 0
+    assert not contact.valid
+
+
+def test_plane_layer_of_a_narrow_contact_is_hertz():
+    joint = hip(liner_thickness=3000.0, ball=None)
+    layer, hertz = (model.press(joint, force=1.0) for model in (bs.PlaneLayer(), bs.Hertz()))
+    for name in ("indentation", "max_pressure", "half_angle", "stiffness", "energy"):
+        assert getattr(layer, name) == pytest.approx(getattr(hertz, name), rel=1e-3), name
+
+
+def test_plane_layer_of_a_wide_contact_is_a_row_of_columns():
+    """a >> L, compressible: p = K_BL u, so d = a²/(2R*) and F = (π/4) K_BL a⁴/R*."""
+    joint = hip(liner_thickness=0.3, liner=bs.Material(young=1000.0, poisson=0.2))
+    contact = bs.PlaneLayer().press(joint, half_angle=0.4)
+    a, R = 0.4 * 18.0, 17.9 * 18.0 / 0.1
+    assert contact.indentation == pytest.approx(a**2 / (2 * R), rel=0.02)
+    assert contact.force == pytest.approx(np.pi / 4 * bs.bonded_layer(joint) * a**4 / R, rel=0.04)
+    assert contact.max_pressure == pytest.approx(bs.bonded_layer(joint) * contact.indentation, rel=0.02)
+
+
+def test_layer_kernel():
+    """Φ -> 0 at long waves and 1 at short ones; incompressible layers let no long wave through: Φ ~ x³."""
+    x = np.array([1e-6, 30.0])
+    np.testing.assert_allclose(1 + layer_ratio(x, np.float64(0.3)), [0.0, 1.0], atol=1e-5)
+    small = 1 + layer_ratio(np.array([1e-2, 2e-2]), np.float64(0.5))
+    assert small[1] / small[0] == pytest.approx(8.0, rel=1e-2)
+
+
+def test_adhesive_socket_without_adhesion_is_the_paper():
+    sticky, paper = (
+        model.press(HIP, force=3000.0) for model in (bs.AdhesiveSocket(work_of_adhesion=0.0), bs.HessForsbach())
+    )
+    for name in ("indentation", "half_angle", "max_pressure", "stiffness", "energy"):
+        assert getattr(sticky, name) == pytest.approx(getattr(paper, name), rel=1e-10), name
+
+
+def test_moduli_of_ones_own():
+    own = bs.RadialFoundation(modulus=bs.polynomial(1.06, 1.23, 0.09))
+    assert own.press(HIP, force=3000.0).indentation == pytest.approx(
+        bs.HessForsbach().press(HIP, force=3000.0).indentation
+    )
+    fixed = bs.RadialFoundation(modulus=bs.constant(bs.hess_forsbach(HIP)))
+    assert fixed.press(HIP, force=3000.0).max_pressure == pytest.approx(11.27, abs=5e-4)
+    with pytest.raises(ValueError, match="modulus = 0 is not allowed"):
+        bs.constant(0.0)
+    with pytest.raises(ValueError, match="c2 = -1 is not allowed"):
+        bs.polynomial(1.0, -1.0, 0.0)
+    with pytest.raises(ValueError, match="exponent = 0 is not allowed"):
+        bs.Steuermann(exponent=0)
+    with pytest.raises(ValueError, match="work_of_adhesion = -1 is not allowed"):
+        bs.AdhesiveSocket(work_of_adhesion=-1.0)
+    with pytest.raises(ValueError, match="coefficient = 0 is not allowed"):
+        bs.LiuReconstruction(coefficient=0.0)
+
+
+def test_a_plane_layer_too_thin_to_compute_is_refused_and_costs_its_neighbours_nothing():
+    with pytest.raises(ValueError, match="plane-layer has no answer for R2/L = 1800: .* ask bonded-layer"):
+        bs.PlaneLayer().press(hip(liner_thickness=0.01), force=1.0)
+    contact = bs.PlaneLayer().press(hip(liner_thickness=np.array([6.75, 1e-3])), force=100.0)
+    np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OUTSIDE_DOMAIN])
+    assert contact.max_pressure[0] == pytest.approx(bs.PlaneLayer().press(HIP, force=100.0).max_pressure, rel=1e-9)
+
+
+@pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+def test_numbers_beyond_floating_point_are_infinite_or_missing_and_never_raise(model):
+    contact = model.press(hip(ball_radius=1e200, liner_thickness=1e200), force=1.0)
+    repr(contact)
+    contact.summary()

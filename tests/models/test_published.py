@@ -1,0 +1,152 @@
+"""Numbers that others printed, or that follow by hand."""
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from ..joints import HIP
+
+STEEP = bs.Joint(
+    ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.45), ball=bs.STEEL
+)
+
+
+@pytest.mark.parametrize(
+    ("poisson", "constants"),
+    [
+        (0.30, (1.14, 0.97, 0.04)),
+        (0.35, (1.10, 1.07, 0.06)),
+        (0.40, (1.06, 1.23, 0.09)),
+        (0.45, (0.99, 1.51, 0.16)),
+        (0.49, (0.96, 1.79, 0.33)),
+    ],
+)
+def test_table_3(poisson, constants):
+    joint = bs.Joint(
+        ball_radius=19.9, clearance=0.1, liner_thickness=5.0, liner=bs.Material(young=800.0, poisson=poisson)
+    )
+    expected = sum(constant * 4.0**power for power, constant in enumerate(constants)) * 800.0 / 20.0
+    assert bs.hess_forsbach(joint) == pytest.approx(expected, rel=1e-13)
+
+
+def test_outside_table_3_the_last_column_is_kept_and_flagged():
+    for poisson, inside in ((0.25, 0.30), (0.5, 0.49)):
+        outer, inner = (
+            bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1e3, poisson=nu))
+            for nu in (poisson, inside)
+        )
+        assert bs.hess_forsbach(outer) == pytest.approx(bs.hess_forsbach(inner))
+        contact = bs.HessForsbach().press(outer, force=3000.0)
+        assert not contact.valid
+        assert "outside ν 0.3 to 0.49" in contact.notes[0]
+        assert bs.HessForsbach().press(inner, force=3000.0).valid
+
+
+def test_bartel_at_3000_newton():
+    contact = bs.Bartel().press(HIP, force=3000.0)
+    assert contact.indentation == pytest.approx(0.03872, abs=5e-6)
+    assert contact.max_pressure == pytest.approx(11.7168, abs=5e-5)
+    assert np.degrees(contact.half_angle) == pytest.approx(43.718, abs=5e-4)
+
+
+def test_vessel_modulus_is_the_thick_sphere():
+    """K_B = 1/c_0 of a sphere whose outer surface is held: c_0 = 0.00330432 mm/MPa here."""
+    assert 1 / bs.spherical_vessel(HIP) == pytest.approx(0.00330432, abs=5e-9)
+
+
+def test_published_overestimates_at_high_poisson_ratio_have_their_sign():
+    """Heß & Forsbach 2021, Fig. 4: Bartel's and the bonded layer's maximum pressure are far above the paper's model."""
+    paper = bs.HessForsbach().press(STEEP, force=3000.0).max_pressure
+    assert bs.Bartel().press(STEEP, force=3000.0).max_pressure > 1.08 * paper
+    assert bs.BondedLayer().press(STEEP, force=3000.0).max_pressure > 1.15 * paper
+
+
+@pytest.mark.parametrize(("poisson", "indentation", "pressure"), [(0.40, 0.0333, 8.49), (0.45, 0.0293, 9.23)])
+def test_plane_layer(poisson, indentation, pressure):
+    joint = bs.Joint(
+        ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=poisson)
+    )
+    contact = bs.PlaneLayer().press(joint, force=3000.0)
+    assert contact.indentation == pytest.approx(indentation, abs=5e-5)
+    assert contact.max_pressure == pytest.approx(pressure, abs=6e-3)
+
+
+@pytest.mark.parametrize(("eta", "share"), [(0.05, 0.00242253), (0.2, 0.0359431), (0.5, 0.2062995), (0.9, 0.6963411)])
+def test_pull_off_of_the_adhesive_socket(eta, share):
+    K = bs.hess_forsbach(HIP)
+    socket = bs.AdhesiveSocket(work_of_adhesion=K * (eta * HIP.clearance) ** 2 / 2)
+    assert socket.adhesion_number(HIP) == pytest.approx(eta)
+    assert socket.pull_off(HIP) == pytest.approx(np.pi * 18.0**2 * K * HIP.clearance * share, rel=2.5e-6)
+
+
+def test_pull_off_is_the_lowest_force_there_is():
+    """-F over the half angle, from its definition, has its highest point at the closed form."""
+    K, c, eta = bs.hess_forsbach(HIP), HIP.clearance, 0.3
+    socket = bs.AdhesiveSocket(work_of_adhesion=K * (eta * c) ** 2 / 2)
+    k = np.linspace(0.05, 1.0, 200_001)
+    force = 2 * np.pi * 18.0**2 * K * (c * (1 - eta) * (1 - k**3) / (3 * k) - c * (1 - k**2) / 2)
+    assert socket.pull_off(HIP) == pytest.approx(-force.min(), rel=1e-8)
+
+
+def test_weak_adhesion_pulls_off_like_a_sphere():
+    w = 1e-9
+    expected = 2 * np.pi * w * 18.0**2 / 0.1
+    assert bs.AdhesiveSocket(work_of_adhesion=w).pull_off(HIP) == pytest.approx(expected, rel=1e-3)
+
+
+def test_from_adhesion_number_one_on_the_hemisphere_sticks():
+    K = bs.hess_forsbach(HIP)
+    socket = bs.AdhesiveSocket(work_of_adhesion=K * (1.2 * HIP.clearance) ** 2 / 2)
+    contact = socket.press(HIP, force=10.0)
+    assert np.degrees(contact.half_angle) == pytest.approx(90.0)
+    assert np.isnan(socket.pull_off(HIP))
+    assert not contact.valid
+
+
+ALUMINIUM = bs.Material(young=70_000.0, poisson=0.3)
+PLATE = bs.Joint(ball_radius=10.0, clearance=0.1, liner_thickness=np.inf, liner=ALUMINIUM, ball=ALUMINIUM)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "flexibility", "pressure"),
+    [(10, 82.2206, 3.6616), (40, 3.90504, 0.97388), (60, 1.06720, 0.71172), (80, 0.12615, 0.61161)],
+)
+def test_persson(degrees, flexibility, pressure):
+    contact = bs.PinInHole().press(PLATE, half_angle=np.radians(degrees))
+    stiffness = 70_000.0 / (1 - 0.09)
+    assert stiffness * 0.1 / contact.line_load == pytest.approx(flexibility, rel=5e-5)
+    assert contact.max_pressure * 10.1 / contact.line_load == pytest.approx(pressure, rel=2e-5)
+    assert contact.valid
+    back = bs.PinInHole().press(PLATE, line_load=contact.line_load)
+    assert np.degrees(back.half_angle) == pytest.approx(degrees, rel=1e-12)
+
+
+def test_persson_perfect_fit_and_equilibrium():
+    fit = bs.Joint(ball_radius=10.0, clearance=0.0, liner_thickness=np.inf, liner=ALUMINIUM, ball=ALUMINIUM)
+    contact = bs.PinInHole().press(fit, line_load=np.array([1.0, 1000.0]))
+    np.testing.assert_allclose(np.degrees(contact.half_angle), 84.83, atol=5e-3)
+    loose = bs.PinInHole().press(PLATE, line_load=2000.0)
+    angle = np.linspace(-loose.half_angle, loose.half_angle, 400_001)
+    total = np.trapezoid(loose.pressure(angle) * np.cos(angle), angle) * 10.1
+    assert total == pytest.approx(2000.0, rel=1e-6)
+
+
+def test_persson_of_a_light_load_is_hertz_of_a_cylinder():
+    """b² = 4 Q R*/(π E*) with E* = E1/2 for equal materials, p0 = 2Q/(π b)."""
+    contact = bs.PinInHole().press(PLATE, line_load=1e-3)
+    half_width = np.sqrt(8 * 1e-3 * (10.1**2 / 0.1) / (np.pi * 70_000.0 / (1 - 0.09)))
+    assert contact.max_pressure == pytest.approx(2e-3 / (np.pi * half_width), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("load", "message"),
+    [
+        ({"line_load": -1.0}, "line_load = -1 is not allowed"),
+        ({"half_angle": 1.5}, "below 1.480527 .perfect fit."),
+        ({}, "exactly one of line_load, half_angle is needed"),
+    ],
+)
+def test_persson_refuses(load, message):
+    with pytest.raises(ValueError, match=message):
+        bs.PinInHole().press(PLATE, **load)

@@ -1,0 +1,48 @@
+"""One million wildly different joints and loads through every closed form."""
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from ..joints import CLOSED_FORMS, random_joint
+
+SIZE = 1_000_000
+JOINT = random_joint(SIZE, seed=20211125)
+FORCE = JOINT.liner.young * JOINT.ball_radius**2 * 10 ** np.random.default_rng(1).uniform(-12, 0, SIZE)
+
+
+IN_ONE_STEP = {name: model for name, model in CLOSED_FORMS.items() if name != "refined"}  # refined: test_refined.py
+
+
+@pytest.mark.parametrize("model", IN_ONE_STEP.values(), ids=IN_ONE_STEP)
+def test_every_point_answers_or_says_why_not(model):
+    contact = model.press(JOINT, force=FORCE)
+    answered = (contact.status == bs.Status.OK) | (contact.status == bs.Status.BEYOND_EQUATOR)
+    for name in ("indentation", "half_angle", "max_pressure", "area", "stiffness", "energy", "foundation_modulus"):
+        assert not np.any(np.isnan(getattr(contact, name)[answered])), name
+    assert np.all(np.isnan(contact.indentation[~answered]))
+    assert not np.any(contact.status == bs.Status.NOT_CONVERGED)
+    reached = np.mean(answered)
+    assert reached > (0.95 if model.name in {"bartel", "bonded-layer-exact"} else 0.999999)
+    back = model.press(JOINT, indentation=np.where(answered, contact.indentation, 0.0))
+    # with adhesion a small force is the difference of large ones: there the indentation is what is known to 1e-12
+    scale = contact.stiffness * contact.indentation if model.name == "adhesive" else FORCE
+    assert np.max(np.abs(back.force - FORCE)[answered] / scale[answered]) < 1e-12
+    harder = model.press(JOINT, force=1.001 * FORCE)
+    both = answered & ~np.isnan(harder.indentation)
+    assert np.all(harder.indentation[both] >= contact.indentation[both])
+    assert np.mean(harder.indentation[both] > contact.indentation[both]) > 0.999999
+
+
+def test_plane_layer_on_a_thousand():
+    """The one numerical model of the catalogue, on fewer."""
+    joint = random_joint(1_000, seed=3, clearance=(-5.0, -2.0), thickness=(-0.7, 1.0))
+    force = joint.liner.young * joint.ball_radius**2 * 10 ** np.random.default_rng(2).uniform(-9, -2, 1_000)
+    contact = bs.PlaneLayer().press(joint, force=force)
+    answered = contact.status == bs.Status.OK
+    assert np.all(answered | (contact.status == bs.Status.NOT_REACHED))
+    assert np.mean(answered) > 0.8
+    back = bs.PlaneLayer().press(joint, indentation=np.where(answered, contact.indentation, 0.0))
+    np.testing.assert_allclose(back.force[answered], force[answered], rtol=1e-7)
+    assert not np.any(np.isnan(contact.max_pressure[answered]))

@@ -1,0 +1,210 @@
+"""The closed form against the exact answer it was fitted to, and where it must be right without a fit."""
+
+import csv
+import json
+
+import mpmath
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.models.dual_numbers import Dual
+from ballsocket.models.liner_compliance import compliance
+
+from ..joints import HIP, random_joint
+from ..places import DATA
+
+ROWS = list(
+    csv.DictReader(line for line in (DATA / "refined_reference.csv").read_text().splitlines() if line[0] != "#")
+)
+EXACT = {name: np.array([float(row[name]) for row in ROWS]) for name in ROWS[0]}
+CASES = json.loads((DATA / "exact.json").read_text())["cases"]
+MODEL = bs.Refined()
+WITHIN = 0.009
+
+
+def joint_of(poisson, ratio, clearance=0.01) -> bs.Joint:
+    liner = bs.Material(young=1000.0, poisson=poisson)
+    return bs.Joint(ball_radius=18.0 - clearance, clearance=clearance, liner_thickness=18.0 / ratio, liner=liner)
+
+
+JOINT = joint_of(EXACT["poisson"], EXACT["thickness_ratio"])
+ANGLE = np.radians(EXACT["half_angle_deg"])
+QUANTITIES = ("indentation", "max_pressure", "force")
+
+
+def test_within_one_percent_at_a_half_angle():
+    contact = MODEL.press(JOINT, half_angle=ANGLE)
+    for name in QUANTITIES:
+        np.testing.assert_allclose(getattr(contact, name), EXACT[name], rtol=WITHIN, err_msg=name)
+
+
+def test_within_one_percent_at_a_force():
+    contact = MODEL.press(JOINT, force=EXACT["force"])
+    for name, value in (*((name, EXACT[name]) for name in QUANTITIES), ("half_angle", ANGLE)):
+        np.testing.assert_allclose(getattr(contact, name), value, rtol=WITHIN, err_msg=name)
+
+
+def test_the_profile_is_within_2_5_percent_of_the_peak():
+    contact = MODEL.press(JOINT, half_angle=ANGLE)
+    for share in (25, 50, 75, 90, 97):
+        wrong = (
+            contact.pressure(share / 100 * ANGLE) / contact.max_pressure - EXACT[f"at_{share}"] / EXACT["max_pressure"]
+        )
+        assert np.max(np.abs(wrong)) < 0.025, share
+
+
+def test_against_the_exact_model_on_fresh_points():
+    rng = np.random.default_rng()  # another set every time: the bound is a promise, not a record
+    poisson, ratio = rng.uniform(0.3, 0.48, 20), rng.uniform(1.0, 6.5, 20)
+    angle = np.radians(rng.uniform(15.0, 60.0, 20))
+    exact = bs.Exact(tolerance=1e-7).press(joint_of(poisson, ratio), half_angle=angle)
+    contact = MODEL.press(joint_of(poisson, ratio), half_angle=angle)
+    assert np.all(contact.valid)
+    for name in (*QUANTITIES, "stiffness", "energy"):
+        rtol = WITHIN if name in QUANTITIES else 0.05
+        np.testing.assert_allclose(
+            getattr(contact, name), getattr(exact, name), rtol=rtol, err_msg=f"{poisson} {ratio}"
+        )
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case['poisson']}-{case['liner_thickness']}")
+def test_the_published_cases(case):
+    lengths = {name: case[name] for name in ("ball_radius", "clearance", "liner_thickness")}
+    joint = bs.Joint(**lengths, liner=bs.Material(young=case["young"], poisson=case["poisson"]))
+    for step in case["steps"]:
+        contact = MODEL.press(joint, force=step["force"])
+        within = WITHIN if case["poisson"] <= 0.48 else 0.015
+        assert contact.indentation == pytest.approx(step["indentation"], rel=within)
+        assert contact.max_pressure == pytest.approx(step["max_pressure"], rel=within)
+        assert np.degrees(contact.half_angle) == pytest.approx(step["half_angle_deg"], rel=within)
+
+
+def test_everything_grows_with_the_half_angle_far_outside_the_fit():
+    angle = np.radians(np.arange(0.2, 85.0, 0.2))[:, None, None]
+    poisson = np.array([-0.9, -0.3, 0.0, 0.2, 0.3, 0.4, 0.45, 0.48, 0.49, 0.499, 0.5])[:, None]
+    contact = MODEL.press(joint_of(poisson, np.geomspace(0.05, 30.0, 14)), half_angle=angle)
+    reached = contact.status == bs.Status.OK
+    assert np.all(reached[np.degrees(angle[:, 0, 0]) < 79.0])
+    assert np.all(np.diff(reached.astype(int), axis=0) <= 0)  # one closing angle, nothing behind it
+    for name in QUANTITIES:
+        growth = np.diff(np.log(np.where(reached, getattr(contact, name), np.nan)), axis=0)
+        assert not np.any(growth <= 0), name
+
+
+def test_a_small_contact_is_hertzian():
+    joint = joint_of(np.array([0.3, 0.4, 0.48]), np.array([1.0, 2.7, 6.5]))
+    ours, hertz = MODEL.press(joint, half_angle=1e-3), bs.Hertz().press(joint, half_angle=1e-3)
+    for name in (*QUANTITIES, "stiffness", "energy"):
+        # up to c/R2, by which the effective radius R1 R2/c differs from R2²/c
+        np.testing.assert_allclose(getattr(ours, name), getattr(hertz, name), rtol=5e-3, err_msg=name)
+
+
+def shell_compliance(k: mpmath.mpf, nu: float, b: float) -> mpmath.mpf:
+    """c(n) E/R2 from the four powers of r with the outer surface held: 4 x 4 equations."""
+    n, nu, inner = mpmath.sqrt(k * k + mpmath.mpf(1) / 4) - mpmath.mpf(1) / 2, mpmath.mpf(nu), mpmath.mpf(1)
+    columns = (  # power of r; u_r, u_φ, σ_rr r/2G, σ_rφ r/2G over r^power
+        (
+            n + 1,
+            (n + 1) * (n - 2 + 4 * nu),
+            n + 5 - 4 * nu,
+            (n + 1) * (n * n - n - 2 - 2 * nu),
+            n * n + 2 * n - 1 + 2 * nu,
+        ),
+        (n - 1, n, 1, n * (n - 1), n - 1),
+        (-n, n * (n + 3 - 4 * nu), 4 - 4 * nu - n, -n * (n * n + 3 * n - 2 * nu), n * n - 2 + 2 * nu),
+        (-n - 2, -(n + 1), 1, (n + 1) * (n + 2), -(n + 2)),
+    )
+    matrix = mpmath.matrix(4, 4)
+    for j, (power, u, t, s, h) in enumerate(columns):
+        outer = mpmath.mpf(b) ** power
+        matrix[0, j], matrix[1, j], matrix[2, j], matrix[3, j] = u * outer, t * outer, s * inner, h * inner
+    solution = mpmath.lu_solve(matrix, mpmath.matrix([0, 0, -(1 + nu), 0]))
+    return sum(column[1] * solution[j] for j, column in enumerate(columns))
+
+
+@pytest.mark.parametrize("poisson", [-0.3, 0.3, 0.45, 0.499])
+@pytest.mark.parametrize("thickness", [0.1, 0.4, 2.0])
+def test_the_compliance_is_that_of_the_shell(poisson, thickness):
+    """At q = 1 too, where the closed expression is 0/0 and its two forms meet."""
+    numbers = np.sqrt([0.05, 0.3, 0.6999, 0.7001, 0.74, 0.75, 0.75 + 1e-13, 0.76, 0.7999, 0.8001, 2.0, 12.0, 400.0])
+    with mpmath.workdps(40):
+        for number in numbers:
+            k = np.asarray([number])
+            found = compliance(Dual(k, -k), np.asarray(poisson), np.asarray(1 + thickness))
+            exact = mpmath.mpf(float(number)) + mpmath.mpf("1e-18")  # not on the 0/0
+            value = shell_compliance(exact, poisson, 1 + thickness)
+            step = mpmath.mpf("1e-7")
+            below, above = (shell_compliance(exact * (1 + sign * step), poisson, 1 + thickness) for sign in (-1, 1))
+            assert float(found.value[0]) == pytest.approx(float(value), rel=2e-12)
+            assert float(found.slope[0]) == pytest.approx(float((below - above) / (2 * step)), abs=1e-9 * float(value))
+
+
+def test_integer_modes_are_those_of_the_exact_model():
+    from ballsocket.elastic.modes import socket_of
+
+    n = np.arange(1, 40)
+    k = np.sqrt(n * (n + 1.0))
+    found = compliance(Dual(k, -k), np.asarray(0.4), np.asarray(1 + 6.75 / 18.0)).value * 18.0 / 1000.0
+    np.testing.assert_allclose(found, socket_of(HIP).compliance(n), rtol=1e-12)
+
+
+def test_stiffness_and_energy_are_smooth_across_the_removable_singularity():
+    angle = 0.551 / np.sqrt(0.75) * (1 + np.linspace(-0.05, 0.05, 401))
+    contact = MODEL.press(HIP, half_angle=angle)
+    for name in ("stiffness", "force", "max_pressure"):
+        third = np.diff(np.log(getattr(contact, name)), n=3)
+        assert np.max(np.abs(third)) < 1e-8, name
+
+
+def test_wild_joints_press_back_and_forth():
+    """As through the other closed forms; for a tenth of the loads the fit would be more than perfect."""
+    size = 20_000
+    joint = random_joint(size, seed=11)
+    force = joint.liner.young * joint.ball_radius**2 * 10 ** np.random.default_rng(4).uniform(-12, 0, size)
+    contact = MODEL.press(joint, force=force)
+    answered = contact.status == bs.Status.OK
+    assert np.all(answered | (contact.status == bs.Status.NOT_REACHED))
+    assert np.mean(answered) > 0.85
+    back = MODEL.press(joint, indentation=np.where(answered, contact.indentation, 0.0))
+    np.testing.assert_allclose(back.force[answered], force[answered], rtol=1e-12)
+    for name in ("half_angle", "max_pressure", "stiffness", "energy", "pressure_integral"):
+        assert np.all(getattr(contact, name)[answered] > 0), name
+    harder = MODEL.press(joint, force=1.001 * force)
+    both = answered & (harder.status == bs.Status.OK)
+    assert np.all(harder.indentation[both] > contact.indentation[both])
+
+
+def test_what_it_does_not_answer():
+    with pytest.raises(ValueError, match="refined has no answer for c = 0: .* ask cosine-limit"):
+        MODEL.press(bs.Joint(ball_radius=18.0, clearance=0.0, liner_thickness=6.0, liner=bs.UHMWPE), force=1.0)
+    with pytest.raises(ValueError, match="refined has no answer for L = inf"):
+        MODEL.press(bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=np.inf, liner=bs.UHMWPE), force=1.0)
+    far = MODEL.press(HIP, force=1e9)
+    assert far.status is bs.Status.NOT_REACHED
+    assert np.isnan(far.half_angle)
+    assert np.isnan(far.max_pressure)
+    assert np.isnan(far.energy)
+    assert MODEL.press(HIP, half_angle=1.5).status is bs.Status.NOT_REACHED
+    assert MODEL.press(HIP, indentation=1e5).status is bs.Status.NOT_REACHED
+
+
+def test_validity_is_the_box_of_the_fit():
+    assert MODEL.press(HIP, half_angle=np.radians(45.0)).valid
+    for changes in ({"half_angle": np.radians(14.0)}, {"half_angle": np.radians(61.0)}):
+        assert not MODEL.press(HIP, **changes).valid
+    angle = np.radians(45.0)
+    assert not MODEL.press(joint_of(0.49, 2.0), half_angle=angle).valid
+    assert not MODEL.press(joint_of(0.4, 7.0), half_angle=angle).valid
+
+
+def test_a_solution_is_a_jax_tree():
+    jax = pytest.importorskip("jax")
+    import ballsocket.pytrees  # noqa: F401 - registers the words
+
+    with jax.enable_x64(True):
+        pressed = jax.jit(lambda joint: MODEL.press(joint, force=3000.0))(HIP)
+        assert isinstance(pressed, bs.Contact)
+        for name in ("max_pressure", "stiffness", "energy"):
+            expected = getattr(MODEL.press(HIP, force=3000.0), name)
+            assert float(getattr(pressed, name)) == pytest.approx(expected, rel=1e-9)

@@ -1,0 +1,361 @@
+"""Questions asked of many joints: maps, fronts, optima, tolerances, sensitivities; in Python and in the shell."""
+
+import json
+import subprocess
+import sys
+from importlib.util import find_spec
+from math import pi
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.output import study_plots
+from ballsocket.studies.design import Span, grid, sample
+from ballsocket.studies.distributions import Normal, Rectangular, tolerance
+from ballsocket.studies.file import read_study
+from ballsocket.studies.limits import Limit, allowed, dimension
+from ballsocket.studies.optimum import optimise
+from ballsocket.studies.pareto import pareto
+from ballsocket.studies.phrases import limit_of, range_of, spread_of
+from ballsocket.studies.sensitivity import sensitivity
+from ballsocket.studies.slopes import differences, elasticities, traced
+
+HIP = bs.joints["hess-forsbach"]
+SHELL = (Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0))
+AT = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "force": 3000.0}
+
+
+@pytest.fixture(scope="module")
+def design_space():
+    return bs.study(
+        bs.HessForsbach(), HIP, ball_radius=Span(11.0, 23.0, 25), liner_thickness=Span(3.0, 15.0, 25), force=3000.0
+    )
+
+
+def test_limits_know_dimensions_that_follow_from_others(design_space):
+    outer = dimension(design_space, "outer_radius")
+    assert outer.sel(ball_radius=20.0, liner_thickness=6.0).item() == pytest.approx(26.1)
+    other = bs.study(
+        bs.HessForsbach(), HIP, outer_radius=26.0, socket_radius=Span(15.0, 20.0, 6), clearance=0.1, force=1e3
+    )
+    assert dimension(other, "liner_thickness").values.tolist() == pytest.approx([11.0, 10.0, 9.0, 8.0, 7.0, 6.0])
+    assert dimension(other, "ball_radius").values[0] == pytest.approx(14.9)
+    assert dimension(other, "ball_young") == 230000.0
+    rigid = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+    one = bs.study(bs.HessForsbach(), rigid, force=1e3)
+    with pytest.raises(ValueError, match="has no ball_young"):
+        dimension(one, "ball_young")
+
+
+def test_the_edge_distance_is_an_arc_of_the_socket(design_space):
+    edge = Limit(name="edge_distance", low=10.0, rim=pi / 2, tilt=0.2)
+    here = design_space.sel(ball_radius=16.0, liner_thickness=6.0)
+    arc = (pi / 2 - 0.2 - here.half_angle.item()) * 16.1
+    assert edge.of(here).item() == pytest.approx(arc)
+    assert edge.margin(here).item() == pytest.approx(arc - 10.0)
+
+
+def test_a_front_is_beaten_by_nothing_and_misses_nothing(design_space):
+    front = pareto(design_space, limits=SHELL)
+    good = allowed(design_space, SHELL).values.ravel()
+    area, pressure = (design_space[name].values.ravel()[good] for name in ("area", "max_pressure"))
+    for a, p in zip(front.area.values, front.max_pressure.values, strict=True):
+        assert not ((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any()
+    beaten = [
+        ((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any()
+        for a, p in zip(area, pressure, strict=True)
+    ]
+    assert front.sizes["point"] == len(beaten) - sum(beaten)
+    with pytest.raises(ValueError, match="no point is allowed by outer_radius ≤ 1"):
+        pareto(design_space, limits=[Limit(name="outer_radius", high=1.0)])
+
+
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)
+def test_an_optimum_is_better_than_every_point_of_a_fine_grid(model):
+    ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
+    best = optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL)
+    fine = bs.study(model, HIP, ball_radius=Span(11.0, 23.0, 121), liner_thickness=Span(3.0, 15.0, 121), force=3000.0)
+    least = fine.max_pressure.where(allowed(fine, SHELL)).min().item()
+    assert best.value <= least * (1 + 1e-9)
+    assert best.value == pytest.approx(least, rel=2e-3)
+    assert best.active == ("outer_radius ≤ 26",)
+    assert best.slopes["ball_radius"] == pytest.approx(
+        best.slopes["liner_thickness"], rel=1e-2
+    )  # no gain along the limit
+    assert model.press(best.joint, force=3000.0).max_pressure == pytest.approx(best.value, rel=1e-9)
+
+
+def test_an_optimum_without_limits_lies_at_an_end():
+    best = optimise(bs.HessForsbach(), HIP, {"clearance": (0.05, 0.2)}, load={"force": 3000.0})
+    assert best.point["clearance"] == pytest.approx(0.05)
+    assert best.active == ("clearance = 0.05",)
+    with pytest.raises(ValueError, match="none of 4096 joints within the ranges is allowed by outer_radius ≤ 1"):
+        optimise(
+            bs.HessForsbach(),
+            HIP,
+            {"clearance": (0.05, 0.2)},
+            load={"force": 1.0},
+            limits=[Limit(name="outer_radius", high=1.0)],
+        )
+
+
+def test_slopes_by_differences_are_those_of_scaling():
+    """Lengths times a and moduli times b: F a²b, so the elasticities add up."""
+    found = elasticities(
+        bs.Exact(), HIP, ("max_pressure", "indentation"), {**AT, "liner_young": 1000.0, "ball_young": 2.3e5}
+    )
+    for quantity, lengths, moduli in (("max_pressure", 0.0, 1.0), ("indentation", 1.0, 0.0)):
+        each = found[quantity]
+        size = each["ball_radius"] + each["clearance"] + each["liner_thickness"] + 2 * each["force"]
+        assert size == pytest.approx(lengths, abs=1e-4)
+        assert each["liner_young"] + each["ball_young"] + each["force"] == pytest.approx(moduli, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("model", "name", "end", "inside"),
+    [(bs.HessForsbach(), "clearance", 0.0, 1e-6), (bs.Hertz(), "liner_poisson", 0.5, 0.49999)],
+    ids=["perfect fit", "rubber"],
+)
+def test_slopes_at_the_end_of_what_is_allowed_are_those_just_inside(model, name, end, inside):
+    """There steps go to one side."""
+    at = {"clearance": 0.1, "liner_poisson": 0.4, "force": 2000.0}
+    slopes = [differences(model, HIP, ("max_pressure",), {**at, name: one})[1] for one in (end, inside)]
+    for each in at:
+        assert slopes[0]["max_pressure"][each] == pytest.approx(slopes[1]["max_pressure"][each], rel=1e-3, abs=1e-3)
+
+
+def test_first_touch_has_no_slope():
+    with pytest.raises(ValueError, match="force = 0 is first touch"):
+        differences(bs.HessForsbach(), HIP, ("area",), {"force": 0.0})
+
+
+def test_sobol_intervals_are_those_of_the_seed_and_leave_the_global_stream_alone():
+    spread = {"clearance": tolerance(0.1, 0.05), "liner_poisson": Rectangular(low=0.38, high=0.46)}
+    before = np.random.get_state()[1].tolist()  # noqa: NPY002
+    one, other = (sensitivity(bs.HessForsbach(), HIP, spread, count=64, load={"force": 1e3}) for _ in range(2))
+    assert one.identical(other)
+    assert np.random.get_state()[1].tolist() == before  # noqa: NPY002
+    with pytest.raises(ValueError, match="force does not change with clearance and liner_poisson"):
+        sensitivity(bs.HessForsbach(), HIP, spread, quantities=["force"], count=64, load={"force": 1e3})
+
+
+@pytest.mark.skipif(find_spec("jax") is None, reason="jax is not installed")
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
+def test_slopes_by_jax_are_those_of_differences(model):
+    exact, near = (derive(model, HIP, ("max_pressure", "area"), AT) for derive in (traced, differences))
+    for quantity in ("max_pressure", "area"):
+        assert exact[0][quantity] == pytest.approx(near[0][quantity], rel=1e-12)
+        assert exact[1][quantity] == pytest.approx(near[1][quantity], rel=1e-6)
+    with pytest.raises(ValueError, match="exact cannot be traced"):
+        traced(bs.Exact(), HIP, ("area",), AT)
+    ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
+    by_jax = optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL, derive=traced)
+    assert by_jax.value == pytest.approx(
+        optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL).value, rel=1e-6
+    )
+
+
+def test_slopes_of_finite_elements_are_near_the_exact_ones():
+    at = {"force": 3000.0, "clearance": 0.1}
+    near, true = (
+        elasticities(model, HIP, ("max_pressure", "half_angle"), at)
+        for model in (bs.FiniteElement(meshes=1), bs.Exact())
+    )
+    for quantity, each in true.items():
+        for name, value in each.items():
+            assert near[quantity][name] == pytest.approx(value, abs=0.02)
+
+
+def test_a_massive_socket_is_thick_enough():
+    found = bs.study(bs.Hertz(), bs.joints["tilting-pad-pivot"], liner_thickness=[3.0, 6.0, np.inf], force=1e3)
+    assert allowed(found, [Limit(name="liner_thickness", low=4.0)]).values.tolist() == [False, True, True]
+
+
+def test_sobol_indices_of_a_product_of_powers():
+    """Hertz with a rigid ball: d ~ (F²/(E*² R*))^(1/3), whose logarithm is a sum; small spreads make it additive."""
+    rigid = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+    spread = {"liner_young": Normal(mean=1000.0, deviation=20.0), "force": Normal(mean=1000.0, deviation=30.0)}
+    found = sensitivity(bs.Hertz(), rigid, spread, quantities=("indentation",), count=2048)
+    shares = np.array([(2 / 3 * 0.02) ** 2, (2 / 3 * 0.03) ** 2])
+    np.testing.assert_allclose(found.first_order.values[0], shares / shares.sum(), atol=0.03)
+    np.testing.assert_allclose(found.total_order.values[0], shares / shares.sum(), atol=0.03)
+    np.testing.assert_allclose(found.elasticity.values[0], [-2 / 3, 2 / 3], rtol=1e-5)
+    middle = bs.Hertz().press(rigid, force=1000.0).indentation
+    assert found["mean"].item() == pytest.approx(middle, rel=1e-3)
+    assert found.deviation.item() == pytest.approx(middle * np.sqrt(shares.sum()), rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"count": 1000}, "count = 1000 is not allowed: a power of two"),
+        ({"distributions": {"force": tolerance(3e3, 5e2)}}, "force scatters and is given as a load too"),
+        ({"distributions": {}}, "at least one number must scatter"),
+        ({"distributions": {"clearence": tolerance(0.1, 0.05)}}, "did you mean 'clearance'"),
+        (
+            {"distributions": {"liner_poisson": Rectangular(low=0.4, high=0.499999)}},
+            "has no answer for .* of 1024 samples",
+        ),
+    ],
+)
+def test_bad_sensitivities_are_one_sentence(words, message):
+    asked = {"distributions": {"clearance": tolerance(0.1, 0.05)}, "load": {"force": 1000.0}, **words}
+    with pytest.raises(ValueError, match=message):
+        sensitivity(bs.Tabulated(), HIP, asked.pop("distributions"), **asked)
+
+
+def test_phrases_of_the_shell():
+    assert range_of("ball_radius = 11..23 mm") == ("ball_radius", 11.0, 23.0)
+    assert range_of("force=1 kN .. 3 kN") == ("force", 1000.0, 3000.0)
+    assert range_of("force=1..3 kN") == ("force", 1000.0, 3000.0)
+    assert spread_of("clearance=100+-50 um") == ("clearance", tolerance(0.1, 0.05))
+    assert spread_of("liner_poisson=0.38..0.46") == ("liner_poisson", Rectangular(low=0.38, high=0.46))
+    assert limit_of("outer_radius <= 2.6 cm") == Limit(name="outer_radius", high=26.0)
+    assert limit_of("half_angle<=60").high == pytest.approx(pi / 3)
+    for phrase in ("ball_radius", "ball_radius=11", "outer_radius<26", "ball_radios=11..23"):
+        with pytest.raises(ValueError, match=r"is not a|did you mean|is not known"):
+            (limit_of if "<" in phrase else range_of)(phrase)
+
+
+def test_pictures_show_what_was_asked(design_space):
+    figure = study_plots.design_map(design_space, SHELL, best={"ball_radius": 19.6, "liner_thickness": 6.3})
+    assert [axes.get_title() for axes in figure.axes] == [
+        "peak pressure p0 [MPa]",
+        "contact area A [mm²]",
+        "contact half angle ε [°]",
+    ]
+    scattered = sample(64, clearance=tolerance(0.1, 0.05)) * grid(force=Span(500.0, 3000.0, 5))
+    bands = bs.study(bs.HessForsbach(), HIP, scattered)
+    assert "median" in study_plots.band_figure(bands).axes[0].get_legend_handles_labels()[1]
+    with pytest.raises(ValueError, match="a map needs two axes"):
+        study_plots.design_map(bands.isel(force=0))
+    with pytest.raises(ValueError, match="bands need samples"):
+        study_plots.band_figure(design_space)
+
+
+STUDY = """
+model = "hess-forsbach"
+joint = "hip.toml"
+quantities = ["max_pressure", "stiffness"]
+store = "out/s.zarr"
+
+[axes]
+ball_radius = {from = "14 mm", to = "1.8 cm", count = 5}
+force = ["1 kN", "3 kN"]
+
+[samples]
+count = 8
+seed = 3
+clearance = {nominal = "0.1 mm", plus_minus = "50 um"}
+liner_poisson = {low = 0.38, high = 0.46}
+"""
+FILE = """
+[joint]
+ball_radius = "17.9 mm"
+clearance = 0.1
+liner_thickness = 6.75
+[liner]
+material = "UHMWPE"
+"""
+
+
+def test_a_study_file_says_all(tmp_path):
+    (tmp_path / "hip.toml").write_text(FILE, encoding="utf-8")
+    (tmp_path / "s.toml").write_text(STUDY, encoding="utf-8")
+    given = read_study(tmp_path / "s.toml")
+    assert given.design.dims == ("sample", "ball_radius", "force")
+    assert given.design.shape == (8, 5, 2)
+    assert given.store == tmp_path / "out" / "s.zarr"
+    found = bs.study(given.model, given.joint, given.design, quantities=given.quantities, store=given.store)
+    assert set(found.data_vars) == {"max_pressure", "stiffness", "status", "valid"}
+    assert found.ball_radius.values.tolist() == [14.0, 15.0, 16.0, 17.0, 18.0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            'model = "hess-forsbach"',
+            'model = "hess-forsbch"',
+            "model 'hess-forsbch' is not known; did you mean 'hess-forsbach'",
+        ),
+        ('joint = "hip.toml"', 'joint = "hop.toml"', "joint 'hop.toml' is neither a file nor a preset"),
+        ("count = 5", "count = 1e12", "1.6e.13 points take about"),
+        ("count = 8", "count = 2.5", "count = 2.5 must be a whole number"),
+        ('"1 kN"', '"1 kg"', r"force\[0\] = '1 kg' is not a force"),
+        ("seed = 3", "sead = 3", "'sead' in .samples. is not known"),
+        ("plus_minus", "plusminus", "must be {low, high}"),
+        ("low = 0.38", "low = 0.58", "low = 0.58 is not allowed"),
+        ("[axes]", "[axis]", "'axis' at the top is not known; did you mean 'axes'"),
+        ("count = 5}", "count = 5", "is not TOML"),
+    ],
+)
+def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, old, new, message):
+    (tmp_path / "hip.toml").write_text(FILE, encoding="utf-8")
+    assert old in STUDY
+    (tmp_path / "s.toml").write_text(STUDY.replace(old, new, 1), encoding="utf-8")
+    done = command(tmp_path, "study", "s.toml")
+    assert done.returncode == 2
+    assert len(done.stderr.strip().splitlines()) == 1
+    import re
+
+    assert re.search(message, done.stderr)
+    assert not (tmp_path / "out").exists()
+
+
+def command(folder, *words):
+    return subprocess.run(
+        [sys.executable, "-m", "ballsocket", *words], cwd=folder, capture_output=True, encoding="utf-8", check=False
+    )
+
+
+def test_questions_on_the_command_line(tmp_path):
+    shell = ("--limit", "outer_radius<=26 mm", "--limit", "liner_thickness>=4")
+    ranges = ("--vary", "ball_radius=11..23 mm", "--vary", "liner_thickness=3..15 mm")
+    common = ("hess-forsbach", "--force", "3 kN")
+    shown = command(tmp_path, "map", *common, *shell, "--points", "15", "--figure", "map.png", "--json")
+    least = json.loads(shown.stdout)["quantities"]["max_pressure"][0]
+    assert 10.2 < least["value"] < 10.9
+    assert (tmp_path / "map.png").stat().st_size > 10_000
+    best = json.loads(command(tmp_path, "optimise", *common, *ranges, *shell, "--json").stdout)
+    assert best["value"] == pytest.approx(10.25, abs=0.01)
+    assert best["active"] == ["outer_radius ≤ 26"]
+    front = command(
+        tmp_path, "optimise", *common, *ranges, *shell, "--minimise", "area", "--minimise", "max_pressure", "--json"
+    )
+    columns = json.loads(front.stdout)["points"]
+    assert np.all(np.diff(columns["area"]) > 0)
+    assert np.all(np.diff(columns["max_pressure"]) < 0)
+    loads = command(
+        tmp_path, "map", "hess-forsbach", "--x", "force=1..4 kN", "--limit", "area<=500 mm2", "--points", "9", "--json"
+    )
+    assert json.loads(loads.stdout)["limits"] == ["area ≤ 500"]
+    scatter = command(
+        tmp_path,
+        "sensitivity",
+        *common,
+        "--spread",
+        "clearance=0.1+-0.05 mm",
+        "--spread",
+        "liner_poisson=0.38..0.46",
+        "--json",
+    )
+    indices = json.loads(scatter.stdout)["quantities"]["max_pressure"]["numbers"]
+    assert indices["clearance"]["first_order"] > indices["liner_poisson"]["first_order"]
+    for words, message in (
+        (("map", *common, "--x", "ball_radius=23..11 mm", "--figure", "map.gif"), "must end in"),
+        (("map", *common, "--limit", "outer_radius<=1 mm"), "no point of the map is allowed by outer_radius ≤ 1"),
+        (("optimise", *common, "--vary", "ball_radius=23..11 mm"), "a range goes upwards"),
+        (("sensitivity", *common, "--spread", "clearance=much"), "is not a range"),
+        (("map", "hess-forsbach"), "a load is needed"),
+        (("map", *common, "--x", "force=1..4 kN"), "force varies, and a load is given too"),
+        (
+            ("optimise", *common, "--vary", "clearance=0.05..0.1", "--vary", "clearance=0.1..0.2"),
+            "clearance is given twice",
+        ),
+    ):
+        done = command(tmp_path, *words)
+        assert done.returncode == 2, done.stdout
+        assert message in done.stderr
+        assert len(done.stderr.strip().splitlines()) == 1

@@ -1,0 +1,275 @@
+"""Studies: every point is a press, whoever computes it; labels tell what it is; files carry all of it."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import ballsocket as bs
+from ballsocket.engines import Processes, Serial
+from ballsocket.engines.dask import Distributed
+from ballsocket.studies.blocks import Blocks
+from ballsocket.studies.design import Method, Span, grid, sample
+from ballsocket.studies.distributions import Normal, Rectangular, tolerance
+from ballsocket.studies.export import export
+from ballsocket.studies.rows import table
+from ballsocket.studies.run import read
+
+HIP = bs.joints["hess-forsbach"]
+AXES = {"clearance": [0.05, 0.1, 0.2], "ball_radius": [14.0, 17.9], "force": [500.0, 1500.0, 3000.0, 4000.0]}
+
+
+def same(one, other):
+    return all(one[name].values.tobytes() == other[name].values.tobytes() for name in one.data_vars) and set(
+        one.data_vars
+    ) == set(other.data_vars)
+
+
+@pytest.mark.parametrize(
+    "model", [bs.HessForsbach(), bs.Tabulated(), bs.Exact(), bs.PlaneLayer()], ids=lambda m: m.name
+)
+def test_every_point_is_a_press(model):
+    found = bs.study(model, HIP, quantities=["indentation", "area", "stiffness"], **AXES)
+    assert found.sizes == {"clearance": 3, "ball_radius": 2, "force": 4}
+    for place in (
+        {"clearance": 0.2, "ball_radius": 14.0, "force": 500.0},
+        {"clearance": 0.05, "ball_radius": 17.9, "force": 4e3},
+    ):
+        joint = bs.Joint(
+            ball_radius=place["ball_radius"],
+            clearance=place["clearance"],
+            liner_thickness=HIP.liner_thickness,
+            liner=HIP.liner,
+            ball=HIP.ball,
+        )
+        contact = model.press(joint, force=place["force"])
+        here = found.sel(place)
+        for name in ("indentation", "area", "stiffness"):
+            assert here[name].item() == pytest.approx(getattr(contact, name), rel=1e-9)
+        assert here.valid.item() == contact.valid
+
+
+def test_labels_say_what_units_and_who():
+    found = bs.study(bs.HessForsbach(), HIP, clearance=[0.1], half_angle=np.radians([20.0, 40.0]))
+    assert found.force.attrs == {"long_name": "normal force", "symbol": "F", "units": "N"}
+    assert found.half_angle.attrs["units"] == "rad"
+    assert found.clearance.attrs["units"] == "mm"
+    assert "Heß & Forsbach 2021" in found.attrs["references"]
+    assert json.loads(found.attrs["joint"])["liner"]["young"] == 1000.0
+    assert found.status.attrs["flag_meanings"].split()[:2] == ["not_computed", "ok"]
+    assert json.loads(json.dumps(found.attrs))
+
+
+def test_a_number_is_fixed_and_is_no_axis():
+    found = bs.study(bs.HessForsbach(), HIP, clearance=[0.05, 0.1], force=3000.0)
+    assert found.sizes == {"clearance": 2}
+    assert found.force.item() == 3000.0
+    assert bs.study(bs.HessForsbach(), HIP, force=3000.0).max_pressure.item() == pytest.approx(11.27, abs=0.01)
+
+
+def test_derived_parameters_make_the_joint_they_say():
+    found = bs.study(bs.HessForsbach(), HIP, outer_radius=26.0, socket_radius=[15.0, 20.0], clearance=0.2, force=2000.0)
+    for radius, pressure in zip((15.0, 20.0), found.max_pressure.values, strict=True):
+        joint = bs.Joint(
+            ball_radius=radius - 0.2, clearance=0.2, liner_thickness=26.0 - radius, liner=HIP.liner, ball=HIP.ball
+        )
+        assert pressure == pytest.approx(bs.HessForsbach().press(joint, force=2000.0).max_pressure, rel=1e-12)
+
+
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Exact()], ids=lambda m: m.name)
+def test_numbers_that_make_no_joint_are_a_status(model):
+    found = bs.study(model, HIP, outer_radius=20.0, ball_radius=[15.0, 19.9, 25.0], force=1000.0)
+    assert found.status.values.tolist() == [0, int(bs.Status.NO_JOINT), int(bs.Status.NO_JOINT)]
+    assert np.isnan(found.max_pressure.values).tolist() == [False, True, True]
+    assert found.valid.values.tolist() == [True, False, False]
+
+
+def test_a_block_outside_the_domain_is_a_status():
+    found = bs.study(bs.BondedLayer(), HIP, liner_poisson=[0.4, 0.5], force=1000.0)
+    assert found.status.values.tolist() == [0, int(bs.Status.OUTSIDE_DOMAIN)]
+    assert bs.study(bs.BondedLayer(), HIP, liner_poisson=[0.5], force=1000.0).max_pressure.isnull().all()
+
+
+@settings(deadline=None)
+@given(
+    shape=st.lists(st.integers(1, 25), min_size=0, max_size=3).map(tuple),
+    most=st.integers(1, 2000),
+)
+def test_blocks_cover_every_point_once(shape, most):
+    blocks = Blocks.of(shape, most)
+    seen = np.zeros(shape, dtype=int)
+    for number in range(len(blocks)):
+        seen[blocks[number]] += 1
+        assert blocks.points(number) <= most
+    assert (seen == 1).all()
+    with pytest.raises(IndexError):
+        blocks[len(blocks)]
+
+
+@settings(deadline=None, max_examples=25)
+@given(mean=st.floats(0.05, 0.2), deviation=st.floats(0.001, 0.03), seed=st.integers(0, 1000))
+def test_samples_follow_their_distributions(mean, deviation, seed):
+    design = sample(
+        512, seed=seed, clearance=Normal(mean=mean, deviation=deviation), liner_poisson=Rectangular(low=0.3, high=0.4)
+    )
+    values = design.part([slice(None)])
+    assert values["clearance"].mean() == pytest.approx(mean, abs=deviation / 20)
+    assert values["clearance"].std() == pytest.approx(deviation, rel=0.05)
+    assert values["liner_poisson"].min() >= 0.3
+    again = sample(
+        512, seed=seed, clearance=Normal(mean=mean, deviation=deviation), liner_poisson=Rectangular(low=0.3, high=0.4)
+    )
+    assert (again.part([slice(None)])["clearance"] == values["clearance"]).all()
+
+
+def test_a_tolerance_is_cut_off_at_its_limits():
+    design = sample(4096, method=Method.LATIN_HYPERCUBE, clearance=tolerance(0.1, 0.05))
+    values = design.part([slice(None)])["clearance"]
+    assert 0.05 <= values.min() < 0.06
+    assert 0.14 < values.max() <= 0.15
+    assert values.mean() == pytest.approx(0.1, abs=1e-3)
+
+
+def test_samples_times_a_grid_are_bands():
+    scattered = sample(64, clearance=tolerance(0.1, 0.05)) * grid(force=Span(500.0, 3000.0, 3))
+    found = bs.study(bs.HessForsbach(), HIP, scattered)
+    assert found.sizes == {"sample": 64, "force": 3}
+    spread = found.max_pressure.quantile(0.95, dim="sample") - found.max_pressure.quantile(0.05, dim="sample")
+    assert (spread > 0).all()
+    assert found.clearance.dims == ("sample",)
+    drawn = json.loads(found.attrs["design"])["sample"]
+    assert (drawn["count"], drawn["seed"], drawn["method"]) == (64, 0, "sobol")
+
+
+def test_rows_of_a_table(tmp_path):
+    (tmp_path / "rows.csv").write_text("ball_radius,clearance,force,half_angle_deg\n16,0.1,,\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"force in row 0 of rows.csv = nan is not allowed"):
+        table(tmp_path / "rows.csv")
+    (tmp_path / "rows.csv").write_text(
+        "ball_radius,clearance,half_angle_deg\n16,0.1,40\n14,0.05,50\n", encoding="utf-8"
+    )
+    found = bs.study(bs.HessForsbach(), HIP, table(tmp_path / "rows.csv"))
+    assert found.sizes == {"row": 2}
+    assert np.degrees(found.half_angle.values).tolist() == pytest.approx([40.0, 50.0])
+    (tmp_path / "bad.csv").write_text("ball_radius,clearence\n16,0.1\n", encoding="utf-8")
+    with pytest.raises(ValueError, match="did you mean 'clearance'"):
+        table(tmp_path / "bad.csv")
+    import pyarrow
+    from pyarrow import parquet
+
+    parquet.write_table(pyarrow.table({"ball_radius": [16.0], "force": [3000.0]}), tmp_path / "rows.parquet")
+    assert bs.study(bs.HessForsbach(), HIP, table(tmp_path / "rows.parquet")).max_pressure.shape == (1,)
+
+
+@pytest.mark.parametrize(
+    ("axes", "message"),
+    [
+        ({"clearance": [0.1]}, "one load is needed"),
+        ({"clearence": [0.1], "force": 1.0}, "did you mean 'clearance'"),
+        ({"force": 1.0, "indentation": 0.1}, "one load is needed, got force, indentation"),
+        ({"ball_radius": 1.0, "socket_radius": 2.0, "clearance": 1.0, "force": 1.0}, "any two of them fix the third"),
+        ({"outer_radius": 20.0, "liner_thickness": 2.0, "force": 1.0}, "either fixes the other"),
+        ({"clearance": [], "force": 1.0}, "clearance has no values"),
+        ({"clearance": [0.1, float("nan")], "force": 1.0}, r"clearance\[1\] = nan is not allowed"),
+        ({"clearance": [0.1, -0.1], "force": 1.0}, r"clearance\[1\] = -0.1 is not allowed for a radial clearance"),
+        ({"force": Span(-1.0, 5.0, 10**6)}, r"force\[0\] = -1 is not allowed for a normal force"),
+        ({"force": ["1 kN"]}, "force must be a row of numbers"),
+    ],
+)
+def test_bad_designs_are_one_sentence(axes, message):
+    with pytest.raises(ValueError, match=message):
+        bs.study(bs.HessForsbach(), HIP, **axes)
+
+
+def test_what_would_be_ignored_is_refused(tmp_path):
+    rigid = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+    with pytest.raises(ValueError, match="the ball of this joint is rigid: it has no ball_young"):
+        bs.study(bs.Tabulated(), rigid, ball_young=[1e4, 1e5], force=1e3)
+    many = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=np.array([5.0, 6.0]), liner=bs.UHMWPE)
+    with pytest.raises(ValueError, match="plain numbers"):
+        bs.study(bs.HessForsbach(), many, force=[1e3, 2e3])
+    with pytest.raises(ValueError, match="two axes are called sample"):
+        sample(4, clearance=tolerance(0.1, 0.05)) * sample(4, liner_poisson=Rectangular(low=0.3, high=0.4))
+    with pytest.raises(
+        ValueError, match=r"clearance.* is not allowed for a radial clearance; cut the distribution off"
+    ):
+        bs.study(bs.HessForsbach(), HIP, sample(4096, clearance=Normal(mean=0.1, deviation=0.03)), force=1e3)
+    for text, message in (
+        ("clearance_deg,force\n6,1000\n", "'clearance_deg' among the columns"),
+        ("clearance,clearance,force\n0.1,0.2,1000\n", "has clearance twice"),
+        ("clearance,force\n0.1,1000,7\n", "row 0 of rows.csv has more cells"),
+    ):
+        (tmp_path / "rows.csv").write_text(text, encoding="utf-8")
+        with pytest.raises(ValueError, match=message):
+            table(tmp_path / "rows.csv")
+
+
+def test_too_many_points_are_refused_with_size_and_time(tmp_path):
+    with pytest.raises(ValueError, match=r"1e\+12 points take about .* TB and .* hours on one core"):
+        bs.study(bs.HessForsbach(), HIP, force=Span(1.0, 2.0, 10**12))
+    wide = {"force": Span(1.0, 2.0, 10**7), "clearance": Span(0.05, 0.1, 10**6)}
+    with pytest.raises(ValueError, match="on the disk of the store"):
+        bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", **wide)
+    many = sample(10**12, clearance=Rectangular(low=0.05, high=0.15))
+    with pytest.raises(ValueError, match="of memory for the values along its axes; take fewer"):
+        bs.study(bs.HessForsbach(), HIP, many, store=tmp_path / "s.zarr", force=1000.0)
+    assert not (tmp_path / "s.zarr").exists()
+
+
+def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
+    monkeypatch.setattr("ballsocket.studies.run.points_a_block", lambda model: 5)
+    for model in (bs.HessForsbach(), bs.Exact()):
+        here = bs.study(model, HIP, **AXES)
+        for engine in (Serial(), Processes(workers=2), Distributed(workers=1)):
+            assert same(bs.study(model, HIP, engine=engine, **AXES), here)
+            store = tmp_path / f"{model.name}-{type(engine).__name__}.zarr"
+            stored = bs.study(model, HIP, engine=engine, store=store, **AXES).load()
+            assert same(stored, here)
+            assert list(stored.data_vars) == [name for name in stored.data_vars if name in here.data_vars]
+
+
+def test_a_scheduler_is_asked_by_its_address():
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0", host="127.0.0.1") as cluster:
+        found = bs.study(bs.HessForsbach(), HIP, engine=Distributed(address=cluster.scheduler_address), **AXES)
+    assert same(found, bs.study(bs.HessForsbach(), HIP, **AXES))
+    with pytest.raises(ValueError, match="give an address or a number of workers"):
+        Distributed(address="tcp://127.0.0.1:1", workers=2)
+
+
+def test_progress_is_told():
+    told = []
+    bs.study(bs.HessForsbach(), HIP, listen=told.append, **AXES)
+    assert told[0].done == 0
+    assert told[-1].done == told[-1].points == 24
+    assert told[-1].left == 0.0
+
+
+def test_files_for_other_programs(tmp_path):
+    found = bs.study(bs.HessForsbach(), HIP, clearance=[0.05, 0.1], force=[1000.0, 3000.0])
+    export(found, tmp_path / "s.nc")
+    with xr.open_dataset(tmp_path / "s.nc", engine="h5netcdf") as again:
+        assert np.array_equal(again.max_pressure.values, found.max_pressure.values)
+        assert again.max_pressure.attrs["units"] == "MPa"
+    export(found, tmp_path / "s.csv")
+    rows = list(csv.DictReader((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()))
+    assert len(rows) == 4
+    assert float(rows[1]["max_pressure"]) == found.max_pressure.values[0, 1]
+    assert float(rows[3]["half_angle_deg"]) == np.degrees(found.half_angle.values[1, 1])
+    with pytest.raises(ValueError, match=r"must end in .nc or .csv"):
+        export(found, tmp_path / "s.xls")
+
+
+def test_a_stored_study_is_read_by_xarray_alone(tmp_path):
+    bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", **AXES)
+    plain = xr.open_zarr(tmp_path / "s.zarr", consolidated=False)
+    assert plain.max_pressure.dims == ("clearance", "ball_radius", "force")
+    assert plain.max_pressure.attrs["units"] == "MPa"
+    assert read(tmp_path / "s.zarr").max_pressure.sel(
+        clearance=0.1, force=3000.0, ball_radius=17.9
+    ).item() == pytest.approx(11.27, abs=0.01)
