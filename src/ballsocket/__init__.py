@@ -11,7 +11,7 @@ Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 from .catalogue import catalogue
 from .compare import compare
 from .contact import Contact
-from .cup import Cup, Interface
+from .cup import Cup, Interface, Side
 from .elastic.exact import Exact
 from .elastic.tabulated.model import Tabulated
 from .fem.model import FiniteElement
@@ -100,6 +100,7 @@ __all__ = [
     "RadialFoundation",
     "Range",
     "Refined",
+    "Side",
     "Status",
     "Steuermann",
     "Support",

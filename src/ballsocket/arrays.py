@@ -77,6 +77,10 @@ def atan(x: Array) -> Array:
     return namespace(x).atan(x)
 
 
+def atan2(y: Array, x: Array) -> Array:
+    return namespace(y, x).atan2(y, x)
+
+
 def asinh(x: Array) -> Array:
     return namespace(x).asinh(x)
 

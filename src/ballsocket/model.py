@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import pi
+from typing import Self
 
 import numpy
 
@@ -12,6 +13,7 @@ from . import arrays
 from .arrays import Array, where
 from .checks import numeric, one_load, require
 from .contact import Contact, Laws
+from .cup import Cup
 from .joint import Joint
 from .sources import Source
 from .validity import Range, Status, inside, missing
@@ -137,6 +139,10 @@ class Model(ABC):
     @abstractmethod
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         """The answer to a load of one kind ("force", "indentation", "half_angle"), all numbers being arrays."""
+
+    def in_cup(self, cup: Cup) -> Self:
+        """This model with that cup, or itself where it takes the socket for a whole sphere."""
+        return self
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Force (..., 3) in N on the ball whose centre is displaced by (..., 3) mm; see `Contact.force_vector`."""

@@ -1,7 +1,7 @@
 """What is on the explorer's screen, as a link and as a joint file: what goes in comes out."""
 
 from dataclasses import replace
-from math import inf
+from math import inf, pi
 from urllib.parse import parse_qs
 
 import numpy as np
@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.cup import Cup, Interface
+from ballsocket.cup import Cup, Interface, Side
 from ballsocket.io.joint_file import JointFile, parse_joint
 from ballsocket.io.joint_toml import toml_of
 from ballsocket.presets import materials
@@ -43,7 +43,13 @@ made_joints = st.builds(
     source=st.text(max_size=8),
 )
 cups = st.builds(
-    Cup, arc_of_cover=st.floats(0.8, 5.9), chamfer=st.floats(0.0, 2.0), interface=st.sampled_from(list(Interface))
+    Cup,
+    arc_of_cover=st.floats(0.8, 5.9),
+    chamfer=st.floats(0.0, 2.0),
+    interface=st.sampled_from(Interface),
+    inclination=st.floats(0.0, pi / 2),
+    anteversion=st.floats(-pi / 2, pi / 2),
+    side=st.sampled_from(Side),
 )
 loads = st.one_of(
     st.builds(lambda value: {"force": value}, st.floats(1e-3, 1e5)),
@@ -52,6 +58,9 @@ loads = st.one_of(
 )
 made_files = st.builds(JointFile, made_joints, loads, cups)
 axes = st.sampled_from([("ball_radius", "liner_thickness"), ("clearance", "force"), ("liner_poisson", "outer_radius")])
+
+
+ANGLES_OF_CUP = ("arc_of_cover", "inclination", "anteversion")
 
 
 @st.composite
@@ -80,9 +89,11 @@ def near(one, other):
         one.joint == other.joint
         and kind in other.load
         and again == pytest.approx(value, rel=1e-14)
-        and one.cup.interface == other.cup.interface
-        and other.cup.arc_of_cover == pytest.approx(one.cup.arc_of_cover, rel=1e-14)
-        and one.cup.chamfer == other.cup.chamfer
+        and (one.cup.interface, one.cup.side, one.cup.chamfer)
+        == (other.cup.interface, other.cup.side, other.cup.chamfer)
+        and all(
+            getattr(other.cup, angle) == pytest.approx(getattr(one.cup, angle), rel=1e-14) for angle in ANGLES_OF_CUP
+        )
     )
 
 

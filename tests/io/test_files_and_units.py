@@ -183,6 +183,34 @@ def test_two_of_three_radii_and_named_materials():
     assert other.joint.clearance == 0.1
 
 
+@pytest.mark.parametrize("inclination", ["45", '"45 deg"', '"0.7853981633974483 rad"'])
+def test_a_cup_knows_where_it_faces(inclination):
+    cup = f'[cup]\narc_of_cover = 160\ninclination = {inclination}\nanteversion = "-10 deg"\nside = "left"\n'
+    found = parse_joint(f"{HIP}{cup}".encode(), "hip").cup
+    assert found.inclination == pytest.approx(math.pi / 4)
+    assert found == bs.Cup(
+        arc_of_cover=math.radians(160.0),
+        inclination=found.inclination,
+        anteversion=math.radians(-10.0),
+        side=bs.Side.LEFT,
+    )
+    assert parse_joint(HIP.encode(), "hip").cup == bs.Cup()
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("inclination = 95", "hip: inclination = 95 is not allowed: an inclination is 0 to 90 degrees"),
+        ("anteversion = '3 mm'", "hip: anteversion = '3 mm' is not an angle"),
+        ("side = 'port'", "hip: side = 'port' is not allowed: 'right' or 'left'"),
+        ("sides = 'left'", "hip: 'sides' in .cup. is not known; did you mean 'side'?"),
+    ],
+)
+def test_a_cup_that_faces_nowhere_is_told_how(line, message):
+    with pytest.raises(ValueError, match=message):
+        parse_joint(f"{HIP}[cup]\n{line}\n".encode(), "hip")
+
+
 def test_numbers_win_over_the_material():
     file = parse_joint(HIP.replace('"UHMWPE"', '"uhmwpe"\npoisson = 0.45').encode(), "hip")
     assert file.joint.liner.poisson == 0.45

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
-from ..catalogue import reference
+from ..catalogue import judge, reference
 from ..contact import Contact
 from ..describe import summary
 from ..engines.local import available_cores, one_thread_each
 from ..fem.contact import MeshedContact
-from ..fem.model import FiniteElement
 from ..io.joint_file import JointFile
 from ..output.html import drawn
 from ..output.section_plot import section_figure
@@ -166,7 +165,7 @@ def _limit_memory() -> None:
 
 def _judged(file: JointFile, told: Callable[[float, str], None]) -> Judged | Refused:
     start = time.perf_counter()
-    model = replace(FiniteElement(), cup=file.cup)
+    model = judge.in_cup(file.cup)
     ((kind, load),) = file.load.items()
     told(0.05, "making the meshes")
     for share in _SHARES:

@@ -11,7 +11,6 @@ import typer
 
 import ballsocket as bs
 
-from ..fem.model import FiniteElement
 from ..io.joint_file import JointFile
 from ..model import Model
 from ..output import study_plots, study_terminal
@@ -47,9 +46,8 @@ def _load(force: str | None, indentation: str | None, joint: JointFile, named: I
 
 
 def _model(name: str, joint: JointFile) -> Model:
-    """By its name; finite elements take the cup of the joint's file."""
-    model = named_model(name)
-    return replace(model, cup=joint.cup) if isinstance(model, FiniteElement) else model
+    """A model by its name, in the cup of the joint's file."""
+    return named_model(name).in_cup(joint.cup)
 
 
 def _limits(phrases: list[str] | None, joint: JointFile) -> list[Limit]:

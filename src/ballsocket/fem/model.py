@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 from .. import arrays
 from ..checks import needs, require
@@ -32,7 +32,8 @@ class FiniteElement(Model):
     Parameters
     ----------
     cup : Cup
-        Arc of cover, chamfer, and whether the liner is bonded to its backing. A hemisphere by default.
+        Arc of cover, chamfer, and whether the liner is bonded to its backing. A hemisphere by default. The load is
+        along the cup's own axis, wherever that faces: inclination, anteversion and side change nothing.
     spacing, ball_spacing : Adapted or Uniform
         How fine the meshes of socket and ball are; they need not match. By default as fine as the contact asks for, and
         the ball's (None) as the socket's.
@@ -121,6 +122,9 @@ class FiniteElement(Model):
             "half angles up to half the arc of cover, at most 88°, less where the ball fills its socket before or "
             "leaves the pole, and not narrower than a few elements"
         )
+
+    def in_cup(self, cup: Cup) -> Self:
+        return replace(self, cup=cup)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         needs("fem", "skfem", "psutil")

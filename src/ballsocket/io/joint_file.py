@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..checks import check_names, nearest
-from ..cup import Cup, Interface
+from ..cup import Cup, Interface, Side
 from ..joint import Joint, Layer, Material, Support
 from ..model import checked_load
 from ..presets import materials
@@ -23,7 +23,7 @@ _TABLES = {
     "joint": (*_LENGTHS, "support"),
     "liner": ("material", "young", "poisson"),
     "ball": ("material", "young", "poisson"),
-    "cup": ("arc_of_cover", "chamfer", "interface"),
+    "cup": ("arc_of_cover", "chamfer", "interface", "inclination", "anteversion", "side"),
     "load": ("force", "indentation", "half_angle"),
 }
 _LAYER = ("thickness", "material", "young", "poisson")
@@ -48,8 +48,9 @@ def read_joint(path: str | Path) -> JointFile:
     or both, where the numbers win; a table `load` with one of `force`, `indentation`, `half_angle`. What is behind the
     liner is rigid, or is an array of tables `[[backing]]` from the liner outwards, each with a `thickness` and a
     material as above; `support` in the table `joint` says whether its outermost surface is "fixed" (without a word) or
-    "free". A table `cup` holds what only finite elements ask for: `arc_of_cover`, `chamfer`, and `interface`, which is
-    "bonded" or "sliding". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N,
+    "free". A table `cup` holds what finite elements ask for, `arc_of_cover`, `chamfer`, and `interface`, which is
+    "bonded" or "sliding", and where the cup faces: `inclination`, `anteversion`, and `side`, which is "right" or
+    "left". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N,
     MPa, degrees.
 
     Returns
@@ -119,12 +120,13 @@ def read_load(table: Mapping[str, Any]) -> dict[str, float]:
 
 
 def read_cup(table: Mapping[str, Any]) -> Cup:
-    """A cup from `arc_of_cover`, `chamfer` and `interface`, none of which is needed."""
-    kinds = {"arc_of_cover": "angle", "chamfer": "length"}
-    numbers: dict[str, Any] = {name: parse(name, table[name], kind) for name, kind in kinds.items() if name in table}
-    interface = Interface(_one_of("interface", table.get("interface", Interface.BONDED.value), Interface))
+    """A cup from the names of its parameters, none of which is needed."""
+    kinds = {"arc_of_cover": "angle", "chamfer": "length", "inclination": "angle", "anteversion": "angle"}
+    words: dict[str, Any] = {name: parse(name, table[name], kind) for name, kind in kinds.items() if name in table}
+    choices = {"interface": Interface, "side": Side}
+    words |= {name: kind(_one_of(name, table[name], kind)) for name, kind in choices.items() if name in table}
     with as_given(table):
-        return Cup(**numbers, interface=interface)
+        return Cup(**words)
 
 
 def _joint(table: Mapping[str, Any], **words: Any) -> Joint:

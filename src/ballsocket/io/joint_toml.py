@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import degrees, isinf
 from typing import Any
 
 from ..arrays import is_plain
 from ..checks import needs
-from ..cup import Cup
+from ..cup import Cup, Side
 from ..joint import Layer, Material, Support
 from ..presets import materials
 from .joint_file import JointFile
@@ -25,6 +26,8 @@ _UNITS = {
     "indentation": "mm",
     "half_angle": "deg",
     "arc_of_cover": "deg",
+    "inclination": "deg",
+    "anteversion": "deg",
 }
 
 
@@ -58,8 +61,12 @@ def tables_of(file: JointFile) -> Tables:
 
 
 def cup_table(cup: Cup) -> Tables:
-    """The table `cup` of a joint file."""
-    return {"arc_of_cover": degrees(cup.arc_of_cover), "chamfer": cup.chamfer, "interface": cup.interface.value}
+    """The table `cup` of a joint file; where the cup faces is left out where that is straight down."""
+    table = {"arc_of_cover": degrees(cup.arc_of_cover), "chamfer": cup.chamfer, "interface": cup.interface.value}
+    if replace(cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT) == cup:
+        return table
+    facing = {"inclination": degrees(cup.inclination), "anteversion": degrees(cup.anteversion)}
+    return {**table, **facing, "side": cup.side.value}
 
 
 def toml_of(file: JointFile) -> str:

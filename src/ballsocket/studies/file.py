@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,6 @@ from ..catalogue import catalogue, judge
 from ..checks import check_names, nearest
 from ..engines.dask import Distributed
 from ..engines.local import Engine, Processes, Serial
-from ..fem.model import FiniteElement
 from ..io.joint_file import JointFile, joint_of, read_joint
 from ..io.units import as_given, parse
 from ..joint import Joint
@@ -97,11 +96,9 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     quantities = content.get("quantities", [])
     if not (isinstance(quantities, list) and all(isinstance(name, str) for name in quantities)):
         raise ValueError(f"quantities = {quantities!r} must be a list of names")
-    model, given = named_model(content.get("model", "hess-forsbach")), _joint(content, folder)
-    if isinstance(model, FiniteElement):
-        model = replace(model, cup=given.cup)
+    given = _joint(content, folder)
     return StudyFile(
-        model=model,
+        model=named_model(content.get("model", "hess-forsbach")).in_cup(given.cup),
         joint=given.joint,
         design=_design(content, folder),
         quantities=tuple(quantities),
