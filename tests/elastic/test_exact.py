@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from numpy.polynomial import polynomial
 
 import ballsocket as bs
 from ballsocket.elastic.kernel import Kernel
@@ -279,7 +280,7 @@ def test_stresses_balance_the_load_at_any_depth():
 
 def test_kernel_is_the_sum_of_its_modes():
     """The split into closed forms and a rest against the plain sum, smoothed to converge."""
-    from ballsocket.elastic import kernel
+    from ballsocket.elastic import closed_forms
 
     socket = Socket(radius=18.0, shells=(Shell(thickness=6.75, young=1000.0, poisson=0.4),))
     k = Kernel(socket=socket, ball=Ball(radius=17.9, young=3000.0, poisson=0.2))
@@ -287,10 +288,25 @@ def test_kernel_is_the_sum_of_its_modes():
     smooth = (1 - (n / len(n)) ** 2) ** 2
     for x in (0.3, 1.0, 2.9):
         plain = np.sum(k.excess(n) * smooth * np.cos((n + 0.5) * x))
-        square = np.array([x * x])
-        split = kernel._horner(k._logarithm, square) * np.log(x) + kernel._horner(k._modulus, square) * x
-        split += kernel._horner(k._smooth, square) + np.sum(k.rest * np.cos((np.arange(len(k.rest)) + 0.5) * x))
-        assert split[0] == pytest.approx(plain, rel=1e-7, abs=1e-9)
+        a = k.expansion[: closed_forms.ORDER]
+        g, h, s = closed_forms.logarithmic(a), closed_forms.modular(a), closed_forms.smooth(a, reach=x)
+        split = polynomial.polyval(x * x, g) * np.log(x) + polynomial.polyval(x * x, h) * x
+        split += polynomial.polyval(x * x, s) + np.sum(k.rest * np.cos((np.arange(len(k.rest)) + 0.5) * x))
+        assert split == pytest.approx(plain, rel=1e-7, abs=1e-9)
+
+
+def test_a_first_look_that_is_kept_is_that_of_fresh_half_angles():
+    """What is kept for all joints gives the operators that are made anew, for few modes and for more than are kept."""
+    from ballsocket.elastic.grid import grid
+    from ballsocket.elastic.intervals import Intervals, KeptIntervals
+
+    angle = np.radians([1.0, 20.0, 60.0, 85.0])
+    kept, fresh = (kind(half_angle=angle, grid=grid(10)) for kind in (KeptIntervals, Intervals))
+    for thickness in (20.0, 6.75, 0.5):
+        k = Kernel(socket=Socket(radius=18.0, shells=(Shell(thickness=thickness, young=1000.0, poisson=0.4),)))
+        for _ in range(2):  # made, and kept
+            for one, other in zip(k.operators(kept), k.operators(fresh), strict=True):
+                np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-13)
 
 
 def test_the_perfect_fit_ends_it():

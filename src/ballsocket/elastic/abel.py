@@ -23,7 +23,9 @@ import numpy
 
 from ..arrays import gauss_legendre
 from ..gaps import Gap
-from .kernel import Grid, Kernel
+from .grid import Grid
+from .intervals import Intervals, KeptIntervals
+from .kernel import Kernel
 
 Array = numpy.ndarray
 
@@ -37,8 +39,15 @@ class State:
 
     kernel: Kernel
     gap: Gap
-    grid: Grid
-    half_angle: Array
+    intervals: Intervals | KeptIntervals
+
+    @property
+    def half_angle(self) -> Array:
+        return self.intervals.half_angle
+
+    @property
+    def grid(self) -> Grid:
+        return self.intervals.grid
 
     @cached_property
     def _targets(self) -> Array:
@@ -56,7 +65,7 @@ class State:
 
     @cached_property
     def _operators(self) -> tuple[Array, Array]:
-        even, odd = self.kernel.operators(self.half_angle, self.grid)
+        even, odd = self.kernel.operators(self.intervals)
         unit = pi / 2 * numpy.eye(self.grid.points)
         even[:, :-1] += unit
         odd[:, :-1] += unit
@@ -156,7 +165,7 @@ class State:
     def _work(self) -> Array:
         nodes, weights = (numpy.array(part) for part in gauss_legendre(16))
         angles = (nodes[:, None] * self.half_angle).ravel()
-        parts = State(kernel=self.kernel, gap=self.gap, grid=self.grid, half_angle=angles)
+        parts = State(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angles, grid=self.grid))
         power = (parts.force * parts.widening).reshape(len(nodes), -1)
         return self.half_angle * (weights @ power)
 

@@ -11,7 +11,9 @@ import numpy
 from ..gaps import Gap
 from ..per_joint import Piece
 from .abel import State
-from .kernel import Kernel, grid
+from .grid import grid
+from .intervals import Intervals, KeptIntervals
+from .kernel import Kernel
 
 Array = numpy.ndarray
 
@@ -26,6 +28,7 @@ _SAFETY = 3.0
 _END = 1.03 * LIMIT
 _DEGREES = (0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85)
 _ANGLES = numpy.append(numpy.radians(_DEGREES), _END)
+_FIRST_LOOK = KeptIntervals(half_angle=_ANGLES, grid=grid(_COARSE))
 _LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
 
 
@@ -53,7 +56,7 @@ class Curve:
         return Piece(load=load, touching=touching, state=state, reached=reached, error=error)
 
     def _state(self, angle: Array, points: int) -> State:
-        return State(kernel=self.kernel, gap=self.gap, grid=grid(points), half_angle=angle)
+        return State(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angle, grid=grid(points)))
 
     def _solved(self, kind: str, given: Array, angle: Array, points: int) -> tuple[State, Array]:
         """The state at the half angle that gives the load, by Newton's method in the logarithms, and what it misses."""
@@ -90,7 +93,7 @@ class Curve:
 
     @cached_property
     def _first_look(self) -> State:
-        return self._state(_ANGLES, _COARSE)
+        return State(kernel=self.kernel, gap=self.gap, intervals=_FIRST_LOOK)
 
     @cached_property
     def _coarse(self) -> State:

@@ -18,7 +18,9 @@ import numpy
 from ...gaps import LinearGap
 from ...joint import Joint, Material
 from ..abel import State
-from ..kernel import Kernel, grid
+from ..grid import grid
+from ..intervals import Intervals
+from ..kernel import Kernel
 from ..modes import Ball, Shell, Socket
 from . import chebyshev
 from . import model as table
@@ -134,7 +136,8 @@ def _state(liner: _Numbers, angle: Array, points: int, share: float = 0.0, ball_
     young = (1 - ball_poisson**2) / (1 - poisson**2) * (1 - share) / share if share else 1.0
     ball = Ball(radius=1.0, young=young, poisson=ball_poisson) if share else None
     kernel = Kernel(socket=socket, ball=ball, tolerance=1e-13)
-    return State(kernel=kernel, gap=LinearGap(clearance=1.0, socket_radius=1.0), grid=grid(points), half_angle=angle)
+    gap = LinearGap(clearance=1.0, socket_radius=1.0)
+    return State(kernel=kernel, gap=gap, intervals=Intervals(half_angle=angle, grid=grid(points)))
 
 
 def _three(state: State) -> Array:
