@@ -6,7 +6,7 @@ A shell of 52 mm leaves 26 mm for head radius, clearance and liner. A larger hea
 stiffens it: where is the peak pressure least, and what does a smaller contact area cost?
 
 The limits are what a designer would set: no liner below 4 mm, and 10 mm of arc between the edge of the contact and
-the rim when the load leans 20° out of the cup's axis.
+the rim under a vertical load, in a cup that opens 20° to the side.
 """
 
 from math import radians
@@ -23,7 +23,7 @@ hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UH
 limits = (
     Limit(name="outer_radius", high=26.0),
     Limit(name="liner_thickness", low=4.0),
-    Limit(name="edge_distance", low=10.0, tilt=radians(20.0)),
+    Limit(name="edge_distance", low=10.0, cup=bs.Cup(inclination=radians(20.0))),
 )
 ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
 

@@ -49,11 +49,14 @@ def test_limits_know_dimensions_that_follow_from_others(design_space):
 
 
 def test_the_edge_distance_is_an_arc_of_the_socket(design_space):
-    edge = Limit(name="edge_distance", low=10.0, rim=pi / 2, tilt=0.2)
+    cup = bs.Cup(arc_of_cover=2.8, inclination=0.5)
+    edge = Limit(name="edge_distance", low=10.0, cup=cup, direction=(-np.sin(0.3), 0.0, np.cos(0.3)))
     here = design_space.sel(ball_radius=16.0, liner_thickness=6.0)
-    arc = (pi / 2 - 0.2 - here.half_angle.item()) * 16.1
+    arc = (1.4 - 0.2 - here.half_angle.item()) * 16.1
     assert edge.of(here).item() == pytest.approx(arc)
     assert edge.margin(here).item() == pytest.approx(arc - 10.0)
+    upright = (pi / 2 - here.half_angle.item()) * 16.1
+    assert Limit(name="edge_distance").of(here).item() == pytest.approx(upright)
 
 
 def test_a_front_is_beaten_by_nothing_and_misses_nothing(design_space):
@@ -308,6 +311,20 @@ def command(folder, *words):
     return subprocess.run(
         [sys.executable, "-m", "ballsocket", *words], cwd=folder, capture_output=True, encoding="utf-8", check=False
     )
+
+
+def test_the_edge_distance_is_that_of_the_cup_in_the_joint_file(tmp_path):
+    """A vertical load on a cup that is inclined by 30°: of the 75° to its rim 45° are left."""
+    cup = '[cup]\narc_of_cover = "150 deg"\ninclination = 30\n'
+    (tmp_path / "hip.toml").write_text(f"{FILE}{cup}", encoding="utf-8")
+    asked = ("map", "hip.toml", "--model", "hess-forsbach", "--force", "3 kN", "--points", "9", "--json")
+    answer = json.loads(command(tmp_path, *asked, "--limit", "edge_distance>=2 mm").stdout)
+    joint, axes = bs.read_joint(tmp_path / "hip.toml").joint, {"ball_radius": Span(11.0, 23.0, 9)}
+    found = bs.study(bs.HessForsbach(), joint, **axes, liner_thickness=Span(3.0, 15.0, 9), force=3e3)
+    left = (np.radians(45.0) - found.half_angle) * (found.ball_radius + 0.1)
+    least = found.max_pressure.where(left >= 2.0).min().item()
+    assert least > found.max_pressure.min().item()
+    assert answer["quantities"]["max_pressure"][0]["value"] == pytest.approx(least, rel=1e-12)
 
 
 def test_questions_on_the_command_line(tmp_path):

@@ -37,8 +37,8 @@ def mapped(file: JointFile, across: Axis, up: Axis, model: str) -> Any:
 
 
 def limits_of(screen: Screen) -> tuple[Limit, ...]:
-    """Distances from the edge are those of this cup."""
-    return tuple(replace(limit, rim=screen.file.cup.rim) for limit in screen.limits)
+    """The limits on the screen, with the cup that is there: distances from the edge are those of its rim."""
+    return tuple(replace(limit, cup=screen.file.cup) for limit in screen.limits)
 
 
 def good(found: Any, screen: Screen) -> Any:

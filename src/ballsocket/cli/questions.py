@@ -51,7 +51,7 @@ def _model(name: str, joint: JointFile) -> Model:
 
 
 def _limits(phrases: list[str] | None, joint: JointFile) -> list[Limit]:
-    return [replace(limit_of(phrase), rim=joint.cup.rim) for phrase in phrases or []]
+    return [replace(limit_of(phrase), cup=joint.cup) for phrase in phrases or []]
 
 
 def _once(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:

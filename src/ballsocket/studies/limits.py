@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import inf, pi
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from ..checks import check_names, require
+from ..cup import UP, Cup, Direction
 from .parameters import PARAMETERS
 from .task import QUANTITIES
 
@@ -33,9 +34,10 @@ class Limit:
         A parameter of a study, a quantity of a contact, or "edge_distance".
     low, high : float
         In mm, N, MPa, rad.
-    rim, tilt : float
-        For the edge distance: polar angle of the socket's rim, and of the load, from the socket's axis in rad. A
-        cup that is half a sphere has its rim at π/2.
+    cup : Cup
+        Whose rim the edge distance is taken to. `Cup()`, the default, is half a sphere that opens straight down.
+    direction : tuple of float
+        Of the force on that cup, upwards by default; of any length.
 
     Raises
     ------
@@ -46,8 +48,8 @@ class Limit:
     name: str
     low: float = -inf
     high: float = inf
-    rim: float = pi / 2
-    tilt: float = 0.0
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
+    direction: Direction = UP
 
     def __post_init__(self) -> None:
         check_names([self.name], NAMES, "among what can be limited")
@@ -58,7 +60,7 @@ class Limit:
     def of(self, study: xarray.Dataset) -> Any:
         """The quantity at every point."""
         if self.name == EDGE_DISTANCE:
-            return (self.rim - self.tilt - study.half_angle) * dimension(study, "socket_radius")
+            return self.cup.edge_distance(dimension(study, "socket_radius"), study.half_angle, self.direction)
         return study[self.name] if self.name in study.data_vars else dimension(study, self.name)
 
     def margin(self, study: xarray.Dataset) -> Any:
