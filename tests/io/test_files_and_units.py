@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 import ballsocket as bs
 from ballsocket.io.joint_file import _LOADS, _NUMBERS, joint_of, parse_joint
 from ballsocket.io.units import _KINDS, parse
+from ballsocket.studies.file import read_study
 
 from ..places import EXAMPLES
 
@@ -256,12 +257,26 @@ def test_no_kind_of_quantity_without_a_word_for_it():
     assert str(parse("it", "-0 mm", "length")) == "0.0"
 
 
-def test_files_that_are_no_joint_files(tmp_path):
-    with pytest.raises(ValueError, match="is not text in UTF-8"):
-        parse_joint(b"\xff\xfe\x00", "binary")
-    big = tmp_path / "big.toml"
-    big.write_bytes(b"#" * 200_000)
-    with pytest.raises(ValueError, match="big.toml is larger than 100000 bytes"):
-        bs.read_joint(big)
+@pytest.mark.parametrize(("read", "kind"), [(bs.read_joint, "joint"), (read_study, "study")], ids=["joint", "study"])
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"#" * 200_000, "it.toml is larger than 100000 bytes; a {kind} file is a few lines"),
+        (b'name = "a"\n\xff\xfe\x00', "it.toml is not text in UTF-8: invalid start byte at byte 11"),
+        (b"a=" + b"[" * 30_000, "it.toml is no {kind} file: its brackets are nested too deeply"),
+        (b"[joint\n", "it.toml is not TOML: .* line 1"),
+        (b"joints = 3\n", "it.toml: 'joints' at the top is not known; did you mean 'joint'?"),
+    ],
+    ids=["large", "binary", "deep", "broken", "unknown"],
+)
+def test_files_are_refused_alike_whatever_they_should_hold(read, kind, content, message, tmp_path):
+    path = tmp_path / "it.toml"
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=message.format(kind=kind)):
+        read(path)
+
+
+@pytest.mark.parametrize("read", [bs.read_joint, read_study])
+def test_a_file_that_is_not_there_is_no_file(read, tmp_path):
     with pytest.raises(FileNotFoundError):
-        bs.read_joint(tmp_path / "none.toml")
+        read(tmp_path / "none.toml")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -14,9 +13,9 @@ from ..cup import Cup, Interface, Side
 from ..joint import Joint, Layer, Material, Support
 from ..model import checked_load
 from ..presets import materials
+from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
-_MAX_BYTES = 100_000
 _LENGTHS = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
 _TABLES = {
     "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
@@ -65,28 +64,12 @@ def read_joint(path: str | Path) -> JointFile:
     OSError
         The file cannot be read.
     """
-    path = Path(path)
-    with path.open("rb") as stream:
-        raw = stream.read(_MAX_BYTES + 1)
-    return parse_joint(raw, path.name)
+    return read_toml(Path(path), "joint", joint_of)
 
 
 def parse_joint(raw: bytes, title: str) -> JointFile:
     """A joint file's content; see `read_joint`."""
-    if len(raw) > _MAX_BYTES:
-        raise ValueError(f"{title} is larger than {_MAX_BYTES} bytes; a joint file is a few lines")
-    try:
-        table = tomllib.loads(raw.decode("utf-8"))
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{title} is not text in UTF-8: {error.reason} at byte {error.start}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{title} is not TOML: {error}") from error
-    except RecursionError as error:
-        raise ValueError(f"{title} is no joint file: its brackets are nested too deeply") from error
-    try:
-        return joint_of(table)
-    except ValueError as error:
-        raise ValueError(f"{title}: {error}") from error
+    return parse_toml(raw, title, "joint", joint_of)
 
 
 def joint_of(table: Mapping[str, Any]) -> JointFile:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ from ..checks import check_names, nearest
 from ..engines.dask import Distributed
 from ..engines.local import Engine, Processes, Serial
 from ..io.joint_file import JointFile, joint_of, read_joint
+from ..io.toml import read_toml
 from ..io.units import as_given, parse
 from ..joint import Joint
 from ..model import Model
@@ -23,7 +23,6 @@ from .distributions import Distribution, Normal, Rectangular, tolerance
 from .parameters import PARAMETERS
 from .rows import table
 
-_MAX_BYTES = 100_000
 _TOP = (
     "model",
     "joint",
@@ -75,20 +74,7 @@ def read_study(path: str | Path) -> StudyFile:
         A file cannot be read.
     """
     path = Path(path)
-    if path.stat().st_size > _MAX_BYTES:
-        raise ValueError(f"{path.name} is larger than {_MAX_BYTES} bytes; a study file is a few lines")
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path.name} is not text in UTF-8: {error.reason} at byte {error.start}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{path.name} is not TOML: {error}") from error
-    except RecursionError as error:
-        raise ValueError(f"{path.name} is no study file: its brackets are nested too deeply") from error
-    try:
-        return _study(content, path.parent)
-    except ValueError as error:
-        raise ValueError(f"{path.name}: {error}") from error
+    return read_toml(path, "study", lambda content: _study(content, path.parent))
 
 
 def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
