@@ -57,7 +57,7 @@ def on_the_papers_mesh() -> Rows:
     made = deck_of(pressed, steps=STEPS)
     depths = made.expected["indentation"]
     ours, answer = seconds(PAPERS_MESH, PAPER, depths)
-    row = (answer.indentation[-1], answer.force[-1], answer.max_pressure[-1], answer.half_angle[-1])
+    row = (answer.indentation[-1], answer.force[-1], answer.pole_pressure[-1], answer.half_angle[-1])
     table.add("ours", pressed.mesh.elements, f"{ours:.2f}", *_digits(*row))
     if shutil.which("ccx") is None:
         return table
@@ -66,7 +66,7 @@ def on_the_papers_mesh() -> Rows:
         start = perf_counter()
         theirs = ccx.run(Path(folder), threads=2)
         took = perf_counter() - start
-    row = (theirs.indentation[-1], theirs.force[-1], theirs.max_pressure[-1], theirs.half_angle[-1])
+    row = (theirs.indentation[-1], theirs.force[-1], theirs.pole_pressure[-1], theirs.half_angle[-1])
     table.add("CalculiX", pressed.mesh.elements, f"{took:.1f}", *_digits(*row))
     table.add("ratio (aim 50)", "", f"{took / ours:.0f}", "", "", "", "")
     return table

@@ -33,5 +33,5 @@ save(press_figure(contacts, curves), Path("a_model_of_ones_own.png"))
 # %%
 # The ball pushed off the axis: the socket pushes back along the displacement.
 
-force = contacts["own"].force_vector([0.10, 0.0, 0.10])
+force = models["own"].force_vector(hip, [0.10, 0.0, 0.10])
 print("force on a ball displaced by (0.10, 0, 0.10) mm:", force.round(1), "N")

@@ -8,7 +8,6 @@ import ballsocket as bs
 HIP = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
 NUMERICAL = {"plane-layer", "exact", "tabulated"}
 CLOSED_FORMS = {name: model for name, model in bs.catalogue.items() if name not in NUMERICAL}
-PLANE = {"hertz", "steuermann", "plane-layer"}  # models whose contact is a plane circle
 
 
 def floats(low: float, high: float) -> st.SearchStrategy[float]:

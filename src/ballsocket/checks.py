@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy
 
-from .arrays import Array, is_plain, namespace, truth
+from .arrays import Array, common, is_plain, namespace, truth
 
 
 def require(name: str, value: Array, good: Array, allowed: str) -> None:
@@ -47,6 +47,15 @@ def numeric(name: str, value: Any) -> Array:
     if not hasattr(value, "dtype") or isinstance(value, numpy.ma.MaskedArray) or not _is_real(value):
         raise TypeError(_refusal(name, value))
     return value
+
+
+def vectors(name: str, value: Any, axes: str) -> Array:
+    """`value` as an array whose last axis is that of `axes`, such as "x, y, z (mm)"."""
+    value = numeric(name, value)
+    shape = tuple(getattr(value, "shape", ()))
+    if shape[-1:] != (3,):
+        raise ValueError(f"{name} of shape {shape} is not allowed: its last axis holds {axes}")
+    return common(value)[0]
 
 
 def _in_range(name: str, value: float) -> float:

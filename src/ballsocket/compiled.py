@@ -24,6 +24,7 @@ from .contact import Contact
 from .joint import Joint
 from .model import Answer, Model, checked_load, prepared
 from .models import kinematics
+from .models.closed_form import Bound
 from .models.foundation import RadialFoundation
 from .models.kinematics import Kinematics
 from .models.modulus import Formula, eq_18
@@ -117,7 +118,7 @@ class Compiled(Model):
             d, p0, angle = (numpy.where(points, part, numpy.nan) for part in (d, p0, angle))
         contact = Contact(
             model=self,
-            laws=self.model,
+            laws=Bound(model=self.model, joint=whole, indentation=d),
             joint=whole,
             force=numpy.broadcast_to(load, shape),
             indentation=d,

@@ -12,7 +12,7 @@ import numpy
 
 from . import arrays, describe
 from .arrays import Array
-from .checks import numeric, require
+from .checks import numeric, require, vectors
 from .joint import Joint
 from .validity import Range, Status, missing
 
@@ -26,26 +26,37 @@ class Answerer(Protocol):
     def validity(self) -> tuple[Range, ...]: ...
     @property
     def reach(self) -> str: ...
-    def force_vector(self, joint: Joint, displacement: Array) -> Array: ...
+    @property
+    def planar(self) -> bool: ...
 
 
 class Laws(Protocol):
-    """Where a contact's further quantities come from: functions of joint and indentation."""
+    """Where a contact's further quantities come from: a closed form bound to its joint, or what a solver found."""
 
-    def half_angle(self, joint: Joint, indentation: Array) -> Array: ...
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array: ...
-    def stiffness(self, joint: Joint, indentation: Array) -> Array: ...
-    def energy(self, joint: Joint, indentation: Array) -> Array: ...
-    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array: ...
-    def pressure_integral(self, joint: Joint, indentation: Array) -> Array: ...
-    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array: ...
+    @property
+    def half_angle(self) -> Array: ...
+    @property
+    def max_pressure(self) -> Array: ...
+    @property
+    def max_pressure_angle(self) -> Array: ...
+    @property
+    def pole_pressure(self) -> Array: ...
+    @property
+    def stiffness(self) -> Array: ...
+    @property
+    def energy(self) -> Array: ...
+    @property
+    def foundation_modulus(self) -> Array: ...
+    @property
+    def pressure_integral(self) -> Array: ...
+    def pressure(self, angle: Array) -> Array: ...
 
 
 def _law(name: str, symbol: str, unit: str, text: str) -> Any:
-    """A quantity of the contact, computed by the model's law of that name when it is first asked for."""
+    """A quantity of the contact, computed by the law of that name when it is first asked for."""
 
     def quantity(self: Contact) -> Array:
-        return self._answer(lambda joint, indentation: getattr(self.laws, name)(joint, indentation))
+        return self._answer(lambda: getattr(self.laws, name))
 
     quantity.__doc__ = f"{text}, {symbol} in {unit}."
     quantity.__name__ = name
@@ -68,7 +79,7 @@ class Contact:
     model, joint
         What answered, and what was pressed.
     laws
-        Where the further quantities come from; for a closed form that is the model itself.
+        Where the further quantities come from: a closed form bound to its joint and indentation, or a solution.
     """
 
     model: Answerer
@@ -79,10 +90,14 @@ class Contact:
     status: Array
 
     half_angle = _law("half_angle", "ε", "rad", "Contact half-angle")
-    max_pressure = _law("max_pressure", "p0", "MPa", "Pressure at the pole")
+    max_pressure = _law("max_pressure", "pmax", "MPa", "Largest pressure")
+    max_pressure_angle = _law("max_pressure_angle", "φmax", "rad", "Polar angle at which the pressure is largest")
+    pole_pressure = _law("pole_pressure", "p0", "MPa", "Pressure at the pole")
     stiffness = _law("stiffness", "dF/dd", "N/mm", "Tangent stiffness")
     energy = _law("energy", "U", "N mm", "Work of the load from first touch")
-    foundation_modulus = _law("foundation_modulus", "K = p0/d", "MPa/mm", "Pressure per indentation, Eq. (16)")
+    foundation_modulus = _law(
+        "foundation_modulus", "K = p0/d", "MPa/mm", "Pressure at the pole per indentation, Eq. (16)"
+    )
     pressure_integral = _law("pressure_integral", "∫p dA", "N", "Pressure summed over the area without its direction")
 
     @cached_property
@@ -129,7 +144,33 @@ class Contact:
             Of the shape that angle and contact broadcast to.
         """
         _, angle = arrays.common(self.indentation, angle)
-        return self._answer(lambda joint, indentation: self.laws.pressure(joint, indentation, angle))
+        return self._answer(lambda: self.laws.pressure(angle))
+
+    def pressure_at(self, direction: Array) -> Array:
+        """Contact pressure in MPa where a ray from the centre of the socket meets its surface; 0 outside the contact.
+
+        Parameters
+        ----------
+        direction : array (..., 3)
+            Unit vectors x, y, z; z is the axis of the load and points to the pole. Their leading axes broadcast
+            against the contact's shape as those of the angles of `pressure` do.
+
+        Returns
+        -------
+        float or array
+            Of the shape that directions and contact broadcast to.
+
+        Raises
+        ------
+        ValueError
+            A direction whose last axis is not of length 3, or that is not of length 1.
+        """
+        direction = vectors("direction", direction, "x, y, z of a unit vector")
+        x, y, z = (direction[..., i] for i in range(3))
+        across = arrays.sqrt(x * x + y * y)
+        length = across * across + z * z
+        require("direction", length, (length - 1) ** 2 < _UNIT, "a direction is a unit vector, x² + y² + z² = 1")
+        return self.pressure(arrays.atan2(across, z))
 
     def friction_torque(self, coefficient: Array, axis_angle: float = pi / 2) -> Array:
         """Torque in N mm about an axis through the centre of the ball, sliding everywhere with Coulomb friction.
@@ -145,8 +186,8 @@ class Contact:
         Returns
         -------
         float or array
-            μ R1 ∫ p sin(angle between axis and radius) dA over the spherical contact: at most μ R1 times
-            `pressure_integral` (for the plane models, whose area is a flat circle, up to its curvature).
+            μ R1 ∫ p sin(angle between axis and radius) dA over the spherical contact, or the flat circle of a planar
+            model: at most μ R1 times `pressure_integral`.
 
         Raises
         ------
@@ -162,36 +203,11 @@ class Contact:
         def ring(x: float) -> Array:
             angle = self.half_angle * sin(pi / 2 * x)  # tames a square root at the edge
             width = self.half_angle * (pi / 2 * cos(pi / 2 * x))
-            return self.pressure(angle) * _mean_lever(angle, axis_angle) * arrays.sin(angle) * width
+            arc = angle if self.model.planar else arrays.sin(angle)
+            return self.pressure(angle) * _mean_lever(angle, axis_angle) * arc * width
 
         lever = coefficient * self._numbers.ball_radius
         return self._plain(lever * 2 * pi * self._numbers.socket_radius**2 * arrays.integral(ring, 24))
-
-    def force_vector(self, displacement: Array) -> Array:
-        """Force in N on the ball when its centre sits at `displacement` (mm) from the centre of the socket.
-
-        Parameters
-        ----------
-        displacement : array (..., 3)
-            Any direction; within the clearance nothing touches and the force is zero.
-
-        Returns
-        -------
-        array (..., 3)
-            Points back to the centre of the socket. The rim of the socket is not part of the model.
-
-        Raises
-        ------
-        ValueError
-            A displacement whose last axis is not of length 3, or that is not finite.
-        """
-        displacement = numeric("displacement", displacement)
-        if arrays.is_plain(displacement) or displacement.shape[-1:] != (3,):
-            shape = getattr(displacement, "shape", ())
-            raise ValueError(f"displacement of shape {shape} is not allowed: its last axis holds x, y, z (mm)")
-        _, displacement = arrays.common(self.indentation, displacement)
-        require("displacement", displacement, arrays.isfinite(displacement), "a displacement (mm) is finite")
-        return self.model.force_vector(self.joint, displacement)
 
     @cached_property
     def valid(self) -> Array:
@@ -227,9 +243,9 @@ class Contact:
     def _is_plain(self) -> bool:
         return isinstance(self.indentation, float)
 
-    def _answer(self, law: Callable[[Joint, Array], Array]) -> Array:
+    def _answer(self, law: Callable[[], Array]) -> Array:
         with numpy.errstate(all="ignore"):  # a point without an answer has a status, not a warning
-            value = law(self._numbers, self.indentation)
+            value = law()
             if arrays.truth(self._failed ^ True) is not True:
                 value = arrays.where(self._failed, numpy.nan, value)
             return self._plain(value)
@@ -256,6 +272,9 @@ class Contact:
 
     def _repr_html_(self) -> str:
         return describe.html(self)
+
+
+_UNIT = 1e-10  # square of how far the square of a unit vector may miss 1
 
 
 def _mean_lever(angle: Array, axis_angle: float) -> Array:

@@ -39,11 +39,13 @@ COLUMNS = (
     Column("force", "F", "N"),
     Column("indentation", "d", "mm"),
     Column("half_angle_deg", "ε", "°", degrees(1.0)),
-    Column("max_pressure", "p0", "MPa"),
+    Column("max_pressure", "pmax", "MPa"),
     Column("area", "A", "mm²"),
     Column("stiffness", "dF/dd", "N/mm"),
     Column("energy", "U", "N mm"),
     Column("foundation_modulus", "K", "MPa/mm"),
+    Column("pole_pressure", "p0", "MPa"),
+    Column("max_pressure_angle_deg", "φmax", "°", degrees(1.0)),
 )
 """Every quantity that is printed, in the order in which it is printed."""
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from math import pi
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy
 
 from . import arrays
 from .arrays import Array, where
-from .checks import numeric, one_load, require
+from .checks import numeric, one_load, require, vectors
 from .contact import Contact, Laws
 from .cup import Cup
 from .joint import Joint
@@ -21,19 +22,21 @@ from .validity import Range, Status, inside, missing
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Answer:
-    """What a solver hands back: force and indentation, masks of how it went, and where the rest comes from."""
+    """What a solver hands back: force and indentation, where the further quantities come from, and what went wrong.
+
+    `failures` are masks by the status that they mean; a point without force or indentation needs none.
+    """
 
     laws: Laws
     force: Array
     indentation: Array
-    converged: Array
-    beyond_equator: Array
-    at_rim: Array | None = None
-    not_round: Array | None = None
+    failures: Mapping[Status, Array] = field(default_factory=dict)
 
 
 class Model(ABC):
     """Anything that answers `press(joint, force=... | indentation=... | half_angle=...)` with a `Contact`.
+
+    Most of what follows is the same for every value of a kind of model, and then a class variable.
 
     Attributes
     ----------
@@ -46,13 +49,28 @@ class Model(ABC):
     validity : tuple of Range
         Closed ranges inside which the answer can be trusted: peak pressure and indentation within about 15 % of the
         elastic answer.
+    planar : bool
+        Whether the contact is a flat circle, whose pressure has one direction; otherwise it acts along the radius.
+    parameters : tuple of array
+        Numbers of the model's own that may be arrays and broadcast against joint and load.
+    reach : str
+        What loads have an answer, in words for those that have none; empty where there is nothing to say.
+    differentiable : bool
+        Whether JAX can trace a press.
+    smooth_step : float
+        A share of a number over which answers change by more than they are uncertain: for differences.
+    seconds_a_press : float
+        Roughly, for one of many points on one core: studies cut their work by it.
     contact_type : type
         What `press` answers with: `Contact`, or a kind of it that knows more.
     """
 
-    @property
-    def contact_type(self) -> type[Contact]:
-        return Contact
+    reach: ClassVar[str] = ""
+    planar: ClassVar[bool] = False
+    differentiable: ClassVar[bool] = True
+    smooth_step: ClassVar[float] = 1e-4
+    seconds_a_press: ClassVar[float] = 4e-7
+    contact_type: ClassVar[type[Contact]] = Contact
 
     @property
     @abstractmethod
@@ -75,29 +93,8 @@ class Model(ABC):
     def validity(self) -> tuple[Range, ...]: ...
 
     @property
-    def reach(self) -> str:
-        """What loads have an answer, in words for those that have none; empty where there is nothing to say."""
-        return ""
-
-    @property
     def parameters(self) -> tuple[Array, ...]:
-        """Numbers of the model's own that may be arrays and broadcast against joint and load."""
         return ()
-
-    @property
-    def differentiable(self) -> bool:
-        """Whether JAX can trace a press."""
-        return True
-
-    @property
-    def smooth_step(self) -> float:
-        """A share of a number over which answers change by more than they are uncertain: for differences."""
-        return 1e-4
-
-    @property
-    def seconds_a_press(self) -> float:
-        """Roughly, for one of many points on one core: studies cut their work by it."""
-        return 4e-7
 
     def press(
         self,
@@ -145,7 +142,26 @@ class Model(ABC):
         return self
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
-        """Force (..., 3) in N on the ball whose centre is displaced by (..., 3) mm; see `Contact.force_vector`."""
+        """Force in N on the ball when its centre sits at `displacement` (mm) from the centre of the socket.
+
+        Parameters
+        ----------
+        joint : Joint
+        displacement : array (..., 3)
+            Any direction; within the clearance nothing touches and the force is zero.
+
+        Returns
+        -------
+        array (..., 3)
+            Points back to the centre of the socket. The rim of the socket is not part of the model.
+
+        Raises
+        ------
+        ValueError
+            A displacement whose last axis is not of length 3, or that is not finite.
+        """
+        displacement = vectors("displacement", displacement, "x, y, z (mm)")
+        require("displacement", displacement, arrays.isfinite(displacement), "a displacement (mm) is finite")
         xp = arrays.namespace(displacement)
         square = xp.sum(displacement * displacement, axis=-1)
         length = arrays.sqrt(arrays.divisor(square))
@@ -179,6 +195,17 @@ def prepared(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint
     return plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
 
 
+_GRAVER = (
+    Status.BEYOND_EQUATOR,
+    Status.AT_RIM,
+    Status.NOT_ROUND,
+    Status.NOT_CONVERGED,
+    Status.NOT_REACHED,
+    Status.OUTSIDE_DOMAIN,
+)
+"""Where a point has several failures it is told the last of these."""
+
+
 def _finished(
     model: Model, joint: Joint, kind: str, load: Array, points: Array, answer: Answer, plain: bool
 ) -> Contact:
@@ -188,19 +215,11 @@ def _finished(
     F = arrays.broadcast(load if kind == "force" else answer.force, *shape)
     d = arrays.broadcast(load if kind == "indentation" else answer.indentation, *shape)
     found = arrays.isfinite(answer.force) & arrays.isfinite(answer.indentation)
+    failures = {**answer.failures, Status.NOT_REACHED: ~found, Status.OUTSIDE_DOMAIN: ~points}
     status = xp.zeros_like(xp.astype(F > 0, xp.int8))
-    for wrong, code in (
-        (answer.beyond_equator, Status.BEYOND_EQUATOR),
-        *(
-            (mask, code)
-            for mask, code in ((answer.at_rim, Status.AT_RIM), (answer.not_round, Status.NOT_ROUND))
-            if mask is not None
-        ),
-        (~answer.converged, Status.NOT_CONVERGED),
-        (~found, Status.NOT_REACHED),
-        (~points, Status.OUTSIDE_DOMAIN),
-    ):
-        status = where(wrong, xp.asarray(int(code), dtype=xp.int8), status)
+    for code in _GRAVER:
+        if code in failures:
+            status = where(failures[code], xp.asarray(int(code), dtype=xp.int8), status)
     answered = ~missing(status)
     F, d = where(answered | (kind == "force"), F, xp.nan), where(answered | (kind == "indentation"), d, xp.nan)
     if plain:

@@ -17,16 +17,26 @@ from .contact import Contact
 from .joint import Joint
 from .model import Model
 
-QUANTITIES = ("force", "indentation", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
-"""What a state knows, one number a contact."""
+QUANTITIES = (
+    "force",
+    "indentation",
+    "half_angle",
+    "max_pressure",
+    "pole_pressure",
+    "stiffness",
+    "energy",
+    "pressure_integral",
+)
+"""What a state knows, one number a contact, and how well; besides, where the largest pressure is."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Piece:
     """Contacts of one joint.
 
-    `state` has those that are `touching` (a mask of the loads): `QUANTITIES` and `pressure(angle)` of them. `reached`
-    marks the ones that have an answer, and `error` is the relative error of each quantity.
+    `state` has those that are `touching` (a mask of the loads): `QUANTITIES`, `max_pressure_angle` and
+    `pressure(angle)` of them. `reached` marks the ones that have an answer, and `error` is the relative error of each
+    quantity.
     """
 
     load: numpy.ndarray
@@ -86,6 +96,16 @@ def _values(model: Model, number: Array) -> numpy.ndarray:
     return values
 
 
+def _of_state(name: str) -> Any:
+    """A quantity of all states, put together when it is first asked for."""
+
+    def quantity(self: PiecedSolution) -> Array:
+        return self.spread(lambda piece: getattr(piece.state, name))
+
+    quantity.__name__ = name
+    return cached_property(quantity)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PiecedSolution:
     """The contacts of all joints, as the `Laws` of the contact they belong to, in the caller's array library."""
@@ -110,9 +130,6 @@ class PiecedSolution:
         xp = arrays.namespace(self.like)
         return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
 
-    def _of_state(self, name: str) -> Array:
-        return self.spread(lambda piece: getattr(piece.state, name))
-
     def _error(self, name: str) -> Array:
         return self.spread(lambda piece: piece.error[name])
 
@@ -126,32 +143,22 @@ class PiecedSolution:
         """Estimated relative error of each quantity."""
         return {name: self._error(name) for name in QUANTITIES}
 
-    def force(self, joint: Joint, indentation: Array) -> Array:
-        return self._of_state("force")
+    force = _of_state("force")
+    indentation = _of_state("indentation")
+    half_angle = _of_state("half_angle")
+    max_pressure = _of_state("max_pressure")
+    max_pressure_angle = _of_state("max_pressure_angle")
+    pole_pressure = _of_state("pole_pressure")
+    stiffness = _of_state("stiffness")
+    energy = _of_state("energy")
+    pressure_integral = _of_state("pressure_integral")
 
-    def indentation(self, joint: Joint, indentation: Array) -> Array:
-        return self._of_state("indentation")
+    @property
+    def foundation_modulus(self) -> Array:
+        d = self.indentation
+        return arrays.where(d == 0, inf, self.pole_pressure / arrays.divisor(d))
 
-    def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        return self._of_state("half_angle")
-
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        return self._of_state("max_pressure")
-
-    def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        return self._of_state("stiffness")
-
-    def energy(self, joint: Joint, indentation: Array) -> Array:
-        return self._of_state("energy")
-
-    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        return self._of_state("pressure_integral")
-
-    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        quotient = self.max_pressure(joint, indentation) / arrays.divisor(indentation)
-        return arrays.where(indentation == 0, inf, quotient)
-
-    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+    def pressure(self, angle: Array) -> Array:
         """p(φ) at angles that broadcast against the contact's shape."""
         given = arrays.to_numpy(angle)
         shape = numpy.broadcast_shapes(given.shape, self.shape)
@@ -192,3 +199,44 @@ class SolvedContact(Contact):
         """One dictionary for JSON, with the error estimates."""
         error = {name: arrays.to_list(value) for name, value in self.error.items()}
         return {**super().summary(), "error": error}
+
+
+_PLACES = numpy.array([0.0, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 1.0])
+"""Of the half angle: what lies highest between two of the first by less than 1e-6 counts as the pole."""
+
+_ROUNDS, _FINER = 4, numpy.linspace(0.0, 1.0, 9)
+
+
+def largest_pressure(
+    pressure: Callable[[numpy.ndarray], numpy.ndarray], pole: numpy.ndarray, edge: numpy.ndarray, noise: float
+) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """The largest pressure of each contact and its polar angle, from the profiles alone.
+
+    Parameters
+    ----------
+    pressure : function
+        From angles in rad (places, contacts) to MPa.
+    pole, edge : array (contacts,)
+        The pressure at the pole (MPa) and the half angle (rad).
+    noise : float
+        Relative; a pressure that exceeds the pole's by less is taken for the pole's.
+
+    Returns
+    -------
+    array (contacts,), twice
+        In MPa and in rad.
+    """
+    values = numpy.vstack([pole, pressure(edge * _PLACES[1:-1, None]), 0.0 * edge])
+    best = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
+    off = (best > 0) & (values.max(axis=0, initial=-inf, where=numpy.isfinite(values)) > pole * (1 + noise))
+    if not off.any():
+        return pole, 0.0 * edge
+    low, high = (edge * _PLACES[numpy.clip(best + step, 0, len(_PLACES) - 1)] for step in (-1, 1))
+    each = numpy.arange(len(edge))
+    for _ in range(_ROUNDS):
+        angles = low + (high - low) * _FINER[:, None]
+        values = pressure(angles)
+        best = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
+        angle, largest = angles[best, each], values[best, each]
+        low, high = (angles[numpy.clip(best + step, 0, len(_FINER) - 1), each] for step in (-1, 1))
+    return numpy.where(off, largest, pole), numpy.where(off, angle, 0.0)

@@ -15,6 +15,7 @@ from jax.tree_util import register_pytree_node
 from .contact import Contact
 from .elastic.tabulated.solution import TableSolution
 from .joint import Joint, Layer, Material, unchecked
+from .models.closed_form import Bound
 from .models.plane_layer import LayerSolution
 from .models.refined import RefinedSolution
 
@@ -34,18 +35,6 @@ def _register(cls: Any, parts: tuple[str, ...], fixed: tuple[str, ...]) -> None:
     register_pytree_node(cls, flatten, unflatten)
 
 
-def _flatten_contact(contact: Contact) -> tuple[Parts, Parts]:
-    solution = None if contact.laws is contact.model else contact.laws
-    return (contact.joint, contact.force, contact.indentation, contact.status, solution), (contact.model,)
-
-
-def _unflatten_contact(fixed: Parts, parts: Parts) -> Contact:
-    (model,) = fixed
-    joint, force, indentation, status, solution = parts
-    laws = model if solution is None else solution
-    return Contact(model=model, laws=laws, joint=joint, force=force, indentation=indentation, status=status)
-
-
 _register(Material, ("young", "poisson"), ("name", "source"))
 _register(Layer, ("thickness", "material"), ())
 _register(
@@ -56,4 +45,5 @@ _register(
 _register(TableSolution, ("joint", "angle", "values"), ("file",))
 _register(LayerSolution, ("joint", "width"), ("widest",))
 _register(RefinedSolution, ("joint", "edge"), ())
-register_pytree_node(Contact, _flatten_contact, _unflatten_contact)
+_register(Bound, ("joint", "indentation"), ("model",))
+_register(Contact, ("laws", "joint", "force", "indentation", "status"), ("model",))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import ballsocket as bs
 from ballsocket.arrays import gauss_legendre
 
-from ..joints import CLOSED_FORMS, HIP, NUMERICAL, PLANE, floats, joints
+from ..joints import CLOSED_FORMS, HIP, NUMERICAL, floats, joints
 
 EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
 CLOSED = pytest.mark.parametrize("model", CLOSED_FORMS.values(), ids=CLOSED_FORMS)
@@ -49,7 +49,7 @@ def test_vertical_pressure_integrates_to_the_force(model):
     nodes, weights = (np.array(part)[:, None] for part in gauss_legendre(80))
     angle = contact.half_angle * np.sin(np.pi / 2 * nodes)
     width = weights * contact.half_angle * np.pi / 2 * np.cos(np.pi / 2 * nodes)
-    ring = angle if model.name in PLANE else np.sin(angle) * np.cos(angle)
+    ring = angle if model.planar else np.sin(angle) * np.cos(angle)
     total = 2 * np.pi * HIP.socket_radius**2 * np.sum(contact.pressure(angle) * ring * width, axis=0)
     np.testing.assert_allclose(total, contact.force, rtol=1e-9)
 
@@ -65,13 +65,32 @@ def test_pressure_integral_lies_between_force_and_one_and_a_half_times_it(model)
 @EVERY
 def test_pressure_is_highest_where_it_says_and_vanishes_at_the_edge(model):
     contact = model.press(HIP, force=3000.0)
-    assert contact.pressure(0.0) == pytest.approx(contact.max_pressure, rel=1e-12)
+    assert contact.pressure(0.0) == pytest.approx(contact.pole_pressure, rel=1e-12)
+    assert contact.pressure(contact.max_pressure_angle) == pytest.approx(contact.max_pressure, rel=1e-12)
+    assert contact.foundation_modulus == pytest.approx(contact.pole_pressure / contact.indentation, rel=1e-12)
     assert contact.pressure(contact.half_angle * 1.000001) == 0.0
     if model.name != "adhesive":
         assert 0.0 <= contact.pressure(contact.half_angle * 0.9999999) < 5e-3 * contact.max_pressure
+    profile = contact.pressure(np.linspace(0.0, contact.half_angle, 500))
+    assert profile.max() <= contact.max_pressure * (1 + 1e-12)
     if model.name not in {"steuermann", "adhesive"}:
-        profile = contact.pressure(np.linspace(0.0, contact.half_angle, 50))
+        assert contact.max_pressure_angle == 0.0
         assert np.all(np.diff(profile) < 1e-12)
+
+
+@EVERY
+def test_pressure_at_a_direction_is_that_at_its_polar_angle(model):
+    contact = model.press(HIP, force=np.array([300.0, 3000.0]))
+    polar, turn = np.array([0.0, 0.2, 0.5, 3.0])[:, None], np.array([[0.3]])
+    x, y = np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn)
+    directions = np.stack([x, y, np.cos(polar) + 0.0 * turn], axis=-1)
+    np.testing.assert_allclose(contact.pressure_at(directions), contact.pressure(polar), rtol=1e-12, atol=1e-12)
+    alone = model.press(HIP, force=3000.0)
+    assert alone.pressure_at([0.0, 0.0, 1.0]) == pytest.approx(alone.pole_pressure, rel=1e-12)
+    with pytest.raises(ValueError, match=r"direction = 4 is not allowed: a direction is a unit vector"):
+        alone.pressure_at([0.0, 0.0, 2.0])
+    with pytest.raises(ValueError, match=r"direction of shape \(2,\) is not allowed: its last axis holds x, y, z"):
+        alone.pressure_at([0.0, 1.0])
 
 
 @EVERY
@@ -130,7 +149,8 @@ def test_no_load_is_no_contact(model):
         return
     assert contact.indentation == 0.0
     assert contact.half_angle == 0.0
-    assert contact.max_pressure == 0.0
+    assert contact.max_pressure == contact.pole_pressure == 0.0
+    assert contact.max_pressure_angle == 0.0
     assert contact.area == 0.0
     assert contact.energy == 0.0
     assert contact.pressure(0.1) == 0.0
@@ -178,10 +198,10 @@ def test_off_axis_force_points_back_to_the_centre(model):
     contact = model.press(HIP, force=3000.0)
     direction = rng.normal(size=(20, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    force = contact.force_vector((HIP.clearance + contact.indentation) * direction)
+    force = model.force_vector(HIP, (HIP.clearance + contact.indentation) * direction)
     np.testing.assert_allclose(force, -3000.0 * direction, rtol=1e-9, atol=1e-8)
-    assert np.all(contact.force_vector(0.99 * HIP.clearance * direction) == 0.0)
-    assert np.all(contact.force_vector(np.zeros(3)) == 0.0)
+    assert np.all(model.force_vector(HIP, 0.99 * HIP.clearance * direction) == 0.0)
+    assert np.all(model.force_vector(HIP, np.zeros(3)) == 0.0)
 
 
 @EVERY
@@ -191,7 +211,8 @@ def test_friction_torque_is_bounded_and_known_for_spin(model):
     assert 0.0 < spin < flexion <= 0.06 * HIP.ball_radius * contact.pressure_integral * 1.000001
     nodes, weights = gauss_legendre(64)
     angle = contact.half_angle * np.array(nodes)
-    ring = contact.pressure(angle) * np.sin(angle) ** 2 * np.array(weights) * contact.half_angle
+    arc = angle if model.planar else np.sin(angle)
+    ring = contact.pressure(angle) * np.sin(angle) * arc * np.array(weights) * contact.half_angle
     expected = 0.06 * HIP.ball_radius * 2 * np.pi * HIP.socket_radius**2 * ring.sum()
     assert spin == pytest.approx(expected, rel=1e-3)
 

@@ -46,7 +46,7 @@ def test_the_table_fits_the_terminal(columns):
     lines = done.stdout.split("\n")
     assert max(map(len, lines)) <= columns
     assert "…" not in done.stdout
-    assert re.search(r"^model .* p0 .*valid", done.stdout, flags=re.MULTILINE)
+    assert re.search(r"^model .* pmax .*valid", done.stdout, flags=re.MULTILINE)
     for name in bs.catalogue:
         assert re.search(rf"^{name} .* (yes|no)", done.stdout, flags=re.MULTILINE)
     assert ("█" in done.stdout) == (columns >= 80)
@@ -97,7 +97,7 @@ def test_json():
     paper = answer["results"][0]
     assert set(paper) == {
         *("model", "force", "indentation", "half_angle_deg", "max_pressure", "area", "stiffness", "energy"),
-        *("foundation_modulus", "valid", "notes", "deviation"),
+        *("foundation_modulus", "pole_pressure", "max_pressure_angle_deg", "valid", "notes", "deviation"),
     }
     assert answer["results"][2]["deviation"] is None
     exact = bs.Exact().press(bs.read_joint(EXAMPLE).joint, force=3000.0)
@@ -288,7 +288,7 @@ def test_press_by_finite_elements_shows_mesh_time_and_error_bars():
     assert done.stderr == ""
     assert re.search(r"^fem +3000 +40\.07 +42\.4", done.stdout, flags=re.MULTILINE)
     assert re.search(
-        r"^fem: \d+ elements, [\d.]+ mm at the contact, [\d.]+ s; d ±.* %, ε ±.* %, p0 ±", done.stdout, re.M
+        r"^fem: \d+ elements, [\d.]+ mm at the contact, [\d.]+ s; d ±.* %, ε ±.* %, pmax ±", done.stdout, re.M
     )
     answer = json.loads(run("press", EXAMPLE, "--model", "fem", "--meshes", "1", "--json").stdout)["results"][0]
     assert answer["model"] == "fem"

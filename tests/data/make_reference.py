@@ -30,7 +30,7 @@ class Case:
     model: str
     force: Law
     half_angle: Law
-    max_pressure: Law
+    pole_pressure: Law
 
 
 def radial(model: str, c: mpf, displacement: Callable[[mpf, mpf], mpf], edge: Law, closed: Law) -> Case:
@@ -145,7 +145,7 @@ def rows() -> Iterator[str]:
             values = (
                 case.force(d),
                 case.half_angle(d),
-                case.max_pressure(d),
+                case.pole_pressure(d),
                 diff(case.force, d, h=d * mpf("1e-30")),
                 quad(case.force, [0, d / 1000, d / 30, d]),
             )
@@ -154,6 +154,6 @@ def rows() -> Iterator[str]:
 
 if __name__ == "__main__":
     sys.stdout.write("# make_reference.py: R2 18 mm, K 276.5 MPa/mm, E 1000 MPa, nu 0.4, rigid ball, eta 0.25\n")
-    sys.stdout.write("model,clearance,indentation,force,half_angle,max_pressure,stiffness,energy\n")
+    sys.stdout.write("model,clearance,indentation,force,half_angle,pole_pressure,stiffness,energy\n")
     for row in rows():
         sys.stdout.write(row + "\n")

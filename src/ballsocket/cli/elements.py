@@ -110,7 +110,7 @@ def remark(contact: MeshedContact, seconds: float) -> str:
         return f"fem: {seconds:.2f} s"
     size = contact.mesh
     mesh = f"fem: {size.elements} elements, {size.element_size:.3g} mm at the contact, {seconds:.2f} s"
-    names = {"indentation": "d", "half_angle": "ε", "max_pressure": "p0", "force": "F"}
+    names = {"indentation": "d", "half_angle": "ε", "max_pressure": "pmax", "force": "F"}
     bars = ", ".join(
         f"{names[name]} ±{100 * error:.1g} %" for name, error in contact.error.items() if name in names and error > 1e-9
     )

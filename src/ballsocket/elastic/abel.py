@@ -23,6 +23,7 @@ import numpy
 
 from ..arrays import gauss_legendre
 from ..gaps import Gap
+from ..per_joint import largest_pressure
 from .grid import Grid
 from .intervals import Intervals, KeptIntervals
 from .kernel import Kernel
@@ -133,9 +134,23 @@ class State:
         return 4 * pi / 3 * self._area * self._integral(numpy.sin(1.5 * self._places))
 
     @cached_property
-    def max_pressure(self) -> Array:
+    def pole_pressure(self) -> Array:
         """p0 in MPa."""
         return self._integral(0.5 / numpy.sin(self._places / 2))
+
+    @cached_property
+    def _largest(self) -> tuple[Array, Array]:
+        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _ROUNDING)
+
+    @property
+    def max_pressure(self) -> Array:
+        """The largest pressure in MPa."""
+        return self._largest[0]
+
+    @property
+    def max_pressure_angle(self) -> Array:
+        """Where the pressure is largest, in rad from the pole."""
+        return self._largest[1]
 
     @cached_property
     def pressure_integral(self) -> Array:
@@ -215,6 +230,7 @@ class State:
         return modes.reshape(len(modes), -1)[:, :count] / self.kernel.compliance
 
 
+_ROUNDING = 1e-9  # of a pressure
 _BLOCK = 64  # modes
 
 

@@ -129,7 +129,7 @@ class Curve:
 def _sound(state: State) -> Array:
     """Whether there is a contact: not beyond the perfect fit, nor where the ball does not reach."""
     with numpy.errstate(invalid="ignore"):
-        return (state.indentation > 0) & (state.force > 0) & (state.max_pressure > 0)
+        return (state.indentation > 0) & (state.force > 0) & (state.pole_pressure > 0)
 
 
 def _steepness(kind: str, state: State) -> Array:
@@ -145,7 +145,11 @@ def _errors(kind: str, state: State) -> dict[str, Array]:
     shift = own / steepness[kind] if kind in _LAWS else 0.0 * own
     errors = {name: own + shift * steep for name, steep in steepness.items()}
     errors["half_angle"] = shift
-    errors.update(dict.fromkeys(("max_pressure", "stiffness", "pressure_integral"), own + shift * steepness["force"]))
+    errors.update(
+        dict.fromkeys(
+            ("max_pressure", "pole_pressure", "stiffness", "pressure_integral"), own + shift * steepness["force"]
+        )
+    )
     errors["energy"] = errors["force"] + errors["indentation"]
     if kind in errors:
         errors[kind] = 0.0 * own

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf
-from typing import Any
+from typing import Any, ClassVar
 
 from .. import arrays
 from ..checks import numeric, require
@@ -15,13 +15,22 @@ from ..joint import Joint, Support
 from ..model import Answer, Model
 from ..per_joint import taken_apart
 from ..sources import Source
-from ..validity import CLOSE_FIT, SMALL_STRAIN, Range
+from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from .contact import ElasticContact
 from .curve import Curve
 from .kernel import Kernel
 from .modes import ball_of, socket_of
 
 Array = arrays.Array
+
+
+def _locking(contact: Any) -> Array:
+    """Poisson's ratio of a liner between the ball and a rigid wall; less than that of one that can go elsewhere."""
+    joint = contact.joint
+    nu = joint.liner.poisson
+    if joint.backing or joint.support is Support.FREE:
+        return arrays.clip(nu, -1.0, 0.4999)
+    return arrays.where(joint.liner_thickness < inf, nu, arrays.clip(nu, -1.0, 0.4999))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,72 +71,50 @@ class Exact(Model):
         require("tolerance", self.tolerance, good, "double precision keeps a relative tolerance of 1e-10 to 1e-2")
         check_gap(self.gap)
 
-    @property
-    def contact_type(self) -> type[Contact]:
-        return ElasticContact
-
-    @property
-    def differentiable(self) -> bool:
-        return False
-
-    @property
-    def smooth_step(self) -> float:
-        return 2e-3
-
-    @property
-    def seconds_a_press(self) -> float:
-        return 3e-3
-
-    @property
-    def name(self) -> str:
-        return "exact"
+    contact_type: ClassVar[type[Contact]] = ElasticContact
+    differentiable: ClassVar[bool] = False
+    smooth_step: ClassVar[float] = 2e-3
+    seconds_a_press: ClassVar[float] = 3e-3
+    name: ClassVar[str] = "exact"
 
     @property
     def title(self) -> str:
         shape = "" if self.gap is LinearGap else ", circular gap"
         return f"elastic ball and layered shell, integral equation{shape}"
 
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return (Source("hess2021", "(6)"), Source("goodman1965"))
+    sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(6)"), Source("goodman1965"))
 
-    @property
-    def domain(self) -> tuple[Range, ...]:
-        fit = "without clearance every load gives the same half angle, beyond 85°: ask cosine-limit"
-        locked = "between fixed walls a liner of ν = 0.5 does not give way to a uniform pressure: 0.4999 is solved"
-        return (
-            Range(quantity="joint.clearance", symbol="c", low=0.0, why=fit),
-            Range(quantity=_locking, symbol="ν", low=-1.0, high=0.49991, why=locked),
-            Range(quantity="joint.thickness_ratio", symbol="R2/L", high=200.0, why="so thin a liner is not solved"),
-        )
+    domain: ClassVar[tuple[Range, ...]] = (
+        Range(
+            quantity="joint.clearance",
+            symbol="c",
+            low=0.0,
+            why="without clearance every load gives the same half angle, beyond 85°: ask cosine-limit",
+        ),
+        Range(
+            quantity=_locking,
+            symbol="ν",
+            low=-1.0,
+            high=0.49991,
+            why="between fixed walls a liner of ν = 0.5 does not give way to a uniform pressure: 0.4999 is solved",
+        ),
+        Range(quantity="joint.thickness_ratio", symbol="R2/L", high=200.0, why="so thin a liner is not solved"),
+    )
 
     @property
     def validity(self) -> tuple[Range, ...]:
         return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
 
-    @property
-    def reach(self) -> str:
-        return "half angles up to 85°, less where the ball fills its socket before"
+    reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         solution = taken_apart(self, joint, load, lambda one, loads: _curve(self, one).press(kind, loads))
-        indentation = solution.indentation(joint, load)
         return Answer(
             laws=solution,
-            force=solution.force(joint, load),
-            indentation=indentation,
-            converged=solution.worst <= max(self.tolerance, 10 * arrays.rounding(load)),
-            beyond_equator=indentation < 0,
+            force=solution.force,
+            indentation=solution.indentation,
+            failures={Status.NOT_CONVERGED: ~(solution.worst <= max(self.tolerance, 10 * arrays.rounding(load)))},
         )
-
-
-def _locking(contact: Any) -> Array:
-    """Poisson's ratio of a liner between the ball and a rigid wall; less than that of one that can go elsewhere."""
-    joint = contact.joint
-    nu = joint.liner.poisson
-    if joint.backing or joint.support is Support.FREE:
-        return arrays.clip(nu, -1.0, 0.4999)
-    return arrays.where(joint.liner_thickness < inf, nu, arrays.clip(nu, -1.0, 0.4999))
 
 
 @lru_cache(maxsize=256)

@@ -11,7 +11,7 @@ import numpy
 
 from ..arrays import gauss_legendre
 from ..gaps import Gap
-from ..per_joint import QUANTITIES, Piece
+from ..per_joint import QUANTITIES, Piece, largest_pressure
 from .full_contact import Brimful
 from .load_search import Ladder, is_contact
 from .round_contact import Cap, cap
@@ -35,6 +35,7 @@ _LEAST = {
     "indentation": 0.03,
     "half_angle": 0.7,
     "max_pressure": 0.2,
+    "pole_pressure": 0.2,
     "stiffness": 0.4,
     "energy": 0.07,
     "pressure_integral": 0.02,
@@ -45,6 +46,7 @@ For biquadratic elements; bilinear ones have shown three times as much.
 """
 
 _TENSION, _OVERLAP = 1e-3, 1e-3
+_NOISE = 5e-4  # of the pressures at nodes, over the one at the pole
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -75,6 +77,20 @@ class States:
     def edge_element(self) -> Array:
         """Length of the elements at the edge over the half angle."""
         return self._each(lambda one: one.edge_element / one.half_angle)
+
+    @cached_property
+    def _largest(self) -> tuple[Array, Array]:
+        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _NOISE)
+
+    @property
+    def max_pressure(self) -> Array:
+        """The largest pressure in MPa."""
+        return self._largest[0]
+
+    @property
+    def max_pressure_angle(self) -> Array:
+        """Where the pressure is largest, in rad from the pole."""
+        return self._largest[1]
 
     def pressure(self, angle: Array) -> Array:
         """p(φ) in MPa at angles (anything, loads)."""

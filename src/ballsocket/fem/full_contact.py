@@ -54,7 +54,7 @@ class Brimful:
     @property
     def tension(self) -> float:
         """The largest pull over the pressure at the pole; negative where everything presses."""
-        return float(-self.pressures.min() / self.max_pressure)
+        return float(-self.pressures.min() / self.pole_pressure)
 
     @property
     def overlap(self) -> float:
@@ -80,10 +80,10 @@ class Brimful:
     def pressure(self, angle: Array) -> Array:
         """p(φ) in MPa, 0 beyond the rim."""
         nodes = self.pair.angle
-        inside = numpy.interp(angle, nodes, numpy.append(self.max_pressure, self.pressures[1:]))
+        inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.pressures[1:]))
         return numpy.where(angle <= nodes[-1], inside, 0.0)
 
     @cached_property
-    def max_pressure(self) -> float:
+    def pole_pressure(self) -> float:
         """p0 in MPa."""
         return pole(self.pair.angle, self.pressures, self.half_angle)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from .. import arrays
 from ..checks import needs, require
@@ -14,11 +14,23 @@ from ..joint import Joint
 from ..model import Answer, Model
 from ..per_joint import taken_apart
 from ..sources import Source
-from ..validity import CLOSE_FIT, SMALL_STRAIN, Range
+from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from .contact import MeshedContact
 from .spacing import SPACINGS, Adapted, Element, Spacing
 
 Array = arrays.Array
+
+
+def _largest_poisson(contact: Any) -> Array:
+    """Poisson's ratio of the least compressible body."""
+    joint = contact.joint
+    others = [layer.material.poisson for layer in joint.backing]
+    if joint.ball is not None:
+        others.append(joint.ball.poisson)
+    largest = joint.liner.poisson
+    for poisson in others:
+        largest = arrays.where(poisson > largest, poisson, largest)
+    return largest
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,54 +86,42 @@ class FiniteElement(Model):
         require("meshes", self.meshes, self.meshes in (1, 2), "meshes are 1 (no error bars) or 2")
         check_gap(self.gap)
 
-    @property
-    def contact_type(self) -> type[Contact]:
-        return MeshedContact
-
-    @property
-    def differentiable(self) -> bool:
-        return False
-
-    @property
-    def smooth_step(self) -> float:
-        return 3e-2
-
-    @property
-    def seconds_a_press(self) -> float:
-        return 0.2
-
-    @property
-    def name(self) -> str:
-        return "fem"
+    contact_type: ClassVar[type[Contact]] = MeshedContact
+    differentiable: ClassVar[bool] = False
+    smooth_step: ClassVar[float] = 3e-2
+    seconds_a_press: ClassVar[float] = 0.2
+    name: ClassVar[str] = "fem"
 
     @property
     def title(self) -> str:
         return f"axisymmetric finite elements, {self.element.name.lower()}"
 
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return (Source("hess2021", "section 2.3"),)
+    sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "section 2.3"),)
 
-    @property
-    def domain(self) -> tuple[Range, ...]:
-        locked = "an incompressible body has no bulk modulus: 0.4999 is solved"
-        fit = "without clearance every load has the same half angle: take a millionth of the radius"
-        return (
-            Range(quantity="joint.clearance", symbol="c", low=0.0, why=fit),
-            Range(quantity=_largest_poisson, symbol="ν", low=-1.0, high=0.49995, why=locked),
-            Range(quantity="joint.thickness_ratio", symbol="R2/L", high=200.0, why="so thin a liner is not meshed"),
-        )
+    domain: ClassVar[tuple[Range, ...]] = (
+        Range(
+            quantity="joint.clearance",
+            symbol="c",
+            low=0.0,
+            why="without clearance every load has the same half angle: take a millionth of the radius",
+        ),
+        Range(
+            quantity=_largest_poisson,
+            symbol="ν",
+            low=-1.0,
+            high=0.49995,
+            why="an incompressible body has no bulk modulus: 0.4999 is solved",
+        ),
+        Range(quantity="joint.thickness_ratio", symbol="R2/L", high=200.0, why="so thin a liner is not meshed"),
+    )
+    reach: ClassVar[str] = (
+        "half angles up to half the arc of cover, at most 88°, less where the ball fills its socket before or "
+        "leaves the pole, and not narrower than a few elements"
+    )
 
     @property
     def validity(self) -> tuple[Range, ...]:
         return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
-
-    @property
-    def reach(self) -> str:
-        return (
-            "half angles up to half the arc of cover, at most 88°, less where the ball fills its socket before or "
-            "leaves the pole, and not narrower than a few elements"
-        )
 
     def in_cup(self, cup: Cup) -> Self:
         return replace(self, cup=cup)
@@ -139,25 +139,12 @@ class FiniteElement(Model):
             gap=self.gap,
         )
         solution = taken_apart(self, joint, load, lambda one, loads: curve(settings, one).press(kind, loads))
-        indentation = solution.indentation(joint, load)
         return Answer(
             laws=solution,
-            force=solution.force(joint, load),
-            indentation=indentation,
-            converged=indentation == indentation,
-            beyond_equator=indentation < 0,
-            at_rim=solution.spread(lambda piece: piece.state.at_rim) == 1,
-            not_round=solution.spread(lambda piece: piece.state.unsound) == 1,
+            force=solution.force,
+            indentation=solution.indentation,
+            failures={
+                Status.AT_RIM: solution.spread(lambda piece: piece.state.at_rim) == 1,
+                Status.NOT_ROUND: solution.spread(lambda piece: piece.state.unsound) == 1,
+            },
         )
-
-
-def _largest_poisson(contact: Any) -> Array:
-    """Poisson's ratio of the least compressible body."""
-    joint = contact.joint
-    others = [layer.material.poisson for layer in joint.backing]
-    if joint.ball is not None:
-        others.append(joint.ball.poisson)
-    largest = joint.liner.poisson
-    for poisson in others:
-        largest = arrays.where(poisson > largest, poisson, largest)
-    return largest

@@ -160,7 +160,7 @@ class Cap:
     @property
     def tension(self) -> float:
         """The largest pull over the pressure at the pole; negative where everything presses."""
-        return float(-self.pressures[:-1].min() / self.max_pressure)
+        return float(-self.pressures[:-1].min() / self.pole_pressure)
 
     @property
     def edge_element(self) -> float:
@@ -188,12 +188,12 @@ class Cap:
     def pressure(self, angle: Array) -> Array:
         """p(φ) in MPa, 0 outside the contact."""
         nodes = self.pair.angle[: self.last + 1]
-        inside = numpy.interp(angle, nodes, numpy.append(self.max_pressure, self.pressures[1:-1]))
+        inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.pressures[1:-1]))
         t = numpy.sqrt(numpy.clip((self.half_angle - angle) / (self.half_angle - nodes[-1]), 0.0, 1.0))
         return numpy.where(angle <= nodes[-1], inside, self.pressures[-2] * t + self.pressures[-1] * (t - t**3))
 
     @cached_property
-    def max_pressure(self) -> float:
+    def pole_pressure(self) -> float:
         """p0 in MPa: even around the pole, since the pole's own node stands for hardly any area."""
         return pole(self.pair.angle[: self.last + 1], self.pressures[:-1], self.half_angle)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, pi
-from typing import Any
+from typing import Any, ClassVar
 
 from ..arrays import Array, broadcast, clip, divisor, increasing_root, sqrt, where
 from ..checks import numeric, require
@@ -62,9 +62,7 @@ class AdhesiveSocket(ClosedForm):
     def parameters(self) -> tuple[Array, ...]:
         return (self.work_of_adhesion, *self.modulus.constants)
 
-    @property
-    def name(self) -> str:
-        return "adhesive"
+    name: ClassVar[str] = "adhesive"
 
     @property
     def title(self) -> str:
@@ -152,7 +150,7 @@ class AdhesiveSocket(ClosedForm):
         d = (joint.clearance * versine - self.critical_stretch(joint)) / (1 - versine)
         return where((d >= 0) & (joint.clearance > 0), d, float("nan"))
 
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+    def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
         return self.modulus.of(joint) * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:

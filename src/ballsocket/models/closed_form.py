@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import dataclass
 from math import cos, pi, sin
+from typing import Any
 
 import numpy
 
@@ -11,14 +13,16 @@ from .. import arrays
 from ..arrays import Array, where
 from ..joint import Joint
 from ..model import Answer, Model
+from ..validity import Status
 
 
 class ClosedForm(Model):
     """A model given by its laws: what happens at an indentation, element by element.
 
-    A new model states `force`, `stiffness`, `energy`, `half_angle`, `max_pressure` and `pressure`, and the
+    A new model states `force`, `stiffness`, `energy`, `half_angle`, `pole_pressure` and `pressure`, and the
     indentation that belongs to a half angle. The indentation that belongs to a force is found here, once for all;
-    a model with a closed inverse states that too. All laws take a joint of arrays and d > 0 or d = 0.
+    a model with a closed inverse states that too, and one whose pressure is highest off the pole says where and how
+    high. All laws take a joint of arrays and d > 0 or d = 0.
     """
 
     @abstractmethod
@@ -42,16 +46,24 @@ class ClosedForm(Model):
         """d in mm; NaN where no indentation gives this half angle."""
 
     @abstractmethod
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        """p(0) in MPa."""
+    def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
+        """Pressure at the pole, p0 in MPa."""
 
     @abstractmethod
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         """p(φ) in MPa, 0 outside the contact."""
 
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        """Largest pressure in MPa: that at the pole."""
+        return self.pole_pressure(joint, indentation)
+
+    def max_pressure_angle(self, joint: Joint, indentation: Array) -> Array:
+        """Where the pressure is largest, in rad from the pole."""
+        return 0.0 * indentation
+
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
         """K = p0/d in MPa/mm, Eq. (16) of the paper."""
-        quotient = self.max_pressure(joint, indentation) / arrays.divisor(indentation)
+        quotient = self.pole_pressure(joint, indentation) / arrays.divisor(indentation)
         return where(indentation == 0, numpy.inf, quotient)  # a point contact: p0 ~ d^(1/2n), n >= 1
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
@@ -100,9 +112,43 @@ class ClosedForm(Model):
         # an error of rounding in d: F alone is no measure where it is a small difference of large parts (adhesion)
         scale = xp.abs(F) + safe * self.stiffness(joint, safe)
         return Answer(
-            laws=self,
+            laws=Bound(model=self, joint=joint, indentation=d),
             force=F,
             indentation=d,
-            converged=xp.abs(self.force(joint, safe) - F) <= 1e3 * arrays.rounding(safe) * scale,
-            beyond_equator=self.half_angle(joint, safe) > pi / 2 * (1 + 1e-6),
+            failures={
+                Status.NOT_CONVERGED: ~(xp.abs(self.force(joint, safe) - F) <= 1e3 * arrays.rounding(safe) * scale),
+                Status.BEYOND_EQUATOR: self.half_angle(joint, safe) > pi / 2 * (1 + 1e-6),
+            },
         )
+
+
+def _bound(law: str) -> Any:
+    """A law of the model at the joint and the indentation that it is bound to."""
+
+    def value(self: Bound) -> Array:
+        return getattr(self.model, law)(self.joint, self.indentation)
+
+    value.__doc__ = getattr(ClosedForm, law).__doc__
+    return property(value)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bound:
+    """The laws of a closed form, bound to a joint of arrays and an indentation (mm)."""
+
+    model: ClosedForm
+    joint: Joint
+    indentation: Array
+
+    half_angle = _bound("half_angle")
+    max_pressure = _bound("max_pressure")
+    max_pressure_angle = _bound("max_pressure_angle")
+    pole_pressure = _bound("pole_pressure")
+    stiffness = _bound("stiffness")
+    energy = _bound("energy")
+    foundation_modulus = _bound("foundation_modulus")
+    pressure_integral = _bound("pressure_integral")
+
+    def pressure(self, angle: Array) -> Array:
+        """p(φ) in MPa, 0 outside the contact."""
+        return self.model.pressure(self.joint, self.indentation, angle)

@@ -83,7 +83,7 @@ class RadialFoundation(ClosedForm):
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         return self.kinematics.indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+    def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
         return self.modulus.of(joint) * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:

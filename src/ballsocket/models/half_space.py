@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from functools import cache
 from math import comb, factorial, inf, pi, radians
 from numbers import Integral
+from typing import ClassVar
+
+from numpy.polynomial import Polynomial
 
 from ..arrays import Array, clip, power, sqrt, where
 from ..joint import Joint
@@ -21,28 +25,24 @@ class HalfSpace(ClosedForm):
     A = R2^(2 - 2n)/(2 R*), R* = R1 R2/c.
     """
 
+    planar: ClassVar[bool] = True
+    domain: ClassVar[tuple[Range, ...]] = (
+        Range(
+            quantity="joint.clearance",
+            symbol="c",
+            low=0.0,
+            why="the effective radius R1 R2/c is infinite without clearance, so a half-space carries no finite load",
+        ),
+    )
+
     @property
     @abstractmethod
     def order(self) -> int:
-        """n"""
-
-    @property
-    def domain(self) -> tuple[Range, ...]:
-        why = "the effective radius R1 R2/c is infinite without clearance, so a half-space carries no finite load"
-        return (Range(quantity="joint.clearance", symbol="c", low=0.0, why=why),)
+        """Exponent n of the gap."""
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        return (
-            Range(
-                quantity="half_angle",
-                symbol="ε",
-                high=radians(10.0),
-                why="a half-space ignores that the surfaces curve (3 % too soft at 10°)",
-            ),
-            Range(quantity="width_ratio", symbol="a/L", high=0.3, why="a half-space ignores the backing of the liner"),
-            SMALL_STRAIN,
-        )
+        return _FIRST_TOUCH
 
     def _profile(self, joint: Joint) -> Array:
         """κ A in mm^(1 - 2n)."""
@@ -80,11 +80,17 @@ class HalfSpace(ClosedForm):
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         return self._profile(joint) * (half_angle * joint.socket_radius) ** (2 * self.order)
 
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+    def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
         # p0 = (E*/π) 2n/(2n - 1) d/a, with d/a = κ A a^(2n - 1)
         n = self.order
         slope = self._profile(joint) * self._radius(joint, indentation) ** (2 * n - 1)
         return joint.effective_modulus / pi * (2 * n / (2 * n - 1)) * slope
+
+    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+        return _peak(self.order)[1] * self.pole_pressure(joint, indentation)
+
+    def max_pressure_angle(self, joint: Joint, indentation: Array) -> Array:
+        return _peak(self.order)[0] * self.half_angle(joint, indentation)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         # p = (E*/π) κ A 2n ∫ t^(2n - 1)/sqrt(t² - r²) dt over r..a, a polynomial in y = sqrt(a² - r²)
@@ -102,6 +108,33 @@ class HalfSpace(ClosedForm):
         return self.force(joint, indentation)
 
 
+@cache
+def _peak(order: int) -> tuple[float, float]:
+    """Where the pressure is largest, r/a, and by how much it exceeds that at the pole; for n = 2 1/√2 and √2."""
+    if order == 1:
+        return 0.0, 1.0
+    # the pressure as a polynomial in y = sqrt(1 - r²/a²), its only maximum inside
+    y, square = Polynomial([0.0, 1.0]), Polynomial([1.0, 0.0, -1.0])
+    parts = (comb(order - 1, j) / (2 * j + 1) * square ** (order - 1 - j) * y ** (2 * j + 1) for j in range(order))
+    profile = sum(parts, Polynomial([0.0]))
+    roots = profile.deriv().roots()
+    inside = roots.real[(abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)]
+    best = float(inside[profile(inside).argmax()])
+    return float(sqrt(1 - best * best)), float(profile(best) / profile(1.0))
+
+
+_FIRST_TOUCH = (
+    Range(
+        quantity="half_angle",
+        symbol="ε",
+        high=radians(10.0),
+        why="a half-space ignores that the surfaces curve (3 % too soft at 10°)",
+    ),
+    Range(quantity="width_ratio", symbol="a/L", high=0.3, why="a half-space ignores the backing of the liner"),
+    SMALL_STRAIN,
+)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Hertz(HalfSpace):
     """Hertz 1882 with R* = R1 R2/c: the start of every contact, and no more than that in a close socket.
@@ -115,17 +148,9 @@ class Hertz(HalfSpace):
     def order(self) -> int:
         return 1
 
-    @property
-    def name(self) -> str:
-        return "hertz"
-
-    @property
-    def title(self) -> str:
-        return "two elastic half-spaces, parabolic gap"
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return (Source("hertz1882"), Source("hess2021", "(1), (2), (3)"))
+    name: ClassVar[str] = "hertz"
+    title: ClassVar[str] = "two elastic half-spaces, parabolic gap"
+    sources: ClassVar[tuple[Source, ...]] = (Source("hertz1882"), Source("hess2021", "(1), (2), (3)"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +161,7 @@ class Steuermann(HalfSpace):
     ----------
     exponent : int
         n, 1 or more; 1 is Hertz. What n stands for a given socket is the user's choice, which is the model's
-        known weakness. The pressure is highest off the pole for n > 1; `max_pressure` stays that at the pole.
+        known weakness. The pressure is highest off the pole for n > 1.
 
     Raises
     ------
@@ -165,14 +190,10 @@ class Steuermann(HalfSpace):
     def order(self) -> int:
         return self.exponent
 
-    @property
-    def name(self) -> str:
-        return "steuermann"
+    name: ClassVar[str] = "steuermann"
 
     @property
     def title(self) -> str:
         return f"two elastic half-spaces, gap growing like r^{2 * self.exponent}"
 
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return (Source("steuermann1939"), Source("johnson1985", "section 5.3"))
+    sources: ClassVar[tuple[Source, ...]] = (Source("steuermann1939"), Source("johnson1985", "section 5.3"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, pi
+from typing import ClassVar
 
 from ..arrays import Array, clip, divisor, integral, log, sin, sqrt, where
 from ..checks import require
@@ -42,17 +43,9 @@ class LiuReconstruction(ClosedForm):
     def __post_init__(self) -> None:
         require("coefficient", self.coefficient, 0 < self.coefficient < inf, "a coefficient is above 0 and finite")
 
-    @property
-    def name(self) -> str:
-        return "liu-reconstruction"
-
-    @property
-    def title(self) -> str:
-        return "cone on a plane Winkler layer, ellipsoidal pressure (a reconstruction)"
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return (Source("liu2006"), Source("hess2021", "section 2"))
+    name: ClassVar[str] = "liu-reconstruction"
+    title: ClassVar[str] = "cone on a plane Winkler layer, ellipsoidal pressure (a reconstruction)"
+    sources: ClassVar[tuple[Source, ...]] = (Source("liu2006"), Source("hess2021", "section 2"))
 
     @property
     def validity(self) -> tuple[Range, ...]:
@@ -98,7 +91,7 @@ class LiuReconstruction(ClosedForm):
         e = divisor(joint.clearance + indentation)
         return indentation / e * (1 + joint.clearance / e)
 
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+    def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
         return self.foundation_modulus(joint, indentation) * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
@@ -110,4 +103,4 @@ class LiuReconstruction(ClosedForm):
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         square = sin(angle) ** 2 / divisor(self._square_sine(joint, indentation))
         inside = (square < 1) & (angle < pi / 2) & (indentation > 0)
-        return where(inside, self.max_pressure(joint, indentation) * sqrt(clip(1 - square, 0.0, 1.0)), 0.0)
+        return where(inside, self.pole_pressure(joint, indentation) * sqrt(clip(1 - square, 0.0, 1.0)), 0.0)

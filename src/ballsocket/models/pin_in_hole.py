@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, pi
+from typing import ClassVar
 
 import numpy
 
@@ -31,17 +32,9 @@ class PinInHole:
     Persson 1964; Ciavarella & Decuzzi 2001, doi 10.1016/S0020-7683(00)00289-4.
     """
 
-    @property
-    def name(self) -> str:
-        return "pin-in-hole"
-
-    @property
-    def title(self) -> str:
-        return "pin in a hole in an infinite plate, per length (2-D)"
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return (Source("persson1964"), Source("ciavarella2001"))
+    name: ClassVar[str] = "pin-in-hole"
+    title: ClassVar[str] = "pin in a hole in an infinite plate, per length (2-D)"
+    sources: ClassVar[tuple[Source, ...]] = (Source("persson1964"), Source("ciavarella2001"))
 
     @property
     def validity(self) -> tuple[Range, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import ceil, inf, pi, radians
+from typing import ClassVar
 
 import numpy
 
@@ -13,7 +14,10 @@ from ..arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, 
 from ..joint import Joint
 from ..model import Answer, Model
 from ..sources import Source
-from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Range
+from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Range, Status
+
+THINNEST = 100.0
+"""R2/L up to which the quadrature is made."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,38 +36,43 @@ class PlaneLayer(Model):
     Jin 2000, Proc. IMechE H 214, 425.
     """
 
-    @property
-    def seconds_a_press(self) -> float:
-        return 2e-3
-
-    @property
-    def name(self) -> str:
-        return "plane-layer"
-
-    @property
-    def title(self) -> str:
-        return "rigid ball on a plane layer bonded to a rigid base (numerical)"
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return (Source("jin2000"),)
-
-    @property
-    def domain(self) -> tuple[Range, ...]:
-        flat = "the effective radius R1 R2/c is infinite without clearance"
-        thin = "a layer so thin would need very many points: ask bonded-layer"
-        massive = "a layer of infinite thickness is a half-space: ask hertz"
-        return (
-            Range(quantity="joint.clearance", symbol="c", low=0.0, why=flat),
-            Range(quantity="joint.liner_thickness", symbol="L", low=0.0, high=inf, why=massive),
-            Range(quantity="joint.thickness_ratio", symbol="R2/L", high=THINNEST, why=thin),
-        )
-
-    @property
-    def validity(self) -> tuple[Range, ...]:
-        why = "the plane layer has no curvature: p0 is 23 % low at 45° (R2 18, L 6.75)"
-        narrow = Range(quantity="half_angle", symbol="ε", high=radians(20.0), why=why)
-        return (narrow, RIGID_BALL, RIGID_BACKING, SMALL_STRAIN)
+    seconds_a_press: ClassVar[float] = 2e-3
+    name: ClassVar[str] = "plane-layer"
+    title: ClassVar[str] = "rigid ball on a plane layer bonded to a rigid base (numerical)"
+    sources: ClassVar[tuple[Source, ...]] = (Source("jin2000"),)
+    planar: ClassVar[bool] = True
+    domain: ClassVar[tuple[Range, ...]] = (
+        Range(
+            quantity="joint.clearance",
+            symbol="c",
+            low=0.0,
+            why="the effective radius R1 R2/c is infinite without clearance",
+        ),
+        Range(
+            quantity="joint.liner_thickness",
+            symbol="L",
+            low=0.0,
+            high=inf,
+            why="a layer of infinite thickness is a half-space: ask hertz",
+        ),
+        Range(
+            quantity="joint.thickness_ratio",
+            symbol="R2/L",
+            high=THINNEST,
+            why="a layer so thin would need very many points: ask bonded-layer",
+        ),
+    )
+    validity: ClassVar[tuple[Range, ...]] = (
+        Range(
+            quantity="half_angle",
+            symbol="ε",
+            high=radians(20.0),
+            why="the plane layer has no curvature: p0 is 23 % low at 45° (R2 18, L 6.75)",
+        ),
+        RIGID_BALL,
+        RIGID_BACKING,
+        SMALL_STRAIN,
+    )
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         solution = _solution(joint, kind, load)
@@ -74,8 +83,7 @@ class PlaneLayer(Model):
             laws=solution,
             force=force,
             indentation=indentation,
-            converged=miss <= 1e5 * arrays.rounding(given) * load,
-            beyond_equator=given < 0,
+            failures={Status.NOT_CONVERGED: ~(miss <= 1e5 * arrays.rounding(given) * load)},
         )
 
 
@@ -184,33 +192,48 @@ class LayerSolution:
         """dF/da and dd/da: a wider contact adds a flat punch of its own radius."""
         steep = self._steepness(self.width**0)
         deepening = self._radius / self._effective_radius * steep / self._parts[1][..., 0]
-        return self.stiffness(self.joint, deepening) * deepening, deepening
+        return self.stiffness * deepening, deepening
 
-    def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        return self._radius / joint.socket_radius
+    @property
+    def half_angle(self) -> Array:
+        return self._radius / self.joint.socket_radius
 
-    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def stiffness(self) -> Array:
         return 2 * pi * self._radius * self._parts[2][..., 0] / self._compliance
 
-    def energy(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def energy(self) -> Array:
         # half of ∫ p (d - r²/2R*) dA
         second, delta, a = self._parts[3], self._scaled_indentation, self._radius
         force, d = self.values
         spread = 4 * pi * a**5 / (self._compliance * self._effective_radius) * (delta * second[..., 0] - second[..., 1])
         return (d * force - spread / (2 * self._effective_radius)) / 2
 
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        return self.pressure(joint, indentation, 0.0)
+    @cached_property
+    def pole_pressure(self) -> Array:
+        return self.pressure(0.0)
 
-    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        return where(indentation == 0, inf, self.max_pressure(joint, indentation) / divisor(indentation))
+    @property
+    def max_pressure(self) -> Array:
+        return self.pole_pressure
 
-    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def max_pressure_angle(self) -> Array:
+        return 0.0 * self.width
+
+    @property
+    def foundation_modulus(self) -> Array:
+        d = self.values[1]
+        return where(self.width == 0, inf, self.pole_pressure / divisor(d))
+
+    @property
+    def pressure_integral(self) -> Array:
         return self.values[0]
 
-    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+    def pressure(self, angle: Array) -> Array:
         # ∫ -H'(s)/sqrt(s² - r²) ds over r..a, with s² = r² + (a² - r²) y²
-        share = angle * joint.socket_radius / divisor(self._radius)
+        share = angle * self.joint.socket_radius / divisor(self._radius)
         rest = clip(1 - share * share, 0.0, 1.0)
         total = integral(lambda y: self._steepness(sqrt(share * share + rest * y * y)), 32)
         scale = self._radius / (self._effective_radius * self._compliance)
@@ -219,8 +242,6 @@ class LayerSolution:
 
 _BLOCK = 4_000_000  # numbers in a block of waves: 32 MB
 
-THINNEST = 100.0
-"""R2/L up to which the quadrature is made."""
 
 TRACED_WIDTH = 8.0
 """The widest contact (a/L) that a call inside `jax.jit` or `jax.grad` is prepared for; wider ones have no answer."""

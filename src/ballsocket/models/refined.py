@@ -8,19 +8,21 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.resources import files
 from math import inf, log, nan, pi, radians
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from .. import arrays
 from ..arrays import Array, broadcast, clip, divisor, integral, sin, where
 from ..joint import Joint
 from ..model import Answer, Model
 from ..sources import Source
-from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Range
+from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Range, Status
 from .dual_numbers import Dual
 from .liner_compliance import compliance
 
 WIDEST = radians(85.0)
 """The largest half angle that is answered."""
+
+_FITTED = "fitted there: d, p0, F and ε within 1 % of the exact answer at a given half angle or force"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,44 +38,39 @@ class Refined(Model):
     Heß & Forsbach 2021, doi 10.3390/app112311170, for the problem; the formulas are derived in the docs (refined).
     """
 
-    @property
-    def seconds_a_press(self) -> float:
-        return 3e-5
-
-    @property
-    def name(self) -> str:
-        return "refined"
-
-    @property
-    def title(self) -> str:
-        return "closed form from the liner's own compliance, 23 coefficients"
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return (Source("hess2021", "(8), (16)"),)
-
-    @property
-    def domain(self) -> tuple[Range, ...]:
-        fit = "without clearance every load gives the same half angle: ask cosine-limit"
-        massive = "a layer of infinite thickness has no modes of its own: ask hertz or exact"
-        thin = "a layer so thin is lost to rounding: ask bonded-layer"
-        return (
-            Range(quantity="joint.clearance", symbol="c", low=0.0, why=fit),
-            Range(quantity="joint.liner_thickness", symbol="L", low=0.0, high=inf, why=massive),
-            Range(quantity="joint.thickness_ratio", symbol="R2/L", high=100.0, why=thin),
-        )
-
-    @property
-    def validity(self) -> tuple[Range, ...]:
-        why = "fitted there: d, p0, F and ε within 1 % of the exact answer at a given half angle or force"
-        return (
-            Range(quantity="joint.liner.poisson", symbol="ν", low=0.3, high=0.48, why=why),
-            Range(quantity="joint.thickness_ratio", symbol="R2/L", low=1.0, high=6.5, why=why),
-            Range(quantity="half_angle", symbol="ε", low=radians(15.0), high=radians(60.0), why=why),
-            RIGID_BALL,
-            RIGID_BACKING,
-            SMALL_STRAIN,
-        )
+    seconds_a_press: ClassVar[float] = 3e-5
+    name: ClassVar[str] = "refined"
+    title: ClassVar[str] = "closed form from the liner's own compliance, 23 coefficients"
+    sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(8), (16)"),)
+    domain: ClassVar[tuple[Range, ...]] = (
+        Range(
+            quantity="joint.clearance",
+            symbol="c",
+            low=0.0,
+            why="without clearance every load gives the same half angle: ask cosine-limit",
+        ),
+        Range(
+            quantity="joint.liner_thickness",
+            symbol="L",
+            low=0.0,
+            high=inf,
+            why="a layer of infinite thickness has no modes of its own: ask hertz or exact",
+        ),
+        Range(
+            quantity="joint.thickness_ratio",
+            symbol="R2/L",
+            high=100.0,
+            why="a layer so thin is lost to rounding: ask bonded-layer",
+        ),
+    )
+    validity: ClassVar[tuple[Range, ...]] = (
+        Range(quantity="joint.liner.poisson", symbol="ν", low=0.3, high=0.48, why=_FITTED),
+        Range(quantity="joint.thickness_ratio", symbol="R2/L", low=1.0, high=6.5, why=_FITTED),
+        Range(quantity="half_angle", symbol="ε", low=radians(15.0), high=radians(60.0), why=_FITTED),
+        RIGID_BALL,
+        RIGID_BACKING,
+        SMALL_STRAIN,
+    )
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         edge = _given(joint, load) if kind == "half_angle" else _found(joint, kind, load)
@@ -83,8 +80,7 @@ class Refined(Model):
             laws=solution,
             force=force,
             indentation=indentation,
-            converged=solution.miss(indentation) <= 1e5 * arrays.rounding(load),
-            beyond_equator=force < 0,
+            failures={Status.NOT_CONVERGED: ~(solution.miss(indentation) <= 1e5 * arrays.rounding(load))},
         )
 
 
@@ -121,15 +117,23 @@ class RefinedSolution:
         wrong = arrays.namespace(self.edge).abs(d.value - indentation / self.joint.clearance) / d.slope
         return where(self.edge > 0, wrong, 0.0)
 
-    def half_angle(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def half_angle(self) -> Array:
         return self.edge
 
-    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def indentation(self) -> Array:
+        """d in mm."""
+        return self._or_zero(self.joint.clearance * self._state.indentation.value)
+
+    @cached_property
+    def stiffness(self) -> Array:
         d, secant = self._state.indentation, self._state.secant
         relative = secant.slope / secant.value * (d.value / d.slope)
         return self._or_zero(self._secant * (1 + relative))
 
-    def energy(self, joint: Joint, indentation: Array) -> Array:
+    @cached_property
+    def energy(self) -> Array:
         # ∫ F (dd/dε) dε; the points crowd towards the edge as fast as d grows there
         edge, d = divisor(self.edge), self._state.indentation
         rate = d.slope / (d.value * edge)
@@ -149,32 +153,52 @@ class RefinedSolution:
         """K = p0/d in MPa/mm."""
         return self.joint.liner.young / (self.joint.socket_radius * self._state.compliance.value)
 
-    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        return where(indentation == 0, inf, where(self.edge > 0, self._modulus, nan))
+    @property
+    def foundation_modulus(self) -> Array:
+        return where(self.edge == 0, inf, where(self.edge > 0, self._modulus, nan))
 
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        return self._or_zero(self._modulus * indentation)
+    @cached_property
+    def pole_pressure(self) -> Array:
+        return self._or_zero(self._modulus * self.indentation)
+
+    @property
+    def _ring(self) -> Array:
+        """y of the largest pressure: 0 at the pole unless the profile swells towards the edge, β > 1/2."""
+        fullness = self._fullness
+        return where(fullness > 0.5, (2 * fullness - 1) / where(fullness > 0.5, 3 * fullness, 1.0), 0.0)
+
+    @property
+    def max_pressure(self) -> Array:
+        return self.pole_pressure * self._profile(self._ring)
+
+    @property
+    def max_pressure_angle(self) -> Array:
+        return self._or_zero(2 * arrays.asin(arrays.sqrt(self._ring * self._edge_share)))
 
     @property
     def _edge_share(self) -> Array:
         """sin²(ε/2)."""
         return sin(divisor(self.edge) / 2) ** 2
 
-    @property
+    @cached_property
     def _fullness(self) -> Array:
         """β of the profile, from 2π R2² ∫ p cos φ sin φ dφ = F."""
         S = self._edge_share
         mean = self._state.secant.value * self._state.compliance.value / (4 * pi * S)
         return (mean - 2 / 3 + 8 * S / 15) / (4 / 15 - 32 * S / 105)
 
-    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
+    @cached_property
+    def pressure_integral(self) -> Array:
         ring = 4 * pi * self.joint.socket_radius**2 * self._edge_share
-        return ring * self.max_pressure(joint, indentation) * (2 / 3 + 4 * self._fullness / 15)
+        return ring * self.pole_pressure * (2 / 3 + 4 * self._fullness / 15)
 
-    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+    def _profile(self, y: Array) -> Array:
+        """p/p0 at y up to 1."""
+        return arrays.sqrt(clip(1 - y, 0.0, 1.0)) * (1 + self._fullness * y)
+
+    def pressure(self, angle: Array) -> Array:
         y = sin(clip(angle, -pi, pi) / 2) ** 2 / self._edge_share
-        profile = arrays.sqrt(clip(1 - y, 0.0, 1.0)) * (1 + self._fullness * y)
-        return where(y < 1, self.max_pressure(joint, indentation) * profile, self._or_zero(0.0 * y))
+        return where(y < 1, self.pole_pressure * self._profile(y), self._or_zero(0.0 * y))
 
 
 class State(NamedTuple):

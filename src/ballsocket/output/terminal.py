@@ -67,11 +67,18 @@ def _fitting(comparison: Comparison, console: Console) -> Table:
     """The table with as many columns as the terminal is wide enough for."""
     unbounded = console.options.update(width=10_000)
     bars = _BARS if console.encoding.startswith("utf") else _BARS_ASCII
+    usual = _pole(comparison)
     for count in range(len(_DROPPED) + 1):
-        table = _press_table(comparison, _DROPPED[:count], bars)
+        table = _press_table(comparison, (*usual, *_DROPPED[:count]), bars)
         if console.measure(table, options=unbounded).maximum <= console.width:
             break
     return table
+
+
+def _pole(comparison: Comparison) -> tuple[str, ...]:
+    """The columns that say nothing new where every pressure is highest at the pole."""
+    off = any(contact.max_pressure_angle > 0 for contact in comparison.values())
+    return () if off else ("pole_pressure", "max_pressure_angle_deg")
 
 
 def _press_table(comparison: Comparison, dropped: Sequence[str], bars: str) -> Table:
@@ -194,7 +201,7 @@ def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
     for head in heads:
         table.add_column(head, justify="right", no_wrap=True)
     table.add_row(*(Text(unit, style="dim") for unit in ("mm", "N", "N", "%", "MPa", "MPa", "%", "°", "°", "°")))
-    columns = (ours["indentation"], ours["force"], theirs.force, ours["max_pressure"], theirs.max_pressure)
+    columns = (ours["indentation"], ours["force"], theirs.force, ours["pole_pressure"], theirs.pole_pressure)
     angles = (ours["half_angle_deg"], numpy.degrees(theirs.half_angle))
     for d, F, F_ccx, p, p_ccx, angle, angle_ccx in zip(*columns, *angles, strict=True):
         forces = (f"{F:.1f}", f"{F_ccx:.1f}", f"{100 * (F_ccx / F - 1):+.2f}")

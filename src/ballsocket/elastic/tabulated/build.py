@@ -30,8 +30,8 @@ Array = numpy.ndarray
 SHIPPED = Path(__file__).parents[2] / "data" / "exact_tables.npz"
 """The tables that come with the package."""
 
-BY_ANGLE = ("indentation", "force", "max_pressure", "stiffness", "energy", "pressure_integral")
-BY_FORCE = ("half_angle", "indentation", "max_pressure")
+BY_ANGLE = ("indentation", "force", "pole_pressure", "stiffness", "energy", "pressure_integral")
+BY_FORCE = ("half_angle", "indentation", "pole_pressure")
 QUANTITIES = (*BY_ANGLE, "half_angle")
 _BALLS = (0.15, 0.27, 0.38)  # ν of the tabulated balls
 _SHARES = 5  # how soft they are
@@ -143,7 +143,7 @@ def _state(liner: _Numbers, angle: Array, points: int, share: float = 0.0, ball_
 def _three(state: State) -> Array:
     angle, d, C = state.half_angle, state.indentation, state.kernel.compliance
     share = d / (1 + d) / (2 * numpy.sin(angle / 2) ** 2)
-    load, pole = state.force / angle**3, state.max_pressure / angle
+    load, pole = state.force / angle**3, state.pole_pressure / angle
     return numpy.log([share, load * C / (1 + d), pole * C / (1 + d)])
 
 
@@ -151,7 +151,7 @@ def _profile(state: State) -> Array:
     """Chebyshev coefficients of p/(p0 sqrt(1 - v)) in 2v - 1."""
     v = (1 + places(_PROFILE)[:, None]) / 2
     angle = 2 * numpy.arcsin(numpy.sqrt(v) * numpy.sin(state.half_angle / 2))
-    return _chebyshev(state.pressure(angle) / state.max_pressure / numpy.sqrt(1 - v), 0)
+    return _chebyshev(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
 
 
 def _rigid(liner: _Numbers, *, what: Callable[[State], Array], angles: int, points: int) -> Array:

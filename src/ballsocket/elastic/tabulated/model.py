@@ -1,29 +1,32 @@
-"""The exact answer from small tables: what one joint's curve looks like, for every bonded liner there is.
-
-Under the linear gap everything is proportional to c + d, so with the compliance C = 2 (1 - ν²) R2/E (1 + β) of
-liner and ball, three functions of the half angle, ν, R2/L and the ball alone are all there is to know:
-
-    ln of d/(c + d)/(1 - cos ε),     ln of F C/(R2² (c + d) ε³),     ln of p0 C/((c + d) ε).
-
-They are tabulated as Chebyshev series; stiffness and energy follow from them. A further table has the profile p/p0.
-"""
+"""The exact answer from small tables."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from ... import arrays
 from ...arrays import Array, broadcast, divisor
 from ...joint import Joint
 from ...model import Answer, Model
 from ...sources import Source
-from ...validity import SMALL_STRAIN, Range
-from .chebyshev import (
-    POISSON,
-    THICKNESS_RATIO,
-)
+from ...validity import SMALL_STRAIN, Range, Status
+from .chebyshev import POISSON, THICKNESS_RATIO
 from .solution import solution_of
+
+
+def _ball_poisson(contact: Any) -> Array:
+    """ν of the ball; one that is as good as any for a rigid ball."""
+    joint = contact.joint
+    return 0.3 + 0.0 * joint.liner.young if joint.ball is None else joint.ball.poisson + 0.0 * joint.liner.young
+
+
+def _layers(contact: Any) -> Array:
+    """More than 1 where something other than a rigid surface is behind the liner."""
+    return contact.joint.backing_ratio + 2.0 * len(contact.joint.backing)
+
+
+_ASK = "that is not in the tables: ask exact"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +39,7 @@ class Tabulated(Model):
     Parameters
     ----------
     file : str
-        Tables made by `build_tables.build`; those that come with the package by default.
+        Tables made by `build.build`; those that come with the package by default.
 
     References
     ----------
@@ -45,44 +48,30 @@ class Tabulated(Model):
 
     file: str = ""
 
-    @property
-    def seconds_a_press(self) -> float:
-        return 4e-6
-
-    @property
-    def name(self) -> str:
-        return "tabulated"
-
-    @property
-    def title(self) -> str:
-        return "elastic ball and bonded liner, from tables of the exact answer"
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return (Source("hess2021", "(6)"), Source("goodman1965"))
-
-    @property
-    def domain(self) -> tuple[Range, ...]:
-        ask = "that is not in the tables: ask exact"
-        return (
-            Range(quantity="joint.clearance", symbol="c", low=0.0, why="no clearance: ask cosine-limit"),
-            Range(quantity="joint.liner.poisson", symbol="ν", low=POISSON[0], high=POISSON[1], why=ask),
-            Range(
-                quantity="joint.thickness_ratio",
-                symbol="R2/L",
-                low=THICKNESS_RATIO[0],
-                high=THICKNESS_RATIO[1],
-                why=ask,
-            ),
-            Range(quantity="joint.modulus_ratio", symbol="E/E_ball", high=0.0201, why=ask),
-            Range(quantity=_ball_poisson, symbol="ν_ball", low=-0.01, high=0.501, why=ask),
-            Range(quantity=_layers, symbol="layers behind the liner", high=1.0, why=ask),
-        )
-
-    @property
-    def validity(self) -> tuple[Range, ...]:
-        why = "between three tabulated balls, 0.15, 0.27 and 0.38, the tables keep 2e-4"
-        return (Range(quantity=_ball_poisson, symbol="ν_ball", low=0.15, high=0.4, why=why), SMALL_STRAIN)
+    seconds_a_press: ClassVar[float] = 4e-6
+    name: ClassVar[str] = "tabulated"
+    title: ClassVar[str] = "elastic ball and bonded liner, from tables of the exact answer"
+    sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(6)"), Source("goodman1965"))
+    domain: ClassVar[tuple[Range, ...]] = (
+        Range(quantity="joint.clearance", symbol="c", low=0.0, why="no clearance: ask cosine-limit"),
+        Range(quantity="joint.liner.poisson", symbol="ν", low=POISSON[0], high=POISSON[1], why=_ASK),
+        Range(
+            quantity="joint.thickness_ratio", symbol="R2/L", low=THICKNESS_RATIO[0], high=THICKNESS_RATIO[1], why=_ASK
+        ),
+        Range(quantity="joint.modulus_ratio", symbol="E/E_ball", high=0.0201, why=_ASK),
+        Range(quantity=_ball_poisson, symbol="ν_ball", low=-0.01, high=0.501, why=_ASK),
+        Range(quantity=_layers, symbol="layers behind the liner", high=1.0, why=_ASK),
+    )
+    validity: ClassVar[tuple[Range, ...]] = (
+        Range(
+            quantity=_ball_poisson,
+            symbol="ν_ball",
+            low=0.15,
+            high=0.4,
+            why="between three tabulated balls, 0.15, 0.27 and 0.38, the tables keep 2e-4",
+        ),
+        SMALL_STRAIN,
+    )
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         solution = solution_of(self.file, joint, kind, load)
@@ -91,8 +80,7 @@ class Tabulated(Model):
             laws=solution,
             force=F,
             indentation=d,
-            converged=_miss(kind, load, d, F) <= 1e4 * arrays.rounding(load),
-            beyond_equator=d < 0,
+            failures={Status.NOT_CONVERGED: ~(_miss(kind, load, d, F) <= 1e4 * arrays.rounding(load))},
         )
 
 
@@ -101,14 +89,3 @@ def _miss(kind: str, load: Array, d: Array, F: Array) -> Array:
         return 0.0 * F
     given = broadcast(load, F)
     return arrays.namespace(F).abs((F if kind == "force" else d) - given) / divisor(given)
-
-
-def _ball_poisson(contact: Any) -> Array:
-    """ν of the ball; one that is as good as any for a rigid ball."""
-    joint = contact.joint
-    return 0.3 + 0.0 * joint.liner.young if joint.ball is None else joint.ball.poisson + 0.0 * joint.liner.young
-
-
-def _layers(contact: Any) -> Array:
-    """More than 1 where something other than a rigid surface is behind the liner."""
-    return contact.joint.backing_ratio + 2.0 * len(contact.joint.backing)

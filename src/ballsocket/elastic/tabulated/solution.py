@@ -31,36 +31,41 @@ class TableSolution:
     angle: Array
     values: tuple[Array, Array, Array, Array]
 
-    def force(self, joint: Joint, indentation: Array) -> Array:
-        return self.values[1]
-
-    def indentation(self, joint: Joint, indentation: Array) -> Array:
-        return self.values[0]
-
-    def half_angle(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def half_angle(self) -> Array:
         return self.angle
 
-    def max_pressure(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def pole_pressure(self) -> Array:
         return self.values[2]
 
-    def stiffness(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def max_pressure(self) -> Array:
+        """That at the pole: no joint of the tables has more elsewhere."""
+        return self.values[2]
+
+    @property
+    def max_pressure_angle(self) -> Array:
+        return 0.0 * self.angle
+
+    @property
+    def stiffness(self) -> Array:
         return self.values[3]
 
-    def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def foundation_modulus(self) -> Array:
         return where(self.values[0] == 0, inf, self.values[2] / divisor(self.values[0]))
 
     @cached_property
-    def _energy(self) -> Array:
+    def energy(self) -> Array:
         (energy,) = _in_blocks(self.file, self.joint, self.angle, _work)
         return where(self.angle > 0, energy, 0.0 * self.angle)
 
-    def energy(self, joint: Joint, indentation: Array) -> Array:
-        return self._energy
-
-    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
+    @property
+    def pressure_integral(self) -> Array:
         """From U = (d F - c ∫ p (1 - cos φ) dA)/2 and F = ∫ p cos φ dA."""
         d, F, _, _ = self.values
-        return F + (d * F - 2 * self._energy) / self.joint.clearance
+        return F + (d * F - 2 * self.energy) / self.joint.clearance
 
     @cached_property
     def _profile(self) -> Array:
@@ -81,7 +86,7 @@ class TableSolution:
         carried = sum((part * each for part, each in zip(q, carries, strict=False)), lift * carries[0])
         return lift, (wanted - carried) / carries[-1]
 
-    def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+    def pressure(self, angle: Array) -> Array:
         lift, tilt = self._tilt
         half, height = sin(angle / 2), sin(divisor(self.angle) / 2) ** 2
         v = half * half / height
@@ -130,7 +135,10 @@ def solution_of(file: str, joint: Joint, kind: str, load: Array) -> TableSolutio
         return (angle, *curves.contact(angle)[:4])
 
     found = _in_blocks(file, joint, load, law)
-    angle, d, F, p0, stiffness = (where(broadcast(load, part) > 0, part, 0.0) for part in found)
+    fits = ~(found[1] < 0)  # a ball that filled its socket at less has no wider contact
+    angle, d, F, p0, stiffness = (
+        where(broadcast(load, part) > 0, where(fits, part, float("nan")), 0.0) for part in found
+    )
     return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness))
 
 

@@ -31,14 +31,14 @@ class CcxAnswer:
 
     Attributes
     ----------
-    indentation, force, max_pressure, half_angle : array
+    indentation, force, pole_pressure, half_angle : array
         In mm, N, MPa and rad. Pressure and half angle are NaN on CAX4, whose facets CalculiX' contact cannot see as one
         surface.
     """
 
     indentation: Array
     force: Array
-    max_pressure: Array
+    pole_pressure: Array
     half_angle: Array
 
 
@@ -97,7 +97,7 @@ def read(folder: Path) -> CcxAnswer:
         answer.force[step] = -float(forces[step][0, 1]) * SECTORS / deck["scale"]
         if deck["element"] != "CAX4":
             answer.half_angle[step] = surfaces.half_angle
-            answer.max_pressure[step] = surfaces.max_pressure
+            answer.pole_pressure[step] = surfaces.pole_pressure
     return answer
 
 
@@ -138,7 +138,7 @@ class _Surfaces:
         return edge(self._angle, self.gap / self.indentation)
 
     @property
-    def max_pressure(self) -> float:
+    def pole_pressure(self) -> float:
         pressures = numpy.array([self.pressures[node] for node in self.deck["bore"]["node"]])
         return pole(self._angle, pressures / self.deck["scale"], self.half_angle)
 

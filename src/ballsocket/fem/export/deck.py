@@ -131,9 +131,9 @@ class Deck:
         """Write `ballsocket.inp` and `expected.json` into a folder, which is made; gives the path of the former.
 
         `expected.json` has the joint, the scale, the elements' type; our own answer of the real joint under "steps"
-        (`indentation` in mm, `force` in N, `max_pressure` in MPa, `half_angle_deg`; null where there is none); and the
-        nodes of both surfaces with their angles in rad, under "bore" and "round". Each file appears at once: an
-        interrupted write leaves none.
+        (`indentation` in mm, `force` in N, `max_pressure` and `pole_pressure` in MPa, `half_angle_deg`; null where
+        there is none); and the nodes of both surfaces with their angles in rad, under "bore" and "round". Each file
+        appears at once: an interrupted write leaves none.
 
         Raises
         ------
@@ -149,12 +149,13 @@ class Deck:
 
     @cached_property
     def expected(self) -> dict[str, Array]:
-        """Our own answer at each step (steps,), by name, with indentation in mm, force in N, max_pressure in MPa."""
+        """Our own answer at each step (steps,), by name, with indentation in mm, force in N, pressures in MPa."""
         answer = self.contact.model.press(self._joint, indentation=self._depths)
         return {
             "indentation": self._depths,
             "force": answer.force,
             "max_pressure": answer.max_pressure,
+            "pole_pressure": answer.pole_pressure,
             "half_angle_deg": numpy.degrees(answer.half_angle),
         }
 
