@@ -114,7 +114,7 @@ def _listed(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
 
 _SHOWN = COLUMNS[:6]
 HEADS = ("model", *(f"{column.symbol} [{column.unit}]" for column in _SHOWN), "valid")
-"""Of the columns of `Comparison.rows`."""
+"""Heads of the columns of `Comparison.rows`."""
 
 
 def compare(

@@ -69,7 +69,7 @@ def text(contact: Any) -> str:
 
 
 def html(contact: Any) -> str:
-    """The same as a table for a notebook."""
+    """A contact as a table for a notebook."""
     left = "style='text-align:left'"
     rows = "".join(
         f"<tr><td {left}>{name.replace('_', ' ')}</td><td>{escape(number)}</td><td {left}>{unit}</td></tr>"

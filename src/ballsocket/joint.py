@@ -189,7 +189,7 @@ class Joint:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
 
     def _thicknesses(self) -> list[tuple[str, Array]]:
-        """Of the liner and the layers behind it, with their names."""
+        """Thicknesses of the liner and the layers behind it, with their names."""
         layers = [(f"backing[{number}].thickness", layer.thickness) for number, layer in enumerate(self.backing)]
         return [("liner_thickness", self.liner_thickness), *layers]
 
@@ -244,7 +244,7 @@ class Joint:
         return (*own, self.liner.young, self.liner.poisson, *ball, *chain.from_iterable(behind))
 
     def with_numbers(self, numbers: Any) -> Joint:
-        """The same joint with other numbers, in the order of `numbers()`. Nothing is checked."""
+        """A joint like this one with other numbers, in the order of `numbers()`. Nothing is checked."""
         radius, clearance, thickness, young, poisson, *others = numbers
         behind = others if self.ball is None else others[2:]
         triples = zip(self.backing, behind[::3], behind[1::3], behind[2::3], strict=True)

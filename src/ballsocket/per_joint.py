@@ -202,7 +202,7 @@ class SolvedContact(Contact):
 
 
 _PLACES = numpy.array([0.0, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 1.0])
-"""Of the half angle: what lies highest between two of the first by less than 1e-6 counts as the pole."""
+"""Shares of the half angle: a peak of less than 1e-6 between the first two counts as the pole."""
 
 _ROUNDS, _FINER = 4, numpy.linspace(0.0, 1.0, 9)
 

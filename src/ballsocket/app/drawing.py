@@ -71,7 +71,7 @@ def extent_of(file: JointFile) -> float:
 
 
 def _radii(file: JointFile) -> list[float]:
-    """Of the bore, and from there outwards behind the liner and each layer."""
+    """Radii in mm of the bore, and from there outwards behind the liner and each layer."""
     radii = [float(file.joint.socket_radius)]
     for thickness in (file.joint.liner_thickness, *(layer.thickness for layer in file.joint.backing)):
         radii.append(radii[-1] + (_MASSIVE * radii[0] if isinf(float(thickness)) else float(thickness)))

@@ -194,7 +194,7 @@ def _joint(flat: Mapping[str, str]) -> JointFile:
 
 
 def _tables(file: JointFile) -> Tables:
-    """Of a joint file; short where the joint is a preset."""
+    """Tables of a joint file; short where the joint is a preset."""
     tables = tables_of(file)
     for name, joint in joints.items():
         if file.joint == joint:

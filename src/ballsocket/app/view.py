@@ -37,7 +37,7 @@ class View(Protocol):
         ...
 
     def document(self, screen: Screen) -> Document:
-        """The same for a file."""
+        """What is on the screen, made for a file."""
         ...
 
     def leave(self) -> None:

@@ -74,7 +74,7 @@ class State:
 
     @cached_property
     def _inverse(self) -> Array:
-        """Of the even equation at the points: it has three right-hand sides, one after the other."""
+        """Inverse of the even equation at the points: it has three right-hand sides, one after the other."""
         return numpy.linalg.inv(self._operators[0][:, :-1])
 
     @cached_property

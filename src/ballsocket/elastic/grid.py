@@ -37,7 +37,7 @@ class Grid:
 
     @property
     def weights(self) -> Array:
-        """Of the sources, in y."""
+        """Weights of the sources, in y."""
         return self.nodes[1]
 
     @cached_property
@@ -75,12 +75,12 @@ class Grid:
 
     @cached_property
     def log_weights(self) -> Array:
-        """Of ln(|t - s|/ε), in y."""
+        """Weights of ln(|t - s|/ε), in y."""
         return _from_moments(_log_moments, self) + self.weights * numpy.log(self._stretch)
 
     @cached_property
     def modulus_weights(self) -> Array:
-        """Of |t - s|/ε, in y."""
+        """Weights of |t - s|/ε, in y."""
         return _from_moments(_modulus_moments, self) * self._stretch
 
 

@@ -18,7 +18,7 @@ from .scratch import scratch
 
 Array = numpy.ndarray
 Operators = tuple[Array, Array]
-"""Of even functions and of odd ones."""
+"""Operators of even functions and of odd ones."""
 
 _BLOCK = 16_384  # waves at a time: what stays in the cache
 _PANEL_STEP = 8

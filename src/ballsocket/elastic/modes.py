@@ -303,9 +303,9 @@ def _asymptote(radius: float, young: float, poisson: float) -> float:
 
 
 def _polynomials(nu: float) -> tuple[list[float], list[float]]:
-    """Of ρ in an infinite socket, in falling powers of q = n + ½: the numerator from q², the denominator from q³.
+    """Polynomials of ρ in an infinite socket, in falling powers of q = n + ½.
 
-    A ball has -q in place of q.
+    The numerator begins with q², the denominator with q³.     A ball has -q in place of q.
     """
     above = [-((1 - 2 * nu) ** 2) / (2 * (1 - nu)), -(4 - 17 * nu + 12 * nu**2) / (4 * (1 - nu)), -9 / 8]
     below = [1.0, 3 / 2 - 2 * nu, 3 / 4 - 3 * nu, 9 / 8]  # (q + 3/2)(q² - 2νq + 3/4)

@@ -47,7 +47,10 @@ def fixed() -> tuple[Matrix, Matrix]:
 
 
 def free(n: numpy.ndarray) -> tuple[Matrix, Matrix]:
-    """The same of σ = 0; at n = 1 u_r + 2 u_φ = 0 (no mean translation) and σ_rr = σ_rφ (uniform traction)."""
+    """The condition σ = 0 as A and B.
+
+    At n = 1 it is u_r + 2 u_φ = 0 (no mean translation) and σ_rr = σ_rφ (uniform traction).
+    """
     A = numpy.zeros((2, 2, len(n)))
     B = A + UNIT
     first = n == 1

@@ -50,7 +50,7 @@ class MeshedContact(SolvedContact):
 
     @property
     def rim_displacement(self) -> tuple[float, float]:
-        """Of the bore's end in mm, away from the load axis and up against the load."""
+        """Displacement of the bore's end in mm, away from the load axis and up against the load."""
         return self.section.rim_displacement
 
     @property

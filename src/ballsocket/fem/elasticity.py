@@ -51,7 +51,7 @@ class Gradients:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Strains(Gradients):
-    """The same with the projected change of volume, `swelling`, of the shape of `trace`."""
+    """Gradients with the projected change of volume, `swelling`, of the shape of `trace`."""
 
     swelling: Array
 
@@ -72,7 +72,7 @@ class Elastic:
 
     @cached_property
     def unknowns(self) -> Array:
-        """Of each element, shape (elements, unknowns): u_φ and u_r of node i are 2i and 2i + 1.
+        """Numbers of each element's unknowns, shape (elements, unknowns): u_φ and u_r of node i are 2i and 2i + 1.
 
         Where layers slide on each other they share u_r.
         """

@@ -24,7 +24,7 @@ class Brimful:
 
     @property
     def half_angle(self) -> float:
-        """That of the bore's end, in rad."""
+        """Half angle in rad: the polar angle of the bore's end."""
         return float(self.pair.angle[-1])
 
     @cached_property

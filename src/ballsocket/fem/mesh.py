@@ -41,7 +41,7 @@ class Block:
 
     @cached_property
     def number(self) -> Array:
-        """Of each node, shape (angles, radii)."""
+        """Number of each node, shape (angles, radii)."""
         return numpy.arange(self.radius.size).reshape(self.radius.shape)
 
     @cached_property

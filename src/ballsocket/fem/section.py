@@ -92,7 +92,7 @@ class Section:
 
     @cached_property
     def rim_displacement(self) -> tuple[float, float]:
-        """Of the bore's end in mm, away from the load axis and up against the load."""
+        """Displacement of the bore's end in mm, away from the load axis and up against the load."""
         liner = self["liner"]
         end = numpy.flatnonzero(liner.angle > liner.angle.max() - 1e-12)
         across, up = liner.displacement[:, end[numpy.argmin(liner.radius[end])]]

@@ -88,7 +88,7 @@ class SocketShape:
         return self.rim - self.chamfer
 
     def corners(self, resolution: Resolution) -> tuple[Array, list[Array]]:
-        """Of the elements: angles, and the radii of each layer."""
+        """Corners of the elements: their angles, and the radii of each layer."""
         angle = resolution.angles(self.reach)
         if self.chamfer:
             across = graded(self.reach, self.rim, min(resolution.size, self.chamfer / 2), 1.0, inf)

@@ -79,7 +79,7 @@ class Pair:
 
     @cached_property
     def corners(self) -> Array:
-        """Of both bodies."""
+        """Polar angles of the elements' corners of both bodies, in rad."""
         every = numpy.sort(numpy.concatenate([surface.corners for surface in self.surfaces]))
         every = every[every <= self.angle[-1] + _SAME]
         return every[numpy.append(True, numpy.diff(every) > _SAME)]

@@ -121,7 +121,7 @@ class LayerSolution:
 
     @cached_property
     def _parts(self) -> tuple[Array, Array, Array, Array]:
-        """Of h1 and h2 (last axis): the transform ∫ h cos(k x α) dx, the edge value h(1), ∫ h dx, ∫ h x² dx.
+        """Parts of h1 and h2 (last axis): the transform ∫ h cos(k x α) dx, the edge value h(1), ∫ h dx, ∫ h x² dx.
 
         In blocks, since the waves of all contacts at once may not fit into memory.
         """
@@ -270,7 +270,7 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
     goal = log(broadcast(divisor(load), *shape))
 
     def law(narrowing: Array, reach: float) -> tuple[Array, Array]:
-        """Of how much narrower than the widest a contact is, in logarithms."""
+        """ln(load), negative, and its slope, of how much narrower than the widest a contact is, in logarithms."""
         width = widest * exp(-narrowing)
         solution = LayerSolution(joint=joint, width=width, widest=reach)
         value, slope = solution.values[which], solution.slopes[which]

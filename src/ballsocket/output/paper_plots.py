@@ -166,7 +166,7 @@ _LEVELS = (*(-end for end in reversed(_ENDS)), *_ENDS)
 
 
 def _about_zero() -> dict[str, Any]:
-    """The same levels in every map, so that a colour means the same error everywhere."""
+    """Levels that every map shares, so that a colour means the same error everywhere."""
     from matplotlib.colors import SymLogNorm
 
     norm = SymLogNorm(linthresh=1.0, vmin=-300.0, vmax=300.0)

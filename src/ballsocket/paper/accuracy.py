@@ -158,7 +158,7 @@ def _accuracy(name: str, joints: Joint, inner: slice, exact: Contact, pressed: C
 
 
 def _spread(error: Array, joints: Joint, inner: slice) -> Spread:
-    """Of errors (loads, joints): the usual ones over the inner joints, the worst over all."""
+    """Spread of errors (loads, joints): the usual ones over the inner joints, the worst over all."""
     usual = error[:, inner]
     known = usual[numpy.isfinite(usual)]
     load, which = numpy.unravel_index(int(numpy.nanargmax(error)), error.shape)

@@ -15,7 +15,7 @@ from .table_3 import paper_joint
 Array = numpy.ndarray
 
 POISSON = (0.30, 0.35, 0.40, 0.45, 0.49)
-"""Of Table 3 and Figure 2."""
+"""Poisson's ratios of Table 3 and Figure 2."""
 
 CLEARANCES = (0.05, 0.1, 0.15, 0.2)
 HEAD_RADII = (11.0, 14.0, 16.0, 20.0, 23.0)
@@ -64,7 +64,7 @@ def series() -> dict[str, Joint]:
 
 
 def named_series() -> Iterator[tuple[str, Joint, tuple[float, ...]]]:
-    """The same with the symbol and the values of what varies."""
+    """Series of joints, each with the symbol and the values of what varies."""
     yield from zip(("ΔR", "R1", "L"), series().values(), (CLEARANCES, HEAD_RADII, THICKNESSES), strict=True)
 
 
@@ -83,7 +83,7 @@ def outline(poisson: float = 0.4, heads: int = 5, liners: int = 3) -> tuple[Arra
 
 
 def with_clearance(joints: Joint, clearance: float) -> Joint:
-    """The same joints with another clearance."""
+    """Joints that differ from the given ones in their clearance (mm) alone."""
     return replace(joints, clearance=clearance)
 
 

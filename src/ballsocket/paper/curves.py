@@ -47,7 +47,7 @@ def figure_2(poisson: float, references: Models) -> Figure:
 
 
 def figure_2_models(poisson: float, models: Models) -> Figure:
-    """The same for one ν with every model: what each of them takes for the modulus."""
+    """Figure 2 for one ν with every model: what each of them takes for the modulus."""
     panels = _modulus_panels(poisson, models, "")
     return Figure(
         title="Figure 2, with every model",

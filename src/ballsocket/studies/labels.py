@@ -51,7 +51,7 @@ def described(name: str) -> dict[str, Any]:
 
 
 def attributes(task: Task) -> dict[str, Any]:
-    """Of the whole study: who computed what, and after whom."""
+    """Attributes of the whole study: who computed what, and after whom."""
     return {
         "title": f"{task.model.title}, pressed at {task.design.size} points",
         "model": task.model.name,

@@ -75,7 +75,7 @@ def _steps(name: str, value: float, step: float) -> tuple[float, float]:
 
 
 def _slope(rises: Array, steps: tuple[float, float]) -> float:
-    """Of the parabola through a point and two more."""
+    """Slope at a point of the parabola through it and two more."""
     (one, other), (a, b) = rises, steps
     return float((b * b * one - a * a * other) / (a * b * (b - a)))
 
@@ -83,7 +83,7 @@ def _slope(rises: Array, steps: tuple[float, float]) -> float:
 def traced(
     model: Model, joint: Joint, quantities: Iterable[str], at: Mapping[str, float]
 ) -> tuple[dict[str, float], Slopes]:
-    """The same by JAX, exact to rounding, for a `differentiable` model; compiled when first asked.
+    """Values and slopes by JAX, exact to rounding, for a `differentiable` model; compiled when first asked.
 
     Raises
     ------

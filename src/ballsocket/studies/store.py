@@ -156,7 +156,7 @@ def _make(path: Path, task: Task, study: Mapping[str, Any]) -> None:
 
 
 def _checksum_of(group: Any, task: Task, number: int) -> int | None:
-    """Of what lies there; None where it cannot be read."""
+    """Checksum of what lies there; None where it cannot be read."""
     try:
         return _checksum({name: group[name][task.blocks[number]] for name in task.variables}, task)
     except Exception:  # whatever a damaged file makes of its decoder: the block is computed anew

@@ -136,7 +136,7 @@ def labelled(screen: Screen) -> dict[str, JointFile]:
 
 
 def answers(files: Mapping[str, JointFile], model: str) -> dict[str, Contact]:
-    """Of the joints for which the model has one."""
+    """Answers of a model to the joints for which it has one, by their names."""
     found = {name: answered(pressed(file, (model,))) for name, file in files.items()}
     return {name: contacts[model] for name, contacts in found.items() if model in contacts}
 

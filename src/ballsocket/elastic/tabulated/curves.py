@@ -122,7 +122,10 @@ class Curves:
         return self._logarithm(kind, angle, self.at(angle, (0, 1) if kind == "force" else (0,)))
 
     def _logarithm(self, kind: str, angle: Array, functions: list[tuple[Array, Array]]) -> tuple[Array, Array]:
-        """The same from the functions; very large, with no slope, beyond the angle of an infinite load."""
+        """ln d or ln F and its derivative by ln ε, from the functions.
+
+        Very large, with no slope, beyond the angle of an infinite load.
+        """
         sigma, slope = self.opening(angle, functions[0])
         left = clip(1 - sigma, LITTLE**3, 1.0)
         outer = slope / left

@@ -41,7 +41,7 @@ class TableSolution:
 
     @property
     def max_pressure(self) -> Array:
-        """That at the pole: no joint of the tables has more elsewhere."""
+        """Largest pressure in MPa, the one at the pole: no joint of the tables has more elsewhere."""
         return self.values[2]
 
     @property

@@ -112,7 +112,7 @@ class _Surfaces:
 
     @property
     def _angle(self) -> Array:
-        """Of the bore's nodes, from the pole on."""
+        """Polar angles of the bore's nodes in rad, from the pole on."""
         return numpy.array(self.deck["bore"]["angle"])
 
     def _moved(self, name: str, rows: Array) -> Array:
@@ -122,7 +122,7 @@ class _Surfaces:
 
     @property
     def indentation(self) -> float:
-        """That of the ball's end, which is its equator."""
+        """Indentation in mm: how far the ball's end, its equator, has moved."""
         return -float(self._moved("round", self.ball)[1, -1])
 
     @property
@@ -187,7 +187,7 @@ def contact_pressures(frd: Path) -> dict[int, dict[int, float]]:
 
 
 def _blocks(path: Path, head: str) -> dict[int, str]:
-    """What follows each headline, by the step that its time says; headlines without a time only end what is before.
+    """Text after each headline, by the step that its time says; headlines without a time only end what is before.
 
     A step may end in a second increment of no length, at nearly the same time: the later one is meant.
     """

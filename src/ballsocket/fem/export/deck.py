@@ -44,7 +44,7 @@ from .solid import TYPES, Solid, node_set
 Array = numpy.ndarray
 
 NAME, EXPECTED = "ballsocket", "expected.json"
-"""Of the deck, as CalculiX wants it, and of the file beside it."""
+"""Names of the deck, as CalculiX wants it, and of the file beside it."""
 
 _STIFFER = 2000.0
 _FALSE = 2e-3  # of the indentation
@@ -301,7 +301,7 @@ class Deck:
         yield from (f"{self.slope:.6g}", "*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "LINED, PRESSED")
 
     def _supports(self) -> Iterator[str]:
-        """Of x and y where both or, on the axis, x is held; else of the radius and the angle, that are 1 and 2."""
+        """Lines that hold x and y where both or, on the axis, x is held; else radius and angle, which are 1 and 2."""
         socket, ball = self._socket, self._ball
         upright = [*socket.numbers(socket.on_axis & ~socket.fixed), *ball.numbers(ball.on_axis | ball.fixed)]
         seated, rolling = socket.held & ~socket.fixed & ~socket.on_axis

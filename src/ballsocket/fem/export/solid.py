@@ -44,7 +44,7 @@ class Solid:
 
     @cached_property
     def number(self) -> Array:
-        """Of each node of the block in the deck, from 1 on; 0 for those in the middle of elements."""
+        """Number in the deck of each node of the block, from 1 on; 0 for those in the middle of elements."""
         used = numpy.zeros(self.block.number.size, dtype=bool)
         used[self._rims] = True
         return numpy.where(used, self.nodes_before + numpy.cumsum(used), 0)
@@ -55,7 +55,7 @@ class Solid:
         return int(numpy.count_nonzero(self.number))
 
     def numbers(self, chosen: Array) -> list[int]:
-        """Of the chosen nodes (nodes,), a mask; those in the middle of elements have none."""
+        """Numbers in the deck of the nodes that a mask (nodes,) chooses; those in the middle of elements have none."""
         return self.number[chosen & (self.number > 0)].tolist()
 
     @cached_property

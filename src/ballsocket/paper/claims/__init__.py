@@ -39,18 +39,18 @@ CLAIMS: tuple[Claim, ...] = (
     agreement.usable_above_0_45,
     agreement.older_models_err_considerably,
 )
-"""Of the paper, in its order."""
+"""Claims of the paper, in its order."""
 
 ELSEWHERE: tuple[Claim, ...] = (
     elsewhere.exact_agrees_with_calculix,
     elsewhere.half_angles_of_jin,
     elsewhere.ordering_of_plank,
 )
-"""Of others."""
+"""Claims of others."""
 
 MESHED_CLAIMS: tuple[Claim, ...] = (agreement.mesh_is_fine_enough,)
 MESHED_ELSEWHERE: tuple[Claim, ...] = (elsewhere.elements_agree_with_calculix,)
-"""Those that need finite elements whatever the reference: seconds."""
+"""Claims that need finite elements whatever the reference: seconds."""
 
 
 def judged(claim: Claim, reference: Model) -> Finding:

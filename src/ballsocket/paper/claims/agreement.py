@@ -225,6 +225,6 @@ def dense_elements(size: float = 0.05) -> FiniteElement:
 
 
 def _deviations(model: Model, reference: Model, poisson: float, names: tuple[str, ...]) -> dict[str, float]:
-    """Of the reference case at 3 kN, in percent."""
+    """Deviations of a model from the reference in the hip of Fig. 3 at 3 kN, in percent."""
     truth, theirs = (each.press(cases.hip(poisson), force=cases.LOAD) for each in (reference, model))
     return {name: percent(getattr(theirs, name) / getattr(truth, name) - 1) for name in names}

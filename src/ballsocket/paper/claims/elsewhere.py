@@ -39,7 +39,7 @@ def elements_agree_with_calculix(_: Model) -> Finding:
 
 
 def exact_agrees_with_calculix(_: Model) -> Finding:
-    """The same joints by the exact solution, whose ball is whole and whose liner is a closed shell."""
+    """CalculiX' joints by the exact solution, whose ball is whole and whose liner is a closed shell."""
     table = calculix()
     compressible = table["poisson"] < 0.47
     numbers = _against_calculix(Exact(), table[compressible])

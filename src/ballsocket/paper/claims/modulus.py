@@ -83,7 +83,7 @@ def constant_above_one_kilonewton(reference: Model) -> Finding:
 
 
 def constant_at_0_49(reference: Model) -> Finding:
-    """The same at ν 0.49."""
+    """K over the load at ν 0.49."""
     spreads = _over_force(reference, _STIFF, cases.LOADS)
     return Finding(
         name="constant-at-0.49",
@@ -139,7 +139,7 @@ def independent_of_clearance(reference: Model) -> Finding:
 
 
 def independent_of_clearance_at_0_49(reference: Model) -> Finding:
-    """The same at ν 0.49."""
+    """K over the clearance at ν 0.49."""
     spreads = _over_clearance(reference, _STIFF)
     return Finding(
         name="independent-of-clearance-at-0.49",
@@ -180,7 +180,7 @@ def quality_of_the_fit(reference: Model) -> Finding:
 
 
 def quality_of_the_fit_on_thin_liners(reference: Model) -> Finding:
-    """The same for thinner liners."""
+    """Quality of the fit for thinner liners."""
     why = "The published constants are {low:.0f} to {high:.0f} % too stiff at R2/L {thinnest:g}."
     return _fit(reference, "quality-of-the-fit-on-thin-liners", "for thinner liners", RATIOS > _WIDEST, why)
 
