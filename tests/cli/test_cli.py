@@ -1,7 +1,6 @@
-"""The command, driven as a process."""
+"""The command: what it prints, what it refuses, how it ends."""
 
 import json
-import os
 import re
 import subprocess
 import sys
@@ -15,21 +14,28 @@ import ballsocket as bs
 from ballsocket import cli
 
 from ..places import EXAMPLES
+from .command import run, run_process
 
 EXAMPLE = str(EXAMPLES / "hip.toml")
 NUMBERS = ("--ball-radius", "16", "--clearance", "0.1", "--liner-thickness", "6")
 NUMBERS += ("--young", "1GPa", "--poisson", "0.4", "--force", "3kN")
 
 
-def run(*words: str, columns: int = 100, encoding: str = "utf-8") -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "ballsocket", *words],
-        capture_output=True,
-        encoding="utf-8",
-        timeout=120,
-        check=False,
-        env={**os.environ, "COLUMNS": str(columns), "PYTHONIOENCODING": encoding},
-    )
+@pytest.mark.parametrize(
+    ("words", "encoding"),
+    [
+        (("press", EXAMPLE, "--model", "bartel"), "utf-8"),
+        (("press", EXAMPLE, "--model", "bartel", "--json"), "ascii"),
+        (("press", EXAMPLE, "--force", "1e12", "--model", "bartel"), "ascii"),
+        (("press", "hip-29", "--force", "1"), "utf-8"),
+        (("presets",), "utf-8"),
+    ],
+    ids=["table", "json", "no answer", "refused", "list"],
+)
+def test_a_process_prints_what_a_call_prints(words, encoding):
+    """The other tests call the command: it is the same."""
+    here, there = (way(*words, encoding=encoding) for way in (run, run_process))
+    assert (there.returncode, there.stdout, there.stderr) == (here.returncode, here.stdout, here.stderr)
 
 
 def test_press_a_file():
@@ -277,7 +283,7 @@ def test_models_presets_cite_version_help():
 
 
 def test_a_closed_pipe_is_no_crash():
-    command = f"{sys.executable} -m ballsocket models | head -1"
+    command = f"{sys.executable} -m ballsocket models | {sys.executable} -c pass"
     done = subprocess.run(command, shell=True, capture_output=True, encoding="utf-8", timeout=60, check=False)
     assert "Traceback" not in done.stderr
 

@@ -8,7 +8,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.paper.table_3 import RATIOS, refit_table_3
 
-from ..cli.test_cli import run
+from ..cli.command import run
 from ..joints import HIP
 
 
