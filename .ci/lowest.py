@@ -19,7 +19,7 @@ def main() -> None:
     print("lowest:", *lowest)
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-        python = next(Path(folder).glob("*/python*"))
+        python = Path(folder) / "bin" / "python"
         run(python, "-m", "pip", "install", "--quiet", ROOT, *lowest, *TOOLS)
         run(python, "-m", "ballsocket", "press", "--help")
         run(python, "-m", "ballsocket", "press", "examples/hip.toml", "--all", "--figure", f"{folder}/press.png")
