@@ -13,7 +13,7 @@ from bokeh.models.widgets import TextInput
 
 from ..io.joint_file import JointFile, parse_joint
 from .controls import JointControls
-from .downloads import Downloads
+from .downloads import Downloads, Seen
 from .pressing import pressed
 from .screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, link_of, read_link
 from .style import asset, html, inputs
@@ -56,7 +56,7 @@ class Page:
         self._size = pn.widgets.RadioButtonGroup(label="balls by", options=list(SIZES), stylesheets=inputs(), **wide)
         self._angle.param.watch(lambda event: self.ask(angle=event.new), "value")
         self._size.param.watch(lambda event: self.ask(size=event.new), "value")
-        self._downloads = Downloads(self)
+        self._downloads = Downloads(self._seen, self.refuse)
         self._link = TextInput(name="link", value=link_of(self.screen), visible=False)
         self._link.js_on_change("value", CustomJS(code="window.ballsocket.linked(cb_obj.value)"))
         self._upload = TextInput(name="upload", value="", visible=False)
@@ -123,6 +123,15 @@ class Page:
             self.main.append(self._views[name].panel)
         return self._views[name]
 
+    def _seen(self) -> Seen:
+        """What is on the screen, for files."""
+        return Seen(
+            title=self.view.title,
+            file=self.screen.file,
+            link=self._whole_link(),
+            document=lambda: self.view.document(self.screen),
+        )
+
     def _same_load(self, kind: str) -> dict[str, float]:
         """The load of another kind that presses as much as now, by the model on top."""
         found = pressed(self.screen.file, (self.screen.answered_by,))
@@ -141,7 +150,7 @@ class Page:
             return
         self.ask(file=file if file.load else replace(file, load=self.screen.file.load))
 
-    def link(self) -> str:
+    def _whole_link(self) -> str:
         """The whole address of what is on the screen."""
         location = pn.state.location
         base = (
