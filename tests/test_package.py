@@ -1,19 +1,15 @@
-"""The package as it is shipped: light to import, every example runs, every figure is a figure of its result."""
+"""The package as it is shipped: light to import, every example runs, its pages and its citations."""
 
 import os
 import re
 import runpy
 import subprocess
 import sys
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 import ballsocket as bs
 from ballsocket.describe import COLUMNS
-from ballsocket.output.press_plot import press_figure
-from ballsocket.output.save import save
 from ballsocket.paper.claims import elsewhere
 from ballsocket.sources import bibliography
 
@@ -121,38 +117,3 @@ def test_one_list_of_columns():
     assert list(bs.Hertz().press(HIP, force=1.0).summary())[1:-2] == [column.name for column in COLUMNS]
     nothing = bs.compare(bs.joints["tilting-pad-pivot"], force=1.0, models={"bonded-layer": bs.BondedLayer()})
     assert list(nothing.summary()["results"][0])[1:-3] == [column.name for column in COLUMNS]
-
-
-def test_a_figure_that_cannot_be_drawn_leaves_no_file(tmp_path):
-    def fail(*_, **__):
-        raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        save(SimpleNamespace(savefig=fail), tmp_path / "a.png")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_the_figure_of_a_massive_socket_says_so():
-    pivot = bs.joints["tilting-pad-pivot"]
-    contact = bs.Hertz().press(pivot, force=3000.0)
-    title = press_figure({"hertz": contact}, {"hertz": contact}).get_suptitle()
-    assert "massive socket of 210 GPa" in title
-    assert "inf" not in title
-
-
-def test_figure_draws_the_result():
-    answers = bs.compare(HIP, force=3000.0)
-    curves = {name: bs.catalogue[name].press(HIP, indentation=np.linspace(0.0, 0.06, 30)) for name in answers}
-    figure = press_figure(answers, curves)
-    left, right = figure.axes
-    drawn = {line.get_label(): line for line in left.lines}
-    assert set(drawn) == set(answers)
-    for name, line in drawn.items():
-        assert line.get_ydata().max() == pytest.approx(
-            answers[name].pressure(np.linspace(0.0, 1.4, 2000)).max(), rel=5e-3
-        )
-        assert line.get_linewidth() == (2.0 if answers[name].valid else 1.0)
-    assert len(right.lines) == 2 * len(answers)
-    assert "MPa" in left.get_ylabel()
-    assert "kN" in right.get_ylabel()
-    assert "17.9 mm" in figure.get_suptitle()

@@ -273,15 +273,18 @@ class Joint:
             "support": self.support.value,
         }
 
+    @property
+    def dimensions(self) -> str:
+        """Ball, clearance and what lines the socket, in words."""
+        lined = _thickness(self.liner_thickness)
+        return f"R1 {_text(self.ball_radius)} mm, clearance {_text(self.clearance)} mm, {lined}"
+
     def __str__(self) -> str:
         ball = "rigid" if self.ball is None else str(self.ball)
         head = f"{self.name}: " if self.name else ""
         behind = "".join(f" on {layer}" for layer in self.backing)
         free = ", free outside" if self.support is Support.FREE else ""
-        return (
-            f"{head}R1 {_text(self.ball_radius)} mm, clearance {_text(self.clearance)} mm, "
-            f"{_thickness(self.liner_thickness)} of {self.liner}{behind}{free}; ball {ball}"
-        )
+        return f"{head}{self.dimensions} of {self.liner}{behind}{free}; ball {ball}"
 
 
 def _checked_backing(backing: Any) -> tuple[Layer, ...]:

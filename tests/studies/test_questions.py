@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.output import study_plots
-from ballsocket.studies.design import Span, grid, sample
+from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, allowed, dimension
@@ -219,22 +218,6 @@ def test_phrases_of_the_shell():
     for phrase in ("ball_radius", "ball_radius=11", "outer_radius<26", "ball_radios=11..23"):
         with pytest.raises(ValueError, match=r"is not a|did you mean|is not known"):
             (limit_of if "<" in phrase else range_of)(phrase)
-
-
-def test_pictures_show_what_was_asked(design_space):
-    figure = study_plots.design_map(design_space, SHELL, best={"ball_radius": 19.6, "liner_thickness": 6.3})
-    assert [axes.get_title() for axes in figure.axes] == [
-        "peak pressure p0 [MPa]",
-        "contact area A [mm²]",
-        "contact half angle ε [°]",
-    ]
-    scattered = sample(64, clearance=tolerance(0.1, 0.05)) * grid(force=Span(500.0, 3000.0, 5))
-    bands = bs.study(bs.HessForsbach(), HIP, scattered)
-    assert "median" in study_plots.band_figure(bands).axes[0].get_legend_handles_labels()[1]
-    with pytest.raises(ValueError, match="a map needs two axes"):
-        study_plots.design_map(bands.isel(force=0))
-    with pytest.raises(ValueError, match="bands need samples"):
-        study_plots.band_figure(design_space)
 
 
 STUDY = """

@@ -13,7 +13,7 @@ import ballsocket as bs
 
 from ..io.joint_file import JointFile
 from ..model import Model
-from ..output import study_plots, study_terminal
+from ..output import study_plots, study_summary, study_terminal
 from ..output.save import check_format, save
 from ..studies.design import grid
 from ..studies.file import named_model
@@ -96,7 +96,7 @@ def design_map(
     design = grid(**axes, **_load(force, indentation, file, axes))
     found = bs.study(_model(model, file), file.joint, design, quantities=_quantities((), limits))
     if as_json:
-        echo_json(study_terminal.map_summary(found, limits))
+        echo_json(study_summary.map_summary(found, limits))
     else:
         study_terminal.print_map(found, limits)
     if figure is not None:
@@ -133,7 +133,7 @@ def optimise(
         found = bs.study(answers, file.joint, design, quantities=quantities)
         front = pareto(found, (chosen[0], chosen[1]), limits)
         if as_json:
-            echo_json(study_terminal.front_summary(front))
+            echo_json(study_summary.front_summary(front))
         else:
             study_terminal.print_front(front)
         if figure is not None:
@@ -172,7 +172,7 @@ def sensitivity(
     found = find_sensitivity(_model(model, file), file.joint, scattered, count=count, load=load)
     if as_json:
         echo_json(
-            {"version": bs.__version__, "model": found.attrs["model"], **study_terminal.sensitivity_summary(found)}
+            {"version": bs.__version__, "model": found.attrs["model"], **study_summary.sensitivity_summary(found)}
         )
     else:
         study_terminal.print_sensitivity(found)

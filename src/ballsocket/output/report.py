@@ -16,7 +16,8 @@ from ..engines.local import Engine, Serial
 from ..paper.figure import Figure
 from . import accuracy_table, report_tables
 from . import html as html_page
-from . import paper_plots as paper_figures
+from .accuracy_plot import heat_map
+from .paper_plots import draw
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -80,10 +81,10 @@ class _Pictures:
 
     def __call__(self, number: int) -> bytes:
         if number == len(self.figures):
-            return _pictured("accuracy", paper_figures.heat_map(self.rows), self.folder)
+            return _pictured("accuracy", heat_map(self.rows), self.folder)
         name, figure = self.figures[number]
         write_text(self.folder / f"{name}.csv", _csv(figure))
-        return _pictured(name, paper_figures.draw(figure), self.folder)
+        return _pictured(name, draw(figure), self.folder)
 
 
 def _figure(name: str, figure: Figure, picture: bytes) -> str:

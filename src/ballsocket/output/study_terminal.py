@@ -1,21 +1,21 @@
-"""Studies in a terminal, and as dictionaries for JSON."""
+"""Studies in a terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import degrees
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy
 from rich.console import Console
 from rich.table import Table
 
-from ..arrays import to_list
 from ..studies.labels import described
 from ..studies.limits import Limit, allowed
-from ..studies.pieces import dims_of, pieces
+from ..studies.pieces import pieces
 from ..validity import Status
+from .study_summary import answers, coordinates, map_summary
 
 if TYPE_CHECKING:
     import xarray
@@ -59,7 +59,7 @@ class _Seen:
 
     @classmethod
     def of(cls, study: xarray.Dataset) -> _Seen:
-        names = _answers(study)
+        names = answers(study)
         nothing = (_End(float("nan"), 0), _End(float("nan"), 0))
         seen = cls(
             dict.fromkeys(names, nothing), {name: [] for name in names}, {one: 0 for one in Status if one.failed}
@@ -112,40 +112,15 @@ def map_rows(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[list[str],
     return ["quantity", "unit", "least", "at", "largest", "at"], rows
 
 
-def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any]:
-    """Least and largest values with their places.
-
-    Raises
-    ------
-    ValueError
-        Nothing is allowed.
-    """
-    good = allowed(study, limits)
-    if not bool(good.any()):
-        raise ValueError(f"no point of the map is allowed by {' and '.join(map(str, limits)) or 'the model'}")
-    quantities = {}
-    for name in _answers(study):
-        values = study[name].where(good).transpose(*dims_of(study)).values
-        ends = (int(numpy.nanargmin(values)), int(numpy.nanargmax(values)))
-        quantities[name] = [{"value": float(values.flat[end]), "at": _coordinates(study, end)} for end in ends]
-    return {"model": study.attrs["model"], "limits": [str(limit) for limit in limits], "quantities": quantities}
-
-
 def print_front(front: xarray.Dataset, most: int = 12) -> None:
     """Designs that no other beats in both, at most so many of them, evenly chosen."""
     chosen = front.isel(point=numpy.unique(numpy.linspace(0, front.sizes["point"] - 1, most).round().astype(int)))
-    names = [*(str(name) for name in front.coords if front[name].dims), *_answers(front)]
+    names = [*(str(name) for name in front.coords if front[name].dims), *answers(front)]
     table = _table(*(f"{described(name)['symbol']} [{_unit(name)}]" for name in names))
     for place in range(chosen.sizes["point"]):
         table.add_row(*(_shown(name, float(chosen[name].values[place])) for name in names))
     Console().print(table)
     Console().print(f"{front.sizes['point']} designs that no other beats in both", highlight=False)
-
-
-def front_summary(front: xarray.Dataset) -> dict[str, Any]:
-    """Columns of numbers."""
-    names = [str(name) for name in (*front.coords, *front.data_vars) if front[name].dims]
-    return {"model": front.attrs["model"], "points": {name: to_list(front[name].values) for name in names}}
 
 
 def print_optimum(best: Optimum) -> None:
@@ -183,44 +158,8 @@ def print_sensitivity(found: xarray.Dataset) -> None:
         console.print(table)
 
 
-def sensitivity_summary(found: xarray.Dataset) -> dict[str, Any]:
-    """By quantity, then by number."""
-    orders = ("first_order", "first_order_low", "first_order_high", "total_order", "elasticity")
-    return {
-        "samples": found.attrs["samples"],
-        "quantities": {
-            quantity: {
-                "mean": float(found["mean"].sel(quantity=quantity)),
-                "deviation": float(found["deviation"].sel(quantity=quantity)),
-                "numbers": {
-                    name: {
-                        order: to_list(found[order].sel(quantity=quantity, parameter=name).values) for order in orders
-                    }
-                    for name in found.parameter.values.tolist()
-                },
-            }
-            for quantity in found.quantity.values.tolist()
-        },
-    }
-
-
-def _answers(study: xarray.Dataset) -> list[str]:
-    return [str(name) for name in study.data_vars if name not in ("status", "valid")]
-
-
-def _coordinates(study: xarray.Dataset, flat: int) -> dict[str, float]:
-    """The parameters at a point, by its number in the order of the dimensions."""
-    dims = dims_of(study)
-    place = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
-    found = {}
-    for name, variable in study.coords.items():
-        here = variable.isel({dim: int(place[dim]) for dim in variable.dims})
-        found[str(name)] = float(here)
-    return found
-
-
 def _place(study: xarray.Dataset, flat: int) -> str:
-    return _words({name: value for name, value in _coordinates(study, flat).items() if study[name].dims})
+    return _words({name: value for name, value in coordinates(study, flat).items() if study[name].dims})
 
 
 def _words(at: Mapping[str, float]) -> str:
