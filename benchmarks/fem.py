@@ -18,6 +18,7 @@ import numpy
 from matplotlib.figure import Figure
 
 import ballsocket as bs
+from ballsocket.output.style import finish, line_of
 
 from .fem_rival import PAPER, PAPERS_MESH, at_equal_error, forget
 from .report import Report, Rows
@@ -130,12 +131,9 @@ def _draw(elements: numpy.ndarray, seconds: numpy.ndarray, line: numpy.polynomia
     """The cost as a figure for the docs."""
     figure = Figure(figsize=(5.5, 3.6), layout="constrained")
     axes = figure.subplots()
-    axes.loglog(elements, seconds, "o", color="#0072B2")
+    axes.loglog(elements, seconds, "o", color=line_of("fem").colour)
     fitted = elements[-4:]
     axes.loglog(fitted, numpy.exp(line(numpy.log(fitted))), color="0.4", label=f"(elements)$^{{{line.coef[1]:.2f}}}$")
-    axes.set_xlabel("bilinear elements")
-    axes.set_ylabel("one load on a new joint [s]")
-    axes.grid(color="0.9", linewidth=0.6, which="both")
-    axes.spines[["top", "right"]].set_visible(False)
+    finish(axes, "bilinear elements", "one load on a new joint [s]")
     axes.legend(frameon=False)
     figure.savefig(DRAWN, dpi=150)

@@ -147,15 +147,16 @@ def _draw(found: list[tuple[int, float, float]]) -> None:
     from matplotlib.figure import Figure
 
     from ballsocket.output.save import save
-    from ballsocket.output.style import COLOURS, finish
+    from ballsocket.output.style import finish, in_matplotlib, line_of
 
     presses = [10.0**power for power, _, _ in found]
     figure = Figure(figsize=(8.6, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
-    left.loglog(presses, [seconds for _, seconds, _ in found], "o-", color=COLOURS[0], label="measured")
+    style = {**in_matplotlib(line_of("hess-forsbach")), "marker": "o"}
+    left.loglog(presses, [seconds for _, seconds, _ in found], label="measured", **style)
     last = found[-1][1] / presses[-1]
     left.loglog(presses, [last * each for each in presses], ":", color="0.5", label=f"{1e9 * last:.0f} ns a press")
-    right.semilogx(presses, [memory for _, _, memory in found], "o-", color=COLOURS[1])
+    right.semilogx(presses, [memory for _, _, memory in found], **style)
     right.set_ylim(0.0, 1.0)
     finish(left, "presses of the paper's model into Zarr", "seconds on one core")
     finish(right, "presses of the paper's model into Zarr", "memory at most [GB]")

@@ -15,14 +15,14 @@ from ballsocket.output.save import save
 
 hip = bs.joints["hip-32"]
 models = {
-    "paper": bs.HessForsbach(),
+    "hess-forsbach": bs.HessForsbach(),
     "own": bs.RadialFoundation(modulus=bs.polynomial(1.02, 1.25, 0.10, source="our liner, 2026")),
     "exact": bs.Exact(),
 }
 contacts = {name: model.press(hip, force=3000.0) for name, model in models.items()}
 for name, contact in contacts.items():
     stiffness, pressure = contact.foundation_modulus, contact.max_pressure
-    print(f"{name:>6}: K {stiffness:6.1f} MPa/mm, p0 {pressure:5.2f} MPa, valid {contact.valid}")
+    print(f"{name:>13}: K {stiffness:6.1f} MPa/mm, p0 {pressure:5.2f} MPa, valid {contact.valid}")
 
 # %%
 # A model of one's own is drawn, compared and cited like the others.

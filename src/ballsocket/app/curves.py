@@ -9,7 +9,8 @@ from typing import Any
 import numpy
 from bokeh.models import ColumnDataSource, HoverTool
 
-from .look import THICK, THIN, Line, Palette, chart, from_zero
+from ..output.style import THICK, THIN, Line
+from .look import Palette, chart, colour_of, dash_of, from_zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,10 +28,11 @@ class CurveChart:
     """A chart whose curves are replaced at every change."""
 
     def __init__(self, x: str, y: str, palette: Palette, formats: tuple[str, str]) -> None:
+        self._palette = palette
         self.figure = chart(x, y, palette)
         self.figure.x_range, self.figure.y_range = from_zero(1.0), from_zero(1.0)
-        self._lines = ColumnDataSource(_lines({}))
-        self._marks = ColumnDataSource(_marks({}))
+        self._lines = ColumnDataSource(_lines({}, palette))
+        self._marks = ColumnDataSource(_marks({}, palette))
         lines: Any = self.figure.multi_line(
             "x",
             "y",
@@ -48,33 +50,34 @@ class CurveChart:
         legend.label_text_color = palette.text
         legend.label_text_font_size = "12px"
         legend.spacing, legend.padding = 0, 2
+        legend.glyph_width = 36  # a whole dash
 
     def show(self, curves: Mapping[str, Curve], x: float, y: float) -> None:
         """Draw these; the axes run up to x and y."""
-        self._lines.data = _lines(curves)
-        self._marks.data = _marks(curves)
+        self._lines.data = _lines(curves, self._palette)
+        self._marks.data = _marks(curves, self._palette)
         self.figure.x_range.end, self.figure.y_range.end = x, y
 
 
-def _lines(curves: Mapping[str, Curve]) -> dict[str, list[Any]]:
+def _lines(curves: Mapping[str, Curve], palette: Palette) -> dict[str, list[Any]]:
     """Thick where a curve can be trusted, thin all the way where it cannot."""
-    rows = [row for name, curve in curves.items() for row in _rows(name, curve)]
+    rows = [row for name, curve in curves.items() for row in _rows(name, curve, palette)]
     return {
         head: [row[place] for row in rows] for place, head in enumerate(("name", "x", "y", "width", "colour", "dash"))
     }
 
 
-def _rows(name: str, curve: Curve) -> Iterator[tuple[Any, ...]]:
+def _rows(name: str, curve: Curve, palette: Palette) -> Iterator[tuple[Any, ...]]:
     x, y = curve.x.astype(numpy.float32), curve.y.astype(numpy.float32)
-    style = (curve.line.colour, curve.line.dash)
+    style = (colour_of(curve.line, palette), dash_of(curve.line))
     if curve.trusted.any():
         yield (name, x, numpy.where(curve.trusted, y, numpy.float32("nan")), THICK, *style)
     if not curve.trusted.all():
         yield (name, x, y, THIN, *style)
 
 
-def _marks(curves: Mapping[str, Curve]) -> dict[str, list[Any]]:
-    marked = [(curve.mark, curve.line.colour) for curve in curves.values() if curve.mark is not None]
+def _marks(curves: Mapping[str, Curve], palette: Palette) -> dict[str, list[Any]]:
+    marked = [(curve.mark, colour_of(curve.line, palette)) for curve in curves.values() if curve.mark is not None]
     return {
         "x": [mark[0] for mark, _ in marked],
         "y": [mark[1] for mark, _ in marked],

@@ -8,8 +8,7 @@ from typing import Any
 from bokeh.models import ColorBar, LinearColorMapper, Range1d
 from bokeh.plotting import figure
 
-from ..catalogue import catalogue, reference
-from ..output.style import COLOURS
+from ..output.style import INK, THICK, Line
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,29 +32,15 @@ PALETTES = {
     ),
 }
 
-_DASHES = ("solid", "12 4", "4 3", "14 4 3 4", "8 3 2 3 2 3")
+
+def colour_of(line: Line, palette: Palette) -> str:
+    """The colour of a line on this page, whose ink may be light."""
+    return palette.text if line.colour == INK else line.colour
 
 
-THICK, THIN = 2.2, 0.9
-"""Where a model can be trusted, and where not."""
-
-
-@dataclass(frozen=True)
-class Line:
-    """How a curve is drawn."""
-
-    colour: str
-    dash: str
-
-
-def line_of(name: str, palette: Palette) -> Line:
-    """A model keeps its line wherever it is drawn."""
-    return Line(palette.text, "solid") if name == reference.name else numbered(list(catalogue).index(name) - 1)
-
-
-def numbered(index: int) -> Line:
-    """The line of a number, told from others by its dashes too."""
-    return Line(COLOURS[index % len(COLOURS)], _DASHES[(index + index // len(COLOURS)) % len(_DASHES)])
+def dash_of(line: Line) -> str:
+    """The dash of a line as Bokeh takes it."""
+    return " ".join(f"{THICK * length:.0f}" for length in line.dash) or "solid"
 
 
 def chart(x: str, y: str, palette: Palette, height: int = 300, **options: Any) -> Any:

@@ -8,8 +8,9 @@ from math import degrees, pi
 import numpy
 
 from ..contact import Contact
+from ..output.style import Line
 from .curves import Curve, CurveChart
-from .look import Line, Palette
+from .look import Palette
 from .pressing import curve, rounded_up
 
 _ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 60))

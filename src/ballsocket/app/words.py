@@ -12,7 +12,8 @@ from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
 from ..describe import COLUMNS, Column
-from .look import Palette, line_of
+from ..output.style import THICK, line_of
+from .look import Palette, colour_of
 
 _HANDY = {
     "indentation": ("µm", 1e3),
@@ -130,11 +131,20 @@ def _row(comparison: Comparison, name: str, shown: list[Quantity], palette: Pale
     contact, apart = comparison[name], comparison.deviation(name)
     cells = "".join(f"<td>{each.text(contact)}{_apart(apart, each.column.name)}</td>" for each in shown)
     why = "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
-    colour = line_of(name, palette).colour
-    swatch = f"<span class='swatch' style='background:{colour}'></span>"
+    swatch = _swatch(name, palette)
     kind = "reference" if name == reference.name else "valid" if bool(contact.valid) else "doubtful"
     return (
         f"<tr class='{kind}'><th scope='row'>{swatch}{escape(name)}</th>{cells}<td class='text'>{escape(why)}</td></tr>"
+    )
+
+
+def _swatch(name: str, palette: Palette) -> str:
+    """A short piece of a model's line."""
+    line = line_of(name)
+    dashes = " ".join(f"{THICK * length:g}" for length in line.dash)
+    return (
+        "<svg class='swatch' viewBox='0 0 32 8' aria-hidden='true'><path d='M0 4H32' "
+        f"stroke='{colour_of(line, palette)}' stroke-width='{THICK:g}' stroke-dasharray='{dashes}'/></svg>"
     )
 
 

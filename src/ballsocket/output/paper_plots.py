@@ -1,39 +1,27 @@
-"""The paper's figures and the accuracy of the catalogue, drawn from their numbers. Nothing is computed here."""
+"""The paper's figures, drawn from their numbers. Nothing is computed here."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..catalogue import judge
+from ..models.foundation import HessForsbach
 from ..paper.cases import OUTER_RADII
 from ..paper.curves import FIT
-from ..paper.figure import Figure, Line, Map, Panel
-from .accuracy_table import HEADS, spread
-from .style import finish
+from ..paper.figure import Figure, Map, Panel
+from ..paper.plan import ELEMENTS
+from .style import LEGEND, finish, in_matplotlib, line_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Drawing
 
-_STYLES: dict[str, dict[str, Any]] = {
-    "exact": {"color": "black", "linestyle": "-", "linewidth": 1.6},
-    "finite elements": {
-        "color": "#CC79A7",
-        "linestyle": "",
-        "marker": "o",
-        "markersize": 3.5,
-        "markerfacecolor": "none",
-        "markevery": 3,
-    },
-    "hess-forsbach": {"color": "#D55E00", "linestyle": (0, (6, 2)), "linewidth": 1.6},
-    "bartel": {"color": "#0072B2", "linestyle": (0, (2, 1.5)), "linewidth": 1.6},
-    "bonded-layer": {"color": "#009E73", "linestyle": (0, (7, 2, 1.5, 2)), "linewidth": 1.6},
-    "hertz": {"color": "#56B4E9", "linestyle": "-", "linewidth": 1.0},
-    "refined": {"color": "#E69F00", "linestyle": (0, (1, 1)), "linewidth": 2.0},
-    FIT: {"color": "0.5", "linestyle": ":", "linewidth": 1.8, "zorder": 3},
-}
+_MODELS = {ELEMENTS: judge.name, FIT: HessForsbach().name}
+"""What the paper's figures call otherwise."""
+
 _WIDTH = 10.8  # inches: a page's width, with letters as large as the text's
 
 
@@ -88,11 +76,11 @@ def _name_models(drawing: Drawing, figure: Figure) -> None:
     models, cases = (
         list(dict.fromkeys(names)) for names in zip(*((line.model, line.case) for line in lines), strict=True)
     )
-    styles = {model: _STYLES[model] if len(cases) == 1 else {**_STYLES[model], "color": "0.3"} for model in models}
+    styles = {model: _style(model) if len(cases) == 1 else {**_style(model), "color": "0.3"} for model in models}
     if len(cases) > 1 and _have_same_cases(figure.panels):
         styles |= {case: {"color": colour, "linewidth": 4.0} for case, colour in _case_colours(cases).items()}
     handles = [Line2D([], [], label=name, **style) for name, style in styles.items()]
-    drawing.legend(handles=handles, loc="lower center", ncols=min(len(handles), 8), frameon=False, fontsize=9)
+    drawing.legend(handles=handles, loc="lower center", ncols=min(len(handles), 8), **LEGEND)
 
 
 def _have_same_cases(panels: Sequence[Panel]) -> bool:
@@ -102,7 +90,8 @@ def _have_same_cases(panels: Sequence[Panel]) -> bool:
 def _draw_panel(axes: Axes, panel: Panel) -> None:
     cases = list(dict.fromkeys(line.case for line in panel.lines))
     for line in panel.lines:
-        axes.plot(line.x, line.y, **_style(line, cases))
+        colour = {} if len(cases) == 1 else {"color": _case_colours(cases)[line.case]}
+        axes.plot(line.x, line.y, **{**_style(line.model), **colour})
     finish(axes, panel.x, panel.y)
     axes.locator_params(nbins=5)
     axes.set_title(panel.title, fontsize=10)
@@ -137,12 +126,12 @@ def _case_colours(cases: Sequence[str]) -> dict[str, Any]:
     return dict(zip(cases, colormaps["viridis"](numpy.linspace(0.0, 0.82, len(cases))), strict=True))
 
 
-def _style(line: Line, cases: list[str]) -> dict[str, Any]:
-    """The model's own, with a colour for each case where there are several."""
-    style = dict(_STYLES[line.model])
-    if len(cases) > 1:
-        style["color"] = _case_colours(cases)[line.case]
-    return style
+def _style(model: str) -> dict[str, Any]:
+    """The model's line everywhere; circles for the finite elements, which lie on others."""
+    style = in_matplotlib(line_of(_MODELS.get(model, model)), 1.6)
+    if model != ELEMENTS:
+        return style
+    return {**style, "linestyle": "", "marker": "o", "markersize": 3.5, "markerfacecolor": "none", "markevery": 3}
 
 
 def _draw_map(axes: Axes, each: Map) -> None:
@@ -171,33 +160,3 @@ def _about_zero() -> dict[str, Any]:
 
     norm = SymLogNorm(linthresh=1.0, vmin=-300.0, vmax=300.0)
     return {"levels": _LEVELS, "cmap": "RdBu_r", "norm": norm, "extend": "both"}
-
-
-def heat_map(rows: Sequence[Mapping[str, Any]]) -> Drawing:
-    """Errors of every model by quantity, of `Accuracy.summary()`: the colour is the 95th percentile."""
-    from matplotlib.colors import LogNorm
-    from matplotlib.figure import Figure as Drawing
-
-    errors = [[row["errors"][name] for name in HEADS] for row in rows]
-    high = numpy.array([[100 * error["percentile_95"] for error in line] for line in errors])
-    drawing = Drawing(figsize=(8.6, 0.42 * len(rows) + 1.3), layout="constrained")
-    axes = drawing.subplots()
-    norm = LogNorm(*_HEAT_ENDS)
-    image = axes.imshow(high, cmap="YlOrRd", norm=norm, aspect="auto")
-    for i, line in enumerate(errors):
-        for j, error in enumerate(line):
-            dark = norm(high[i, j]) > _DARK
-            axes.text(j, i, spread(error), ha="center", va="center", fontsize=8.5, color="white" if dark else "black")
-    axes.set_xticks(range(len(HEADS)), list(HEADS.values()))
-    axes.xaxis.tick_top()
-    axes.set_yticks(range(len(rows)), [row["model"] for row in rows])
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)
-    bar = drawing.colorbar(image, ax=axes, extend="both", pad=0.01)
-    bar.set_label("95th percentile [%]")
-    axes.set_xlabel("median / 95th percentile / worst error in %")
-    return drawing
-
-
-_HEAT_ENDS = (0.1, 300.0)  # %
-_DARK = 0.72  # of the colours

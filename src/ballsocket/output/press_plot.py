@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isinf
 from typing import TYPE_CHECKING
 
 import numpy
 
 from .. import arrays
-from ..catalogue import reference
 from ..contact import Contact
-from ..joint import Joint
-from .style import REFERENCE_STYLE, finish, style
+from .style import LEGEND, THICK, THIN, Line, finish, in_matplotlib, line_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact], title: str = "") -> Figure:
+def press_figure(
+    contacts: Mapping[str, Contact],
+    curves: Mapping[str, Contact],
+    title: str = "",
+    lines: Mapping[str, Line] | None = None,
+) -> Figure:
     """Pressure over angle beside force over indentation.
 
     Parameters
@@ -29,23 +31,26 @@ def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact],
         For each of these models a contact of a 1-D array of loads: its force-indentation curve.
     title : str
         By default the joint of the first contact, and its load.
+    lines : mapping of str to Line, optional
+        How each is drawn; by default as the model of that name is drawn everywhere.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The exact answer is black; curves of models outside their validity are drawn thin.
+        Curves of models outside their validity are drawn thin.
     """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10.0, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2)
-    for index, (name, contact) in enumerate(contacts.items()):
-        line = REFERENCE_STYLE if name == reference.name else style(index, bool(contact.valid))
+    for name, contact in contacts.items():
+        line = line_of(name) if lines is None else lines[name]
+        style = in_matplotlib(line, THICK if contact.valid else THIN)
         angle = _angles(contact)
-        left.plot(numpy.degrees(angle), contact.pressure(angle), label=_said(name), **line)
+        left.plot(numpy.degrees(angle), contact.pressure(angle), label=_said(name), **style)
         curve = curves[name]
-        right.plot(arrays.to_numpy(curve.indentation) * 1e3, arrays.to_numpy(curve.force) / 1e3, **line)
-        right.plot(contact.indentation * 1e3, contact.force / 1e3, "o", color=line["color"], markersize=4.5)
+        right.plot(arrays.to_numpy(curve.indentation) * 1e3, arrays.to_numpy(curve.force) / 1e3, **style)
+        right.plot(contact.indentation * 1e3, contact.force / 1e3, "o", color=line.colour, markersize=4.5)
     finish(left, "polar angle φ [°]", "contact pressure [MPa]")
     left.set_xlim(0.0, 90.0)
     if left.dataLim.ymin > -0.02 * left.dataLim.ymax:
@@ -55,7 +60,7 @@ def press_figure(contacts: Mapping[str, Contact], curves: Mapping[str, Contact],
     right.set_xlim(0.0, 1.12e3 * max(contact.indentation for contact in contacts.values()) or 1.0)
     right.set_ylim(0.0, 1.6e-3 * max(contact.force for contact in contacts.values()) or 1.0)
     columns = min(len(contacts), 4)
-    legend = figure.legend(loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
+    legend = figure.legend(loc="outside lower center", ncols=columns, **LEGEND)
     for text in legend.get_texts():
         text.set_parse_math(False)
     figure.suptitle(title or _title(next(iter(contacts.values()))), fontsize=10, parse_math=False)
@@ -77,17 +82,6 @@ def _title(contact: Contact) -> str:
     joint = contact.joint
     ball = "rigid ball" if joint.ball is None else f"ball {float(joint.ball.young) / 1e3:g} GPa"
     return (
-        f"{dimensions(joint)} of {float(joint.liner.young) / 1e3:g} GPa, "
-        f"ν {float(joint.liner.poisson):g}; {ball}; ● at {_load(contact)}"
+        f"{joint.dimensions} of {float(joint.liner.young) / 1e3:g} GPa, "
+        f"ν {float(joint.liner.poisson):g}; {ball}; ● at {contact.force:.4g} N"
     )
-
-
-def dimensions(joint: Joint) -> str:
-    """Ball, clearance and what lines the socket, of a joint of plain numbers."""
-    thickness = float(joint.liner_thickness)
-    lined = "massive socket" if isinf(thickness) else f"liner {thickness:g} mm"
-    return f"R1 {float(joint.ball_radius):g} mm, clearance {float(joint.clearance):g} mm, {lined}"
-
-
-def _load(contact: Contact) -> str:
-    return f"{contact.force:.4g} N"

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..catalogue import judge, reference
 from ..contact import Contact
 from ..fem.contact import MeshedContact
-from .press_plot import dimensions
-from .style import finish
+from .style import BLUE, LEGEND, finish, in_matplotlib, line_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,7 +44,7 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
     left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     _draw_section(figure, left, contact)
     _draw_pressure(right, contact, exact)
-    title = f"{dimensions(contact.joint)}; {contact.force:.4g} N, {contact.mesh.elements} elements"
+    title = f"{contact.joint.dimensions}; {contact.force:.4g} N, {contact.mesh.elements} elements"
     figure.suptitle(title, fontsize=10)
     return figure
 
@@ -74,7 +74,7 @@ def _draw_mesh(axes: Axes, part: Part) -> None:
 
     corners = part.place[:, part.elements[list(_RIM[len(part.elements)])]]
     outlines = numpy.moveaxis(corners * numpy.array([-1.0, 1.0])[:, None, None], (0, 1, 2), (2, 1, 0))
-    colour = "0.45" if part.name == "ball" else "#0072B2"
+    colour = "0.45" if part.name == "ball" else BLUE
     axes.add_collection(PolyCollection(list(outlines), facecolors="white", edgecolors=colour, linewidths=0.25))
 
 
@@ -96,13 +96,14 @@ def _draw_pressure(axes: Axes, contact: MeshedContact, exact: Contact | None) ->
     pressure = contact.pressure(angle)
     if exact is not None:
         there = numpy.linspace(0.0, 1.0, 300) * exact.half_angle * (1 + 1e-6)
-        axes.plot(numpy.degrees(there), exact.pressure(there), color="black", linewidth=2.0, label="exact")
-    axes.plot(numpy.degrees(angle), pressure, color="#D55E00", linestyle=(0, (5, 2)), label="finite elements")
+        axes.plot(numpy.degrees(there), exact.pressure(there), label="exact", **in_matplotlib(line_of(reference.name)))
+    line = line_of(judge.name)
+    axes.plot(numpy.degrees(angle), pressure, label="finite elements", **in_matplotlib(line))
     error = contact.error["max_pressure"]
     if error > 0:
         bars = {"yerr": error * contact.max_pressure, "capsize": 3, "fmt": "none"}
-        axes.errorbar([0.0], [contact.max_pressure], color="#D55E00", label=f"p0 ± {100 * error:.1g} %", **bars)
+        axes.errorbar([0.0], [contact.max_pressure], color=line.colour, label=f"p0 ± {100 * error:.1g} %", **bars)
     finish(axes, "polar angle φ [°]", "contact pressure [MPa]")
     axes.set_xlim(0.0, max(1.08 * numpy.degrees(edge), 5.0))
     axes.set_ylim(bottom=0.0)
-    axes.legend(frameon=False, fontsize=9)
+    axes.legend(**LEGEND)

@@ -10,7 +10,7 @@ import numpy
 
 from ..studies.labels import described
 from ..studies.limits import Limit, allowed, margin_over
-from .style import COLOURS, finish
+from .style import BLUE, INK, LEGEND, ORANGE, finish
 
 if TYPE_CHECKING:
     import xarray
@@ -114,7 +114,7 @@ def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressur
             axes.fill_between(x, low, high, color=shade, label=f"{100 * share:g} % of the joints", linewidth=0)
         axes.plot(x, values.median(dim="sample").values, color="black", linewidth=1.8, label="median")
         finish(axes, label(others[0]), label(name))
-    figure.axes[0].legend(frameon=False, fontsize=9)
+    figure.axes[0].legend(**LEGEND)
     return figure
 
 
@@ -138,9 +138,9 @@ def front_figure(
     one, other = ((study[name] * factor(name)).where(good).values.ravel() for name in minimise)
     axes.plot(one, other, ".", color="0.75", markersize=3, label="allowed")
     best = [(front[name] * factor(name)).values for name in minimise]
-    axes.plot(*best, "o-", color=COLOURS[0], markersize=4, linewidth=1.2, label="no other is better in both")
+    axes.plot(*best, "o-", color=INK, markersize=4, linewidth=1.2, label="no other is better in both")
     finish(axes, label(minimise[0]), label(minimise[1]))
-    axes.legend(frameon=False, fontsize=9)
+    axes.legend(**LEGEND)
     return figure
 
 
@@ -154,7 +154,7 @@ def sensitivity_figure(found: xarray.Dataset) -> Figure:
     for axes, quantity in zip(
         figure.subplots(1, len(quantities), squeeze=False, sharey=True).ravel(), quantities, strict=True
     ):
-        for order, offset, colour in (("first", -0.17, COLOURS[0]), ("total", 0.17, COLOURS[5])):
+        for order, offset, colour in (("first", -0.17, BLUE), ("total", 0.17, ORANGE)):
             part = found.sel(quantity=quantity)
             values, low, high = (part[f"{order}_order{end}"].values for end in ("", "_low", "_high"))
             error = numpy.clip([values - low, high - values], 0.0, None)

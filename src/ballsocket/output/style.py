@@ -2,28 +2,87 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Any
+from zlib import crc32
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+INK = "black"
+"""The colour of text: on a dark page that is a light one."""
 
-# Okabe & Ito's colours, safe for the colour-blind; the dashes keep the curves apart in grey
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#999999")
+BLUE, VERMILLION, GREEN, PINK, SKY, ORANGE, GREY = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#56B4E9",
+    "#E69F00",
+    "#999999",
+)
+"""Okabe & Ito's colours, safe for the colour-blind, and a grey."""
+
+_COLOURS = (BLUE, VERMILLION, GREEN, PINK, SKY, ORANGE, GREY)
+
+# ink and gaps in widths of the line: they keep curves apart in grey
+_THROUGH = ()
+_LONG, _SHORT, _DOTS = (6.0, 2.0), (2.0, 1.5), (1.0, 1.0)
+_DOT, _TWO_DOTS, _EVEN = (7.0, 2.0, 1.5, 2.0), (4.0, 1.5, 1.0, 1.5, 1.0, 1.5), (4.0, 4.0)
+_DASHES = (_THROUGH, _LONG, _SHORT, _DOT, _TWO_DOTS, _DOTS, _EVEN)
+
+THICK, THIN = 2.0, 1.0
+"""Where a model can be trusted, and where not: in points, or in pixels of a browser."""
 
 
-_DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (2, 1.5)), (0, (7, 2, 1.5, 2)), (0, (4, 1.5, 1, 1.5, 1, 1.5)))
+@dataclass(frozen=True)
+class Line:
+    """How a curve is drawn: its colour, and lengths of ink and gap in widths of the line; none is drawn through."""
+
+    colour: str
+    dash: tuple[float, ...] = ()
 
 
-REFERENCE_STYLE = {"color": "black", "linestyle": "-", "linewidth": 2.0}
+_MODELS = {  # relatives share a colour, and differ by their dashes
+    "exact": Line(INK),
+    "tabulated": Line(GREY, _SHORT),
+    "fem": Line(PINK, _EVEN),
+    "refined": Line(ORANGE, _DOTS),
+    "hess-forsbach": Line(VERMILLION, _LONG),
+    "adhesive": Line(VERMILLION, _DOTS),
+    "vessel": Line(BLUE, _DOT),
+    "bartel": Line(BLUE, _SHORT),
+    "bonded-layer": Line(GREEN, _DOT),
+    "bonded-layer-exact": Line(GREEN, _SHORT),
+    "hertz": Line(SKY, _TWO_DOTS),
+    "steuermann": Line(SKY, _LONG),
+    "plane-layer": Line(GREEN, _TWO_DOTS),
+    "cosine-limit": Line(PINK, _DOTS),
+    "liu-reconstruction": Line(GREY, _TWO_DOTS),
+}
+
+_FREE = [line for line in (Line(*pair) for pair in product(_COLOURS, _DASHES)) if line not in _MODELS.values()]
 
 
-def style(index: int, valid: bool) -> dict[str, Any]:
-    return {
-        "color": COLOURS[index % len(COLOURS)],
-        "linestyle": _DASHES[(index + index // len(COLOURS)) % len(_DASHES)],
-        "linewidth": 2.0 if valid else 1.0,
-    }
+def line_of(model: str) -> Line:
+    """The line of a model, by its name: one that is not of the catalogue keeps a line of its own in every figure."""
+    return _MODELS[model] if model in _MODELS else _FREE[crc32(model.encode()) % len(_FREE)]
+
+
+def numbered(index: int) -> Line:
+    """The line of one of several cases that are no models."""
+    return Line(_COLOURS[index % len(_COLOURS)], _DASHES[(index + index // len(_COLOURS)) % len(_DASHES)])
+
+
+def in_matplotlib(line: Line, width: float = THICK) -> dict[str, Any]:
+    """A line as Matplotlib takes it; one without gaps lies below those through which it can be seen."""
+    dash, below = ((0, line.dash), 0.0) if line.dash else ("-", 0.1)
+    return {"color": line.colour, "linestyle": dash, "linewidth": width, "zorder": 2.0 - below}
+
+
+LEGEND: dict[str, Any] = {"frameon": False, "fontsize": 9, "handlelength": 3.4}
+"""Long enough for a whole dash."""
 
 
 def finish(axes: Axes, x: str, y: str) -> None:

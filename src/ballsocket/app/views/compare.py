@@ -15,9 +15,10 @@ from ...contact import Contact
 from ...io.joint_file import JointFile
 from ...output.html import drawn, table
 from ...output.press_plot import press_figure
+from ...output.style import Line, numbered
 from ...presets import joints
 from ..drawing import SectionDrawing, extent_of
-from ..look import PALETTES, numbered
+from ..look import PALETTES
 from ..press_charts import PressCharts
 from ..pressing import pressed
 from ..screen import BESIDE, Screen
@@ -104,17 +105,19 @@ class Compare:
                 name = list(files)[number]
                 self._heads[number].object = f"<h3>{escape(name)}</h3>"
                 drawing.show(files[name], contacts.get(name), extent, highest)
-        self._charts.show(contacts, {name: numbered(list(files).index(name)) for name in contacts}, screen.angle)
+        self._charts.show(contacts, _lines(files), screen.angle)
 
     def document(self, screen: Screen) -> Document:
         files = labelled(screen)
         contacts = answers(files, screen.answered_by)
         models = dict.fromkeys(contacts, catalogue[screen.answered_by])
         title = f"answered by {screen.answered_by}"
+
+        def picture(form: str) -> bytes:
+            return drawn(press_figure(contacts, force_curves(contacts, models), title, _lines(files)), form)
+
         return Document(
-            picture=(lambda form: drawn(press_figure(contacts, force_curves(contacts, models), title), form))
-            if contacts
-            else None,
+            picture=picture if contacts else None,
             rows=lambda: number_rows("joint", contacts),
             sections=lambda: {"joints": ("Joints", table(*_text_table(files, contacts, screen)))},
         )
@@ -133,6 +136,11 @@ def labelled(screen: Screen) -> dict[str, JointFile]:
             name, number = f"{base} ({number})", number + 1
         found[name] = replace(file, load=screen.file.load)
     return found
+
+
+def _lines(files: Mapping[str, JointFile]) -> dict[str, Line]:
+    """A joint's line is that of its place."""
+    return {name: numbered(place) for place, name in enumerate(files)}
 
 
 def answers(files: Mapping[str, JointFile], model: str) -> dict[str, Contact]:

@@ -11,8 +11,9 @@ from ...catalogue import catalogue
 from ...compare import HEADS, Comparison, answered, force_curves
 from ...output import html as page
 from ...output.press_plot import press_figure
+from ...output.style import line_of
 from ..drawing import SectionDrawing
-from ..look import PALETTES, line_of
+from ..look import PALETTES
 from ..press_charts import PressCharts
 from ..pressing import pressed
 from ..screen import Screen
@@ -72,7 +73,7 @@ class Press:
             self._numbers.object = headline(by, screen.angle)
         self._drawing.show(screen.file, None if by is None or by.status.failed else by)
         drawn = {name: found[name] for name in screen.shown if name in answered(found)}
-        self._charts.show(drawn, {name: line_of(name, self._palette) for name in drawn}, screen.angle)
+        self._charts.show(drawn, {name: line_of(name) for name in drawn}, screen.angle)
         self._fill_later(screen)
 
     def _fill_later(self, screen: Screen) -> None:
