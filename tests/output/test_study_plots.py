@@ -18,7 +18,7 @@ def test_pictures_show_what_was_asked():
     )
     figure = study_plots.design_map(space, SHELL, best={"ball_radius": 19.6, "liner_thickness": 6.3})
     assert [axes.get_title() for axes in figure.axes] == [
-        "peak pressure p0 [MPa]",
+        "largest pressure pmax [MPa]",
         "contact area A [mm²]",
         "contact half angle ε [°]",
     ]
