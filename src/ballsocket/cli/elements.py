@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Annotated, Any
 
+import typer
 from rich.console import Console
 
 from ..catalogue import judge
@@ -23,18 +24,55 @@ from ..io.joint_file import read_cup
 from ..io.units import parse
 from ..output import section_plot
 from ..output.save import check_format, save
-
-Words = Mapping[str, str | None]
-
-CUP = ("arc_of_cover", "chamfer", "interface")
+from .words import given
 
 
 @dataclass(frozen=True, kw_only=True)
-class Output:
+class CupWords:
+    """What a cup is, where it differs from that of the joint's file."""
+
+    arc_of_cover: Annotated[str | None, typer.Option(help="From rim to rim, '180 deg'")] = None
+    chamfer: Annotated[str | None, typer.Option(help="Of the rim's inner edge, '1 mm'")] = None
+    interface: Annotated[str | None, typer.Option(help="Liner 'bonded' or 'sliding' on its backing")] = None
+
+    def on(self, cup: Cup) -> Cup:
+        """The cup with what the words say of it."""
+        words = given(vars(self))
+        asked = read_cup(words)
+        return replace(cup, **{name: getattr(asked, name) for name in words})
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshWords:
+    """How a joint is meshed."""
+
+    element_size: Annotated[str | None, typer.Option(help="'0.05 mm'; without it, what the contact needs")] = None
+    element: Annotated[str | None, typer.Option(help="'biquadratic' or 'bilinear'")] = None
+
+    def model(self, cup: Cup, meshes: int) -> FiniteElement:
+        """Finite elements of a cup, on so many meshes."""
+        return FiniteElement(cup=cup, spacing=self._spacing(), element=self._element(), meshes=meshes)
+
+    def _spacing(self) -> Spacing:
+        if self.element_size is None:
+            return Adapted()
+        length = parse("element_size", self.element_size, "length")
+        require("element_size", length, length > 0, "an element's size (mm) is above 0")
+        return Uniform(size=length)
+
+    def _element(self) -> Element:
+        known = {element.name.lower(): element for element in Element}
+        if self.element is not None and self.element not in known:
+            raise ValueError(f"element {self.element!r} is not known{nearest(self.element, known)}")
+        return Element.BIQUADRATIC if self.element is None else known[self.element]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Files:
     """Files that are asked for: a figure of the section, and its fields for ParaView."""
 
-    section: Path | None
-    vtk: Path | None
+    section: Annotated[Path | None, typer.Option(help="Write mesh, stresses and pressure as a figure")] = None
+    vtk: Annotated[Path | None, typer.Option(help="Write meshes and fields, .vtu or .vtk")] = None
 
     def check(self) -> None:
         """Raise ValueError for an ending that is not written."""
@@ -59,39 +97,11 @@ class Output:
             write_vtk(contact.section, self.vtk)
 
 
-def check_asked(words: Mapping[str, Any], asked: bool) -> None:
-    """Raise ValueError where words are given that only the finite elements understand, and these are not asked."""
-    names = [name for name, word in words.items() if word is not None]
-    if names and not asked:
-        option = names[0].replace("_", "-")
-        raise ValueError(f"--{option} is for the finite elements: add --model {judge.name}")
-
-
-def finite_elements(words: Words, cup: Cup) -> FiniteElement:
-    """The model that the words ask for, on a joint file's cup unless they say otherwise."""
-    own = {name: words[name] for name in CUP if words[name] is not None}
-    asked = read_cup(own)
-    return FiniteElement(
-        cup=replace(cup, **{name: getattr(asked, name) for name in own}),
-        spacing=_spacing(words["element_size"]),
-        element=_element(words["element"]),
-        meshes=int(words["meshes"] or 2),
-    )
-
-
-def _spacing(size: str | None) -> Spacing:
-    if size is None:
-        return Adapted()
-    length = parse("element_size", size, "length")
-    require("element_size", length, length > 0, "an element's size (mm) is above 0")
-    return Uniform(size=length)
-
-
-def _element(name: str | None) -> Element:
-    known = {element.name.lower(): element for element in Element}
-    if name is not None and name not in known:
-        raise ValueError(f"element {name!r} is not known{nearest(name, known)}")
-    return Element.BIQUADRATIC if name is None else known[name]
+def refuse(words: Mapping[str, Any]) -> None:
+    """Raise ValueError for words that only the finite elements understand, where these are not asked."""
+    for name, word in words.items():
+        if word is not None:
+            raise ValueError(f"--{name.replace('_', '-')} is for the finite elements: add --model {judge.name}")
 
 
 def timed(model: FiniteElement, joint: Any, load: Mapping[str, float]) -> tuple[MeshedContact, float]:

@@ -17,7 +17,7 @@ from ..io.units import parse
 from ..output import terminal
 from ..paper.table_3 import refit_table_3
 from .root import app
-from .words import echo_json, named_joint
+from .words import AsJson, echo_json, named_joint
 
 _FORMS: dict[str, Form] = {
     "constant": bs.as_constant,
@@ -32,7 +32,7 @@ def calibrate(
     force: Annotated[list[str] | None, typer.Option(help="A load, '2 kN'; repeat. Default 1, 2 and 3 kN.")] = None,
     thickness: Annotated[list[str] | None, typer.Option(help="A liner thickness, '5 mm'; repeat for a family.")] = None,
     form: Annotated[str, typer.Option(help="constant, polynomial (Eq. 18) or corrected-vessel")] = "constant",
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Fit the closed form's foundation modulus to the exact answer: for one joint, or as the paper did (Table 3)."""
     if joint is None:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 import ballsocket as bs
 
+from ..cup import Cup
 from ..io.joint_file import JointFile
 from ..model import Model
 from ..output import study_plots, study_summary, study_terminal
@@ -24,38 +25,165 @@ from ..studies.pareto import pareto
 from ..studies.phrases import axis_of, limit_of, range_of, spread_of
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
+from .groups import grouped
 from .root import app
-from .words import echo_json, given, load_of, named_joint
+from .words import AsJson, echo_json, given, load_of, named_joint
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 JointName = Annotated[str, typer.Argument(help="A joint file or a preset's name.")]
-ModelName = Annotated[str, typer.Option(help="A model's name: tabulated, exact, hess-forsbach, ...")]
-Force = Annotated[str | None, typer.Option(help="'3 kN'; without a load that of the joint's file")]
-Indentation = Annotated[str | None, typer.Option(help="'40 um' in place of a force")]
 Limits = Annotated[list[str] | None, typer.Option("--limit", help="'outer_radius<=26 mm'; repeat")]
-Picture = Annotated[Path | None, typer.Option(help="Write a picture (.png, .svg, .pdf).")]
-AsJson = Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")]
 
 
-def _load(force: str | None, indentation: str | None, joint: JointFile, named: Iterable[str]) -> dict[str, float]:
-    """The load; none where it is among what varies."""
-    words = {"force": force, "indentation": indentation}
-    varied = [name for name in named if name in LOADS]
-    if varied and given(words):
-        raise ValueError(f"{varied[0]} varies, and a load is given too; one is needed")
-    return {} if varied else load_of(words, joint)
+@dataclass(frozen=True, kw_only=True)
+class PressWords:
+    """By what model and under what load joints are pressed."""
+
+    model: Annotated[str, typer.Option(help="A model's name: tabulated, exact, hess-forsbach, ...")] = "tabulated"
+    force: Annotated[str | None, typer.Option(help="'3 kN'; without a load that of the joint's file")] = None
+    indentation: Annotated[str | None, typer.Option(help="'40 um' in place of a force")] = None
+
+    def model_in(self, cup: Cup) -> Model:
+        """The model by its name, in a cup."""
+        return named_model(self.model).in_cup(cup)
+
+    def load(self, file: JointFile, varied: Iterable[str]) -> dict[str, float]:
+        """The load; none where it is among what varies."""
+        words = {"force": self.force, "indentation": self.indentation}
+        loads = [name for name in varied if name in LOADS]
+        if loads and given(words):
+            raise ValueError(f"{loads[0]} varies, and a load is given too; one is needed")
+        return {} if loads else load_of(words, file)
 
 
-def _model(name: str, joint: JointFile) -> Model:
-    """A model by its name, in the cup of the joint's file."""
-    return named_model(name).in_cup(joint.cup)
+@dataclass(frozen=True, kw_only=True)
+class FormWords:
+    """How an answer is shown."""
+
+    figure: Annotated[Path | None, typer.Option(help="Write a picture (.png, .svg, .pdf).")] = None
+    as_json: AsJson = False
+
+    def check(self) -> None:
+        """Raise ValueError for a picture's ending that is not written."""
+        if self.figure is not None:
+            check_format(self.figure)
+
+    def print(self, summary: Callable[[], dict[str, Any]], table: Callable[[], None]) -> None:
+        """Print the answer as JSON, or as a table."""
+        if self.as_json:
+            echo_json(summary())
+        else:
+            table()
+
+    def draw(self, draw: Callable[[], Figure]) -> None:
+        """Write the picture, if one is asked for."""
+        if self.figure is not None:
+            save(draw(), self.figure)
 
 
-def _limits(phrases: list[str] | None, joint: JointFile) -> list[Limit]:
-    return [replace(limit_of(phrase), cup=joint.cup) for phrase in phrases or []]
+@app.command(name="map")
+@grouped
+def design_map(
+    *,
+    joint: JointName,
+    x: Annotated[str, typer.Option(help="The axis across, 'ball_radius=11..23 mm'.")] = "ball_radius=11..23 mm",
+    y: Annotated[str, typer.Option(help="The axis upwards.")] = "liner_thickness=3..15 mm",
+    points: Annotated[int, typer.Option(help="Values along each axis.")] = 41,
+    press: PressWords,
+    limit: Limits = None,
+    form: FormWords,
+) -> None:
+    """Map peak pressure, contact area and half angle over two numbers of a joint, with limits drawn."""
+    form.check()
+    file = named_joint(joint)
+    limits = _limits(limit, file.cup)
+    axes = _once([axis_of(x, points), axis_of(y, points)])
+    design = grid(**axes, **press.load(file, axes))
+    found = bs.study(press.model_in(file.cup), file.joint, design, quantities=_quantities((), limits))
+    form.print(lambda: study_summary.map_summary(found, limits), lambda: study_terminal.print_map(found, limits))
+    form.draw(lambda: study_plots.design_map(found, limits))
+
+
+@app.command()
+@grouped
+def optimise(
+    *,
+    joint: JointName,
+    vary: Annotated[list[str], typer.Option(help="'ball_radius=11..23 mm'; repeat")],
+    minimise: Annotated[
+        list[str] | None, typer.Option(help="max_pressure (default), area, ...; twice for the front between two")
+    ] = None,
+    press: PressWords,
+    limit: Limits = None,
+    points: Annotated[int, typer.Option(help="Values along each range, for a front of two.")] = 41,
+    form: FormWords,
+) -> None:
+    """Find the joint with the smallest answer within limits; with two answers, the joints that none beats in both."""
+    form.check()
+    file, chosen = named_joint(joint), minimise or ["max_pressure"]
+    limits = _limits(limit, file.cup)
+    ranges = _once((name, (low, high)) for name, low, high in map(range_of, vary))
+    if form.figure is not None and len(chosen) == 1 and len(ranges) != 2:
+        raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
+    load, model = press.load(file, ranges), press.model_in(file.cup)
+
+    def everywhere() -> Any:
+        """The study of all the ranges."""
+        design = grid(**dict(axis_of(phrase, points) for phrase in vary), **load)
+        return bs.study(model, file.joint, design, quantities=_quantities(chosen, limits))
+
+    if len(chosen) == 2:
+        _front(everywhere(), (chosen[0], chosen[1]), limits, form)
+        return
+    if len(chosen) != 1:
+        raise ValueError(f"one answer or two are minimised, got {len(chosen)}")
+    best = find_optimum(model, file.joint, ranges, minimise=chosen[0], limits=limits, load=load)
+    form.print(lambda: {"version": bs.__version__, **best.summary()}, lambda: study_terminal.print_optimum(best))
+    form.draw(lambda: study_plots.design_map(everywhere(), limits, _shown(chosen), best=best.point))
+
+
+def _front(found: Any, wishes: tuple[str, str], limits: list[Limit], form: FormWords) -> None:
+    """Show the joints that none beats in both wishes."""
+    front = pareto(found, wishes, limits)
+    form.print(lambda: study_summary.front_summary(front), lambda: study_terminal.print_front(front))
+    form.draw(lambda: study_plots.front_figure(found, front, wishes, limits))
+
+
+@app.command()
+@grouped
+def sensitivity(
+    *,
+    joint: JointName,
+    spread: Annotated[list[str], typer.Option(help="'clearance=0.10+-0.05 mm' or 'liner_poisson=0.38..0.46'; repeat")],
+    press: PressWords,
+    count: Annotated[int, typer.Option(help="Samples, a power of two.")] = 1024,
+    form: FormWords,
+) -> None:
+    """Tell which number's scatter matters: Sobol indices with intervals, and elasticities."""
+    form.check()
+    file = named_joint(joint)
+    scattered = _once(map(spread_of, spread))
+    load, model = press.load(file, scattered), press.model_in(file.cup)
+    found = find_sensitivity(model, file.joint, scattered, count=count, load=load)
+    form.print(
+        lambda: {
+            "version": bs.__version__,
+            "model": found.attrs["model"],
+            **study_summary.sensitivity_summary(found),
+        },
+        lambda: study_terminal.print_sensitivity(found),
+    )
+    form.draw(lambda: study_plots.sensitivity_figure(found))
+
+
+def _limits(phrases: list[str] | None, cup: Cup) -> list[Limit]:
+    """Limits in words; distances from the edge are those of the cup."""
+    return [replace(limit_of(phrase), cup=cup) for phrase in phrases or []]
 
 
 def _once(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """As a dictionary, if no name comes twice."""
+    """Pairs as a dictionary, if no name comes twice."""
     found: dict[str, Any] = {}
     for name, value in pairs:
         if name in found:
@@ -65,6 +193,7 @@ def _once(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _shown(wishes: list[str]) -> list[str]:
+    """What a map shows: first what is wished for."""
     return list(dict.fromkeys((*wishes, *study_plots.SHOWN)))
 
 
@@ -72,109 +201,3 @@ def _quantities(wishes: Iterable[str], limits: Iterable[Limit]) -> list[str]:
     """What is shown, wished for, or limited."""
     limited = (limit.name for limit in limits if limit.name in QUANTITIES)
     return list(dict.fromkeys((*USUAL, *wishes, *limited)))
-
-
-@app.command(name="map")
-def design_map(
-    joint: JointName,
-    x: Annotated[str, typer.Option(help="The axis across, 'ball_radius=11..23 mm'.")] = "ball_radius=11..23 mm",
-    y: Annotated[str, typer.Option(help="The axis upwards.")] = "liner_thickness=3..15 mm",
-    points: Annotated[int, typer.Option(help="Values along each axis.")] = 41,
-    model: ModelName = "tabulated",
-    force: Force = None,
-    indentation: Indentation = None,
-    limit: Limits = None,
-    figure: Picture = None,
-    as_json: AsJson = False,
-) -> None:
-    """Map peak pressure, contact area and half angle over two numbers of a joint, with limits drawn."""
-    if figure is not None:
-        check_format(figure)
-    file = named_joint(joint)
-    limits = _limits(limit, file)
-    axes = _once([axis_of(x, points), axis_of(y, points)])
-    design = grid(**axes, **_load(force, indentation, file, axes))
-    found = bs.study(_model(model, file), file.joint, design, quantities=_quantities((), limits))
-    if as_json:
-        echo_json(study_summary.map_summary(found, limits))
-    else:
-        study_terminal.print_map(found, limits)
-    if figure is not None:
-        save(study_plots.design_map(found, limits), figure)
-
-
-@app.command()
-def optimise(
-    joint: JointName,
-    vary: Annotated[list[str], typer.Option(help="'ball_radius=11..23 mm'; repeat")],
-    minimise: Annotated[
-        list[str] | None, typer.Option(help="max_pressure (default), area, ...; twice for the front between two")
-    ] = None,
-    model: ModelName = "tabulated",
-    force: Force = None,
-    indentation: Indentation = None,
-    limit: Limits = None,
-    points: Annotated[int, typer.Option(help="Values along each range, for a front of two.")] = 41,
-    figure: Picture = None,
-    as_json: AsJson = False,
-) -> None:
-    """Find the joint with the smallest answer within limits; with two answers, the joints that none beats in both."""
-    if figure is not None:
-        check_format(figure)
-    file, chosen = named_joint(joint), minimise or ["max_pressure"]
-    limits = _limits(limit, file)
-    ranges = _once((name, (low, high)) for name, low, high in map(range_of, vary))
-    if figure is not None and len(chosen) == 1 and len(ranges) != 2:
-        raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
-    load = _load(force, indentation, file, ranges)
-    answers, quantities = _model(model, file), _quantities(chosen, limits)
-    if len(chosen) == 2:
-        design = grid(**dict(axis_of(phrase, points) for phrase in vary), **load)
-        found = bs.study(answers, file.joint, design, quantities=quantities)
-        front = pareto(found, (chosen[0], chosen[1]), limits)
-        if as_json:
-            echo_json(study_summary.front_summary(front))
-        else:
-            study_terminal.print_front(front)
-        if figure is not None:
-            save(study_plots.front_figure(found, front, (chosen[0], chosen[1]), limits), figure)
-        return
-    if len(chosen) != 1:
-        raise ValueError(f"one answer or two are minimised, got {len(chosen)}")
-    best = find_optimum(answers, file.joint, ranges, minimise=chosen[0], limits=limits, load=load)
-    if as_json:
-        echo_json({"version": bs.__version__, **best.summary()})
-    else:
-        study_terminal.print_optimum(best)
-    if figure is not None:
-        axes = dict(axis_of(phrase, points) for phrase in vary)
-        found = bs.study(answers, file.joint, grid(**axes, **load), quantities=quantities)
-        save(study_plots.design_map(found, limits, _shown(chosen), best=best.point), figure)
-
-
-@app.command()
-def sensitivity(
-    joint: JointName,
-    spread: Annotated[list[str], typer.Option(help="'clearance=0.10+-0.05 mm' or 'liner_poisson=0.38..0.46'; repeat")],
-    model: ModelName = "tabulated",
-    force: Force = None,
-    indentation: Indentation = None,
-    count: Annotated[int, typer.Option(help="Samples, a power of two.")] = 1024,
-    figure: Picture = None,
-    as_json: AsJson = False,
-) -> None:
-    """Tell which number's scatter matters: Sobol indices with intervals, and elasticities."""
-    if figure is not None:
-        check_format(figure)
-    file = named_joint(joint)
-    scattered = _once(map(spread_of, spread))
-    load = _load(force, indentation, file, scattered)
-    found = find_sensitivity(_model(model, file), file.joint, scattered, count=count, load=load)
-    if as_json:
-        echo_json(
-            {"version": bs.__version__, "model": found.attrs["model"], **study_summary.sensitivity_summary(found)}
-        )
-    else:
-        study_terminal.print_sensitivity(found)
-    if figure is not None:
-        save(study_plots.sensitivity_figure(found), figure)

@@ -1,10 +1,11 @@
-"""What several commands read and write: joints by file, preset or number, and JSON."""
+"""What several commands read and write: joints by file, preset or number, loads, and JSON."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
@@ -12,10 +13,54 @@ from ..checks import nearest
 from ..io.joint_file import JointFile, joint_of, read_joint, read_load
 from ..presets import joints
 
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")]
 
-def echo_json(answer: dict[str, Any]) -> None:
-    """Print one JSON object; a number that is missing is null."""
-    typer.echo(json.dumps(answer, indent=2, allow_nan=False))
+
+@dataclass(frozen=True, kw_only=True)
+class JointWords:
+    """A joint in words, in place of a file."""
+
+    ball_radius: Annotated[str | None, typer.Option(help="R1, '16 mm'")] = None
+    clearance: Annotated[str | None, typer.Option(help="Radial clearance, '0.1 mm'")] = None
+    liner_thickness: Annotated[str | None, typer.Option(help="L, '6 mm'; inf is a massive socket")] = None
+    young: Annotated[str | None, typer.Option(help="Young's modulus of the liner, '1 GPa'")] = None
+    poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the liner")] = None
+    liner: Annotated[str | None, typer.Option(help="Liner material by name, in place of --young --poisson")] = None
+    ball_young: Annotated[str | None, typer.Option(help="Young's modulus of the ball; none is a rigid ball")] = None
+    ball_poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the ball")] = None
+    ball: Annotated[str | None, typer.Option(help="Ball material by name, in place of its numbers")] = None
+
+    def tables(self) -> dict[str, dict[str, str]]:
+        """The tables of a joint file that the words make up."""
+        lengths = {name: getattr(self, name) for name in ("ball_radius", "clearance", "liner_thickness")}
+        liner = {"material": self.liner, "young": self.young, "poisson": self.poisson}
+        ball = {"material": self.ball, "young": self.ball_young, "poisson": self.ball_poisson}
+        tables = {"joint": given(lengths), "liner": given(liner), "ball": given(ball)}
+        return {name: table for name, table in tables.items() if table}
+
+    def or_named(self, name: str | None) -> JointFile:
+        """The joint in words, or that of a file or preset: exactly one of them is needed."""
+        tables = self.tables()
+        if name is not None and tables:
+            raise ValueError("give a joint file or the joint's numbers, not both")
+        if name is None and not tables:
+            raise ValueError(
+                "a joint is needed: a file, a preset's name, or --ball-radius --clearance --liner-thickness ..."
+            )
+        return joint_of(tables) if name is None else named_joint(name)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadWords:
+    """A load, in place of that of the joint's file."""
+
+    force: Annotated[str | None, typer.Option(help="Axial load, '3 kN'")] = None
+    indentation: Annotated[str | None, typer.Option(help="Approach from first touch, '40 um'")] = None
+    half_angle: Annotated[str | None, typer.Option(help="Contact half-angle, '40 deg'")] = None
+
+    def or_of(self, file: JointFile) -> dict[str, float]:
+        """The load in words, or that of the joint's file."""
+        return load_of(vars(self), file)
 
 
 def given(words: dict[str, str | None]) -> dict[str, str]:
@@ -32,17 +77,6 @@ def load_of(words: dict[str, str | None], file: JointFile) -> dict[str, float]:
     return load
 
 
-def joint_file(name: str | None, described: dict[str, dict[str, str]]) -> JointFile:
-    """A joint by its file or preset, or by the tables of a joint file in words."""
-    if name is not None and described:
-        raise ValueError("give a joint file or the joint's numbers, not both")
-    if name is None and not described:
-        raise ValueError(
-            "a joint is needed: a file, a preset's name, or --ball-radius --clearance --liner-thickness ..."
-        )
-    return joint_of(described) if name is None else named_joint(name)
-
-
 def named_joint(name: str) -> JointFile:
     """A joint by its file or preset."""
     if not name:
@@ -55,3 +89,8 @@ def named_joint(name: str) -> JointFile:
     if name in joints:
         return JointFile(joints[name], {})
     raise ValueError(f"{name!r} is neither a file nor a preset{nearest(name, joints)}")
+
+
+def echo_json(answer: dict[str, Any]) -> None:
+    """Print one JSON object; a number that is missing is null."""
+    typer.echo(json.dumps(answer, indent=2, allow_nan=False))
