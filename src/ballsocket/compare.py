@@ -17,6 +17,7 @@ from .contact import Contact
 from .describe import COLUMNS, count, number_text
 from .joint import Joint
 from .model import Model
+from .quantities import HEADLINE
 from .sources import Source
 from .validity import OutsideDomainError
 from .version import __version__
@@ -112,8 +113,8 @@ def _listed(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
     return None if deviation is None else {name: to_list(value) for name, value in deviation.items()}
 
 
-_SHOWN = COLUMNS[:6]
-HEADS = ("model", *(f"{column.symbol} [{column.unit}]" for column in _SHOWN), "valid")
+_SHOWN = tuple(column for column in COLUMNS if column.attribute in HEADLINE)
+HEADS = ("model", *(column.head for column in _SHOWN), "valid")
 """Heads of the columns of `Comparison.rows`."""
 
 

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from math import cos, degrees, inf, pi, radians, sin
+from math import cos, pi, sin
 
 from . import arrays
 from .arrays import Array, is_plain
 from .checks import numeric, require
+from .quantities import CUP
 
 Direction = tuple[float, float, float]
 
@@ -33,11 +34,6 @@ class Side(Enum):
     LEFT = "left"
 
 
-_ANGLES = {
-    "arc_of_cover": (radians(40.0), radians(340.0), "an arc of cover"),
-    "inclination": (0.0, pi / 2, "an inclination"),
-    "anteversion": (-pi / 2, pi / 2, "an anteversion"),
-}
 _CHOICES = {"interface": Interface, "side": Side}
 
 
@@ -92,14 +88,9 @@ class Cup:
     side: Side = Side.RIGHT
 
     def __post_init__(self) -> None:
-        for name in (*_ANGLES, "chamfer"):
-            if not is_plain(numeric(name, getattr(self, name))):
+        for name, quantity in CUP.items():
+            if not is_plain(quantity.checked(getattr(self, name))):
                 raise TypeError(f"{name} must be one number, got {getattr(self, name)!r}")
-        for name, (low, high, words) in _ANGLES.items():
-            angle, (least, most) = getattr(self, name), (degrees(low), degrees(high))
-            allowed = f"{words} is {least:g} to {most:g} degrees, which are {low:.4g} to {high:.4g} radians"
-            require(name, angle, low <= angle <= high, allowed)
-        require("chamfer", self.chamfer, 0 <= self.chamfer < inf, "a chamfer (mm) is 0 or more and finite")
         for name, kind in _CHOICES.items():
             if not isinstance(getattr(self, name), kind):
                 known = " or ".join(map(str, kind))

@@ -4,50 +4,58 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from html import escape
-from math import degrees
 from typing import Any
 
 import numpy
 
 from . import arrays
 from .arrays import Array
+from .kinds import Unit
+from .quantities import CONTACT, Quantity
 
 
 @dataclass(frozen=True)
 class Column:
-    """A quantity of a contact as people and programs read it.
+    """A quantity of a contact in a unit: the head of a column, and its numbers."""
 
-    `name` and `unit` are those of JSON, `symbol` is the head of a table, `factor` goes from the unit inside to `unit`.
-    """
+    quantity: Quantity
+    reading: Unit
 
-    name: str
-    symbol: str
-    unit: str
-    factor: float = 1.0
+    @property
+    def name(self) -> str:
+        """What JSON calls it."""
+        return self.quantity.key
 
     @property
     def attribute(self) -> str:
         """What a contact calls it."""
-        return self.name.removesuffix("_deg")
+        return self.quantity.name
+
+    @property
+    def symbol(self) -> str:
+        return self.quantity.symbol
+
+    @property
+    def unit(self) -> str:
+        return self.reading.text
+
+    @property
+    def factor(self) -> float:
+        """From the unit inside to `unit`."""
+        return self.reading.factor
+
+    @property
+    def head(self) -> str:
+        """Symbol and unit."""
+        return self.quantity.head(self.reading)
 
     def of(self, contact: Any) -> Array:
         """The contact's values in `unit`; -0 is 0."""
         return getattr(contact, self.attribute) * self.factor + 0.0
 
 
-COLUMNS = (
-    Column("force", "F", "N"),
-    Column("indentation", "d", "mm"),
-    Column("half_angle_deg", "ε", "°", degrees(1.0)),
-    Column("max_pressure", "pmax", "MPa"),
-    Column("area", "A", "mm²"),
-    Column("stiffness", "dF/dd", "N/mm"),
-    Column("energy", "U", "N mm"),
-    Column("foundation_modulus", "K", "MPa/mm"),
-    Column("pole_pressure", "p0", "MPa"),
-    Column("max_pressure_angle_deg", "φmax", "°", degrees(1.0)),
-)
-"""Every quantity that is printed, in the order in which it is printed."""
+COLUMNS = tuple(Column(each, each.written) for each in CONTACT.values())
+"""Every quantity that is printed, in the order in which it is printed and in the units of JSON."""
 
 
 def summary(contact: Any) -> dict[str, Any]:

@@ -10,7 +10,8 @@ from math import inf
 from typing import Any
 
 from .arrays import Array, is_plain, to_list, where
-from .checks import numeric, require
+from .checks import require
+from .quantities import JOINT, LAYER, MATERIAL
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,11 +46,7 @@ class Material:
     source: str = ""
 
     def __post_init__(self) -> None:
-        young = numeric("young", self.young)
-        poisson = numeric("poisson", self.poisson)
-        require("young", young, (young > 0) & (young < inf), "Young's modulus (MPa) is above 0 and finite")
-        require("poisson", poisson, (poisson > -1) & (poisson <= 0.5), "Poisson's ratio lies above -1, up to 0.5")
-        _set(self, young=young, poisson=poisson)
+        _set(self, **{name: quantity.checked(getattr(self, name)) for name, quantity in MATERIAL.items()})
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
@@ -95,8 +92,7 @@ class Layer:
     material: Material
 
     def __post_init__(self) -> None:
-        thickness = numeric("thickness", self.thickness)
-        require("thickness", thickness, thickness > 0, "a thickness (mm) is above 0; inf is a massive body")
+        thickness = LAYER["thickness"].checked(self.thickness)
         if not isinstance(self.material, Material):
             raise TypeError(f"material must be a Material, got {self.material!r}")
         _set(self, thickness=thickness)
@@ -166,17 +162,8 @@ class Joint:
     source: str = ""
 
     def __post_init__(self) -> None:
-        radius = numeric("ball_radius", self.ball_radius)
-        clearance = numeric("clearance", self.clearance)
-        thickness = numeric("liner_thickness", self.liner_thickness)
-        require("ball_radius", radius, (radius > 0) & (radius < inf), "a radius (mm) is above 0 and finite")
-        require(
-            "clearance",
-            clearance,
-            (clearance >= 0) & (clearance < inf),
-            "a radial clearance (mm) is 0 or more and finite; negative is a preloaded joint, another problem",
-        )
-        require("liner_thickness", thickness, thickness > 0, "a thickness (mm) is above 0; inf is a massive socket")
+        own = ("ball_radius", "clearance", "liner_thickness")
+        numbers = {name: JOINT[name].checked(getattr(self, name)) for name in own}
         if not isinstance(self.liner, Material):
             raise TypeError(f"liner must be a Material, got {self.liner!r}")
         if not (self.ball is None or isinstance(self.ball, Material)):
@@ -184,7 +171,7 @@ class Joint:
         if not isinstance(self.support, Support):
             raise TypeError(f"support must be Support.FIXED or Support.FREE, got {self.support!r}")
         backing = _checked_backing(self.backing)
-        _set(self, ball_radius=radius, clearance=clearance, liner_thickness=thickness, backing=backing)
+        _set(self, **numbers, backing=backing)
         for name, inner in self._thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import pi
 from typing import ClassVar, Self
 
 import numpy
 
 from . import arrays
 from .arrays import Array, where
-from .checks import numeric, one_load, require, vectors
+from .checks import one_load, require, vectors
 from .contact import Contact, Laws
 from .cup import Cup
 from .joint import Joint
+from .quantities import LOADS
 from .sources import Source
 from .validity import Range, Status, inside, missing
 
@@ -174,14 +174,7 @@ class Model(ABC):
 def checked_load(**loads: Array | None) -> tuple[str, Array]:
     """The one load that was given, checked, with its name."""
     kind, given = one_load(**loads)
-    load = numeric(kind, given)
-    if kind == "half_angle":
-        require(kind, load, (load >= 0) & (load < pi / 2), "a half angle (rad) is 0 or more and below pi/2")
-    else:
-        unit = "N" if kind == "force" else "mm"
-        allowed = f"{'a force' if kind == 'force' else 'an indentation'} ({unit}) is 0 or more and finite"
-        require(kind, load, (load >= 0) & (load < numpy.inf), allowed)
-    return kind, load
+    return kind, LOADS[kind].checked(given)
 
 
 def prepared(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
-from math import degrees, inf
+from math import inf
 from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
 from .arrays import Array, to_numpy, truth
+from .kinds import Unit
+from .quantities import QUANTITIES
 
 
 class Status(IntEnum):
@@ -112,13 +114,18 @@ class Range:
         return f"{self.symbol} = {value[0]:g}" + (f" (and {value.size - 1} more)" if value.size > 1 else "")
 
     def __str__(self) -> str:
-        scale, unit = (degrees(1.0), "°") if self.quantity == "half_angle" else (1.0, "")
-        low, high = f"{self.low * scale:.4g}{unit}", f"{self.high * scale:.4g}{unit}"
+        low, high = (f"{end * self._unit.factor:.4g}{self._unit.text}" for end in (self.low, self.high))
         if self.low == -inf:
             return f"{self.symbol} ≤ {high}"
         if self.high == inf:
             return f"{self.symbol} ≥ {low}"
         return f"{self.symbol} {low} to {high}"
+
+    @property
+    def _unit(self) -> Unit:
+        """Degrees for an angle; nothing for numbers."""
+        known = QUANTITIES.get(self.quantity) if isinstance(self.quantity, str) else None
+        return Unit("") if known is None else known.written
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,6 +12,7 @@ from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
 from ..describe import COLUMNS, Column
+from ..kinds import Unit
 from ..output.style import THICK, line_of
 from .look import Palette, colour_of
 
@@ -60,10 +61,9 @@ def quantities(angle: str) -> tuple[Quantity, ...]:
 
 def _in_units(column: Column, angle: str) -> Column:
     if column.name in _HANDY:
-        unit, factor = _HANDY[column.name]
-        return replace(column, unit=unit, factor=factor)
+        return replace(column, reading=Unit(*_HANDY[column.name]))
     if column.name == "half_angle_deg" and angle == "radians":
-        return replace(column, unit="rad", factor=1.0)
+        return replace(column, reading=Unit("rad"))
     return column
 
 

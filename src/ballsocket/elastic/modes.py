@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..checks import require
 from ..joint import Joint, Material, Support
+from ..quantities import MATERIAL
 from .waves import UNIT, GroundedLayer, fixed, free
 
 
@@ -286,8 +287,8 @@ def _check_radius(radius: float) -> None:
 
 
 def _check_material(young: float, poisson: float) -> None:
-    require("young", young, 0 < young < inf, "Young's modulus (MPa) is above 0 and finite")
-    require("poisson", poisson, -1 < poisson <= 0.5, "Poisson's ratio lies above -1, up to 0.5")
+    MATERIAL["young"].checked(young)
+    MATERIAL["poisson"].checked(poisson)
 
 
 def _checked(degrees: ArrayLike) -> numpy.ndarray:

@@ -13,21 +13,21 @@ from ..cup import Cup, Interface, Side
 from ..joint import Joint, Layer, Material, Support
 from ..model import checked_load
 from ..presets import materials
+from ..quantities import CUP, JOINT, LAYER, LOADS, MATERIAL
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
 _LENGTHS = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
+_CHOICES: dict[str, type[Enum]] = {"interface": Interface, "side": Side}
 _TABLES = {
     "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
     "joint": (*_LENGTHS, "support"),
-    "liner": ("material", "young", "poisson"),
-    "ball": ("material", "young", "poisson"),
-    "cup": ("arc_of_cover", "chamfer", "interface", "inclination", "anteversion", "side"),
-    "load": ("force", "indentation", "half_angle"),
+    "liner": ("material", *MATERIAL),
+    "ball": ("material", *MATERIAL),
+    "cup": (*CUP, *_CHOICES),
+    "load": tuple(LOADS),
 }
-_LAYER = ("thickness", "material", "young", "poisson")
-_NUMBERS = {"young": "modulus", "poisson": "number"}
-_LOADS = {"force": "force", "indentation": "length", "half_angle": "angle"}
+_LAYER = (*LAYER, "material", *MATERIAL)
 
 
 @dataclass(frozen=True)
@@ -97,17 +97,15 @@ def read_load(table: Mapping[str, Any]) -> dict[str, float]:
     """At most one of force, indentation, half_angle, as the keyword of a press."""
     if len(table) > 1:
         raise ValueError(f"one load is needed, got {', '.join(table)}")
-    load = {name: parse(name, value, _LOADS[name]) for name, value in table.items()}
+    load = {name: parse(name, value, LOADS[name].kind) for name, value in table.items()}
     with as_given(table):
         return dict([checked_load(**load)]) if load else {}
 
 
 def read_cup(table: Mapping[str, Any]) -> Cup:
     """A cup from the names of its parameters, none of which is needed."""
-    kinds = {"arc_of_cover": "angle", "chamfer": "length", "inclination": "angle", "anteversion": "angle"}
-    words: dict[str, Any] = {name: parse(name, table[name], kind) for name, kind in kinds.items() if name in table}
-    choices = {"interface": Interface, "side": Side}
-    words |= {name: kind(_one_of(name, table[name], kind)) for name, kind in choices.items() if name in table}
+    words: dict[str, Any] = {name: parse(name, table[name], CUP[name].kind) for name in CUP if name in table}
+    words |= {name: kind(_one_of(name, table[name], kind)) for name, kind in _CHOICES.items() if name in table}
     with as_given(table):
         return Cup(**words)
 
@@ -137,14 +135,14 @@ def _layer(name: str, table: Mapping[str, Any]) -> Layer:
     check_names(table, _LAYER, f"in {name}")
     if "thickness" not in table:
         raise ValueError(f"{name}.thickness is missing; inf is a massive body")
-    thickness = parse(f"{name}.thickness", table["thickness"], "length")
+    thickness = parse(f"{name}.thickness", table["thickness"], LAYER["thickness"].kind)
     material = _material(name, table)
     with as_given(table, f"{name}."):
         return Layer(thickness=thickness, material=material)
 
 
 def _lengths(table: Mapping[str, Any]) -> dict[str, Any]:
-    lengths: dict[str, Any] = {name: parse(name, value, "length") for name, value in table.items()}
+    lengths: dict[str, Any] = {name: parse(name, value, JOINT[name].kind) for name, value in table.items()}
     if "liner_thickness" not in lengths:
         raise ValueError("liner_thickness is missing; inf is a massive socket")
     given = [name for name in _LENGTHS[:3] if name in lengths]
@@ -168,9 +166,9 @@ def _difference(larger: float, smaller: float) -> float:
 def _material(name: str, table: Mapping[str, Any]) -> Material:
     """A material from a table with `material` (by name) and/or `young` and `poisson`."""
     numbers: dict[str, Any] = {
-        key: parse(f"{name}.{key}", table[key], kind) for key, kind in _NUMBERS.items() if key in table
+        key: parse(f"{name}.{key}", table[key], quantity.kind) for key, quantity in MATERIAL.items() if key in table
     }
-    missing = [key for key in _NUMBERS if key not in numbers]
+    missing = [key for key in MATERIAL if key not in numbers]
     if missing and "material" not in table:
         raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
     preset = _named_material(name, table["material"]) if "material" in table else None

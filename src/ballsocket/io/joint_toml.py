@@ -10,25 +10,12 @@ from ..arrays import is_plain
 from ..checks import needs
 from ..cup import Cup, Side
 from ..joint import Layer, Material, Support
+from ..kinds import Kind
 from ..presets import materials
+from ..quantities import CUP, QUANTITIES
 from .joint_file import JointFile
 
 Tables = dict[str, Any]
-
-_UNITS = {
-    "ball_radius": "mm",
-    "clearance": "mm",
-    "liner_thickness": "mm",
-    "thickness": "mm",
-    "chamfer": "mm",
-    "young": "MPa",
-    "force": "N",
-    "indentation": "mm",
-    "half_angle": "deg",
-    "arc_of_cover": "deg",
-    "inclination": "deg",
-    "anteversion": "deg",
-}
 
 
 def tables_of(file: JointFile) -> Tables:
@@ -56,17 +43,22 @@ def tables_of(file: JointFile) -> Tables:
     if file.cup != Cup():
         tables["cup"] = cup_table(file.cup)
     if file.load:
-        tables["load"] = {name: degrees(value) if name == "half_angle" else value for name, value in file.load.items()}
+        tables["load"] = {name: _bare(name, value) for name, value in file.load.items()}
     return tables
 
 
 def cup_table(cup: Cup) -> Tables:
     """The table `cup` of a joint file; where the cup faces is left out where that is straight down."""
-    table = {"arc_of_cover": degrees(cup.arc_of_cover), "chamfer": cup.chamfer, "interface": cup.interface.value}
+    numbers = {name: _bare(name, getattr(cup, name)) for name in CUP}
+    table = {**numbers, "interface": cup.interface.value, "side": cup.side.value}
     if replace(cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT) == cup:
-        return table
-    facing = {"inclination": degrees(cup.inclination), "anteversion": degrees(cup.anteversion)}
-    return {**table, **facing, "side": cup.side.value}
+        return {name: table[name] for name in ("arc_of_cover", "chamfer", "interface")}
+    return table
+
+
+def _bare(name: str, value: float) -> float:
+    """As a bare number of the file."""
+    return degrees(value) if QUANTITIES[name].kind is Kind.ANGLE else value
 
 
 def toml_of(file: JointFile) -> str:
@@ -95,9 +87,9 @@ def _with_units(part: Any) -> Any:
 
 
 def _text(name: str, value: Any) -> Any:
-    if name not in _UNITS or isinf(value):
-        return value
-    return f"{value!r} {_UNITS[name]}"
+    """A number with its unit, if it has any; the names of joints and materials have none."""
+    unit = QUANTITIES[name].kind.typed if name in QUANTITIES else ""
+    return f"{value!r} {unit}" if unit and not isinf(value) else value
 
 
 def _layer(layer: Layer) -> Tables:

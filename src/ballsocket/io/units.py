@@ -12,19 +12,14 @@ from functools import cache
 from math import radians
 from typing import Any
 
-_UNITS = {"length": "mm", "force": "N", "modulus": "MPa", "angle": "deg", "number": ""}
-_KINDS = {
-    "length": "a length, such as '16 mm'",
-    "force": "a force, such as '3 kN'",
-    "modulus": "a modulus, such as '1 GPa'",
-    "angle": "an angle, such as '40 deg'",
-    "number": "a number, such as 0.4",
-}
+from ..kinds import Kind
 
-_FACTOR = r"[A-Za-z\u00b5\u03bc\u00b0]+(?:\s*(?:\*\*|\^)\s*-?\d)?"
+_FACTOR = r"[A-Za-z\u00b5\u03bc\u00b0]+(?:\s*(?:\*\*|\^)\s*-?\d|[2\u00b2])?"
 # a number and a product or quotient of units: pint alone would also evaluate any arithmetic put before it
-_QUANTITY = re.compile(rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*({_FACTOR}(?:\s*[*/]\s*{_FACTOR})*)", re.ASCII)
-
+_QUANTITY = re.compile(
+    rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*({_FACTOR}(?:(?:\s*[*/]\s*|\s+){_FACTOR})*)", re.ASCII
+)
+_SQUARE = re.compile(r"(?<=[A-Za-z])[2\u00b2]")  # of units as people and the CF conventions write them: mm², mm2
 
 _REFUSED = re.compile(r"(?P<name>\w+) = \S+ is not allowed: (?P<rule>.*)")
 
@@ -38,7 +33,8 @@ def parse(name: str, value: Any, kind: str) -> float:
         What it is, for the message.
     value : float, int or str
         A bare number, or text such as "16 mm", "3 kN", "1 GPa", "40 deg", "inf".
-    kind : {"length", "force", "modulus", "angle", "number"}
+    kind : str
+        One of `ballsocket.kinds.Kind`: "length", "force", "modulus", "angle", "number", ...
 
     Raises
     ------
@@ -55,7 +51,7 @@ def parse(name: str, value: Any, kind: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(_refusal(name, value, kind))
     number = _number(name, value, kind) + 0.0  # no -0
-    return radians(number) if kind == "angle" else number
+    return radians(number) if kind == Kind.ANGLE else number
 
 
 @contextmanager
@@ -77,7 +73,7 @@ def _number(name: str, value: float | str, kind: str) -> float:
         return float(value)
     except ValueError:
         pass
-    if kind == "number":
+    if kind == Kind.NUMBER:
         raise ValueError(_refusal(name, value, kind))
     return _quantity(name, str(value), kind)
 
@@ -90,9 +86,14 @@ def _quantity(name: str, text: str, kind: str) -> float:
         raise ValueError(_refusal(name, text, kind))
     number, unit = found.groups()
     try:
-        return float(_registry().Quantity(float(number), unit).to(_UNITS[kind]).magnitude)
+        return float(_registry().Quantity(float(number), _plain(unit)).to(_plain(Kind(kind).typed)).magnitude)
     except (pint.errors.PintError, AttributeError) as error:
         raise ValueError(_refusal(name, text, kind)) from error
+
+
+def _plain(unit: str) -> str:
+    """As pint reads it."""
+    return _SQUARE.sub("**2", unit)
 
 
 @cache
@@ -103,7 +104,7 @@ def _registry() -> Any:
 
 
 def _refusal(name: str, value: Any, kind: str) -> str:
-    return f"{name} = {_shown(value)} is not {_KINDS[kind]}"
+    return f"{name} = {_shown(value)} is not {Kind(kind).example}"
 
 
 def _shown(value: Any) -> str:

@@ -13,6 +13,7 @@ from math import inf
 import numpy
 
 from ..checks import require
+from ..quantities import QUANTITIES
 from .distributions import Distribution
 
 Array = numpy.ndarray
@@ -165,8 +166,8 @@ def column(name: str, values: Array, row: str = "[{}]") -> Array:
         raise ValueError(f"{name} has no values")
     numbers = values.astype(float)
     bad = ~numpy.isfinite(numbers)
-    if name == "liner_thickness":
-        bad &= numbers != numpy.inf
+    if QUANTITIES[name].allows(inf):
+        bad &= numbers != inf
     if bad.any():
         first = int(numpy.argmax(bad))
         more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""

@@ -9,6 +9,7 @@ import numpy
 
 from ..atomic import at_once
 from ..checks import needs
+from ..quantities import QUANTITIES
 from .pieces import blocks_of, dims_of, pieces
 
 if TYPE_CHECKING:
@@ -52,15 +53,20 @@ def export(study: xarray.Dataset, path: str | Path) -> None:
 def _write_csv(study: xarray.Dataset, path: Path) -> None:
     names = [str(name) for name in (*study.coords, *study.data_vars)]
     with path.open("w", encoding="utf-8", newline="") as stream:
-        stream.write(",".join(f"{name}_deg" if name == "half_angle" else name for name in names) + "\n")
+        stream.write(",".join(map(_head, names)) + "\n")
         for part in pieces(study):
             wide = (variable.broadcast_like(part[names[-1]]) for variable in map(part.__getitem__, names))
             columns = [each.transpose(*dims_of(study)).values.ravel() for each in wide]
-            read = (
-                numpy.degrees(column) if name == "half_angle" else column
-                for name, column in zip(names, columns, strict=True)
-            )
+            read = (_read(name, column) for name, column in zip(names, columns, strict=True))
             stream.writelines(",".join(map(_cell, row)) + "\n" for row in zip(*read, strict=True))
+
+
+def _head(name: str) -> str:
+    return QUANTITIES[name].key if name in QUANTITIES else name
+
+
+def _read(name: str, column: numpy.ndarray) -> numpy.ndarray:
+    return column * QUANTITIES[name].written.factor if name in QUANTITIES else column
 
 
 def _cell(value: object) -> str:

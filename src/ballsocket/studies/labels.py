@@ -8,29 +8,16 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..fingerprint import fingerprint
+from ..quantities import QUANTITIES
 from ..validity import Status
 from .design import Design
 from .identity import axes_of
-from .parameters import PARAMETERS
 from .task import Task
 
 if TYPE_CHECKING:
     import xarray
 
 Array = numpy.ndarray
-
-_ANSWERS = {
-    "force": ("normal force", "F", "N"),
-    "indentation": ("indentation from first touch", "δ", "mm"),
-    "half_angle": ("contact half angle", "ε", "rad"),
-    "max_pressure": ("largest pressure", "pmax", "MPa"),
-    "max_pressure_angle": ("polar angle of the largest pressure", "φmax", "rad"),
-    "pole_pressure": ("pressure at the pole", "p0", "MPa"),
-    "area": ("contact area", "A", "mm2"),
-    "stiffness": ("tangent stiffness", "dF/dδ", "N/mm"),
-    "energy": ("work of the load", "U", "N mm"),
-    "foundation_modulus": ("foundation modulus", "K", "MPa/mm"),
-}
 
 
 def described(name: str) -> dict[str, Any]:
@@ -43,11 +30,8 @@ def described(name: str) -> dict[str, Any]:
         }
     if name == "valid":
         return {"long_name": "joint and answer lie where the model can be trusted"}
-    if name in _ANSWERS:
-        title, symbol, unit = _ANSWERS[name]
-        return {"long_name": title, "symbol": symbol, "units": unit}
-    parameter = PARAMETERS[name]
-    return {"long_name": parameter.title, "symbol": parameter.symbol, "units": parameter.unit}
+    quantity = QUANTITIES[name]
+    return {"long_name": quantity.title, "symbol": quantity.symbol, "units": quantity.unit}
 
 
 def attributes(task: Task) -> dict[str, Any]:

@@ -3,51 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from math import pi
+from dataclasses import replace
 from types import MappingProxyType
 
+from .. import quantities
 from ..arrays import Array, where
 from ..joint import Joint, Material
+from ..quantities import JOINT, PARTS, Quantity
 
-
-@dataclass(frozen=True)
-class Parameter:
-    """A number that varies: `kind` is what units it takes, `unit` and `title` are what a reader sees."""
-
-    title: str
-    symbol: str
-    unit: str
-    kind: str
-
-    def allows(self, values: Array) -> Array:
-        """Where a joint or a load may have these numbers."""
-        if self.symbol in ("ν", "ν1"):
-            return (values > -1) & (values <= 0.5)
-        if self.kind == "angle":
-            return (values >= 0) & (values < pi / 2)
-        return values >= 0 if self.symbol in ("ΔR", "F", "δ") else values > 0
-
-
-PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
-    {
-        "ball_radius": Parameter("ball radius", "R1", "mm", "length"),
-        "socket_radius": Parameter("socket radius", "R2", "mm", "length"),
-        "clearance": Parameter("radial clearance", "ΔR", "mm", "length"),
-        "liner_thickness": Parameter("liner thickness", "L", "mm", "length"),
-        "outer_radius": Parameter("outer radius of the liner", "R2 + L", "mm", "length"),
-        "liner_young": Parameter("Young's modulus of the liner", "E", "MPa", "modulus"),
-        "liner_poisson": Parameter("Poisson's ratio of the liner", "ν", "1", "number"),
-        "ball_young": Parameter("Young's modulus of the ball", "E1", "MPa", "modulus"),
-        "ball_poisson": Parameter("Poisson's ratio of the ball", "ν1", "1", "number"),
-        "force": Parameter("normal force", "F", "N", "force"),
-        "indentation": Parameter("indentation", "δ", "mm", "length"),
-        "half_angle": Parameter("half angle", "ε", "rad", "angle"),
-    }
-)
+PARAMETERS: Mapping[str, Quantity] = MappingProxyType({**JOINT, **PARTS, **quantities.LOADS})
 """By the name under which they are axes of a study."""
 
-LOADS = ("force", "indentation", "half_angle")
+LOADS = tuple(quantities.LOADS)
 
 
 def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:

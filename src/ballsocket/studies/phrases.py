@@ -6,20 +6,12 @@ import re
 
 from ..checks import check_names
 from ..io.units import parse
+from ..quantities import QUANTITIES
 from .axes import Span
 from .distributions import Distribution, Rectangular, tolerance
-from .labels import described
-from .limits import EDGE_DISTANCE, Limit
 from .limits import NAMES as LIMITED
+from .limits import Limit
 from .parameters import PARAMETERS
-from .task import QUANTITIES
-
-_ANSWERS = {
-    "max_pressure": "modulus",
-    "half_angle": "angle",
-    "indentation": "length",
-    "force": "force",
-}
 
 
 def range_of(phrase: str) -> tuple[str, float, float]:
@@ -76,17 +68,8 @@ def limit_of(phrase: str) -> Limit:
         raise ValueError(f"{phrase!r} is not a limit, such as 'outer_radius<=26 mm'")
     name, sign, end = found.groups()
     check_names([name], LIMITED, "among what can be limited")
-    if name in QUANTITIES:
-        unit = str(described(name)["units"])
-        end = end.removesuffix(unit).removesuffix(unit.replace("2", "²")) if name not in _ANSWERS else end
-    value = parse(name, end.strip(), _kind(name))
+    value = parse(name, end, QUANTITIES[name].kind)
     return Limit(name=name, high=value) if sign in ("<=", "≤") else Limit(name=name, low=value)
-
-
-def _kind(name: str) -> str:
-    if name == EDGE_DISTANCE:
-        return "length"
-    return PARAMETERS[name].kind if name in PARAMETERS else _ANSWERS.get(name, "number")
 
 
 def _with_unit(first: str, last: str) -> str:

@@ -32,7 +32,7 @@ def table(path: str | Path) -> Design:
         raise ValueError(f"{str(path)!r} must end in {' or '.join(_READERS)}")
     columns = {}
     for name, values in _READERS[path.suffix.lower()](path).items():
-        parameter = name.removesuffix("_deg") if name.endswith("half_angle_deg") else name
+        parameter = _NAMES.get(name, name)
         if parameter in columns:
             raise ValueError(f"{path.name} has {parameter} twice")
         check_names([parameter], PARAMETERS, f"among the columns of {path.name}")
@@ -41,6 +41,9 @@ def table(path: str | Path) -> Design:
     if not columns:
         raise ValueError(f"{path.name} has no columns")
     return Design((TableAxis(columns),))
+
+
+_NAMES = {quantity.key: name for name, quantity in PARAMETERS.items()}
 
 
 def _read_csv(path: Path) -> dict[str, Array]:

@@ -1,0 +1,69 @@
+"""What numbers measure: the units inside, those that people read, and those that the door for units takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from math import degrees
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit as people read it: `text` behind a number, and the `factor` that leads to it from the unit inside."""
+
+    text: str
+    factor: float = 1.0
+
+    @property
+    def bracketed(self) -> str:
+        """Behind the head of a column or the label of an axis; empty for a plain number."""
+        return f" [{self.text}]" if self.text else ""
+
+
+class Kind(StrEnum):
+    """What a number measures, and with that its units."""
+
+    LENGTH = "length"
+    FORCE = "force"
+    MODULUS = "modulus"
+    ANGLE = "angle"
+    NUMBER = "number"
+    AREA = "area"
+    STIFFNESS = "stiffness"
+    ENERGY = "energy"
+    FOUNDATION = "foundation modulus"
+
+    @property
+    def unit(self) -> str:
+        """The unit inside, spelled as the CF conventions do: "mm2", "1"."""
+        return _KINDS[self][0]
+
+    @property
+    def example(self) -> str:
+        """What the door for units asks for where text is no such quantity."""
+        return _KINDS[self][1]
+
+    @property
+    def written(self) -> Unit:
+        """The unit in JSON, in files and in tables of plain numbers: degrees, and else the unit inside."""
+        return _WRITTEN.get(self, Unit(self.unit))
+
+    @property
+    def typed(self) -> str:
+        """The unit of a bare number in a file or on the command line; empty for a plain number."""
+        return _TYPED.get(self, self.unit)
+
+
+_KINDS = {
+    Kind.LENGTH: ("mm", "a length, such as '16 mm'"),
+    Kind.FORCE: ("N", "a force, such as '3 kN'"),
+    Kind.MODULUS: ("MPa", "a modulus, such as '1 GPa'"),
+    Kind.ANGLE: ("rad", "an angle, such as '40 deg'"),
+    Kind.NUMBER: ("1", "a number, such as 0.4"),
+    Kind.AREA: ("mm2", "an area, such as '8 cm^2'"),
+    Kind.STIFFNESS: ("N/mm", "a stiffness, such as '60 kN/mm'"),
+    Kind.ENERGY: ("N mm", "an energy, such as '50 N*mm'"),
+    Kind.FOUNDATION: ("MPa/mm", "a foundation modulus, such as '280 MPa/mm'"),
+}
+_WRITTEN = {Kind.ANGLE: Unit("°", degrees(1.0)), Kind.NUMBER: Unit(""), Kind.AREA: Unit("mm²")}
+_TYPED = {Kind.ANGLE: "deg", Kind.NUMBER: ""}
