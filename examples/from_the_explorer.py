@@ -8,7 +8,7 @@ Here is the same walk step by step, with the links that open each view and the n
 """
 
 from dataclasses import replace
-from math import radians
+from math import degrees, radians
 
 import ballsocket as bs
 from ballsocket.app.screen import START, Axis, link_of
@@ -16,10 +16,7 @@ from ballsocket.io.joint_file import JointFile
 from ballsocket.io.joint_toml import toml_of
 from ballsocket.output.save import save
 from ballsocket.output.section_plot import section_figure
-from ballsocket.output.study_plots import design_map
-from ballsocket.studies.design import Span
-from ballsocket.studies.limits import allowed
-from ballsocket.studies.phrases import limit_of
+from ballsocket.studies import Span, allowed, design_map, limit_of
 
 PAGE = "http://127.0.0.1:5006/?"
 
@@ -60,7 +57,7 @@ print(bs.compare(chosen, force=3000.0))
 
 for clearance in (0.05, 0.10, 0.15):
     contact = bs.Exact().press(replace(chosen, clearance=clearance), force=3000.0)
-    print(f"{clearance:.2f} mm: {contact.max_pressure:.2f} MPa, half angle {contact.half_angle * 57.2958:.1f}°")
+    print(f"{clearance:.2f} mm: {contact.max_pressure:.2f} MPa, half angle {degrees(contact.half_angle):.1f}°")
 
 # %%
 # **The judge.** A cup is no whole shell: with a rim 5° short of the equator and a chamfer, finite elements say what

@@ -11,10 +11,16 @@ joints; Sobol's indices say which number they come from.
 
 import ballsocket as bs
 from ballsocket.output.save import save
-from ballsocket.output.study_plots import band_figure, sensitivity_figure
-from ballsocket.studies.design import Span, grid, sample
-from ballsocket.studies.distributions import Rectangular, tolerance
-from ballsocket.studies.sensitivity import sensitivity
+from ballsocket.studies import (
+    Rectangular,
+    Span,
+    band_figure,
+    grid,
+    sample,
+    sensitivity,
+    sensitivity_figure,
+    tolerance,
+)
 
 hip = bs.Joint(ball_radius=16.0, clearance=0.10, liner_thickness=6.0, liner=bs.UHMWPE, ball=bs.COCR)
 scatter = {

@@ -13,11 +13,7 @@ from math import radians
 
 import ballsocket as bs
 from ballsocket.output.save import save
-from ballsocket.output.study_plots import design_map, front_figure
-from ballsocket.studies.design import Span
-from ballsocket.studies.limits import Limit
-from ballsocket.studies.optimum import optimise
-from ballsocket.studies.pareto import pareto
+from ballsocket.studies import Limit, Span, design_map, front_figure, optimise, pareto
 
 hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE, ball=bs.COCR)
 limits = (

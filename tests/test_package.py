@@ -18,16 +18,32 @@ from .places import ROOT
 
 
 def test_import_brings_nothing_heavy():
-    heavy = "matplotlib pint typer rich scipy jax torch numba pandas"
+    heavy = "matplotlib pint typer rich scipy jax torch numba pandas xarray"
     code = f"import ballsocket, sys; print([name for name in {heavy.split()} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
     assert done.stdout == "[]\n"
 
 
-def test_everything_offered_is_there():
-    assert sorted(bs.__all__) == bs.__all__ or len(set(bs.__all__)) == len(bs.__all__)
-    for name in bs.__all__:
-        assert getattr(bs, name) is not None
+@pytest.mark.parametrize("room", [bs, bs.studies], ids=lambda room: room.__name__)
+def test_everything_offered_is_there_once(room):
+    assert len(set(room.__all__)) == len(room.__all__)
+    assert set(room.__all__) <= set(dir(room))
+    assert all(getattr(room, name) is not None for name in room.__all__)
+
+
+def test_questions_of_many_joints_are_one_word_away():
+    from ballsocket.output import study_plots
+    from ballsocket.studies.pareto import pareto
+
+    assert bs.studies.design_map is study_plots.design_map
+    assert bs.studies.pareto is pareto  # and not the file of that name
+    with pytest.raises(AttributeError, match="has no attribute 'optimize'; did you mean 'optimise'?"):
+        bs.studies.optimize  # noqa: B018
+
+
+def test_a_material_is_a_constant_and_a_name():
+    for name, material in bs.materials.items():
+        assert getattr(bs, name.replace("-", "_").upper()) is material
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)

@@ -37,7 +37,7 @@ def write(folder: Path) -> None:
         "elsewhere": _claims(results["elsewhere"]),
         "commands": _commands(),
         "joints": _presets(bs.joints),
-        "materials": _presets(bs.materials),
+        "materials": _presets(bs.materials, lambda name: f"`{name}`, in Python `{name.replace('-', '_').upper()}`"),
         "nearness": _nearness(),
         "statuses": _statuses(),
     }
@@ -101,8 +101,8 @@ def _off(answers, name: str) -> str:
 # --- presets, statuses, publications ---
 
 
-def _presets(presets) -> str:
-    rows = [(f"`{name}`", str(one).removeprefix(f"{name}: "), _linked(one.source)) for name, one in presets.items()]
+def _presets(presets, called="`{}`".format) -> str:
+    rows = [(called(name), str(one).removeprefix(f"{name}: "), _linked(one.source)) for name, one in presets.items()]
     return _table(("name", "numbers", "source"), rows)
 
 

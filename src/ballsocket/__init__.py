@@ -8,6 +8,7 @@
 Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 """
 
+from . import studies
 from .catalogue import catalogue
 from .compare import compare
 from .contact import Contact
@@ -57,10 +58,74 @@ from .presets import (
 )
 from .sources import cite
 from .studies.run import study
-from .validity import Range, Status
+from .validity import OutsideDomainError, Range, Status
 from .version import __version__ as __version__
 
-__all__ = [
+__all__ = [  # noqa: RUF022, grouped as they are used
+    # what is pressed
+    "CircularGap",
+    "Cup",
+    "Interface",
+    "Joint",
+    "Layer",
+    "LinearGap",
+    "Material",
+    "Side",
+    "Support",
+    "read_joint",
+    # presets
+    "joints",
+    "materials",
+    # questions and answers
+    "Contact",
+    "OutsideDomainError",
+    "Range",
+    "Status",
+    "calibrate",
+    "catalogue",
+    "cite",
+    "compare",
+    "studies",
+    "study",
+    # models
+    "AdhesiveSocket",
+    "Bartel",
+    "BondedLayer",
+    "BondedLayerExact",
+    "CosineLimit",
+    "Exact",
+    "FiniteElement",
+    "Hertz",
+    "HessForsbach",
+    "LiuReconstruction",
+    "PlaneLayer",
+    "Refined",
+    "Steuermann",
+    "Tabulated",
+    "Vessel",
+    # the plane relative
+    "PinInHole",
+    # what a model of one's own is made of
+    "ClosedForm",
+    "Model",
+    "RadialFoundation",
+    "as_constant",
+    "as_corrected_vessel",
+    "as_polynomial",
+    "bonded_layer",
+    "constant",
+    "corrected_vessel",
+    "cosine_kinematics",
+    "exact_kinematics",
+    "hess_forsbach",
+    "linear_kinematics",
+    "polynomial",
+    "spherical_vessel",
+    # meshes
+    "Adapted",
+    "Element",
+    "Uniform",
+    # the materials of the presets
     "ALUMINA",
     "ALUMINA_COMPOSITE",
     "BONE_CEMENT",
@@ -73,58 +138,4 @@ __all__ = [
     "STRUCTURAL_STEEL",
     "TITANIUM",
     "UHMWPE",
-    "Adapted",
-    "AdhesiveSocket",
-    "Bartel",
-    "BondedLayer",
-    "BondedLayerExact",
-    "CircularGap",
-    "ClosedForm",
-    "Contact",
-    "CosineLimit",
-    "Cup",
-    "Element",
-    "Exact",
-    "FiniteElement",
-    "Hertz",
-    "HessForsbach",
-    "Interface",
-    "Joint",
-    "Layer",
-    "LinearGap",
-    "LiuReconstruction",
-    "Material",
-    "Model",
-    "PinInHole",
-    "PlaneLayer",
-    "RadialFoundation",
-    "Range",
-    "Refined",
-    "Side",
-    "Status",
-    "Steuermann",
-    "Support",
-    "Tabulated",
-    "Uniform",
-    "Vessel",
-    "as_constant",
-    "as_corrected_vessel",
-    "as_polynomial",
-    "bonded_layer",
-    "calibrate",
-    "catalogue",
-    "cite",
-    "compare",
-    "constant",
-    "corrected_vessel",
-    "cosine_kinematics",
-    "exact_kinematics",
-    "hess_forsbach",
-    "joints",
-    "linear_kinematics",
-    "materials",
-    "polynomial",
-    "read_joint",
-    "spherical_vessel",
-    "study",
 ]

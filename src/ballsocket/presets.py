@@ -62,7 +62,7 @@ materials: dict[str, Material] = {
     "cortical-bone": CORTICAL_BONE,
     "cancellous-bone": CANCELLOUS_BONE,
 }
-"""Materials by the name that files and the command line use."""
+"""Materials by the name that files and the command line use: that of their constant, in small letters with hyphens."""
 
 
 def _joint(

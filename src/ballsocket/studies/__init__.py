@@ -1,1 +1,80 @@
-"""Studies: one joint varied along named axes, pressed by any model, labelled, stored and resumed."""
+"""Questions asked of many joints: which points, what each is answered, and what follows.
+
+`study` presses one joint at every point of a design; `pareto`, `optimise` and `sensitivity` ask for the best points and
+for what matters; `design_map` and its kin draw.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from ..checks import nearest
+from .axes import Method, Span
+from .design import Design, grid, sample
+from .distributions import Normal, Rectangular, tolerance
+from .export import export
+from .file import read_study
+from .limits import Limit, allowed
+from .optimum import Optimum, optimise
+from .parameters import PARAMETERS
+from .pareto import pareto
+from .phrases import limit_of
+from .rows import table
+from .run import Progress, read, study
+from .sensitivity import sensitivity
+from .slopes import elasticities
+
+__all__ = [  # noqa: RUF022, grouped as they are used
+    # which points
+    "PARAMETERS",
+    "Design",
+    "Method",
+    "Normal",
+    "Rectangular",
+    "Span",
+    "grid",
+    "sample",
+    "table",
+    "tolerance",
+    # presses
+    "Progress",
+    "export",
+    "read",
+    "read_study",
+    "study",
+    # questions
+    "Limit",
+    "Optimum",
+    "allowed",
+    "elasticities",
+    "limit_of",
+    "optimise",
+    "pareto",
+    "sensitivity",
+    # pictures
+    "band_figure",
+    "design_map",
+    "front_figure",
+    "sensitivity_figure",
+]
+
+# pictures are made a floor above, which knows studies: here they are looked up when they are asked for, never imported
+_ABOVE = "ballsocket.output.study_plots"
+_PICTURES = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
+band_figure: Callable[..., Any]
+design_map: Callable[..., Any]
+front_figure: Callable[..., Any]
+sensitivity_figure: Callable[..., Any]
+
+if not TYPE_CHECKING:  # a checker of types would take any name for an offered one
+
+    def __getattr__(name: str) -> Any:
+        if name in _PICTURES:
+            return getattr(import_module(_ABOVE), name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{nearest(name, __all__)}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
