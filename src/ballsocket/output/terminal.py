@@ -31,8 +31,10 @@ _UNITS = {"indentation": ("µm", 1e3), "stiffness": ("kN/mm", 1e-3)}  # handier 
 _NARROW = 72
 _PROFILE = "profile"
 _APART = "deviation"
+_OFF_THE_POLE = ("pole_pressure", "max_pressure_angle_deg")
 # what a narrow terminal does without, first to last
 _DROPPED = (
+    *_OFF_THE_POLE,
     "foundation_modulus",
     "energy",
     "stiffness",
@@ -76,9 +78,9 @@ def _fitting(comparison: Comparison, console: Console) -> Table:
 
 
 def _pole(comparison: Comparison) -> tuple[str, ...]:
-    """The columns that say nothing new where every pressure is highest at the pole."""
-    off = any(contact.max_pressure_angle > 0 for contact in comparison.values())
-    return () if off else ("pole_pressure", "max_pressure_angle_deg")
+    """The columns that say nothing new where every pressure that can be trusted is highest at the pole."""
+    off = any(contact.valid and contact.max_pressure_angle > 0 for contact in comparison.values())
+    return () if off else _OFF_THE_POLE
 
 
 def _press_table(comparison: Comparison, dropped: Sequence[str], bars: str) -> Table:
@@ -86,7 +88,7 @@ def _press_table(comparison: Comparison, dropped: Sequence[str], bars: str) -> T
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
     table.add_column("model", no_wrap=True)
     apart = () if _APART in dropped else _compared(comparison)
-    for head in (*(column.symbol for column in columns), *(f"Δ{column.symbol}" for column in apart)):
+    for head in (*(column.symbol for column in columns), *(f"Δ{column.symbol[0]}" for column in apart)):
         table.add_column(head, justify="right", no_wrap=True)
     if _PROFILE not in dropped:
         table.add_column(" p, 0° to 90°", no_wrap=True)
