@@ -9,7 +9,7 @@ from os import environ
 from pathlib import Path
 
 import ballsocket as bs
-from ballsocket.catalogue import judge
+from ballsocket.catalogue import theories
 from ballsocket.output.accuracy_table import markdown
 from ballsocket.output.report import write_report
 from ballsocket.paper.plan import quick_plan
@@ -31,7 +31,7 @@ def write(folder: Path) -> None:
     write_report(results, report)
     pages = {
         "bibliography": _bibliography(),
-        "catalogue": "\n".join(map(_model, (*bs.catalogue.values(), judge, bs.PinInHole()))),
+        "catalogue": "\n".join(map(_model, theories.values())),
         "accuracy": markdown(results["accuracy"][0]),
         "claims": _claims(results["claims"]),
         "elsewhere": _claims(results["elsewhere"]),

@@ -5,11 +5,12 @@ from __future__ import annotations
 from .elastic.exact import Exact
 from .elastic.tabulated.model import Tabulated
 from .fem.model import FiniteElement
-from .model import Model
+from .model import Model, Theory
 from .models.adhesion import AdhesiveSocket
 from .models.foundation import Bartel, BondedLayer, BondedLayerExact, CosineLimit, HessForsbach, Vessel
 from .models.half_space import Hertz, Steuermann
 from .models.liu import LiuReconstruction
+from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
 
@@ -38,3 +39,6 @@ _MODELS: tuple[Model, ...] = (
 
 catalogue: dict[str, Model] = {model.name: model for model in _MODELS}
 """Name -> model: what `--model` and files call them, all of them answering in milliseconds or less."""
+
+theories: dict[str, Theory] = {theory.name: theory for theory in (*_MODELS, judge, PinInHole())}
+"""Name -> all that is listed and cited: the catalogue, the judge, and the plane relative, which knows no force."""

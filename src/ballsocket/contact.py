@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, inf, pi, sin
@@ -13,19 +12,12 @@ import numpy
 from . import arrays, describe
 from .arrays import Array
 from .checks import numeric, require, vectors
-from .joint import Joint
-from .validity import Range, Status, missing
+from .outcome import Answerer, Outcome
 
 
-class Answerer(Protocol):
+class Pressed(Answerer, Protocol):
     """What a contact knows of the model that made it."""
 
-    @property
-    def name(self) -> str: ...
-    @property
-    def validity(self) -> tuple[Range, ...]: ...
-    @property
-    def reach(self) -> str: ...
     @property
     def planar(self) -> bool: ...
 
@@ -64,7 +56,7 @@ def _law(name: str, symbol: str, unit: str, text: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
-class Contact:
+class Contact(Outcome):
     """What `model.press(joint, ...)` answers. Every quantity has the shape that joint and load broadcast to.
 
     Points without an answer are NaN and have a `status` other than `Status.OK`; points whose joint or answer lies
@@ -82,12 +74,10 @@ class Contact:
         Where the further quantities come from: a closed form bound to its joint and indentation, or a solution.
     """
 
-    model: Answerer
+    model: Pressed
     laws: Laws
-    joint: Joint
     force: Array
     indentation: Array
-    status: Array
 
     half_angle = _law("half_angle", "ε", "rad", "Contact half-angle")
     max_pressure = _law("max_pressure", "pmax", "MPa", "Largest pressure")
@@ -99,6 +89,10 @@ class Contact:
         "foundation_modulus", "K = p0/d", "MPa/mm", "Pressure at the pole per indentation, Eq. (16)"
     )
     pressure_integral = _law("pressure_integral", "∫p dA", "N", "Pressure summed over the area without its direction")
+
+    @property
+    def _load(self) -> Array:
+        return self.indentation
 
     @cached_property
     def area(self) -> Array:
@@ -208,60 +202,6 @@ class Contact:
 
         lever = coefficient * self._numbers.ball_radius
         return self._plain(lever * 2 * pi * self._numbers.socket_radius**2 * arrays.integral(ring, 24))
-
-    @cached_property
-    def valid(self) -> Array:
-        """Whether joint and answer lie inside the model's validity, point by point."""
-        inside = self.status == int(Status.OK)
-        for limit in self.model.validity:
-            inside = inside & limit.holds(self)
-        inside = arrays.broadcast(inside, self.indentation) if hasattr(inside, "shape") else inside
-        return bool(inside) if self._is_plain else inside
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What has no answer, and what lies outside the model's validity, in words; empty where all is well."""
-        notes = []
-        for status in list(Status)[1:]:
-            more = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
-            notes += self._note(self.status != int(status), status.sentence + more)
-        for limit in self.model.validity:
-            notes += self._note(limit.holds(self) | self._failed, limit.sentence)
-        return tuple(notes)
-
-    def _note(self, good: Array, sentence: str) -> list[str]:
-        if arrays.truth(good) is not False:
-            return []
-        good = arrays.to_numpy(good)
-        return [sentence if good.size == 1 else f"{int((~good).sum())} of {good.size}: {sentence}"]
-
-    @property
-    def _failed(self) -> Array:
-        return missing(self.status)
-
-    @property
-    def _is_plain(self) -> bool:
-        return isinstance(self.indentation, float)
-
-    def _answer(self, law: Callable[[], Array]) -> Array:
-        with numpy.errstate(all="ignore"):  # a point without an answer has a status, not a warning
-            value = law()
-            if arrays.truth(self._failed ^ True) is not True:
-                value = arrays.where(self._failed, numpy.nan, value)
-            return self._plain(value)
-
-    @cached_property
-    def _numbers(self) -> Joint:
-        """The joint for formulas: NumPy numbers in place of plain ones, which raise where those become infinite."""
-        return self.joint.with_numbers(arrays.common(*self.joint.numbers())) if self._is_plain else self.joint
-
-    def _plain(self, value: Array) -> Array:
-        """A contact pressed with plain numbers answers in plain numbers."""
-        if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:
-            return float(value)
-        if hasattr(self.indentation, "shape"):
-            return arrays.broadcast(value, self.indentation)
-        return value
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON in N, mm, MPa and degrees; arrays become (nested) lists, a missing number None."""

@@ -1,4 +1,4 @@
-"""What a model is: a frozen value that answers to `press`, from a few short laws."""
+"""What a theory and a model are: frozen values; a model answers to `press`, from a few short laws."""
 
 from __future__ import annotations
 
@@ -33,10 +33,8 @@ class Answer:
     failures: Mapping[Status, Array] = field(default_factory=dict)
 
 
-class Model(ABC):
-    """Anything that answers `press(joint, force=... | indentation=... | half_angle=...)` with a `Contact`.
-
-    Most of what follows is the same for every value of a kind of model, and then a class variable.
+class Theory(ABC):
+    """What can be listed, cited, and trusted inside of ranges; how it is asked is up to its kind.
 
     Attributes
     ----------
@@ -44,33 +42,13 @@ class Model(ABC):
         As in the catalogue; one line for people.
     sources : tuple of Source
         Where the formulas come from.
-    domain : tuple of Range
-        Open ranges outside of which there is no formula.
     validity : tuple of Range
-        Closed ranges inside which the answer can be trusted: peak pressure and indentation within about 15 % of the
-        elastic answer.
-    planar : bool
-        Whether the contact is a flat circle, whose pressure has one direction; otherwise it acts along the radius.
-    parameters : tuple of array
-        Numbers of the model's own that may be arrays and broadcast against joint and load.
+        Closed ranges inside which the answer can be trusted.
     reach : str
         What loads have an answer, in words for those that have none; empty where there is nothing to say.
-    differentiable : bool
-        Whether JAX can trace a press.
-    smooth_step : float
-        A share of a number over which answers change by more than they are uncertain: for differences.
-    seconds_a_press : float
-        Roughly, for one of many points on one core: studies cut their work by it.
-    contact_type : type
-        What `press` answers with: `Contact`, or a kind of it that knows more.
     """
 
     reach: ClassVar[str] = ""
-    planar: ClassVar[bool] = False
-    differentiable: ClassVar[bool] = True
-    smooth_step: ClassVar[float] = 1e-4
-    seconds_a_press: ClassVar[float] = 4e-7
-    contact_type: ClassVar[type[Contact]] = Contact
 
     @property
     @abstractmethod
@@ -85,12 +63,43 @@ class Model(ABC):
     def sources(self) -> tuple[Source, ...]: ...
 
     @property
-    def domain(self) -> tuple[Range, ...]:
-        return ()
-
-    @property
     @abstractmethod
     def validity(self) -> tuple[Range, ...]: ...
+
+
+class Model(Theory):
+    """Anything that answers `press(joint, force=... | indentation=... | half_angle=...)` with a `Contact`.
+
+    Most of what follows is the same for every value of a kind of model, and then a class variable. `validity` means
+    peak pressure and indentation within about 15 % of the elastic answer.
+
+    Attributes
+    ----------
+    domain : tuple of Range
+        Open ranges outside of which there is no formula.
+    planar : bool
+        Whether the contact is a flat circle, whose pressure has one direction; otherwise it acts along the radius.
+    parameters : tuple of array
+        Numbers of the model's own that may be arrays and broadcast against joint and load.
+    differentiable : bool
+        Whether JAX can trace a press.
+    smooth_step : float
+        A share of a number over which answers change by more than they are uncertain: for differences.
+    seconds_a_press : float
+        Roughly, for one of many points on one core: studies cut their work by it.
+    contact_type : type
+        What `press` answers with: `Contact`, or a kind of it that knows more.
+    """
+
+    planar: ClassVar[bool] = False
+    differentiable: ClassVar[bool] = True
+    smooth_step: ClassVar[float] = 1e-4
+    seconds_a_press: ClassVar[float] = 4e-7
+    contact_type: ClassVar[type[Contact]] = Contact
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        return ()
 
     @property
     def parameters(self) -> tuple[Array, ...]:

@@ -139,6 +139,17 @@ def test_persson_of_a_light_load_is_hertz_of_a_cylinder():
     assert contact.max_pressure == pytest.approx(2e-3 / (np.pi * half_width), rel=1e-4)
 
 
+def test_a_pin_is_told_as_a_ball_is():
+    """Its clearance is none at the first point, where no load gives a half angle of its own."""
+    joint = bs.Joint(ball_radius=10.0, clearance=np.array([0.0, 0.1]), liner_thickness=np.inf, liner=ALUMINIUM)
+    contact = bs.PinInHole().press(joint, half_angle=0.5)
+    assert [bs.Status(code).name for code in contact.status] == ["NOT_REACHED", "OK"]
+    assert contact.notes[0] == "1 of 2: the model does not reach this load"
+    assert "pin and plate of one material" in contact.notes[1]
+    assert contact.valid.tolist() == [False, False]
+    assert np.isnan(contact.pressure(0.0)).tolist() == [True, False]
+
+
 @pytest.mark.parametrize(
     ("load", "message"),
     [

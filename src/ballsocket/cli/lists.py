@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 import ballsocket as bs
 
-from ..catalogue import judge
+from ..catalogue import theories
 from ..checks import nearest
 from ..output import terminal
 from .root import app
@@ -17,7 +17,7 @@ from .root import app
 @app.command()
 def models() -> None:
     """The catalogue: every model, where it can be trusted, and where it comes from."""
-    terminal.print_models([*bs.catalogue.values(), judge, bs.PinInHole()])
+    terminal.print_models(theories.values())
 
 
 @app.command()
@@ -31,8 +31,7 @@ def cite(
     names: Annotated[list[str] | None, typer.Argument(help="Models by name; all of them if none is given.")] = None,
 ) -> None:
     """BibTeX of what a model is made of."""
-    citable: dict[str, Any] = {**bs.catalogue, judge.name: judge, "pin-in-hole": bs.PinInHole()}
     for name in names or []:
-        if name not in citable:
-            raise ValueError(f"model {name!r} is not known{nearest(name, citable)}")
-    typer.echo(bs.cite(*(citable[name] for name in names or citable)))
+        if name not in theories:
+            raise ValueError(f"model {name!r} is not known{nearest(name, theories)}")
+    typer.echo(bs.cite(*(theories[name] for name in names or theories)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees, pi
+from math import degrees, inf, pi
 from typing import ClassVar
 
 import numpy
@@ -13,19 +13,21 @@ from .. import arrays
 from ..arrays import Array, asinh, atan, broadcast, clip, divisor, increasing_root, log, sqrt, tan, where
 from ..checks import numeric, one_load, require
 from ..joint import Joint
-from ..model import prepared
+from ..model import Theory, prepared
+from ..outcome import Outcome
 from ..sources import Source
 from ..validity import Range, Status
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinInHole:
+class PinInHole(Theory):
     """Persson 1964: a pin in a hole of nearly its radius in an infinite plate of the same material, plane strain.
 
     With β = tan(ε/2) and E1 = E/(1 - ν²), the line load Q obeys
     E1 c/Q = [2 - ln(1 + β²) - 2β⁴]/[π (1 + β²) β²]; the perfect fit (c = 0) has ε = 84.83° at any load.
     A `Joint` describes it: `ball_radius` is the pin's, `clearance` radial, `liner` the material of both; the
-    thickness does not enter. There is no indentation: a line load has no finite approach in an infinite plate.
+    thickness does not enter. There is no indentation: a line load has no finite approach in an infinite plate. So this
+    is a `Theory` of its own kind, listed and cited beside the models, which answer to a force.
 
     References
     ----------
@@ -77,55 +79,50 @@ class PinInHole:
         with numpy.errstate(all="ignore"):
             stiffness = joint.liner.young / (1 - joint.liner.poisson**2) * joint.clearance
             if kind == "line_load":
-                angle = 2 * atan(sqrt(_squared_tangent(stiffness, load)))
-                return _line_contact(self, joint, plain, load, angle)
-            reached = where((stiffness > 0) | (load == 0), stiffness / _flexibility(tan(load / 2) ** 2), numpy.nan)
-            return _line_contact(self, joint, plain, reached, load)
+                line_load, angle = load, 2 * atan(sqrt(_squared_tangent(stiffness, load)))
+            else:
+                reached = stiffness / _flexibility(tan(load / 2) ** 2)
+                line_load, angle = where((stiffness > 0) | (load == 0), reached, numpy.nan), load
+        line_load, angle = broadcast(line_load, angle), broadcast(angle, line_load)
+        found = arrays.isfinite(line_load) & arrays.isfinite(angle)
+        status = where(found, int(Status.OK), int(Status.NOT_REACHED))
+        if plain:
+            line_load, angle, status = float(line_load), float(angle), Status(int(status))
+        return LineContact(model=self, joint=joint, line_load=line_load, half_angle=angle, status=status)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class LineContact:
-    """What a pin does to its hole, per length: `line_load` in N/mm, `half_angle` in rad, `max_pressure` in MPa."""
+class LineContact(Outcome):
+    """What a pin does to its hole, per length: `line_load` in N/mm, `half_angle` in rad, `max_pressure` in MPa.
 
-    model: PinInHole
-    joint: Joint
+    It is told and trusted as a `Contact` is: by `status`, `valid` and `notes`.
+    """
+
     line_load: Array
     half_angle: Array
-    status: Array
+
+    @property
+    def _load(self) -> Array:
+        return self.line_load
 
     @cached_property
     def max_pressure(self) -> Array:
         """p(0) in MPa."""
         return self.pressure(0.0)
 
-    @cached_property
-    def valid(self) -> Array:
-        """Whether the joint lies inside the model's validity, point by point."""
-        inside = self.status == int(Status.OK)
-        for limit in self.model.validity:
-            inside = inside & limit.holds(self)
-        return bool(inside) if isinstance(self.line_load, float) else inside
-
     def pressure(self, angle: Array) -> Array:
         """p(φ) in MPa, 0 outside the contact; `angle` in rad broadcasts against the contact's shape."""
+        return self._answer(lambda: self.line_load / self._numbers.socket_radius * self._profile(angle))
+
+    def _profile(self, angle: Array) -> Array:
+        """p R2/Q."""
         square = tan(self.half_angle / 2) ** 2
         y = tan(angle / 2) ** 2
-        rest = clip(square - y, 0.0, float("inf"))
+        rest = clip(square - y, 0.0, inf)
         ends = 1 + square
         smooth = 2 / pi * sqrt(rest / ends) / (1 + y)
         peak = asinh(sqrt(rest / (1 + y))) / (pi * divisor(square) * ends)
-        scaled = where((y < square) & (abs(angle) < pi), smooth + peak, 0.0)
-        pressure = self.line_load / self.joint.socket_radius * scaled
-        return float(pressure) if isinstance(self.line_load, float) and numpy.ndim(pressure) == 0 else pressure
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What has no answer, and what lies outside the model's validity, in words."""
-        failed = self.status != int(Status.OK)
-        notes = [Status.NOT_REACHED.sentence] if numpy.any(arrays.to_numpy(failed)) else []
-        for limit in self.model.validity:
-            notes += [] if numpy.all(arrays.to_numpy(limit.holds(self))) else [limit.sentence]
-        return tuple(notes)
+        return where((y < square) & (abs(angle) < pi), smooth + peak, 0.0)
 
     def __repr__(self) -> str:
         angle, peak = arrays.to_numpy(self.half_angle), arrays.to_numpy(self.max_pressure)
@@ -151,17 +148,6 @@ def _squared_tangent(stiffness: Array, load: Array) -> Array:
     start = 2 / (pi * ratio + 2.4)
     found = increasing_root(law, 0.0 * ratio, 0.0 * ratio, 0.0 * ratio + 1.0, start)
     return where(load > 0, found, 0.0 * found)
-
-
-def _line_contact(model: PinInHole, joint: Joint, plain: bool, load: Array, angle: Array) -> LineContact:
-    load, angle = broadcast(load, angle), broadcast(angle, load)
-    good = arrays.isfinite(load) & arrays.isfinite(angle)
-    status = where(good, int(Status.OK), int(Status.NOT_REACHED))
-    if plain:
-        return LineContact(
-            model=model, joint=joint, line_load=float(load), half_angle=float(angle), status=Status(int(status))
-        )
-    return LineContact(model=model, joint=joint, line_load=load, half_angle=angle, status=status)
 
 
 PERFECT_FIT = float(2 * atan(sqrt(_squared_tangent(numpy.float64(0.0), numpy.float64(1.0)))))

@@ -18,6 +18,7 @@ from ..contact import Contact
 from ..describe import COLUMNS, Column, number_text
 from ..identify.modulus import Calibration
 from ..joint import Joint, Material
+from ..model import Theory
 from ..paper.table_3 import RATIOS
 from ..paper.table_3 import Column as TableColumn
 from ..presets import joints, materials
@@ -212,7 +213,7 @@ def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
     _console().print(table)
 
 
-def print_models(models: Iterable[Any]) -> None:
+def print_models(models: Iterable[Theory]) -> None:
     """The catalogue with validity and sources."""
     rows = [(model.name, model.title, "\n".join(map(str, model.validity)), _sources(model)) for model in models]
     _print_rows(("model", "what it is", "trusted for", "source"), rows, gap=1)
@@ -226,7 +227,7 @@ def print_presets() -> None:
         _console().print()
 
 
-def _sources(model: Any) -> str:
+def _sources(model: Theory) -> str:
     """A line for each publication, with all its places."""
     places: dict[str, list[str]] = {}
     for source in model.sources:
