@@ -17,6 +17,8 @@ import numpy
 Array = Any
 """A Python number or an array of any library that follows the array API standard."""
 
+Numbers = numpy.ndarray
+"""An array of NumPy, where no other library is let in: inside solvers, in studies and in files."""
 
 _OF_NUMPY = (float, int, numpy.ndarray, numpy.generic)
 

@@ -14,9 +14,7 @@ from typing import ClassVar
 
 import numpy
 
-from .arrays import gauss_legendre
-
-Array = numpy.ndarray
+from .arrays import Numbers, gauss_legendre
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,21 +26,21 @@ class LinearGap:
     steps: ClassVar[int] = 1  # of Newton's method from d = 0: u is linear in d
     conservative: ClassVar[bool] = True  # ∂u/∂d = cos φ: the work of F is that of the pressure
 
-    def displacement(self, angle: Array, d: Array | float) -> Array:
+    def displacement(self, angle: Numbers, d: Numbers | float) -> Numbers:
         """u(φ) in mm, at angles in rad and indentations in mm, which broadcast."""
         return d - (self.clearance + d) * 2 * numpy.sin(angle / 2) ** 2
 
-    def transform(self, t: Array, d: Array) -> Array:
+    def transform(self, t: Numbers, d: Numbers) -> Numbers:
         """A[u](t)."""
         return d * numpy.cos(1.5 * t) - 2 * self.clearance * numpy.sin(t) * numpy.sin(t / 2)
 
-    def slope(self, t: Array, d: Array) -> Array:
+    def slope(self, t: Numbers, d: Numbers) -> Numbers:
         """d A[u]/dt."""
         half = t / 2
         turn = 2 * numpy.cos(t) * numpy.sin(half) + numpy.sin(t) * numpy.cos(half)
         return -1.5 * d * numpy.sin(1.5 * t) - self.clearance * turn
 
-    def deepening(self, t: Array, d: Array) -> Array:
+    def deepening(self, t: Numbers, d: Numbers) -> Numbers:
         """A[∂u/∂d](t)."""
         return numpy.cos(1.5 * t) + 0.0 * d
 
@@ -56,23 +54,23 @@ class CircularGap:
     steps: ClassVar[int] = 7
     conservative: ClassVar[bool] = False
 
-    def displacement(self, angle: Array, d: Array | float) -> Array:
+    def displacement(self, angle: Numbers, d: Numbers | float) -> Numbers:
         """u(φ) in mm, at angles in rad and indentations in mm, which broadcast; NaN where the ball does not reach."""
         return self._parts(2 * numpy.sin(angle / 2) ** 2, d)[0]
 
-    def transform(self, t: Array, d: Array) -> Array:
+    def transform(self, t: Numbers, d: Numbers) -> Numbers:
         """A[u](t)."""
         return _transform(t, lambda w: self._parts(w, d)[:2])
 
-    def slope(self, t: Array, d: Array) -> Array:
+    def slope(self, t: Numbers, d: Numbers) -> Numbers:
         """d A[u]/dt."""
         return _transform_slope(t, lambda w: self._parts(w, d))
 
-    def deepening(self, t: Array, d: Array) -> Array:
+    def deepening(self, t: Numbers, d: Numbers) -> Numbers:
         """A[∂u/∂d](t)."""
         return _transform(t, lambda w: self._deepening(w, d))
 
-    def _parts(self, w: Array, d: Array | float) -> tuple[Array, Array, Array]:
+    def _parts(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
         """u and its first two derivatives in w; NaN where the ball does not reach."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         dropped = e * e * w * (2 - w)
@@ -80,7 +78,7 @@ class CircularGap:
         tilt = e * e * (1 - w) / root
         return d - e * w - dropped / (R1 + root), -e - tilt, (e * e - tilt * tilt) / root
 
-    def _deepening(self, w: Array, d: Array) -> tuple[Array, Array]:
+    def _deepening(self, w: Numbers, d: Numbers) -> tuple[Numbers, Numbers]:
         """∂u/∂d and its derivative in w."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         sine = w * (2 - w)
@@ -100,28 +98,28 @@ def check_gap(gap: object) -> None:
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(24))
 _SINES, _TURNS = numpy.sin(pi / 2 * _NODES), pi / 2 * _WEIGHTS
 
-Parts = Callable[[Array], tuple[Array, ...]]
+Parts = Callable[[Numbers], tuple[Numbers, ...]]
 """u and its derivatives in w, of w."""
 
 
-def _at_turns(t: Array, parts: Parts) -> tuple[Array, tuple[Array, ...]]:
+def _at_turns(t: Numbers, parts: Parts) -> tuple[Numbers, tuple[Numbers, ...]]:
     """sin θ along a new first axis, and the parts at w = (1 - cos t) sin² θ."""
     sine = _SINES.reshape(-1, *(1 for _ in numpy.shape(t)))
     return sine, parts(2 * numpy.sin(t / 2) ** 2 * sine**2)
 
 
-def _mean(values: Array) -> Array:
+def _mean(values: Numbers) -> Numbers:
     """∫ values sin θ dθ over [0, π/2]."""
     return numpy.tensordot(_TURNS * _SINES, values, axes=1)
 
 
-def _transform(t: Array, parts: Parts) -> Array:
+def _transform(t: Numbers, parts: Parts) -> Numbers:
     """A[u] = cos(t/2) ∫ u sin θ dθ + 2 sin(t/2) sin t ∫ u' sin³ θ dθ over [0, π/2], with w = (1 - cos t) sin² θ."""
     sine, (u, u1) = _at_turns(t, parts)
     return numpy.cos(t / 2) * _mean(u) + 2 * numpy.sin(t / 2) * numpy.sin(t) * _mean(sine**2 * u1)
 
 
-def _transform_slope(t: Array, parts: Parts) -> Array:
+def _transform_slope(t: Numbers, parts: Parts) -> Numbers:
     sine, (u, u1, u2) = _at_turns(t, parts)
     half = numpy.sin(t / 2)
     first = 2 * numpy.cos(t / 2) * numpy.sin(t) + 2 * half * numpy.cos(t)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-Array = numpy.ndarray
+from .arrays import Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -19,20 +19,20 @@ class Stress:
         σ_rr, σ_φφ, σ_θθ and σ_rφ, of the shape that angle and depth broadcast to.
     """
 
-    radial: Array
-    meridional: Array
-    hoop: Array
-    shear: Array
+    radial: Numbers
+    meridional: Numbers
+    hoop: Numbers
+    shear: Numbers
 
     @property
-    def von_mises(self) -> Array:
+    def von_mises(self) -> Numbers:
         """The von Mises stress in MPa."""
         first, second = self.radial - self.meridional, self.meridional - self.hoop
         third = self.hoop - self.radial
         return numpy.sqrt((first**2 + second**2 + third**2) / 2 + 3 * self.shear**2)
 
     @property
-    def principal(self) -> tuple[Array, Array, Array]:
+    def principal(self) -> tuple[Numbers, Numbers, Numbers]:
         """The principal stresses in MPa, the largest first."""
         middle = (self.radial + self.meridional) / 2
         reach = numpy.hypot((self.radial - self.meridional) / 2, self.shear)

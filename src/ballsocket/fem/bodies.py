@@ -11,14 +11,13 @@ from math import inf
 
 import numpy
 
+from ..arrays import Numbers
 from ..cup import Interface
 from ..joint import Support
 from .condense import Body
 from .elasticity import Elastic
 from .mesh import Block, block
 from .shapes import Resolution, SocketShape, ball_corners
-
-Array = numpy.ndarray
 
 
 def socket_body(shape: SocketShape, resolution: Resolution) -> Body:
@@ -49,24 +48,24 @@ def ball_body(poisson: float, resolution: Resolution) -> Body:
     return Body(elastic=elastic, held=held, contact=mesh.number[:, -1])
 
 
-def _axis_held(mesh: Block) -> Array:
+def _axis_held(mesh: Block) -> Numbers:
     held = numpy.zeros(2 * mesh.number.size, dtype=bool)
     held[2 * mesh.number[0]] = True
     return held
 
 
 @lru_cache(maxsize=64)
-def socket_compliance(shape: SocketShape, resolution: Resolution) -> tuple[Array, Array]:
+def socket_compliance(shape: SocketShape, resolution: Resolution) -> tuple[Numbers, Numbers]:
     """Angles of the bore's nodes, and their normal displacements by normal forces."""
     return _condensed(socket_body(shape, resolution))
 
 
 @lru_cache(maxsize=64)
-def ball_compliance(poisson: float, resolution: Resolution) -> tuple[Array, Array]:
+def ball_compliance(poisson: float, resolution: Resolution) -> tuple[Numbers, Numbers]:
     """Angles of the nodes on the ball's surface, and their normal displacements by normal forces."""
     return _condensed(ball_body(poisson, resolution))
 
 
-def _condensed(body: Body) -> tuple[Array, Array]:
+def _condensed(body: Body) -> tuple[Numbers, Numbers]:
     block = body.elastic.block
     return block.angle[: len(body.contact)], body.compliance()

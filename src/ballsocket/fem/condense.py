@@ -14,9 +14,8 @@ from typing import Any
 import numpy
 from scipy.sparse.linalg import splu
 
+from ..arrays import Numbers
 from .elasticity import Elastic
-
-Array = numpy.ndarray
 
 _LEAF = 24  # places in a part that is not halved any more
 
@@ -35,16 +34,16 @@ class Body:
     """
 
     elastic: Elastic
-    held: Array
-    contact: Array
+    held: Numbers
+    contact: Numbers
 
     @property
-    def normals(self) -> Array:
+    def normals(self) -> Numbers:
         """The unknowns that the contact loads."""
         return 2 * self.contact + 1
 
     @cached_property
-    def _order(self) -> Array:
+    def _order(self) -> Numbers:
         """The free unknowns, those of the contact last."""
         block = self.elastic.block
         grid = numpy.arange(len(block.angle) * (block.place[-1] + 1)).reshape(len(block.angle), -1)
@@ -59,13 +58,13 @@ class Body:
         ordered = self.elastic.matrix()[self._order][:, self._order].tocsc()
         return splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
-    def compliance(self) -> Array:
+    def compliance(self) -> Numbers:
         """Normal displacements of the contact's nodes by normal forces on them."""
         factors, count = self._factors(), len(self.contact)
         stiffness = factors.L[-count:, -count:].toarray() @ factors.U[-count:, -count:].toarray()
         return numpy.linalg.inv((stiffness + stiffness.T) / 2)
 
-    def displacements(self, forces: Array) -> Array:
+    def displacements(self, forces: Numbers) -> Numbers:
         """u_φ and u_r of all nodes, shape (nodes, 2), by normal forces on the contact's nodes."""
         load = numpy.zeros(len(self._order))
         load[-len(self.contact) :] = forces
@@ -77,7 +76,7 @@ class Body:
         return whole.reshape(-1, 2)
 
 
-def _dissected(part: Array, start: tuple[int, int], order: int) -> Array:
+def _dissected(part: Numbers, start: tuple[int, int], order: int) -> Numbers:
     """The places of a part in nested dissection order; only lines between elements separate what lies beside them."""
     if part.size <= _LEAF or min(part.shape) <= 2:
         return part.ravel()

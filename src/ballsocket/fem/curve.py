@@ -9,7 +9,7 @@ from operator import attrgetter
 
 import numpy
 
-from ..arrays import gauss_legendre
+from ..arrays import Numbers, gauss_legendre
 from ..gaps import Gap
 from ..per_joint import QUANTITIES, Piece, largest_pressure
 from .full_contact import Brimful
@@ -17,7 +17,6 @@ from .load_search import Ladder, is_contact
 from .round_contact import Cap, cap
 from .surfaces import Pair
 
-Array = numpy.ndarray
 Solved = Cap | Brimful
 
 FINE, COARSE = 0, 1
@@ -55,44 +54,44 @@ class States:
 
     solved: tuple[Solved | None, ...]
 
-    def __getattr__(self, name: str) -> Array:
+    def __getattr__(self, name: str) -> Numbers:
         if name not in QUANTITIES:
             raise AttributeError(name)
         return self._each(_LAWS.get(name, attrgetter(name)))
 
-    def _each(self, law: Callable[[Solved], float]) -> Array:
+    def _each(self, law: Callable[[Solved], float]) -> Numbers:
         return numpy.array([numpy.nan if one is None else law(one) for one in self.solved])
 
     @property
-    def at_rim(self) -> Array:
+    def at_rim(self) -> Numbers:
         """1 where the contact fills its socket."""
         return self._each(lambda one: float(isinstance(one, Brimful)))
 
     @property
-    def unsound(self) -> Array:
+    def unsound(self) -> Numbers:
         """1 where something pulls or overlaps: the contact is not the round patch that was assumed."""
         return self._each(lambda one: float(one.tension > _TENSION or one.overlap > _OVERLAP))
 
     @property
-    def edge_element(self) -> Array:
+    def edge_element(self) -> Numbers:
         """Length of the elements at the edge over the half angle."""
         return self._each(lambda one: one.edge_element / one.half_angle)
 
     @cached_property
-    def _largest(self) -> tuple[Array, Array]:
+    def _largest(self) -> tuple[Numbers, Numbers]:
         return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _NOISE)
 
     @property
-    def max_pressure(self) -> Array:
+    def max_pressure(self) -> Numbers:
         """The largest pressure in MPa."""
         return self._largest[0]
 
     @property
-    def max_pressure_angle(self) -> Array:
+    def max_pressure_angle(self) -> Numbers:
         """Where the pressure is largest, in rad from the pole."""
         return self._largest[1]
 
-    def pressure(self, angle: Array) -> Array:
+    def pressure(self, angle: Numbers) -> Numbers:
         """p(φ) in MPa at angles (anything, loads)."""
         columns = [
             numpy.full(len(angle), numpy.nan) if one is None else one.pressure(angle[:, i])
@@ -127,7 +126,7 @@ class Curve:
     meshes: int
     order: int
 
-    def press(self, kind: str, load: Array) -> Piece:
+    def press(self, kind: str, load: Numbers) -> Piece:
         """The contacts that belong to loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         given = load[touching].tolist()
@@ -256,7 +255,7 @@ def _work_beyond(one: Brimful) -> float:
 _LAWS: dict[str, Callable[[Solved], float]] = {"stiffness": _stiffness, "energy": _energy}
 
 
-def _errors(kind: str, fine: States, coarse: States, order: int) -> dict[str, Array]:
+def _errors(kind: str, fine: States, coarse: States, order: int) -> dict[str, Numbers]:
     """Relative errors of the fine solution by Richardson's extrapolation, with some safety.
 
     Both meshes may be off by the same by chance, so an error is at least what elements of this size have shown. What

@@ -16,9 +16,8 @@ from math import pi
 import numpy
 from scipy.sparse import coo_matrix, csc_matrix
 
+from ..arrays import Numbers
 from .mesh import Block
-
-Array = numpy.ndarray
 
 _CHUNK = 2048  # elements that are integrated at once: their arrays stay in the cache
 _SHEAR, _HOOP = 2, 3
@@ -39,12 +38,12 @@ class Gradients:
         What a weight of the unit square is worth in the volume of the whole ring.
     """
 
-    place: Array
-    strain: Array
-    volume: Array
+    place: Numbers
+    strain: Numbers
+    volume: Numbers
 
     @property
-    def trace(self) -> Array:
+    def trace(self) -> Numbers:
         """The change of volume (elements, points, unknowns), not projected."""
         return self.strain[..., 0, :] + self.strain[..., 1, :] + self.strain[..., _HOOP, :]
 
@@ -53,7 +52,7 @@ class Gradients:
 class Strains(Gradients):
     """Gradients with the projected change of volume, `swelling`, of the shape of `trace`."""
 
-    swelling: Array
+    swelling: Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,11 +66,11 @@ class Elastic:
     """
 
     block: Block
-    young: Array
-    poisson: Array
+    young: Numbers
+    poisson: Numbers
 
     @cached_property
-    def unknowns(self) -> Array:
+    def unknowns(self) -> Numbers:
         """Numbers of each element's unknowns, shape (elements, unknowns): u_φ and u_r of node i are 2i and 2i + 1.
 
         Where layers slide on each other they share u_r.
@@ -83,7 +82,7 @@ class Elastic:
         return numbers.transpose(1, 0, 2).reshape(self.block.elements.shape[1], -1)
 
     @cached_property
-    def moduli(self) -> tuple[Array, Array]:
+    def moduli(self) -> tuple[Numbers, Numbers]:
         """Shear and bulk modulus of each layer."""
         return self.young / (2 * (1 + self.poisson)), self.young / (3 * (1 - 2 * self.poisson))
 
@@ -99,12 +98,12 @@ class Elastic:
         places = (rows.ravel().astype(numpy.int32), columns.ravel().astype(numpy.int32))
         return coo_matrix((K.ravel(), places), shape=(size, size)).tocsc()
 
-    def chunks(self, elements: Array) -> Iterator[slice]:
+    def chunks(self, elements: Numbers) -> Iterator[slice]:
         """Slices of a list of elements that are worked on at once."""
         for first in range(0, len(elements), _CHUNK):
             yield slice(first, first + _CHUNK)
 
-    def _stiffness(self, chosen: Array) -> Array:
+    def _stiffness(self, chosen: Numbers) -> Numbers:
         """Energy 2G (|ε|² - tr²/3) + K tr², the last one with the projected change of volume."""
         points, weights = integration(self.block.order)
         parts = self.strains(chosen, points)
@@ -116,7 +115,7 @@ class Elastic:
         swelling = parts.swelling * numpy.sqrt(bulk)[..., None]
         return rows.swapaxes(1, 2) @ rows - trace.swapaxes(1, 2) @ trace + swelling.swapaxes(1, 2) @ swelling
 
-    def strains(self, chosen: Array, points: Array) -> Strains:
+    def strains(self, chosen: Numbers, points: Numbers) -> Strains:
         """Strains of some elements at points of the unit square (2, points)."""
         where, weights = integration(self.block.order)
         whole = self._gradients(chosen, where)
@@ -125,12 +124,12 @@ class Elastic:
         swelling = self._polynomials(chosen, here.place) @ numpy.linalg.solve(mass, moments)
         return Strains(place=here.place, strain=here.strain, swelling=swelling, volume=here.volume)
 
-    def _moments(self, chosen: Array, whole: Gradients, weights: Array) -> tuple[Array, Array]:
+    def _moments(self, chosen: Numbers, whole: Gradients, weights: Numbers) -> tuple[Numbers, Numbers]:
         Q = self._polynomials(chosen, whole.place)
         weighted = (Q * (whole.volume * weights)[..., None]).swapaxes(1, 2)
         return weighted @ whole.trace, weighted @ Q
 
-    def _polynomials(self, chosen: Array, place: Array) -> Array:
+    def _polynomials(self, chosen: Numbers, place: Numbers) -> Numbers:
         """1, or 1, ρ and z about the middle of the element: (elements, points, polynomials)."""
         one = numpy.ones((*place.shape[1:], 1))
         if self.block.order == 1:
@@ -140,7 +139,7 @@ class Elastic:
         size = abs(corners[:, 2] - corners[:, 0]).max(axis=0)[:, None]
         return numpy.concatenate([one, numpy.moveaxis((place - middle) / size, 0, -1)], axis=-1)
 
-    def _gradients(self, chosen: Array, points: Array) -> Gradients:
+    def _gradients(self, chosen: Numbers, points: Numbers) -> Gradients:
         shapes, slopes = shape_functions(self.block.order, points)
         elements = self.block.elements[:, chosen]
         corners = self.block.nodes[:, elements]
@@ -161,7 +160,7 @@ class Elastic:
         return Gradients(place=place, strain=polar.reshape(*polar.shape[:-2], -1), volume=2 * pi * place[0] * abs(det))
 
 
-def shape_functions(order: int, points: Array) -> tuple[Array, Array]:
+def shape_functions(order: int, points: Numbers) -> tuple[Numbers, Numbers]:
     """Shape functions (nodes, points) and their gradients (nodes, 2, points) on the unit square."""
     from skfem import ElementQuad1, ElementQuad2
 
@@ -170,10 +169,10 @@ def shape_functions(order: int, points: Array) -> tuple[Array, Array]:
     return numpy.stack([part[0] for part in parts]), numpy.stack([part[1] for part in parts])
 
 
-_RULES: dict[int, tuple[Array, Array]] = {}
+_RULES: dict[int, tuple[Numbers, Numbers]] = {}
 
 
-def integration(order: int) -> tuple[Array, Array]:
+def integration(order: int) -> tuple[Numbers, Numbers]:
     """Points (2, points) and weights (points,) that integrate an element's energy: 2 by 2, or 3 by 3."""
     if order not in _RULES:
         from skfem import ElementQuad1

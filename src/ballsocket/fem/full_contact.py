@@ -7,11 +7,10 @@ from functools import cached_property
 
 import numpy
 
+from ..arrays import Numbers
 from ..gaps import Gap
 from .round_contact import pole
 from .surfaces import Pair
-
-Array = numpy.ndarray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -28,12 +27,12 @@ class Brimful:
         return float(self.pair.angle[-1])
 
     @cached_property
-    def pressures(self) -> Array:
+    def pressures(self) -> Numbers:
         """At the pair's angles, in MPa."""
         asked = self.pair.weighted(self.gap.displacement(self.pair.points[0], self.indentation))
         return self.pair.whitening.T @ (self.pair.whitening @ asked)
 
-    def _total(self, values: Array) -> float:
+    def _total(self, values: Numbers) -> float:
         return float(self.pressures @ self.pair.weighted(values))
 
     @cached_property
@@ -73,11 +72,11 @@ class Brimful:
         sides = (replace(self, indentation=self.indentation + sign * step).force for sign in (0.5, -0.5))
         return (next(sides) - next(sides)) / step
 
-    def forces(self, surface: int) -> Array:
+    def forces(self, surface: int) -> Numbers:
         """Normal forces on the nodes of one of the surfaces, in N."""
         return self.pair.forces[surface] @ self.pressures
 
-    def pressure(self, angle: Array) -> Array:
+    def pressure(self, angle: Numbers) -> Numbers:
         """p(φ) in MPa, 0 beyond the rim."""
         nodes = self.pair.angle
         inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.pressures[1:]))

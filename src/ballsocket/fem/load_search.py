@@ -13,8 +13,6 @@ from ..gaps import Gap
 from .round_contact import Cap, cap
 from .surfaces import Pair
 
-Array = numpy.ndarray
-
 _RUNGS = 10
 _STEPS = 4
 _CLOSE = 1e-10

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy
 
-Array = numpy.ndarray
+from ..arrays import Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,25 +33,25 @@ class Block:
         1 is bilinear, 2 biquadratic.
     """
 
-    angle: Array
-    radius: Array
-    strips: Array
-    layer: Array
+    angle: Numbers
+    radius: Numbers
+    strips: Numbers
+    layer: Numbers
     order: int
 
     @cached_property
-    def number(self) -> Array:
+    def number(self) -> Numbers:
         """Number of each node, shape (angles, radii)."""
         return numpy.arange(self.radius.size).reshape(self.radius.shape)
 
     @cached_property
-    def nodes(self) -> Array:
+    def nodes(self) -> Numbers:
         """(ρ, z) of each node, shape (2, nodes)."""
         phi = self.angle[:, None]
         return numpy.stack([(numpy.sin(phi) * self.radius).ravel(), (numpy.cos(phi) * self.radius).ravel()])
 
     @cached_property
-    def elements(self) -> Array:
+    def elements(self) -> Numbers:
         """Nodes of each element (nodes, elements): corners, for order 2 edges and middle, in scikit-fem's order."""
         step = self.order
         corners = [(0, 0), (0, step), (step, step), (step, 0)]
@@ -61,17 +61,17 @@ class Block:
         return numpy.stack([part.ravel() for part in parts])
 
     @cached_property
-    def layers(self) -> Array:
+    def layers(self) -> Numbers:
         """The layer of each element."""
         return numpy.tile(self.layer, (len(self.angle) - 1) // self.order)
 
     @cached_property
-    def sliding(self) -> Array:
+    def sliding(self) -> Numbers:
         """The radii that stand twice: the inner of each two."""
         return numpy.flatnonzero(numpy.diff(self.place) == 0)
 
     @cached_property
-    def place(self) -> Array:
+    def place(self) -> Numbers:
         """Counts the radii (radii,), two that slide on each other as one."""
         inside = numpy.zeros(self.radius.shape[1], dtype=bool)
         for step in range(1, self.order + 1):
@@ -79,7 +79,7 @@ class Block:
         return numpy.cumsum(inside)
 
 
-def block(angle: Array, layers: list[Array], order: int, parted: tuple[int, ...] = ()) -> Block:
+def block(angle: Numbers, layers: list[Numbers], order: int, parted: tuple[int, ...] = ()) -> Block:
     """A block from the corners of its elements.
 
     Parameters
@@ -94,7 +94,7 @@ def block(angle: Array, layers: list[Array], order: int, parted: tuple[int, ...]
         The layers that slide on the one inside of them.
     """
     angle = with_middles(angle, order)
-    columns: list[Array] = []
+    columns: list[Numbers] = []
     strips: list[int] = []
     owner: list[int] = []
     count = 0
@@ -110,18 +110,18 @@ def block(angle: Array, layers: list[Array], order: int, parted: tuple[int, ...]
     return Block(angle=angle, radius=radii, strips=numpy.array(strips), layer=numpy.array(owner), order=order)
 
 
-def with_middles(corners: Array, order: int) -> Array:
+def with_middles(corners: Numbers, order: int) -> Numbers:
     """The places of all nodes from those of the corners, along the first axis."""
     return corners if order == 1 else bisected(corners)
 
 
-def bisected(corners: Array) -> Array:
+def bisected(corners: Numbers) -> Numbers:
     """The corners with one more between each two of them."""
     between = (corners[1:] + corners[:-1]) / 2
     return numpy.insert(corners, numpy.arange(1, len(corners)), between, axis=0)
 
 
-def graded(start: float, end: float, first: float, growth: float, longest: float) -> Array:
+def graded(start: float, end: float, first: float, growth: float, longest: float) -> Numbers:
     """Places from start to end: the first interval about as given, each next one longer, up to `longest`."""
     reach = abs(end - start)
     steps = [min(first, reach)]
@@ -134,7 +134,7 @@ def graded(start: float, end: float, first: float, growth: float, longest: float
     return places
 
 
-def joined(parts: list[Array]) -> Array:
+def joined(parts: list[Numbers]) -> Numbers:
     """Rows of places that each begin where the one before ends."""
     for before, after in pairwise(parts):
         assert before[-1] == after[0]

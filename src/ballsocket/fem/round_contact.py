@@ -14,11 +14,9 @@ from functools import cached_property
 
 import numpy
 
-from ..arrays import gauss_legendre
+from ..arrays import Numbers, gauss_legendre
 from ..gaps import Gap
 from .surfaces import Pair
-
-Array = numpy.ndarray
 
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(6))
 _NEWTON = 1e-13
@@ -38,7 +36,7 @@ class Cap:
     # --- the last two shapes of the pressure: a hat that falls like t, and t - t³ ---
 
     @cached_property
-    def _tail(self) -> tuple[Array, Array, Array, Array]:
+    def _tail(self) -> tuple[Numbers, Numbers, Numbers, Numbers]:
         """Angles, weights of ∫ dA, the last shapes (2, angles), and the slope of t in ε."""
         before, here = self.pair.angle[self.last - 1 : self.last + 1]
         rise = self._between(before, here)
@@ -58,13 +56,13 @@ class Cap:
         slope = numpy.concatenate([numpy.zeros_like(up), (1 / t - t) / (2 * width)])
         return angle, weights * self.pair.area(angle), shape, slope
 
-    def _between(self, start: float, end: float) -> Array:
+    def _between(self, start: float, end: float) -> Numbers:
         corners = self.pair.corners
         inside = corners[(corners > start + 1e-9) & (corners < end - 1e-9)]
         return numpy.concatenate([[start], inside, [end]])
 
     @cached_property
-    def _moments(self) -> tuple[Array, Array]:
+    def _moments(self) -> tuple[Numbers, Numbers]:
         """What all shapes as pressures do to the mean displacement: under the last two (2, shapes), under the slope."""
         angle, weights, shape, slope = self._tail
         tail, edge = numpy.zeros((2, self.last + 2)), numpy.zeros(self.last + 2)
@@ -79,14 +77,14 @@ class Cap:
     # --- pressures by right-hand sides: moments of a gap with all shapes ---
 
     @cached_property
-    def _borders(self) -> tuple[Array, Array, Array]:
+    def _borders(self) -> tuple[Numbers, Numbers, Numbers]:
         """The leading block of W, the borders in its terms, and the pivots of the last shapes."""
         tail, _ = self._moments
         W = self.pair.whitening[: self.last, : self.last]
         border = W @ tail[:, :-2].T
         return W, border, tail[:, -2:] - border.T @ border
 
-    def _pressed(self, side: Array) -> Array:
+    def _pressed(self, side: Numbers) -> Numbers:
         """Pressures p_0 .. p_k and q that meet a right-hand side (shapes,)."""
         W, border, pivot = self._borders
         inner = W @ side[:-2]
@@ -94,27 +92,27 @@ class Cap:
         inner -= border @ last
         return numpy.append(W.T @ inner, last)
 
-    def _side(self, asked: Array, asked_tail: Array) -> Array:
+    def _side(self, asked: Numbers, asked_tail: Numbers) -> Numbers:
         """The right-hand side of a gap that is given at the pair's points and those of the tail."""
         _, weights, shape, _ = self._tail
         return numpy.append(self.pair.weighted(asked)[: self.last], (weights * shape) @ asked_tail)
 
     @cached_property
-    def _undoing(self) -> Array:
+    def _undoing(self) -> Numbers:
         """The pressures that undo what the slope would do as a pressure."""
         return self._pressed(self._moments[1])
 
-    def _unclosed(self, asked: Array, asked_tail: Array) -> float:
+    def _unclosed(self, asked: Numbers, asked_tail: Numbers) -> float:
         """What is left of a gap in the mean weighted with the slope."""
         _, weights, _, slope = self._tail
         return float((weights * slope) @ asked_tail - self._undoing @ self._side(asked, asked_tail))
 
-    def _sides(self, d: float) -> tuple[Array, Array]:
+    def _sides(self, d: float) -> tuple[Numbers, Numbers]:
         """What a rigid ball at an indentation asks for, at the pair's points and those of the tail."""
         return self.gap.displacement(self.pair.points[0], d), self.gap.displacement(self._tail[0], d)
 
     @cached_property
-    def _cosines(self) -> tuple[Array, Array]:
+    def _cosines(self) -> tuple[Numbers, Numbers]:
         return numpy.cos(self.pair.points[0]), numpy.cos(self._tail[0])
 
     # --- what is asked ---
@@ -138,7 +136,7 @@ class Cap:
         return d + step if d + step > 0 else numpy.nan
 
     @cached_property
-    def pressures(self) -> Array:
+    def pressures(self) -> Numbers:
         """p_0 .. p_k and q in MPa."""
         return self._pressed(self._side(*self._sides(self.indentation)))
 
@@ -179,13 +177,13 @@ class Cap:
         area = self.pair.weighted(numpy.ones_like(self.pair.points[0]))[beyond]
         return float(numpy.max((asked - given) / area, initial=-numpy.inf) / self.indentation)
 
-    def forces(self, surface: int) -> Array:
+    def forces(self, surface: int) -> Numbers:
         """Normal forces on the nodes of one of the surfaces, in N."""
         angle, weights, shape, _ = self._tail
         tail = self.pair.surfaces[surface].gathered(angle, weights * (self.pressures[-2:] @ shape))
         return self.pair.forces[surface][:, : self.last] @ self.pressures[:-2] + tail
 
-    def pressure(self, angle: Array) -> Array:
+    def pressure(self, angle: Numbers) -> Numbers:
         """p(φ) in MPa, 0 outside the contact."""
         nodes = self.pair.angle[: self.last + 1]
         inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.pressures[1:-1]))
@@ -198,7 +196,7 @@ class Cap:
         return pole(self.pair.angle[: self.last + 1], self.pressures[:-1], self.half_angle)
 
 
-def pole(angle: Array, pressures: Array, half_angle: float) -> float:
+def pole(angle: Numbers, pressures: Numbers, half_angle: float) -> float:
     """The pressure at the pole by an even polynomial through the nodes around it."""
     near = max(int(numpy.searchsorted(angle, _POLE * half_angle)), 4)
     degree = 1 if near < 5 else 2

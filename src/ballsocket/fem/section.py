@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy
 
+from ..arrays import Numbers
 from ..cup import Cup
 from ..joint import Joint
 from ..stress import Peak, Stress
@@ -16,8 +17,6 @@ from .condense import Body
 from .curve import Solved
 from .elasticity import shape_functions
 from .shapes import socket_shape
-
-Array = numpy.ndarray
 
 _CORNER = 0.25  # of the liner's thickness, or of the socket's radius where that is less
 
@@ -44,11 +43,11 @@ class Part:
     """
 
     name: str
-    angle: Array
-    radius: Array
-    place: Array
-    elements: Array
-    displacement: Array
+    angle: Numbers
+    radius: Numbers
+    place: Numbers
+    elements: Numbers
+    displacement: Numbers
     stress: Stress
 
 
@@ -138,12 +137,12 @@ class _Loaded:
     radius: float
     pressed: float
     young: float
-    forces: Array
+    forces: Numbers
     lift: float
     drop: float
 
     @cached_property
-    def _moved(self) -> Array:
+    def _moved(self) -> Numbers:
         """u_φ and u_r of the nodes over the radius, shape (nodes, 2)."""
         return self.body.displacements(self.forces / (self.young * self.pressed**2))
 
@@ -168,7 +167,7 @@ class _Loaded:
                 stress=self._stress(index, own.reshape(elements.shape), len(nodes)),
             )
 
-    def _stress(self, layer: int, elements: Array, nodes: int) -> Stress:
+    def _stress(self, layer: int, elements: Numbers, nodes: int) -> Stress:
         """Stresses of a layer: those of its elements, carried to their nodes and averaged there."""
         components = self._at_nodes(layer)
         total, count = numpy.zeros((4, nodes)), numpy.zeros(nodes)
@@ -178,7 +177,7 @@ class _Loaded:
         radial, meridional, hoop, shear = self.young * total / count
         return Stress(radial=radial, meridional=meridional, hoop=hoop, shear=shear)
 
-    def _at_nodes(self, layer: int) -> Array:
+    def _at_nodes(self, layer: int) -> Numbers:
         """Stress components (4, elements, nodes) of a layer over Young's modulus.
 
         Taken where elements of this kind have them best, at the 1 or 2 by 2 Gauss points of the next lower degree.
@@ -202,7 +201,7 @@ class _Loaded:
         return whole
 
 
-def _polar(place: Array, rho: Array, z: Array, shear: Array) -> tuple[Array, Array, Array]:
+def _polar(place: Numbers, rho: Numbers, z: Numbers, shear: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     """σ_rr, σ_φφ and σ_rφ from stresses along the axis and across it."""
     r = numpy.hypot(*place)
     sine, cosine = place / r
@@ -214,7 +213,7 @@ def _polar(place: Array, rho: Array, z: Array, shear: Array) -> tuple[Array, Arr
     )
 
 
-def _best_points(order: int) -> tuple[Array, Array]:
+def _best_points(order: int) -> tuple[Numbers, Numbers]:
     """Points (2, points) of the unit square, and what carries values from them to the nodes (points, nodes)."""
     if order == 1:
         return numpy.full((2, 1), 0.5), numpy.ones((1, 4))

@@ -7,11 +7,10 @@ from math import inf, pi
 
 import numpy
 
+from ..arrays import Numbers
 from ..cup import Cup, Interface
 from ..joint import Joint, Support
 from .mesh import bisected, graded, joined
-
-Array = numpy.ndarray
 
 _CORE = 0.02  # of the ball, left out around its centre
 _FAR = 1e4  # where a massive socket is held
@@ -47,13 +46,13 @@ class Resolution:
     order: int
     halvings: int = 0
 
-    def cut(self, corners: Array) -> Array:
+    def cut(self, corners: Numbers) -> Numbers:
         """The corners with all halvings."""
         for _ in range(self.halvings):
             corners = bisected(corners)
         return corners
 
-    def angles(self, end: float) -> Array:
+    def angles(self, end: float) -> Numbers:
         """Corners along the angle, from the pole to the end."""
         fine = min(self.reach, end)
         near = numpy.linspace(0.0, fine, max(round(fine / self.size), 1) + 1)
@@ -87,7 +86,7 @@ class SocketShape:
         """The angle at which the bore ends."""
         return self.rim - self.chamfer
 
-    def corners(self, resolution: Resolution) -> tuple[Array, list[Array]]:
+    def corners(self, resolution: Resolution) -> tuple[Numbers, list[Numbers]]:
         """Corners of the elements: their angles, and the radii of each layer."""
         angle = resolution.angles(self.reach)
         if self.chamfer:
@@ -103,7 +102,7 @@ class SocketShape:
             first, inner = (layer[-1] - layer[-2]) * resolution.growth, float(layer[-1])
         return angle, [self._chamfered(angle, radii[0]), *radii[1:]]
 
-    def _chamfered(self, angle: Array, liner: Array) -> Array:
+    def _chamfered(self, angle: Numbers, liner: Numbers) -> Numbers:
         """The liner's radii, which follow the chamfer."""
         if not self.chamfer:
             return liner
@@ -127,7 +126,7 @@ def socket_shape(joint: Joint, cup: Cup) -> SocketShape:
     )
 
 
-def ball_corners(resolution: Resolution) -> tuple[Array, Array]:
+def ball_corners(resolution: Resolution) -> tuple[Numbers, Numbers]:
     """Corners of the ball's elements: angles, and radii from the inside out."""
     radii = graded(1.0, _CORE, resolution.size, resolution.growth, resolution.deepest / 2)[::-1]
     return resolution.cut(resolution.angles(pi / 2)), resolution.cut(radii)

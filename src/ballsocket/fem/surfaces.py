@@ -14,10 +14,8 @@ import numpy
 from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import csr_array, dia_array
 
-from ..arrays import gauss_legendre
+from ..arrays import Numbers, gauss_legendre
 from .shapes import Resolution
-
-Array = numpy.ndarray
 
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(5))
 _SAME = 1e-9  # rad: corners of two meshes that are one
@@ -27,33 +25,33 @@ _SAME = 1e-9  # rad: corners of two meshes that are one
 class Surface:
     """A body's contact surface: the angles of its nodes in rad, and normal displacements in mm by forces in N."""
 
-    angle: Array
+    angle: Numbers
     order: int
-    compliance: Array
+    compliance: Numbers
 
     @property
-    def corners(self) -> Array:
+    def corners(self) -> Numbers:
         """Where its elements end."""
         return self.angle[:: self.order]
 
-    def shapes(self, angle: Array) -> csr_array:
+    def shapes(self, angle: Numbers) -> csr_array:
         """Shape functions of the nodes at angles: (angles, nodes)."""
         return lagrange(self.corners, self.order, angle)
 
-    def gathered(self, angle: Array, values: Array) -> Array:
+    def gathered(self, angle: Numbers, values: Numbers) -> Numbers:
         """Sums of values at angles, each shared among the nodes by their shape functions: (nodes,)."""
         nodes, parts = _around(self.corners, self.order, angle)
         return numpy.bincount(nodes.ravel(), weights=(parts * values[:, None]).ravel(), minlength=len(self.angle))
 
 
-def lagrange(corners: Array, order: int, angle: Array) -> csr_array:
+def lagrange(corners: Numbers, order: int, angle: Numbers) -> csr_array:
     """Polynomials of this degree between corners, one a node, at angles: (angles, nodes), few of them not zero."""
     nodes, parts = _around(corners, order, angle)
     ends = numpy.arange(len(angle) + 1) * (order + 1)
     return csr_array((parts.ravel(), nodes.ravel(), ends), shape=(len(angle), order * (len(corners) - 1) + 1))
 
 
-def _around(corners: Array, order: int, angle: Array) -> tuple[Array, Array]:
+def _around(corners: Numbers, order: int, angle: Numbers) -> tuple[Numbers, Numbers]:
     """The nodes of the element at each angle, and their shape functions there: (angles, order + 1) each."""
     element = numpy.clip(numpy.searchsorted(corners, angle) - 1, 0, len(corners) - 2)
     t = (angle - corners[element]) / (corners[element + 1] - corners[element])
@@ -72,24 +70,24 @@ class Pair:
     ball_resolution: Resolution
 
     @cached_property
-    def angle(self) -> Array:
+    def angle(self) -> Numbers:
         """Where the pressure is known: the corners of the socket's elements, up to the reach."""
         corners = self.surfaces[0].corners
         return corners[corners <= self.reach + _SAME]
 
     @cached_property
-    def corners(self) -> Array:
+    def corners(self) -> Numbers:
         """Polar angles of the elements' corners of both bodies, in rad."""
         every = numpy.sort(numpy.concatenate([surface.corners for surface in self.surfaces]))
         every = every[every <= self.angle[-1] + _SAME]
         return every[numpy.append(True, numpy.diff(every) > _SAME)]
 
-    def area(self, angle: Array) -> Array:
+    def area(self, angle: Numbers) -> Numbers:
         """dA/dφ in mm²/rad."""
         return 2 * pi * self.radius**2 * numpy.sin(angle)
 
     @cached_property
-    def points(self) -> tuple[Array, Array]:
+    def points(self) -> tuple[Numbers, Numbers]:
         """Angles and weights of ∫ dA, by Gauss-Legendre between the corners."""
         width = numpy.diff(self.corners)[:, None]
         angle = (self.corners[:-1, None] + width * _NODES).ravel()
@@ -101,27 +99,27 @@ class Pair:
         angle, weights = self.points
         return csr_array(lagrange(self.angle, 1, angle).T @ dia_array((weights[None], [0]), shape=2 * weights.shape))
 
-    def weighted(self, values: Array) -> Array:
+    def weighted(self, values: Numbers) -> Numbers:
         """∫ φ_i values dA of the pressure's shapes φ_i, from values at the points."""
         return self._weighing @ values
 
     @cached_property
-    def displaced(self) -> tuple[Array, ...]:
+    def displaced(self) -> tuple[Numbers, ...]:
         """Normal displacements of each surface's nodes by each shape of the pressure: (nodes, shapes)."""
         return tuple(surface.compliance @ forces for surface, forces in zip(self.surfaces, self.forces, strict=True))
 
     @cached_property
-    def forces(self) -> tuple[Array, ...]:
+    def forces(self) -> tuple[Numbers, ...]:
         """Forces on each surface's nodes by each shape of the pressure: (nodes, shapes)."""
         return tuple((self._weighing @ surface.shapes(self.points[0])).toarray().T for surface in self.surfaces)
 
     @cached_property
-    def matrix(self) -> Array:
+    def matrix(self) -> Numbers:
         """∫ φ_i (displacement by φ_j) dA, summed over both bodies, in mm³/MPa; symmetric, positive definite."""
         return sum(forces.T @ displaced for forces, displaced in zip(self.forces, self.displaced, strict=True))
 
     @cached_property
-    def whitening(self) -> Array:
+    def whitening(self) -> Numbers:
         """The inverse W of the matrix' Cholesky factor, A⁻¹ = WᵀW; its leading blocks serve narrower contacts."""
         factor = cholesky(self.matrix, lower=True)
         return solve_triangular(factor, numpy.eye(len(factor)), lower=True)

@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy
 
+from ..arrays import Numbers
 from ..catalogue import catalogue, reference
 from ..contact import Contact
 from ..joint import Joint, Material
 from ..model import Model
 from ..presets import STEEL
 from ..validity import OutsideDomainError
-
-Array = numpy.ndarray
 
 RANGES = {"ball_radius": (11.0, 23.0), "outer_radius": (16.0, 26.0), "clearance": (0.05, 0.2), "poisson": (0.3, 0.49)}
 """Table 1 of Heß & Forsbach 2021 in mm, and the Poisson's ratios of Table 3."""
@@ -94,7 +93,7 @@ def paper_joints(count: int = 128) -> Joint:
     return _joints(R1[kept], clearance[kept], thickness[kept], poisson[kept])
 
 
-def _joints(R1: Array, clearance: Array, thickness: Array, poisson: Array) -> Joint:
+def _joints(R1: Numbers, clearance: Numbers, thickness: Numbers, poisson: Numbers) -> Joint:
     return Joint(
         ball_radius=R1,
         clearance=clearance,
@@ -157,7 +156,7 @@ def _accuracy(name: str, joints: Joint, inner: slice, exact: Contact, pressed: C
     )
 
 
-def _spread(error: Array, joints: Joint, inner: slice) -> Spread:
+def _spread(error: Numbers, joints: Joint, inner: slice) -> Spread:
     """Spread of errors (loads, joints): the usual ones over the inner joints, the worst over all."""
     usual = error[:, inner]
     known = usual[numpy.isfinite(usual)]

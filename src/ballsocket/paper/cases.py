@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import numpy
 
+from ..arrays import Numbers
 from ..joint import Joint, Material
 from ..presets import STEEL
 from .accuracy import RANGES, THICKNESS
 from .table_3 import paper_joint
-
-Array = numpy.ndarray
 
 POISSON = (0.30, 0.35, 0.40, 0.45, 0.49)
 """Poisson's ratios of Table 3 and Figure 2."""
@@ -32,17 +31,17 @@ OUTER_RADII = RANGES["outer_radius"]
 """The limits of Table 1 for R2 + L, dotted in Figure 6."""
 
 
-def hip(poisson: Array | float = 0.4) -> Joint:
+def hip(poisson: Numbers | float = 0.4) -> Joint:
     """Figures 3 and 4: R2 18, L 6.75, c 0.1."""
     return joint(head_radius=17.9, liner_thickness=6.75, poisson=poisson)
 
 
 def joint(
     *,
-    head_radius: Array | float = 16.0,
-    clearance: Array | float = 0.1,
-    liner_thickness: Array | float = 6.0,
-    poisson: Array | float = 0.4,
+    head_radius: Numbers | float = 16.0,
+    clearance: Numbers | float = 0.1,
+    liner_thickness: Numbers | float = 6.0,
+    poisson: Numbers | float = 0.4,
 ) -> Joint:
     """A joint of Figure 5, whose series start from R1 16, c 0.1, L 6 and ν 0.4."""
     return Joint(
@@ -68,12 +67,12 @@ def named_series() -> Iterator[tuple[str, Joint, tuple[float, ...]]]:
     yield from zip(("ΔR", "R1", "L"), series().values(), (CLEARANCES, HEAD_RADII, THICKNESSES), strict=True)
 
 
-def by_ratio(ratio: Array, poisson: Array | float) -> Joint:
+def by_ratio(ratio: Numbers, poisson: Numbers | float) -> Joint:
     """Figure 2, right, and Table 3: joints by R2/L whose outer radius is 24 mm, in the middle of Table 1."""
     return paper_joint(poisson, ratio)
 
 
-def outline(poisson: float = 0.4, heads: int = 5, liners: int = 3) -> tuple[Array, Array, Joint]:
+def outline(poisson: float = 0.4, heads: int = 5, liners: int = 3) -> tuple[Numbers, Numbers, Joint]:
     """Head radii and liner thicknesses that Table 1 allows, from end to end, and their joints; c is 0.1 mm."""
     radius = numpy.linspace(*RANGES["ball_radius"], heads)[:, None] + numpy.zeros(liners)
     thinnest, thickest = (numpy.clip(outer - radius - 0.1, *THICKNESS) for outer in (OUTER_RADII[0], OUTER_RADII[1]))
@@ -87,6 +86,6 @@ def with_clearance(joints: Joint, clearance: float) -> Joint:
     return replace(joints, clearance=clearance)
 
 
-def scaled_modulus(contact_pressure: Array, indentation: Array, socket_radius: Array) -> Array:
+def scaled_modulus(contact_pressure: Numbers, indentation: Numbers, socket_radius: Numbers) -> Numbers:
     """K~ = p0 R2/(d E), Eq. (17), for the liner of 1000 MPa."""
     return contact_pressure * socket_radius / (indentation * 1000.0)

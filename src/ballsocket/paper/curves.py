@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy
 
-from ..arrays import to_numpy
+from ..arrays import Numbers, to_numpy
 from ..contact import Contact
 from ..joint import Joint
 from ..model import Model
@@ -16,7 +16,6 @@ from ..models.foundation import HessForsbach
 from . import cases
 from .figure import Figure, Line, Map, Panel
 
-Array = numpy.ndarray
 Models = Mapping[str, Model]
 """By the name under which they are drawn."""
 
@@ -76,12 +75,12 @@ def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str
     }
 
 
-def _scaled(model: Model, joint: Joint, force: Array) -> Array:
+def _scaled(model: Model, joint: Joint, force: Numbers) -> Numbers:
     contact = model.press(joint, force=force)
     return cases.scaled_modulus(contact.max_pressure, contact.indentation, joint.socket_radius)
 
 
-def _mean_modulus(model: Model, joints: Joint) -> Array:
+def _mean_modulus(model: Model, joints: Joint) -> Numbers:
     return _scaled(model, joints, cases.LOADS[:, None]).mean(axis=0)
 
 
@@ -156,7 +155,7 @@ def _load_panel(title: str, case: str, joint: Joint, models: Models) -> Panel:
     return Panel(title=title, x="indentation δ [µm]", y="normal force [N]", lines=lines)
 
 
-Place = tuple[str, Callable[[Joint, Array], Array]]
+Place = tuple[str, Callable[[Joint, Numbers], Numbers]]
 _BY_ANGLE: Place = ("polar angle φ [°]", lambda joint, angle: numpy.degrees(angle))
 _BY_ARC: Place = ("arc from the pole R1 φ [mm]", lambda joint, angle: angle * joint.ball_radius)
 
@@ -208,7 +207,7 @@ def figure_6_areas(name: str, model: Model, reference: Model, points: int = 25) 
 
 
 def _deviation(
-    name: str, symbol: str, grid: _Grid, pair: tuple[Model, Model], quantity: Callable[[Contact], Array]
+    name: str, symbol: str, grid: _Grid, pair: tuple[Model, Model], quantity: Callable[[Contact], Numbers]
 ) -> Map:
     value, truth = (quantity(each.press(grid.joint, force=cases.LOAD)) for each in pair)
     return replace(grid.map(f"{name}: {symbol} over exact [%]", 100 * (value / truth - 1)), about_zero=True)
@@ -223,7 +222,7 @@ class _Grid:
         self.inside = (cases.OUTER_RADII[0] - 1.5 < R + L) & (cases.OUTER_RADII[1] + 1.5 > R + L)
         self.joint = cases.joint(head_radius=R[self.inside], liner_thickness=L[self.inside])
 
-    def map(self, title: str, values: Array) -> Map:
+    def map(self, title: str, values: Numbers) -> Map:
         whole = numpy.full(self.inside.shape, numpy.nan)
         whole[self.inside] = values
         rows = [[None if numpy.isnan(value) else value for value in row] for row in whole.tolist()]

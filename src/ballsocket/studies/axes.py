@@ -12,11 +12,10 @@ from math import inf
 
 import numpy
 
+from ..arrays import Numbers
 from ..checks import require
 from ..quantities import QUANTITIES
 from .distributions import Distribution
-
-Array = numpy.ndarray
 
 
 class Axis(ABC):
@@ -26,7 +25,7 @@ class Axis(ABC):
 
     @property
     @abstractmethod
-    def values(self) -> Mapping[str, Array]:
+    def values(self) -> Mapping[str, Numbers]:
         """By parameter, float64 of shape (length,)."""
 
     @property
@@ -43,10 +42,10 @@ class GridAxis(Axis):
     """One parameter at given values."""
 
     name: str
-    column: Array
+    column: Numbers
 
     @property
-    def values(self) -> Mapping[str, Array]:
+    def values(self) -> Mapping[str, Numbers]:
         return {self.name: self.column}
 
 
@@ -61,12 +60,12 @@ class SpanAxis(Axis):
         return self.span.count
 
     @property
-    def values(self) -> Mapping[str, Array]:
+    def values(self) -> Mapping[str, Numbers]:
         return _stepped(self)
 
 
 @lru_cache(maxsize=16)
-def _stepped(axis: SpanAxis) -> Mapping[str, Array]:
+def _stepped(axis: SpanAxis) -> Mapping[str, Numbers]:
     return {axis.name: numpy.linspace(axis.span.low, axis.span.high, axis.span.count)}
 
 
@@ -122,12 +121,12 @@ class SampleAxis(Axis):
         return tuple(name for name, _ in self.distributions)
 
     @property
-    def values(self) -> Mapping[str, Array]:
+    def values(self) -> Mapping[str, Numbers]:
         return _drawn(self)
 
 
 @lru_cache(maxsize=4)
-def _drawn(axis: SampleAxis) -> Mapping[str, Array]:
+def _drawn(axis: SampleAxis) -> Mapping[str, Numbers]:
     """Once in each process: a worker is sent the recipe, not the numbers."""
     from scipy.stats.qmc import LatinHypercube, Sobol
 
@@ -146,7 +145,7 @@ def _drawn(axis: SampleAxis) -> Mapping[str, Array]:
 class TableAxis(Axis):
     """Rows of a table, a column a parameter."""
 
-    columns: Mapping[str, Array]
+    columns: Mapping[str, Numbers]
     name: str = "row"
 
     @property
@@ -154,11 +153,11 @@ class TableAxis(Axis):
         return tuple(self.columns)
 
     @property
-    def values(self) -> Mapping[str, Array]:
+    def values(self) -> Mapping[str, Numbers]:
         return self.columns
 
 
-def column(name: str, values: Array, row: str = "[{}]") -> Array:
+def column(name: str, values: Numbers, row: str = "[{}]") -> Numbers:
     """Float64 numbers that a parameter may have."""
     if values.ndim != 1 or values.dtype.kind not in "iuf":
         raise ValueError(f"{name} must be a row of numbers, got {values.dtype} of shape {values.shape}")

@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy
 
+from ..arrays import Numbers
 from ..checks import check_names, require
 from .axes import Axis, GridAxis, Method, SampleAxis, Span, SpanAxis, column
 from .distributions import Distribution
 from .parameters import PARAMETERS, contradiction
-
-Array = numpy.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +67,7 @@ class Design:
         """The parameters that vary or are fixed."""
         return (*(name for axis in self.axes for name in axis.names), *self.fixed)
 
-    def part(self, place: Sequence[slice]) -> dict[str, Array]:
+    def part(self, place: Sequence[slice]) -> dict[str, Numbers]:
         """The parameters in a box of points, each with as many dimensions as the study, to broadcast."""
         found = {name: numpy.full([1] * len(self.axes), value) for name, value in self.fixed.items()}
         for dimension, (axis, where) in enumerate(zip(self.axes, place, strict=True)):
@@ -117,7 +116,7 @@ def check_values(design: Design) -> None:
         _check_allowed(name, numpy.array([value]), "")
 
 
-def _check_allowed(name: str, values: Array, hint: str) -> None:
+def _check_allowed(name: str, values: Numbers, hint: str) -> None:
     bad = ~PARAMETERS[name].allows(values)
     if bad.any():
         first = int(numpy.argmax(bad))

@@ -6,11 +6,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
-import numpy
-
 from ..checks import require
-
-Array = numpy.ndarray
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..arrays import Numbers
 from ..fingerprint import fingerprint
 from ..quantities import QUANTITIES
 from ..validity import Status
@@ -16,8 +17,6 @@ from .task import Task
 
 if TYPE_CHECKING:
     import xarray
-
-Array = numpy.ndarray
 
 
 def described(name: str) -> dict[str, Any]:
@@ -47,16 +46,16 @@ def attributes(task: Task) -> dict[str, Any]:
     }
 
 
-def coordinates(design: Design) -> dict[str, tuple[tuple[str, ...], Array]]:
+def coordinates(design: Design) -> dict[str, tuple[tuple[str, ...], Numbers]]:
     """Every parameter that varies or is fixed, with its dimensions."""
     varying = {name: ((axis.name,), values) for axis in design.axes for name, values in axis.values.items()}
-    fixed: dict[str, tuple[tuple[str, ...], Array]] = {
+    fixed: dict[str, tuple[tuple[str, ...], Numbers]] = {
         name: ((), numpy.asarray(value)) for name, value in design.fixed.items()
     }
     return {**varying, **fixed}
 
 
-def dataset(task: Task, answers: dict[str, Array]) -> xarray.Dataset:
+def dataset(task: Task, answers: dict[str, Numbers]) -> xarray.Dataset:
     """Arrays of the study's shape, labelled."""
     import xarray
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy
 
+from ..arrays import Numbers
 from ..checks import check_names, needs, require
 from ..joint import Joint
 from ..model import Model
@@ -18,8 +19,6 @@ from .parameters import LOADS, PARAMETERS, varied
 from .run import study
 from .slopes import Derive, differences
 from .task import QUANTITIES
-
-Array = numpy.ndarray
 
 _SEARCH = 3.0  # s that the search for a start may take
 _FEWEST, _MOST = 64, 4096
@@ -151,13 +150,13 @@ class _Problem:
         wanted = (self.minimise, *(name for name in named if name in QUANTITIES and name not in loads))
         return tuple(dict.fromkeys(wanted))
 
-    def at(self, share: Array) -> dict[str, float]:
+    def at(self, share: Numbers) -> dict[str, float]:
         return {
             name: float(low + one * (high - low))
             for one, (name, (low, high)) in zip(share, self.vary.items(), strict=True)
         }
 
-    def starts(self, seed: int) -> tuple[list[Array], int]:
+    def starts(self, seed: int) -> tuple[list[Numbers], int]:
         """The best few allowed points of a search, and how many were pressed."""
         count = int(numpy.clip(_SEARCH / self.model.seconds_a_press, _FEWEST, _MOST))
         count = 1 << (count.bit_length() - 1)
@@ -176,7 +175,7 @@ class _Problem:
     def study(self, design: Design) -> Any:
         return study(self.model, self.joint, design * grid(**self.load), quantities=self.quantities)
 
-    def refined(self, start: Array) -> tuple[Array, float]:
+    def refined(self, start: Numbers) -> tuple[Numbers, float]:
         """SLSQP from a start; the start itself where that leads nowhere better."""
         from scipy.optimize import minimize
 
@@ -185,7 +184,7 @@ class _Problem:
             {"type": "ineq", "fun": lambda share, limit=limit: self.margin(share, limit)} for limit in self.limits
         ]
 
-        def relative(share: Array) -> tuple[float, Array]:
+        def relative(share: Numbers) -> tuple[float, Numbers]:
             value, slope = self.value(share)
             return value / scale, slope / scale
 
@@ -197,17 +196,17 @@ class _Problem:
         best = end if good else start
         return best, self.value(best)[0]
 
-    def value(self, share: Array) -> tuple[float, Array]:
+    def value(self, share: Numbers) -> tuple[float, Numbers]:
         """The quantity and its slope along each share."""
         at = self.at(share)
         answers, found = self.derive(self.model, self.joint, [self.minimise], {**at, **self.load})
         slope = [found[self.minimise][name] * (high - low) for name, (low, high) in self.vary.items()]
         return answers[self.minimise], numpy.array(slope)
 
-    def margin(self, share: Array, limit: Limit) -> float:
+    def margin(self, share: Numbers, limit: Limit) -> float:
         return float(limit.margin(self.study(grid(**self.at(share)))))
 
-    def optimum(self, share: Array, searched: int) -> Optimum:
+    def optimum(self, share: Numbers, searched: int) -> Optimum:
         at = self.at(share)
         value, slope = self.value(share)
         ends = [

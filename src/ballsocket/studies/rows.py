@@ -7,12 +7,11 @@ from pathlib import Path
 
 import numpy
 
+from ..arrays import Numbers
 from ..checks import check_names
 from .axes import TableAxis, column
 from .design import Design
 from .parameters import PARAMETERS
-
-Array = numpy.ndarray
 
 
 def table(path: str | Path) -> Design:
@@ -46,7 +45,7 @@ def table(path: str | Path) -> Design:
 _NAMES = {quantity.key: name for name, quantity in PARAMETERS.items()}
 
 
-def _read_csv(path: Path) -> dict[str, Array]:
+def _read_csv(path: Path) -> dict[str, Numbers]:
     import csv
 
     with path.open(encoding="utf-8-sig", newline="") as stream:
@@ -71,7 +70,7 @@ def _number(text: str) -> float:
         return float("nan")
 
 
-def _read_parquet(path: Path) -> dict[str, Array]:
+def _read_parquet(path: Path) -> dict[str, Numbers]:
     from ..checks import needs
 
     needs("study", "pyarrow")

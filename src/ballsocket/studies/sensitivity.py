@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..arrays import Numbers
 from ..checks import check_names, needs, require
 from ..joint import Joint
 from ..model import Model
@@ -19,8 +20,6 @@ from .task import QUANTITIES
 
 if TYPE_CHECKING:
     import xarray
-
-Array = numpy.ndarray
 
 
 def sensitivity(
@@ -84,9 +83,9 @@ def sensitivity(
         if name in distributions:
             raise ValueError(f"{name} scatters and is given as a load too; one is needed")
     require("count", count, count >= 2 and count & (count - 1) == 0, "a power of two of samples")
-    seen: list[Array] = []
+    seen: list[Numbers] = []
 
-    def answers(values: Array) -> Array:
+    def answers(values: Numbers) -> Numbers:
         found = pressed(model, joint, {**dict(zip(distributions, values, strict=True)), **fixed}, wanted)
         table = numpy.stack([numpy.broadcast_to(found[name], values.shape[1:]) for name in wanted])
         if not numpy.isfinite(table).all():

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy
 
+from ..arrays import Numbers
 from ..checks import check_names, needs
 from ..joint import Joint
 from ..model import Model
 from .parameters import LOADS, PARAMETERS, pressable
 from .task import QUANTITIES
 
-Array = numpy.ndarray
 Slopes = dict[str, dict[str, float]]
 """By quantity, then by parameter."""
 
@@ -74,7 +74,7 @@ def _steps(name: str, value: float, step: float) -> tuple[float, float]:
     raise ValueError(f"{name} = {value:g} is not allowed for a {PARAMETERS[name].title}")
 
 
-def _slope(rises: Array, steps: tuple[float, float]) -> float:
+def _slope(rises: Numbers, steps: tuple[float, float]) -> float:
     """Slope at a point of the parabola through it and two more."""
     (one, other), (a, b) = rises, steps
     return float((b * b * one - a * a * other) / (a * b * (b - a)))

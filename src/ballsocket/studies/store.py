@@ -14,13 +14,12 @@ from zlib import crc32
 
 import numpy
 
+from ..arrays import Numbers
 from ..atomic import at_once
 from ..checks import needs
 from .identity import differences, identity
 from .labels import attributes, coordinates, described
 from .task import DTYPES, Task
-
-Array = numpy.ndarray
 
 CHECKSUM = "block_checksum"
 """An array with a number for each block: its checksum, or -1 as long as the block is not there."""
@@ -99,7 +98,7 @@ class Store:
             if checksum < 0 or checksum != _checksum_of(group, task, number)
         ]
 
-    def write(self, task: Task, number: int, answers: Mapping[str, Array]) -> None:
+    def write(self, task: Task, number: int, answers: Mapping[str, Numbers]) -> None:
         """Write a block, and last its checksum.
 
         Raises
@@ -163,7 +162,7 @@ def _checksum_of(group: Any, task: Task, number: int) -> int | None:
         return None
 
 
-def _checksum(answers: Mapping[str, Array], task: Task) -> int:
+def _checksum(answers: Mapping[str, Numbers], task: Task) -> int:
     total = 0
     for name in task.variables:
         total = crc32(numpy.ascontiguousarray(answers[name]).view(numpy.uint8).data, total)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy
 
+from ..arrays import Numbers
 from ..describe import COLUMNS
 from ..fingerprint import fingerprint
 from ..joint import Joint
@@ -16,8 +17,6 @@ from ..validity import OutsideDomainError, Status
 from .blocks import Blocks
 from .design import Design
 from .parameters import pressable
-
-Array = numpy.ndarray
 
 QUANTITIES = tuple(column.attribute for column in COLUMNS)
 """What a study can answer; `status` and `valid` come with every study."""
@@ -50,7 +49,7 @@ class Task:
     def variables(self) -> tuple[str, ...]:
         return (*self.quantities, "status", "valid")
 
-    def __call__(self, number: int) -> dict[str, Array]:
+    def __call__(self, number: int) -> dict[str, Numbers]:
         """The variables of one block, each of the block's shape.
 
         Raises
@@ -72,7 +71,7 @@ class Task:
                 whole[name][here] = answer
         return whole
 
-    def _answers(self, values: Mapping[str, Array]) -> Mapping[str, Any]:
+    def _answers(self, values: Mapping[str, Numbers]) -> Mapping[str, Any]:
         joint, load, made = pressable(self.joint, values)
         possible = numpy.asarray(made)
         try:
@@ -90,7 +89,7 @@ class Task:
         return answers
 
 
-def _at(value: Array, place: tuple[slice, ...]) -> Array:
+def _at(value: Numbers, place: tuple[slice, ...]) -> Numbers:
     """Part of an array that broadcasts: whole along dimensions of one."""
     return value[tuple(part if length > 1 else slice(None) for part, length in zip(place, value.shape, strict=True))]
 

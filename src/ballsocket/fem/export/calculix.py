@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy
 
+from ...arrays import Numbers
 from .deck import EXPECTED, NAME
-
-Array = numpy.ndarray
 
 SECTORS = 180
 """An axisymmetric element is calculated as two degrees of a ring."""
@@ -36,10 +35,10 @@ class CcxAnswer:
         surface.
     """
 
-    indentation: Array
-    force: Array
-    pole_pressure: Array
-    half_angle: Array
+    indentation: Numbers
+    force: Numbers
+    pole_pressure: Numbers
+    half_angle: Numbers
 
 
 def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
@@ -106,16 +105,16 @@ class _Surfaces:
     """What happened to both surfaces in one step: rows of a node and its displacements, and pressures by node."""
 
     deck: dict[str, Any]
-    bore: Array
-    ball: Array
+    bore: Numbers
+    ball: Numbers
     pressures: dict[int, float]
 
     @property
-    def _angle(self) -> Array:
+    def _angle(self) -> Numbers:
         """Polar angles of the bore's nodes in rad, from the pole on."""
         return numpy.array(self.deck["bore"]["angle"])
 
-    def _moved(self, name: str, rows: Array) -> Array:
+    def _moved(self, name: str, rows: Numbers) -> Numbers:
         """Displacements across the axis and along it in mm, shape (2, nodes), of nodes from the pole on."""
         places = {int(node): place for place, node in enumerate(rows[:, 0])}
         return rows[[places[node] for node in self.deck[name]["node"]], 1:3].T / self.deck["scale"]
@@ -126,7 +125,7 @@ class _Surfaces:
         return -float(self._moved("round", self.ball)[1, -1])
 
     @property
-    def gap(self) -> Array:
+    def gap(self) -> Numbers:
         """Between the bore's nodes and the ball, in mm."""
         angle, clearance = self._angle, self.deck["joint"]["clearance"]
         ball = [numpy.interp(angle, self.deck["round"]["angle"], moved) for moved in self._moved("round", self.ball)]
@@ -143,7 +142,7 @@ class _Surfaces:
         return pole(self._angle, pressures / self.deck["scale"], self.half_angle)
 
 
-def edge(angle: Array, gap: Array) -> float:
+def edge(angle: Numbers, gap: Numbers) -> float:
     """The half angle from the gap over the indentation, at angles (rad) from the pole on; without a gap the last one.
 
     Beyond the edge a gap opens like (φ - ε)^(3/2): its power 2/3 is extrapolated to zero, by a parabola through a few
@@ -159,7 +158,7 @@ def edge(angle: Array, gap: Array) -> float:
     return float(numpy.polynomial.Polynomial.fit(opening, angle[nodes], min(2, len(nodes) - 1))(0.0))
 
 
-def pole(angle: Array, pressures: Array, half_angle: float) -> float:
+def pole(angle: Numbers, pressures: Numbers, half_angle: float) -> float:
     """The pressure at the pole from those at nodes, even around it: a + b φ² + c φ⁴ through the inner two thirds.
 
     Without the nodes next to the pole, whose pressures are off by a factor.
@@ -170,7 +169,7 @@ def pole(angle: Array, pressures: Array, half_angle: float) -> float:
     return float(numpy.polynomial.Polynomial.fit(angle[near] ** 2, pressures[near], degree)(0.0))
 
 
-def printed(dat: Path, name: str) -> dict[int, Array]:
+def printed(dat: Path, name: str) -> dict[int, Numbers]:
     """The rows of numbers that a .dat file has of a set of nodes at the end of each step, the first of which is 0."""
     return {
         step: numpy.array([row.split() for row in table.splitlines() if row.strip()], dtype=float)

@@ -28,6 +28,7 @@ from typing import Any
 
 import numpy
 
+from ...arrays import Numbers
 from ...atomic import write_text
 from ...checks import require
 from ...gaps import LinearGap
@@ -40,8 +41,6 @@ from ..mesh import Block, block
 from ..shapes import socket_shape
 from ..surfaces import Pair
 from .solid import TYPES, Solid, node_set
-
-Array = numpy.ndarray
 
 NAME, EXPECTED = "ballsocket", "expected.json"
 """Names of the deck, as CalculiX wants it, and of the file beside it."""
@@ -148,7 +147,7 @@ class Deck:
     # --- what is expected ---
 
     @cached_property
-    def expected(self) -> dict[str, Array]:
+    def expected(self) -> dict[str, Numbers]:
         """Our own answer at each step (steps,), by name, with indentation in mm, force in N, pressures in MPa."""
         answer = self.contact.model.press(self._joint, indentation=self._depths)
         return {
@@ -170,7 +169,7 @@ class Deck:
         return _STIFFER * float(numpy.nanmax(self.expected["max_pressure"] / self.expected["indentation"]))
 
     @property
-    def _depths(self) -> Array:
+    def _depths(self) -> Numbers:
         return float(self._solved.indentation) * numpy.arange(1, self.steps + 1) / self.steps
 
     def _rows(self) -> list[list[float]]:
@@ -227,11 +226,11 @@ class Deck:
             elements_before=self._socket.block.elements.shape[1],
         )
 
-    def _half(self, material: Material) -> tuple[Block, Array, Array]:
+    def _half(self, material: Material) -> tuple[Block, Numbers, Numbers]:
         body = ball_body(float(material.poisson), self._solved.pair.ball_resolution)
         return body.elastic.block, body.held.reshape(-1, 2).T, body.contact
 
-    def _ring(self) -> tuple[Block, Array, Array]:
+    def _ring(self) -> tuple[Block, Numbers, Numbers]:
         """A rigid ball: one layer of elements, matching the bore's and one element longer, all of it held."""
         corners = self._solved.pair.angle
         corners = numpy.append(corners, 2 * corners[-1] - corners[-2])
@@ -315,7 +314,7 @@ class Deck:
         ):
             yield from _held(name, directions, nodes)
 
-    def _polar(self, held: Array) -> Iterator[str]:
+    def _polar(self, held: Numbers) -> Iterator[str]:
         """Directions of the nodes that are held or slide, and what slides: the first direction is the radius."""
         socket = self._socket
         inner, outer = socket.sliding

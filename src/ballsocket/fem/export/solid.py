@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy
 
+from ...arrays import Numbers
 from ..mesh import Block
-
-Array = numpy.ndarray
 
 TYPES = {1: "CAX4", 2: "CAX8R"}
 """What both programs call bilinear and biquadratic elements."""
@@ -30,20 +29,20 @@ class Solid:
 
     names: tuple[str, ...]
     block: Block
-    held: Array
-    contact: Array
+    held: Numbers
+    contact: Numbers
     radius: float
     drop: float = 0.0
     nodes_before: int = 0
     elements_before: int = 0
 
     @cached_property
-    def _rims(self) -> Array:
+    def _rims(self) -> Numbers:
         """Nodes of each element (4 or 8, elements), without the middle."""
         return self.block.elements[: 4 * self.block.order]
 
     @cached_property
-    def number(self) -> Array:
+    def number(self) -> Numbers:
         """Number in the deck of each node of the block, from 1 on; 0 for those in the middle of elements."""
         used = numpy.zeros(self.block.number.size, dtype=bool)
         used[self._rims] = True
@@ -54,24 +53,24 @@ class Solid:
         """How many it has."""
         return int(numpy.count_nonzero(self.number))
 
-    def numbers(self, chosen: Array) -> list[int]:
+    def numbers(self, chosen: Numbers) -> list[int]:
         """Numbers in the deck of the nodes that a mask (nodes,) chooses; those in the middle of elements have none."""
         return self.number[chosen & (self.number > 0)].tolist()
 
     @cached_property
-    def on_axis(self) -> Array:
+    def on_axis(self) -> Numbers:
         """Whether each node lies on the load axis."""
         on = numpy.zeros(self.block.number.size, dtype=bool)
         on[self.block.number[0]] = True
         return on
 
     @property
-    def fixed(self) -> Array:
+    def fixed(self) -> Numbers:
         """Whether each node is held in both directions."""
         return self.held[0] & self.held[1]
 
     @property
-    def sliding(self) -> tuple[Array, Array]:
+    def sliding(self) -> tuple[Numbers, Numbers]:
         """Nodes inside and outside of where layers slide."""
         columns = self.block.sliding
         return self.block.number[:, columns].ravel(), self.block.number[:, columns + 1].ravel()
@@ -80,7 +79,7 @@ class Solid:
         """Numbers and angles of the nodes that may touch, from the pole on."""
         return {"node": self.number[self.contact].tolist(), "angle": self.block.angle[: len(self.contact)].tolist()}
 
-    def touching(self, reach: float, *, strip: int, more: int = 0) -> Array:
+    def touching(self, reach: float, *, strip: int, more: int = 0) -> Numbers:
         """Numbers of the elements of a strip that begin before an angle, and of some more."""
         corners, strips = self.block.angle[:: self.block.order], len(self.block.strips)
         count = min(int(numpy.searchsorted(corners, reach - _SAME)) + more, len(corners) - 1)

@@ -17,8 +17,6 @@ from ...models.half_space import Hertz
 from .. import cases
 from .finding import SHOWN, Finding, graded, named, percent, true
 
-Array = numpy.ndarray
-
 
 def only_the_liner_deforms(reference: Model) -> Finding:
     """Section 3.1: the steel head taken as rigid."""

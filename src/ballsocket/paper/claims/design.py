@@ -6,12 +6,11 @@ from functools import cache
 
 import numpy
 
+from ...arrays import Numbers
 from ...contact import Contact
 from ...model import Model
 from .. import cases
 from .finding import Finding, named, true
-
-Array = numpy.ndarray
 
 
 def stiffness_and_geometry(reference: Model) -> Finding:
@@ -85,7 +84,7 @@ def smallest_area(reference: Model) -> Finding:
 
 
 @cache
-def _within_table_1(reference: Model) -> tuple[Array, Array, Contact]:
+def _within_table_1(reference: Model) -> tuple[Numbers, Numbers, Contact]:
     """Head radius and liner thickness of the joints within the outer radii of Table 1, and their contacts at 3 kN."""
     radius, thickness, joints = cases.outline(heads=13, liners=7)
     return radius, thickness, reference.press(joints, force=cases.LOAD)

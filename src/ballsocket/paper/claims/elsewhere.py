@@ -7,6 +7,7 @@ from io import StringIO
 
 import numpy
 
+from ...arrays import Numbers
 from ...elastic.contact import ElasticContact
 from ...elastic.exact import Exact
 from ...fem.model import FiniteElement
@@ -16,8 +17,6 @@ from ...model import Model
 from ...presets import COCR, CROSSLINKED_PE, STEEL, UHMWPE
 from ...sources import Source
 from .finding import SHOWN, Finding, graded, percent, true
-
-Array = numpy.ndarray
 
 SOURCES = (Source("jin1999"), Source("plank2007"))
 """Whose numbers these are, besides CalculiX'."""
@@ -56,7 +55,7 @@ def exact_agrees_with_calculix(_: Model) -> Finding:
     )
 
 
-def _against_calculix(model: Model, table: Array) -> dict[str, float]:
+def _against_calculix(model: Model, table: Numbers) -> dict[str, float]:
     joints = Joint(
         ball_radius=table["ball_radius"],
         clearance=table["clearance"],
@@ -70,7 +69,7 @@ def _against_calculix(model: Model, table: Array) -> dict[str, float]:
     return {"indentation off by, %": depth, "peak pressure off by, %": pressure, "half angle off by, °": angle}
 
 
-def calculix() -> Array:
+def calculix() -> Numbers:
     """CalculiX' answers, a row a load, with the columns of `data/calculix.csv` (mm, N, MPa, degrees)."""
     text = (files("ballsocket") / "data" / "calculix.csv").read_text(encoding="utf-8")
     rows = StringIO("\n".join(line for line in text.splitlines() if not line.startswith("#")))

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import numpy
 
+from ...arrays import Numbers
 from ...identify.modulus import worst_error
 from ...model import Model
 from ...models.foundation import Bartel, Vessel
@@ -13,8 +14,6 @@ from ...models.modulus import bonded_layer, spherical_vessel
 from .. import cases
 from ..table_3 import RATIOS, refit_table_3
 from .finding import SHOWN, Finding, graded, named, percent, true
-
-Array = numpy.ndarray
 
 _COMMON, _STIFF = cases.POISSON[:4], cases.POISSON[4:]
 _WIDEST = 4.1
@@ -56,12 +55,12 @@ def linear_kinematics_suffice(_: Model) -> Finding:
     )
 
 
-def _spread(modulus: Array) -> float:
+def _spread(modulus: Numbers) -> float:
     """Half of how far the values lie apart, in percent of their middle."""
     return percent((modulus.max() - modulus.min()) / (modulus.max() + modulus.min()))
 
 
-def _over_force(reference: Model, poisson: Iterable[float], forces: Array) -> dict[str, float]:
+def _over_force(reference: Model, poisson: Iterable[float], forces: Numbers) -> dict[str, float]:
     """The spread of p0/d over loads, for each ν."""
     spreads = {}
     for each in poisson:
@@ -185,7 +184,7 @@ def quality_of_the_fit_on_thin_liners(reference: Model) -> Finding:
     return _fit(reference, "quality-of-the-fit-on-thin-liners", "for thinner liners", RATIOS > _WIDEST, why)
 
 
-def _fit(reference: Model, name: str, which: str, chosen: Array, comment: str) -> Finding:
+def _fit(reference: Model, name: str, which: str, chosen: Numbers, comment: str) -> Finding:
     columns = refit_table_3(reference)
     worst = {f"ν {c.poisson:g}, worst, %": percent(abs(c.difference[chosen]).max()) for c in columns}
     ends = [percent(column.difference[-1]) for column in columns]
