@@ -122,9 +122,9 @@ def test_every_publication_is_cited_by_something():
 
 def test_a_comparison_says_why():
     answers = bs.compare(HIP, force=3000.0)
-    reason = "hertz, steuermann: outside ε ≤ 10°: a half-space ignores that the surfaces curve"
+    reason = "hertz, steuermann: outside ε ≤ 7°: a half-space ignores that the surfaces curve"
     assert reason in repr(answers)
-    assert "hertz, steuermann: outside ε ≤ 10°" in answers._repr_html_()
+    assert "hertz, steuermann: outside ε ≤ 7°" in answers._repr_html_()
     assert [note for note in answers.notes() if note.startswith("hertz, steuermann: outside ε")]
     assert repr(answers).split("\n")[-len(answers.notes()) :] == answers.notes()
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import ballsocket as bs
 from ballsocket.catalogue import theories
+from ballsocket.evidence.validity import measure, promising
 from ballsocket.output.accuracy_table import markdown
 from ballsocket.output.report import write_report
 from ballsocket.paper.plan import quick_plan
@@ -40,6 +41,7 @@ def write(folder: Path) -> None:
         "materials": _presets(bs.materials, lambda name: f"`{name}`, in Python `{name.replace('-', '_').upper()}`"),
         "nearness": _nearness(),
         "statuses": _statuses(),
+        "validity": _validity(),
     }
     for name, text in pages.items():
         (folder / f"{name}.md").write_text(text + "\n", encoding="utf-8")
@@ -63,7 +65,8 @@ def _model(model) -> str:
     formula = [f"- {_open(limit)}: {limit.why}" for limit in getattr(model, "domain", ())]
     cited = "; ".join(f"[{source}](#ref-{source.key})" for source in dict.fromkeys(model.sources))
     title = model.title[0].upper() + model.title[1:] + "."
-    parts = [f"(model-{model.name})=\n## `{model.name}`", title, "**Trusted for**", "\n".join(where)]
+    promised = "" if model.promise is None else f" ({model.promise})"
+    parts = [f"(model-{model.name})=\n## `{model.name}`", title, f"**Trusted for**{promised}", "\n".join(where)]
     if formula:
         parts += ["**Has a formula for**", "\n".join(formula)]
     return "\n\n".join([*parts, f"**From** {cited}"]) + "\n"
@@ -104,6 +107,25 @@ def _off(answers, name: str) -> str:
 def _presets(presets, called="`{}`".format) -> str:
     rows = [(called(name), str(one).removeprefix(f"{name}: "), _linked(one.source)) for name, one in presets.items()]
     return _table(("name", "numbers", "source"), rows)
+
+
+def _validity() -> str:
+    """How the models keep what they promise."""
+    sizes = {"plane-layer": 300, "cosine-limit": 60_000}
+    found = [measure(model, size=sizes.get(model.name, 10_000), seed=2) for model in promising()]
+    rows = [
+        [
+            f"[`{each.model}`](#model-{each.model})",
+            each.promise,
+            each.valid,
+            f"{100 * each.kept:.1f} %",
+            ", ".join(
+                f"{bs.quantities.CONTACT[name].symbol} {100 * error:.2g} %" for name, error in each.worst.items()
+            ),
+        ]
+        for each in found
+    ]
+    return _table(("model", "promise", "valid points", "keep it", "worst"), rows)
 
 
 def _statuses() -> str:

@@ -17,7 +17,7 @@ from .cup import Cup
 from .joint import Joint
 from .quantities import LOADS
 from .sources import Source
-from .validity import Range, Status, inside, missing
+from .validity import Promise, Range, Status, inside, missing
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,6 +44,8 @@ class Theory(ABC):
         Where the formulas come from.
     validity : tuple of Range
         Closed ranges inside which the answer can be trusted.
+    promise : Promise or None
+        How close to the elastic answer it is there, as measured; None where there is nothing to measure it by.
     reach : str
         What loads have an answer, in words for those that have none; empty where there is nothing to say.
     """
@@ -66,12 +68,15 @@ class Theory(ABC):
     @abstractmethod
     def validity(self) -> tuple[Range, ...]: ...
 
+    @property
+    def promise(self) -> Promise | None:
+        return None
+
 
 class Model(Theory):
     """Anything that answers `press(joint, force=... | indentation=... | half_angle=...)` with a `Contact`.
 
-    Most of what follows is the same for every value of a kind of model, and then a class variable. `validity` means
-    peak pressure and indentation within about 15 % of the elastic answer.
+    Most of what follows is the same for every value of a kind of model, and then a class variable.
 
     Attributes
     ----------

@@ -129,6 +129,31 @@ class Range:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Promise:
+    """What "valid" says: how close to the elastic answer a model is, at a given force, where it trusts itself.
+
+    Measured by `ballsocket.evidence.validity`: at 99 % of the points, and at the worst within 1.3 times as much.
+
+    Parameters
+    ----------
+    within : float
+        Relative.
+    quantities : tuple of str
+        By their names in a `Contact`.
+    """
+
+    within: float
+    quantities: tuple[str, ...] = ("indentation", "max_pressure")
+
+    def __str__(self) -> str:
+        return f"within {100 * self.within:g} % in {' and '.join(map(_symbol, self.quantities))}"
+
+
+def _symbol(name: str) -> str:
+    return QUANTITIES[name].symbol
+
+
+@dataclass(frozen=True, kw_only=True)
 class Nowhere(Range):
     """A range that nothing lies in: an answer for comparison, not to be trusted anywhere."""
 

@@ -12,7 +12,6 @@ from ..joints import CLOSED_FORMS, HIP
 from ..places import DATA
 
 CASES = json.loads((DATA / "exact.json").read_text())["cases"]
-PROMISE = 0.18  # 15 % against the elastic answer; the corner ν 0.49 of the paper's own table reaches 17 % in d
 
 
 def joint_of(case: dict) -> bs.Joint:
@@ -20,14 +19,17 @@ def joint_of(case: dict) -> bs.Joint:
     return bs.Joint(**lengths, liner=bs.Material(young=case["young"], poisson=case["poisson"]))
 
 
-@pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+PROMISING = {name: model for name, model in bs.catalogue.items() if model.promise is not None}
+
+
+@pytest.mark.parametrize("model", PROMISING.values(), ids=PROMISING)
 def test_a_valid_answer_is_close_to_the_elastic_one(model):
     for case in CASES:
         for step in case["steps"]:
             contact = model.press(joint_of(case), force=step["force"])
             if contact.valid:
-                assert contact.max_pressure == pytest.approx(step["max_pressure"], rel=PROMISE)
-                assert contact.indentation == pytest.approx(step["indentation"], rel=PROMISE)
+                for name in ("max_pressure", "indentation"):
+                    assert getattr(contact, name) == pytest.approx(step[name], rel=1.3 * model.promise.within)
 
 
 def test_valid_models_agree_on_random_joints_of_the_papers_range():

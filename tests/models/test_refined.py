@@ -56,7 +56,7 @@ def test_the_profile_is_within_2_5_percent_of_the_peak():
 
 def test_against_the_exact_model_on_fresh_points():
     rng = np.random.default_rng()  # another set every time: the bound is a promise, not a record
-    poisson, ratio = rng.uniform(0.3, 0.48, 20), rng.uniform(1.0, 6.5, 20)
+    poisson, ratio = rng.uniform(0.3, 0.46, 20), rng.uniform(1.0, 6.5, 20)
     angle = np.radians(rng.uniform(15.0, 60.0, 20))
     exact = bs.Exact(tolerance=1e-7).press(joint_of(poisson, ratio), half_angle=angle)
     contact = MODEL.press(joint_of(poisson, ratio), half_angle=angle)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ..arrays import Array, cos, where
 from ..joint import Joint
 from ..sources import Source
-from ..validity import SMALL_STRAIN, Range
+from ..validity import SMALL_STRAIN, Promise, Range
 from .closed_form import ClosedForm
 from .kinematics import Kinematics, angle_of, cosine_kinematics, exact_kinematics, linear_kinematics, versine_of
 from .modulus import Modulus, bonded_layer, hess_forsbach, spherical_vessel
@@ -54,6 +54,10 @@ class RadialFoundation(ClosedForm):
     @property
     def validity(self) -> tuple[Range, ...]:
         return (*self.modulus.validity, *self.kinematics.validity, SMALL_STRAIN)
+
+    @property
+    def promise(self) -> Promise | None:
+        return self.modulus.promise
 
     @property
     def parameters(self) -> tuple[Array, ...]:

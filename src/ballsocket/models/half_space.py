@@ -14,7 +14,7 @@ from numpy.polynomial import Polynomial
 from ..arrays import Array, clip, power, sqrt, where
 from ..joint import Joint
 from ..sources import Source
-from ..validity import SMALL_STRAIN, Nowhere, Range
+from ..validity import SMALL_STRAIN, Nowhere, Promise, Range
 from .closed_form import ClosedForm
 
 
@@ -127,12 +127,15 @@ _FIRST_TOUCH = (
     Range(
         quantity="half_angle",
         symbol="ε",
-        high=radians(10.0),
-        why="a half-space ignores that the surfaces curve (3 % too soft at 10°)",
+        high=radians(7.0),
+        why="a half-space ignores that the surfaces curve (d is up to 15 % too large at 7°)",
     ),
-    Range(quantity="width_ratio", symbol="a/L", high=0.3, why="a half-space ignores the backing of the liner"),
+    Range(quantity="width_ratio", symbol="a/L", high=0.15, why="a half-space ignores the backing of the liner"),
     SMALL_STRAIN,
 )
+
+
+_PROMISE = Promise(within=0.15)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,6 +154,7 @@ class Hertz(HalfSpace):
     name: ClassVar[str] = "hertz"
     title: ClassVar[str] = "two elastic half-spaces, parabolic gap"
     sources: ClassVar[tuple[Source, ...]] = (Source("hertz1882"), Source("hess2021", "(1), (2), (3)"))
+    promise: ClassVar[Promise] = _PROMISE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,6 +189,10 @@ class Steuermann(HalfSpace):
     def validity(self) -> tuple[Range, ...]:
         other = Nowhere(why=f"a gap that grows like r^{2 * self.exponent} is not the gap of two spheres")
         return super().validity if self.exponent == 1 else (other, *super().validity)
+
+    @property
+    def promise(self) -> Promise | None:
+        return _PROMISE if self.exponent == 1 else None
 
     @property
     def order(self) -> int:

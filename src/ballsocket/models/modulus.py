@@ -15,7 +15,7 @@ from ..arrays import Array, clip
 from ..checks import numeric, require
 from ..joint import Joint
 from ..sources import Source
-from ..validity import RIGID_BACKING, RIGID_BALL, Range, inside
+from ..validity import RIGID_BACKING, RIGID_BALL, Promise, Range, inside
 
 Formula = Callable[..., Array]
 """K of R2, L, E, ν and the modulus' own constants."""
@@ -33,6 +33,8 @@ class Modulus:
     constants : tuple of float or array
         The formula's own numbers.
     sources : tuple of Source
+    promise : Promise or None
+        What the springs are worth inside the validity.
     domain, validity : tuple of Range
         Where there is a formula (open), and where it can be trusted (closed).
 
@@ -51,6 +53,7 @@ class Modulus:
     sources: tuple[Source, ...] = ()
     domain: tuple[Range, ...] = ()
     validity: tuple[Range, ...] = ()
+    promise: Promise | None = None
 
     def __call__(self, joint: Joint) -> Array:
         """K in MPa/mm; OutsideDomainError (a ValueError) where there is no formula for any point of the joint."""
@@ -108,6 +111,7 @@ def _contact_width(low: float, why: str) -> Range:
     return Range(quantity="width_ratio", symbol="a/L", low=low, why=why)
 
 
+_SPRINGS = Promise(within=0.15)
 _COMPRESSIBLE = _poisson(-1.0, 0.5, "the modulus is unbounded for an incompressible liner (ν = 0.5)")
 _FINITE_LAYER = Range(
     quantity="joint.liner_thickness",
@@ -124,11 +128,12 @@ spherical_vessel = Modulus(
     sources=(Source("bartel1985"), Source("hess2021", "(14)")),
     domain=(_COMPRESSIBLE,),
     validity=(
-        _poisson(0.2, 0.4, "its pressure is 7 % high at 0.4, 20 % at 0.45 and without bound towards 0.5"),
-        _contact_width(0.7, "a contact narrower than the liner is thick feels a half-space, not a vessel"),
+        _poisson(0.0, 0.4, "its pressure is 7 % high at 0.4, 20 % at 0.45 and without bound towards 0.5"),
+        _contact_width(0.9, "a contact narrower than the liner is thick feels a half-space, not a vessel"),
         RIGID_BALL,
         RIGID_BACKING,
     ),
+    promise=_SPRINGS,
 )
 """K_B of Bartel et al. 1985: exact for uniform pressure all around, Eq. (14) of the paper."""
 
@@ -139,11 +144,18 @@ bonded_layer = Modulus(
     sources=(Source("johnson1985"), Source("hess2021", "(15)")),
     domain=(_COMPRESSIBLE, _FINITE_LAYER),
     validity=(
-        _poisson(0.2, 0.4, "its pressure is 10 % high at 0.4, 30 % at 0.45 and without bound towards 0.5"),
-        _contact_width(2.0, "the layer must be thin against the contact radius"),
+        _poisson(0.0, 0.4, "its pressure is 10 % high at 0.4, 30 % at 0.45 and without bound towards 0.5"),
+        Range(
+            quantity="joint.thickness_ratio",
+            symbol="R2/L",
+            low=5.5,
+            why="a flat layer has one area inside and outside: a thicker shell gives way less",
+        ),
+        _contact_width(1.5, "the layer must be thin against the contact radius"),
         RIGID_BALL,
         RIGID_BACKING,
     ),
+    promise=_SPRINGS,
 )
 """K_BL of uniaxial compression between bonded faces, Eq. (15) of the paper."""
 
@@ -294,6 +306,12 @@ def table_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
     return E / R2 * scaled
 
 
+def _bulge(contact: Any) -> Array:
+    """How wide a contact is for a liner that is nearly incompressible; 0 for one that is not."""
+    excess = contact.joint.liner.poisson - 0.43
+    return clip(excess, 0.0, inf) * contact.width_ratio
+
+
 hess_forsbach = Modulus(
     name="hess-forsbach",
     title="fitted to finite elements, Table 3",
@@ -309,8 +327,16 @@ hess_forsbach = Modulus(
             low=radians(20.0),
             why="fitted at 1 to 3 kN; near first touch the liner answers like a half-space, not like springs",
         ),
+        _contact_width(0.6, "a contact narrower than that feels a half-space, not springs"),
+        Range(
+            quantity=_bulge,
+            symbol="(ν - 0.43) a/L",
+            high=0.04,
+            why="a wide contact on a nearly incompressible liner is held by its volume, which no spring knows",
+        ),
         RIGID_BALL,
         RIGID_BACKING,
     ),
+    promise=_SPRINGS,
 )
 """The paper's fit (18), with monotone cubic interpolation in ν between the columns of Table 3."""

@@ -15,14 +15,14 @@ from ..arrays import Array, broadcast, clip, divisor, integral, sin, where
 from ..joint import Joint
 from ..model import Answer, Model
 from ..sources import Source
-from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Range, Status
+from ..validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Status
 from .dual_numbers import Dual
 from .liner_compliance import compliance
 
 WIDEST = radians(85.0)
 """The largest half angle that is answered."""
 
-_FITTED = "fitted there: d, p0, F and ε within 1 % of the exact answer at a given half angle or force"
+_FITTED = "fitted there, with a rigid ball"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,13 +64,20 @@ class Refined(Model):
         ),
     )
     validity: ClassVar[tuple[Range, ...]] = (
-        Range(quantity="joint.liner.poisson", symbol="ν", low=0.3, high=0.48, why=_FITTED),
+        Range(quantity="joint.liner.poisson", symbol="ν", low=0.3, high=0.46, why=_FITTED),
         Range(quantity="joint.thickness_ratio", symbol="R2/L", low=1.0, high=6.5, why=_FITTED),
         Range(quantity="half_angle", symbol="ε", low=radians(15.0), high=radians(60.0), why=_FITTED),
-        RIGID_BALL,
+        Range(
+            quantity="joint.modulus_ratio",
+            symbol="E/E_ball",
+            high=0.0045,
+            why="the model takes the ball as rigid, and is so close that softer ones show",
+        ),
         RIGID_BACKING,
         SMALL_STRAIN,
     )
+
+    promise: ClassVar[Promise] = Promise(within=0.02)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         edge = _given(joint, load) if kind == "half_angle" else _found(joint, kind, load)

@@ -215,8 +215,14 @@ def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
 
 def print_models(models: Iterable[Theory]) -> None:
     """The catalogue with validity and sources."""
-    rows = [(model.name, model.title, "\n".join(map(str, model.validity)), _sources(model)) for model in models]
+    rows = [(model.name, model.title, _trust(model), _sources(model)) for model in models]
     _print_rows(("model", "what it is", "trusted for", "source"), rows, gap=1)
+
+
+def _trust(model: Theory) -> str:
+    """What the model promises, and where."""
+    promised = [] if model.promise is None else [f"{model.promise}:"]
+    return "\n".join([*promised, *map(str, model.validity)])
 
 
 def print_presets() -> None:

@@ -10,7 +10,7 @@ from ...arrays import Array, broadcast, divisor
 from ...joint import Joint
 from ...model import Answer, Model
 from ...sources import Source
-from ...validity import SMALL_STRAIN, Range, Status
+from ...validity import SMALL_STRAIN, Promise, Range, Status
 from .chebyshev import POISSON, THICKNESS_RATIO
 from .solution import solution_of
 
@@ -72,6 +72,8 @@ class Tabulated(Model):
         ),
         SMALL_STRAIN,
     )
+
+    promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         solution = solution_of(self.file, joint, kind, load)

@@ -1,0 +1,1 @@
+"""What there is to show that a number may be trusted."""
