@@ -14,8 +14,8 @@ from ..validity import Status
 from .memory import MeshSize, mesh_size
 
 if TYPE_CHECKING:
-    from .curve import Solved
     from .section import Section
+    from .work import Solved
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)

@@ -14,9 +14,9 @@ from ..joint import Joint
 from ..stress import Peak, Stress
 from .bodies import ball_body, socket_body
 from .condense import Body
-from .curve import Solved
 from .elasticity import shape_functions
 from .shapes import socket_shape
+from .work import Solved
 
 _CORNER = 0.25  # of the liner's thickness, or of the socket's radius where that is less
 

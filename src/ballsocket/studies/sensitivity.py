@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy
 
@@ -16,6 +16,7 @@ from .distributions import Distribution
 from .labels import described
 from .parameters import PARAMETERS, contradiction
 from .slopes import elasticities, pressed
+from .sobol import sobol
 from .task import QUANTITIES
 
 if TYPE_CHECKING:
@@ -64,63 +65,23 @@ def sensitivity(
     ValueError
         A name that is not known, a count that is no power of two, samples that have no answer, an answer that does not
         change.
-
-    References
-    ----------
-    Saltelli et al. 2010, Comput. Phys. Commun. 181, 259; `scipy.stats.sobol_indices`.
     """
     needs("study", "xarray")
     import xarray
-    from scipy.stats import sobol_indices
 
-    check_names(distributions, PARAMETERS, "among what scatters")
     wanted, fixed = tuple(quantities), dict(load or {})
-    check_names(wanted, QUANTITIES, "among the quantities")
-    if not distributions:
-        raise ValueError("at least one number must scatter")
-    contradiction({**distributions, **fixed})
-    for name in fixed:
-        if name in distributions:
-            raise ValueError(f"{name} scatters and is given as a load too; one is needed")
+    _check(distributions, wanted, fixed)
     require("count", count, count >= 2 and count & (count - 1) == 0, "a power of two of samples")
-    seen: list[Numbers] = []
-
-    def answers(values: Numbers) -> Numbers:
-        found = pressed(model, joint, {**dict(zip(distributions, values, strict=True)), **fixed}, wanted)
-        table = numpy.stack([numpy.broadcast_to(found[name], values.shape[1:]) for name in wanted])
-        if not numpy.isfinite(table).all():
-            bad = int((~numpy.isfinite(table)).any(axis=0).sum())
-            raise ValueError(f"{model.name} has no answer for {bad} of {values.shape[1]} samples: narrow what scatters")
-        same = [name for name, row in zip(wanted, table, strict=True) if not seen and numpy.ptp(row) == 0]
-        if same:
-            raise ValueError(
-                f"{same[0]} does not change with {' and '.join(distributions)}: there is nothing to share out"
-            )
-        seen.append(table.copy())  # SciPy centres its own in place
-        return table
-
-    indices = sobol_indices(
-        func=answers, n=count, dists=[one.frozen for one in distributions.values()], rng=numpy.random.default_rng(seed)
-    )
-    with _seeded(seed):
-        interval = indices.bootstrap(confidence_level=confidence)
-    dims = ("quantity", "parameter")
-    shape = (len(wanted), len(distributions))
-    numbers: dict[str, tuple[Any, Any]] = {
-        f"{order}_order{end}": (dims, numpy.reshape(values, shape))
-        for order, found, ends in (
-            ("first", indices.first_order, interval.first_order.confidence_interval),
-            ("total", indices.total_order, interval.total_order.confidence_interval),
-        )
-        for end, values in (("", found), ("_low", ends.low), ("_high", ends.high))
-    }
+    answers = _Answers(model, joint, tuple(distributions), wanted, fixed)
+    shares = sobol(answers, list(distributions.values()), count, seed, confidence)
     middle = {name: float(one.frozen.median()) for name, one in distributions.items()}
     local = elasticities(model, joint, wanted, {**middle, **fixed})
-    numbers["elasticity"] = (dims, [[local[quantity][name] for name in distributions] for quantity in wanted])
-    samples = numpy.concatenate(seen[:2], axis=1)
+    samples = numpy.concatenate(answers.seen[:2], axis=1)
+    both = ("quantity", "parameter")
     return xarray.Dataset(
         {
-            **numbers,
+            **{name: (both, values) for name, values in shares.items()},
+            "elasticity": (both, [[local[quantity][name] for name in distributions] for quantity in wanted]),
             "mean": ("quantity", samples.mean(axis=1)),
             "deviation": ("quantity", samples.std(axis=1)),
             "units": ("quantity", [described(name)["units"] for name in wanted]),
@@ -130,12 +91,44 @@ def sensitivity(
     )
 
 
-@contextmanager
-def _seeded(seed: int) -> Iterator[None]:
-    """SciPy's bootstrap of these indices draws from NumPy's global stream: seeded here, and left as it was."""
-    state = numpy.random.get_state()  # noqa: NPY002
-    numpy.random.seed(seed)  # noqa: NPY002
-    try:
-        yield
-    finally:
-        numpy.random.set_state(state)  # noqa: NPY002
+def _check(distributions: Mapping[str, Distribution], wanted: Iterable[str], fixed: Mapping[str, float]) -> None:
+    check_names(distributions, PARAMETERS, "among what scatters")
+    check_names(wanted, QUANTITIES, "among the quantities")
+    if not distributions:
+        raise ValueError("at least one number must scatter")
+    contradiction({**distributions, **fixed})
+    for name in fixed:
+        if name in distributions:
+            raise ValueError(f"{name} scatters and is given as a load too; one is needed")
+
+
+@dataclass
+class _Answers:
+    """Answers (quantities, points) to samples (numbers, points); those that it has `seen` first are the plain ones."""
+
+    model: Model
+    joint: Joint
+    names: tuple[str, ...]
+    wanted: tuple[str, ...]
+    fixed: Mapping[str, float]
+    seen: list[Numbers] = field(default_factory=list)
+
+    def __call__(self, values: Numbers) -> Numbers:
+        scattered = dict(zip(self.names, values, strict=True))
+        found = pressed(self.model, self.joint, {**scattered, **self.fixed}, self.wanted)
+        table = numpy.stack([numpy.broadcast_to(found[name], values.shape[1:]) for name in self.wanted])
+        bad = int((~numpy.isfinite(table)).any(axis=0).sum())
+        if bad:
+            many = f"{bad} of {values.shape[1]} samples"
+            raise ValueError(f"{self.model.name} has no answer for {many}: narrow what scatters")
+        if not self.seen:
+            self._check_changes(table)
+        self.seen.append(table.copy())  # SciPy centres its own in place
+        return table
+
+    def _check_changes(self, table: Numbers) -> None:
+        for name, row in zip(self.wanted, table, strict=True):
+            if numpy.ptp(row) == 0:
+                raise ValueError(
+                    f"{name} does not change with {' and '.join(self.names)}: there is nothing to share out"
+                )

@@ -36,10 +36,10 @@ from ...joint import Joint, Material
 from ...version import __version__
 from ..bodies import ball_body, socket_body
 from ..contact import MeshedContact
-from ..curve import Solved
 from ..mesh import Block, block
 from ..shapes import socket_shape
 from ..surfaces import Pair
+from ..work import Solved
 from .solid import TYPES, Solid, node_set
 
 NAME, EXPECTED = "ballsocket", "expected.json"
