@@ -137,4 +137,5 @@ def test_only_models_that_know_cups_take_one():
     cup = bs.Cup(arc_of_cover=2.5, inclination=0.7, side=bs.Side.LEFT)
     assert bs.FiniteElement(meshes=1).in_cup(cup) == bs.FiniteElement(cup=cup, meshes=1)
     for model in bs.catalogue.values():
-        assert model.in_cup(cup) is model
+        assert model.in_cup(cup) == bs.model.Covered(model=model, cup=cup)
+        assert model.in_cup(cup).in_cup(bs.Cup()) is model

@@ -14,6 +14,7 @@ from .arrays import Array, to_list, where
 from .catalogue import catalogue, reference
 from .checks import one_load
 from .contact import Contact
+from .cup import Cup
 from .describe import COLUMNS, count, number_text
 from .joint import Joint
 from .model import Model
@@ -125,6 +126,7 @@ def compare(
     indentation: Array | None = None,
     half_angle: Array | None = None,
     models: Mapping[str, Model] | None = None,
+    cup: Cup | None = None,
 ) -> Comparison:
     """Press one joint by every model.
 
@@ -135,6 +137,8 @@ def compare(
         Exactly one, in N, mm or rad.
     models : mapping of str to Model, optional
         By default the whole catalogue.
+    cup : Cup, optional
+        What the socket ends as; models that know no cups are then not trusted near its rim.
 
     Returns
     -------
@@ -158,7 +162,7 @@ def compare(
     contacts, missing = {}, {}
     for name, model in (catalogue if models is None else models).items():
         try:
-            contacts[name] = model.press(joint, **keyword)
+            contacts[name] = (model if cup is None else model.in_cup(cup)).press(joint, **keyword)
         except OutsideDomainError as error:
             missing[name] = str(error)
     return Comparison(joint, contacts, missing)

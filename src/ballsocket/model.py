@@ -5,7 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from functools import partial
+from typing import ClassVar
 
 import numpy
 
@@ -13,11 +14,11 @@ from . import arrays
 from .arrays import Array, where
 from .checks import one_load, require, vectors
 from .contact import Contact, Laws
-from .cup import Cup
+from .cup import Cup, Interface
 from .joint import Joint
 from .quantities import LOADS
 from .sources import Source
-from .validity import Promise, Range, Status, inside, missing
+from .validity import Nowhere, Promise, Range, Status, inside, missing
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -151,9 +152,9 @@ class Model(Theory):
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         """The answer to a load of one kind ("force", "indentation", "half_angle"), all numbers being arrays."""
 
-    def in_cup(self, cup: Cup) -> Self:
-        """This model with that cup, or itself where it takes the socket for a whole sphere."""
-        return self
+    def in_cup(self, cup: Cup) -> Model:
+        """This model in a cup; one that takes the socket for a whole sphere is trusted away from the rim alone."""
+        return self if cup == Cup() else Covered(model=self, cup=cup)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Force in N on the ball when its centre sits at `displacement` (mm) from the centre of the socket.
@@ -183,6 +184,94 @@ class Model(Theory):
         touching = (square > 0) & (depth > 0)
         force = where(touching, self.press(joint, indentation=where(touching, depth, 0.0)).force, 0.0)
         return -displacement * (force / length)[..., None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Covered(Model):
+    """A model in a cup that it knows nothing of: its own answers, with a validity that ends before the rim.
+
+    Parameters
+    ----------
+    model : Model
+    cup : Cup
+        Pressed by a force that points upwards in its frame.
+    """
+
+    model: Model
+    cup: Cup
+
+    @property
+    def name(self) -> str:
+        return self.model.name
+
+    @property
+    def title(self) -> str:
+        return self.model.title
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return self.model.sources
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        return self.model.domain
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        rim = Range(quantity=partial(_from_rim, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM)
+        slides = Nowhere(why="the liner slides on its backing, which this model knows as bonded: ask fem")
+        return (*self.model.validity, rim, *((slides,) if self.cup.interface is Interface.SLIDING else ()))
+
+    @property
+    def promise(self) -> Promise | None:
+        return self.model.promise
+
+    @property
+    def parameters(self) -> tuple[Array, ...]:
+        return self.model.parameters
+
+    @property
+    def reach(self) -> str:  # type: ignore[override]
+        return self.model.reach
+
+    @property
+    def differentiable(self) -> bool:  # type: ignore[override]
+        return self.model.differentiable
+
+    @property
+    def smooth_step(self) -> float:  # type: ignore[override]
+        return self.model.smooth_step
+
+    @property
+    def seconds_a_press(self) -> float:  # type: ignore[override]
+        return self.model.seconds_a_press
+
+    @property
+    def planar(self) -> bool:  # type: ignore[override]
+        return self.model.planar
+
+    @property
+    def contact_type(self) -> type[Contact]:  # type: ignore[override]
+        return self.model.contact_type
+
+    def in_cup(self, cup: Cup) -> Model:
+        return self.model.in_cup(cup)
+
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        return self.model._solve(joint, kind, load)
+
+
+_RIM = "the model takes the socket for a whole sphere; within a liner's thickness of it the rim gives way: ask fem"
+
+
+def _from_rim(cup: Cup, contact: Contact) -> Array:
+    """The arc from the edge of a contact to the rim over the liner's thickness, or a massive socket's radius.
+
+    At 1, d is up to 2 % more than in a whole sphere and the largest pressure 1 % (ν 0.46), at 0.3 they are 9 and 4 %.
+    """
+    joint = contact.joint
+    L, R2 = joint.liner_thickness, joint.socket_radius
+    return cup.edge_distance(R2, contact.half_angle) / where(L < R2, L, R2)
 
 
 def checked_load(**loads: Array | None) -> tuple[str, Array]:

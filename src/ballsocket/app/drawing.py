@@ -91,10 +91,10 @@ def _ball(radius: float, drop: float) -> tuple[numpy.ndarray, numpy.ndarray]:
 
 
 def _petals(file: JointFile, contact: Contact | None) -> dict[str, Any]:
-    """Quadrilaterals in the liner, as high and as coloured as the pressure."""
+    """Quadrilaterals in the liner up to its rim, as high and as coloured as the pressure."""
     if contact is None or not float(contact.half_angle) > 0:
         return {"x": [], "y": [], "pressure": []}
-    radius, edge = float(file.joint.socket_radius), float(contact.half_angle)
+    radius, edge = float(file.joint.socket_radius), min(float(contact.half_angle), file.cup.rim)
     angle = edge * numpy.sin(numpy.linspace(-pi / 2, pi / 2, _PETALS + 1))
     pressure = numpy.asarray(contact.pressure(numpy.abs(angle) * (1 - 1e-9)))
     highest = _HIGHEST * min(float(file.joint.liner_thickness), 0.6 * radius)

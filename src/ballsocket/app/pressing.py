@@ -10,6 +10,7 @@ import numpy
 from ..catalogue import catalogue
 from ..compare import Comparison, compare
 from ..contact import Contact
+from ..cup import Cup
 from ..io.joint_file import JointFile
 from ..joint import Joint
 from ..validity import OutsideDomainError
@@ -19,12 +20,12 @@ _POINTS = numpy.linspace(0.0, 1.0, 33) ** 1.5
 
 def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
     """Some models beside each other."""
-    return _pressed(file.joint, tuple(file.load.items()), names)
+    return _pressed(file.joint, file.cup, tuple(file.load.items()), names)
 
 
 @lru_cache(maxsize=64)
-def _pressed(joint: Joint, load: tuple[tuple[str, float], ...], names: tuple[str, ...]) -> Comparison:
-    return compare(joint, models={name: catalogue[name] for name in names}, **dict(load))
+def _pressed(joint: Joint, cup: Cup, load: tuple[tuple[str, float], ...], names: tuple[str, ...]) -> Comparison:
+    return compare(joint, models={name: catalogue[name] for name in names}, cup=cup, **dict(load))
 
 
 @lru_cache(maxsize=256)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -14,7 +14,7 @@ import ballsocket as bs
 from ..catalogue import judge, reference
 from ..checks import nearest
 from ..compare import Comparison, answered, force_curves
-from ..joint import Joint
+from ..io.joint_file import JointFile
 from ..model import Model
 from ..output import press_plot, terminal
 from ..output.save import check_format, save
@@ -82,12 +82,12 @@ def press(
     models.check()
     file = words.or_named(joint)
     at = load.or_of(file)
-    chosen, remarks = models.chosen(), []
+    chosen, remarks, around = models.chosen(), [], cup.on(file.cup)
     if models.judged:
-        fem = mesh.model(cup.on(file.cup), meshes or 2)
+        fem = mesh.model(around, meshes or 2)
         chosen[judge.name] = fem
         remarks.append(elements.remark(*elements.timed(fem, file.joint, at)))
-    comparison = _compared(file.joint, at, chosen)
+    comparison = _compared(replace(file, cup=around), at, chosen)
     if figure is not None:
         _draw(comparison, {**bs.catalogue, **chosen}, figure)
     if judge.name in comparison:
@@ -99,9 +99,9 @@ def press(
     _end(comparison, chosen)
 
 
-def _compared(joint: Joint, load: Mapping[str, float], chosen: Mapping[str, Model]) -> Comparison:
+def _compared(file: JointFile, load: Mapping[str, float], chosen: Mapping[str, Model]) -> Comparison:
     """The chosen models beside the exact answer, if any of them has an answer for such a joint."""
-    comparison = bs.compare(joint, models={**chosen, reference.name: reference}, **load)
+    comparison = bs.compare(file.joint, models={**chosen, reference.name: reference}, cup=file.cup, **load)
     if not set(comparison) & set(chosen):
         raise ValueError("; ".join(why for name, why in comparison.missing.items() if name in chosen))
     return comparison

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 from .. import arrays
 from ..checks import needs, require
@@ -123,7 +123,7 @@ class FiniteElement(Model):
     def validity(self) -> tuple[Range, ...]:
         return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
 
-    def in_cup(self, cup: Cup) -> Self:
+    def in_cup(self, cup: Cup) -> FiniteElement:
         return replace(self, cup=cup)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from math import inf, pi
 from typing import Any, ClassVar
 
@@ -16,8 +17,8 @@ from .kinematics import angle_of, linear_displacement, linear_indentation, versi
 from .modulus import Modulus, hess_forsbach
 
 
-def _adhesion_number(contact: Any) -> Array:
-    return contact.model.adhesion_number(contact.joint)
+def _adhesion_number(model: AdhesiveSocket, contact: Any) -> Array:
+    return model.adhesion_number(contact.joint)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +80,11 @@ class AdhesiveSocket(ClosedForm):
     @property
     def validity(self) -> tuple[Range, ...]:
         why = "from 1 on the whole hemisphere sticks by itself, and the rim decides"
-        return (*self.modulus.validity, Range(quantity=_adhesion_number, symbol="η", high=1.0, why=why), SMALL_STRAIN)
+        return (
+            *self.modulus.validity,
+            Range(quantity=partial(_adhesion_number, self), symbol="η", high=1.0, why=why),
+            SMALL_STRAIN,
+        )
 
     def critical_stretch(self, joint: Joint) -> Array:
         """u_c = sqrt(2w/K) in mm."""
