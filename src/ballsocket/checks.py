@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from importlib.util import find_spec
 from typing import Any
+from unicodedata import category
 
 import numpy
 
@@ -83,11 +84,11 @@ def _is_real(value: Any) -> bool:
 
 
 def _refusal(name: str, value: Any) -> str:
-    shown = f"an array of {value.dtype}" if getattr(value, "shape", ()) else f"{value!r}"
+    what = f"an array of {value.dtype}" if getattr(value, "shape", ()) else shown(value)
     if isinstance(value, numpy.ma.MaskedArray):
-        shown = "a masked array"
+        what = "a masked array"
     hint = "; text with units belongs in a joint file or on the command line" if isinstance(value, str) else ""
-    return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {shown[:80]}{hint}"
+    return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {what}{hint}"
 
 
 def one_load(**loads: Any) -> tuple[str, Any]:
@@ -110,10 +111,33 @@ def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
     """Raise ValueError for the first of `names` that is not `known`."""
     for name in names:
         if name not in known:
-            raise ValueError(f"{name!r} {where} is not known{nearest(name, known)}")
+            raise ValueError(f"{shown(name)} {where} is not known{nearest(name, known)}")
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
+def nearest(name: Any, known: Iterable[str]) -> str:
     """A hint: the nearest known name, or all of them."""
-    close = get_close_matches(name, list(known), n=1, cutoff=0.5)
+    text = name if isinstance(name, str) else shown(name)
+    close = get_close_matches(text[:_LONGEST], list(known), n=1, cutoff=0.5)
     return f"; did you mean {close[0]!r}?" if close else f"; known: {', '.join(known)}"
+
+
+def check_text(name: str, value: Any) -> str:
+    """`value`, if it is text that any terminal can show."""
+    if not isinstance(value, str):
+        raise ValueError(f"{name} = {shown(value)} must be text")
+    if len(value) > _LONGEST_TEXT or any(category(each) == "Cc" and each not in "\t\n" for each in value):
+        raise ValueError(f"{name} = {shown(value)} must be at most {_LONGEST_TEXT} characters, none that controls")
+    return value
+
+
+def shown(value: Any) -> str:
+    """Whatever came in, as a refusal shows it: on one line, and short."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # an integer of thousands of digits; lists in lists in lists
+        return f"({type(value).__name__} too long to show)"
+    return text if len(text) < _LONGEST else f"{text[:40]}..."
+
+
+_LONGEST_TEXT = 1000
+_LONGEST = 60  # characters of what is shown, and of a name for which others like it are looked for

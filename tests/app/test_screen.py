@@ -21,6 +21,7 @@ from ballsocket.app.screen import ANGLES, QUICK, SIZES, START, THEMES, VIEWS, Ax
 
 REST = "joint.clearance=1&joint.liner_thickness=2&liner.material=pom"
 lengths = st.floats(1e-3, 1e3)
+names = st.text(st.characters(exclude_categories=("Cc", "Cs")), max_size=8)
 presets = st.sampled_from(list(materials.values()))
 made_materials = st.one_of(
     presets,
@@ -39,8 +40,8 @@ made_joints = st.builds(
     ball=st.one_of(st.none(), made_materials),
     backing=st.lists(layers, max_size=2).map(tuple),
     support=st.sampled_from(list(bs.Support)),
-    name=st.text(max_size=8),
-    source=st.text(max_size=8),
+    name=names,
+    source=names,
 )
 cups = st.builds(
     Cup,
@@ -149,11 +150,17 @@ def test_arrays_are_no_joint_file():
         ("limit=3", "'3' is not a limit"),
         ("limit=frob<=3", "'frob' among what can be limited is not known"),
         ("joint=2", "joint = '2' must be a table"),
-        ("joint=2&joint.clearance=1", "joint is given as text and as a table in the link"),
+        ("joint.ball_radius=" + "1" * 7000 + "!", "joint.ball_radius|a length|the liner needs"),
+        ("backing.1111111111.thickness=2", "a layer is 'backing.0.thickness' and so on"),
+        ("a" * 7900 + "=1", "'aaaa.* in the link is not known"),
+        ("limit=force<=1&" * 21, "a map has at most 20 limits, got 21"),
+        ("across=force=" + " .." * 1500 + "%0a", "is not a range"),
+        ("name=%1b[31m&joint=2", "name = .* none that controls|must be a table"),
+        ("joint=2&joint.clearance=1", "'joint' is given as text and as a table in the link"),
         ("up=ball_radius=1..2", "a map has two axes, and both are ball_radius"),
         ("up=clearance=2..1", "clearance from 2 to 1 is no range: it must go upwards"),
         ("across=half_angle=10..40", "'half_angle' among the axes of a map is not known"),
-        ("load.force=1&load.force=2", "load.force is given 2 times in the link"),
+        ("load.force=1&load.force=2", "'load.force' is given 2 times in the link"),
         ("load.force=1&load.indentation=2&preset=hip-28", "one load is needed, got force, indentation"),
         ("shown=exact,frob", "'frob' as shown is not known"),
         ("map_model=exact", "'exact' as map_model is not known"),

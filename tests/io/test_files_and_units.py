@@ -2,6 +2,8 @@
 
 import math
 import re
+import time
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -73,11 +75,105 @@ def test_quantities(text, kind, value):
         (None, "length"),
         ([1], "length"),
         ("1 " + "m" * 10_000, "length"),
+        ("1 N**0", "force"),
+        ("1 dBm*m", "force"),
+        ("1 N*m" + "/m*m" * 400 + "/m", "force"),
+        ("1 " + "N*" * 3000 + "N", "force"),
+        ("1" * 400, "force"),
     ],
 )
 def test_what_is_no_quantity_is_named(text, kind):
-    with pytest.raises(ValueError, match=r"^it = .* is not a"):
+    with pytest.raises(ValueError, match=r"^it = .* is not a") as refused:
         parse("it", text, kind)
+    assert len(str(refused.value)) < 120
+
+
+@pytest.mark.parametrize(
+    "value",
+    [10**400, 16**9000, -(10**400), "1e999", "-1e999", "1e999 kN", "1e308 GN"],
+    ids=lambda value: f"{value!s:.9}" if isinstance(value, str) else "integer",
+)
+def test_a_number_is_infinite_only_where_that_is_said(value):
+    with pytest.raises(ValueError, match=r"^it = .{1,60} is too large a number$"):
+        parse("it", value, "force")
+    assert parse("it", " -Infinity ", "force") == -math.inf
+
+
+def within(seconds, do):
+    """What is refused is refused at once, however long it is."""
+    start = time.perf_counter()
+    with pytest.raises(ValueError) as refused:  # noqa: PT011 (which sentence is not the point)
+        do()
+    assert time.perf_counter() - start < seconds
+    assert len(str(refused.value)) < 400
+
+
+@pytest.mark.parametrize(
+    "text", ["1" * 20_000 + "!", "1 " + "m " * 20_000 + "!", "1." + "0" * 20_000 + "e", "1 " + "m*" * 99]
+)
+def test_long_text_is_refused_at_once(text):
+    within(1.0, lambda: parse("it", text, "length"))
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"joint." + b"a." * 15_000 + b"b = 1",
+        b"[" + b"a." * 15_000 + b"b]",
+        b"joint." + b'"a" . ' * 15_000 + b"b = 1",
+        b'"' + b'\\"' * 49_000,
+        b"a" * 99_000 + b" = 1",
+        b"joint = {" + b"a = {" * 15_000,
+        b"[joint]\nball_radius = 0x" + b"f" * 90_000,
+        b"[joint]\nball_radius = 1" + b"0" * 90_000,
+        b"[joint]\nball_radius = 1e" + b"9" * 90_000,
+        b"joint = " + b"[" * 400 + b"]" * 400,
+        b"joint = '" + b"a" * 90_000 + b"'",
+        b"[[backing]]\nthickness = 1\nmaterial = 'pom'\n" * 2000,
+    ],
+    ids=[
+        "dots",
+        "header",
+        "quoted",
+        "escapes",
+        "name",
+        "tables",
+        "hexadecimal",
+        "digits",
+        "exponent",
+        "lists",
+        "text",
+        "layers",
+    ],
+)
+@pytest.mark.parametrize("read", [bs.read_joint, read_study])
+def test_long_files_are_refused_at_once(read, content, tmp_path):
+    path = tmp_path / "it.toml"
+    path.write_bytes(content)
+    within(1.0, lambda: read(path))
+
+
+@pytest.mark.parametrize("read", [bs.read_joint, read_study])
+def test_a_file_that_never_ends_is_refused(read):
+    device = Path("/dev/zero")
+    if not device.exists():
+        pytest.skip("there is no such device here")
+    within(1.0, lambda: read(device))
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        (r'name = "a\u001b[31m"', r"hip: name = 'a\\x1b\[31m' must be .* none that controls"),
+        (r'source = "\u009b2J"', r"hip: source = '\\x9b2J' must be"),
+        (f"name = '{'a' * 2000}'", "hip: name = 'a+[.]{3} must be at most 1000 characters"),
+        ("name = ['a']", r"hip: name = \['a'\] must be text"),
+    ],
+)
+def test_names_are_text_that_a_terminal_can_show(line, message):
+    with pytest.raises(ValueError, match=message):
+        parse_joint(f"{line}\n{HIP}".encode(), "hip")
+    assert parse_joint(f"source = 'Hall,\tJ.\\nTribology'\n{HIP}".encode(), "hip").joint.source
 
 
 @given(st.text(max_size=40))

@@ -278,6 +278,15 @@ def test_a_study_file_says_all(tmp_path):
         ("low = 0.38", "low = 0.58", "low = 0.58 is not allowed"),
         ("[axes]", "[axis]", "'axis' at the top is not known; did you mean 'axes'"),
         ("count = 5}", "count = 5", "is not TOML"),
+        ('model = "hess-forsbach"', 'model = ["a"]', r"model \['a'\] is not known; known: exact"),
+        ('model = "hess-forsbach"', "model = {}", "model {} is not known"),
+        ("[axes]", "[engine]\nkind = 'dask'\naddress = 5\n[axes]", "address = 5 must be text"),
+        ("[axes]", "[engine]\nkind = ['dask']\n[axes]", r"engine kind \['dask'\] is not known; did you mean 'dask'"),
+        ("[axes]", "[engine]\nkind = 'processes'\nworkers = 1e9\n[axes]", "workers = 1e.09 is not allowed"),
+        ("seed = 3", "seed = 0x" + "f" * 9000, "seed = .{1,60} is too large a number"),
+        ("count = 8", "count = 0x" + "f" * 9000, "count = .{1,60} is too large a number"),
+        ("seed = 3", "seed = -3", "seed = -3 is not allowed"),
+        ('"out/s.zarr"', r'"out/s\u001b[31m.zarr"', "store = .* none that controls"),
     ],
 )
 def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, old, new, message):

@@ -9,7 +9,7 @@ from typing import Any
 from urllib.parse import urlencode
 
 from ..catalogue import catalogue, reference
-from ..checks import check_names
+from ..checks import check_names, shown
 from ..io.joint_file import JointFile, joint_of
 from ..io.joint_toml import Tables, tables_of
 from ..presets import joints
@@ -31,6 +31,7 @@ AXES = tuple(name for name in PARAMETERS if name != "half_angle")
 
 LONGEST_LINK = 8000
 BESIDE = 2
+MOST_LIMITS = 20
 _TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")
 _PREFIXES = tuple(f"beside{number}" for number in range(1, BESIDE + 1))
 
@@ -100,6 +101,8 @@ class Screen:
             check_names(chosen if isinstance(chosen, tuple) else (chosen,), known, f"as {name}")
         if len(self.beside) > BESIDE:
             raise ValueError(f"at most {BESIDE} joints are put beside this one, got {len(self.beside)}")
+        if len(self.limits) > MOST_LIMITS:
+            raise ValueError(f"a map has at most {MOST_LIMITS} limits, got {len(self.limits)}")
         if not self.file.load:
             raise ValueError("a load is needed: force, indentation or half_angle")
         if self.across.name == self.up.name:
@@ -158,7 +161,7 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     check_names(plain, (*_KNOWN, "across", "up", "limit"), "in the link")
     for name, values in pairs.items():
         if len(values) != 1 and name != "limit":
-            raise ValueError(f"{name} is given {len(values)} times in the link; one is needed")
+            raise ValueError(f"{shown(name)} is given {len(values)} times in the link; one is needed")
     words: dict[str, Any] = {name: pairs[name][0] for name in _KNOWN if name in pairs}
     if "shown" in words:
         words["shown"] = tuple(dict.fromkeys(words["shown"].split(",")))
@@ -221,13 +224,13 @@ def _nested(flat: Mapping[str, str]) -> Tables:
         table, _, rest = name.partition(".")
         number, _, key = rest.partition(".")
         if table == "backing":
-            if not (number.isdecimal() and key):
-                raise ValueError(f"{name!r} in the link is not known; a layer is 'backing.0.thickness' and so on")
+            if not (number.isdecimal() and len(number) < 4 and key):
+                raise ValueError(f"{shown(name)} in the link is not known; a layer is 'backing.0.thickness' and so on")
             layers.setdefault(int(number), {})[key] = value
         elif rest:
             part = tables.setdefault(table, {})
             if not isinstance(part, dict):
-                raise ValueError(f"{table} is given as text and as a table in the link")
+                raise ValueError(f"{shown(table)} is given as text and as a table in the link")
             part[rest] = value
         else:
             tables[table] = value

@@ -11,7 +11,7 @@ from uuid import uuid4
 import numpy
 
 from ..checks import needs, require
-from .local import Work, available_cores
+from .local import MOST, Work, available_cores
 
 if TYPE_CHECKING:
     import xarray
@@ -39,7 +39,7 @@ class Distributed:
     Raises
     ------
     ValueError
-        An address and workers, or fewer than one worker.
+        An address and workers, or not 1 to 1000 workers.
     """
 
     address: str | None = None
@@ -48,7 +48,7 @@ class Distributed:
 
     def __post_init__(self) -> None:
         if self.workers is not None:
-            require("workers", self.workers, self.workers >= 1, "at least one worker")
+            require("workers", self.workers, 1 <= self.workers <= MOST, f"at least one worker, at most {MOST}")
             if self.address is not None:
                 raise ValueError(f"{self.address} has workers of its own: give an address or a number of workers")
 

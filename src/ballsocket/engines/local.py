@@ -17,6 +17,9 @@ from typing import Any, Protocol
 
 from ..checks import require
 
+MOST = 1000
+"""Processes, or workers, that are started."""
+
 Work = Callable[[int], Any]
 """Does the piece of a number. Other processes must be able to receive it: no lambda, nothing local."""
 
@@ -56,7 +59,7 @@ class Processes:
     Raises
     ------
     ValueError
-        Fewer than one worker.
+        Fewer than one worker, or more than `MOST`.
     """
 
     workers: int | None = None
@@ -64,7 +67,7 @@ class Processes:
 
     def __post_init__(self) -> None:
         if self.workers is not None:
-            require("workers", self.workers, self.workers >= 1, "at least one process")
+            require("workers", self.workers, 1 <= self.workers <= MOST, f"at least one process, at most {MOST}")
 
     def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
         """Each number with what its work returned, as soon as it is there.

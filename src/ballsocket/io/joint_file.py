@@ -8,7 +8,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from ..checks import check_names, nearest
+from ..checks import check_names, check_text, nearest, shown
 from ..cup import Cup, Interface, Side
 from ..joint import Joint, Layer, Material, Support
 from ..model import checked_load
@@ -28,6 +28,7 @@ _TABLES = {
     "load": tuple(LOADS),
 }
 _LAYER = (*LAYER, "material", *MATERIAL)
+_MOST_LAYERS = 20
 
 
 @dataclass(frozen=True)
@@ -77,11 +78,10 @@ def joint_of(table: Mapping[str, Any]) -> JointFile:
     for name, known in _TABLES.items():
         part = table.get(name, {}) if name else table
         if not isinstance(part, Mapping):
-            raise ValueError(f"{name} = {part!r} must be a table: [{name}]")
+            raise ValueError(f"{name} = {shown(part)} must be a table: [{name}]")
         check_names(part, known, f"in [{name}]" if name else "at the top")
     for name in ("name", "source"):
-        if not isinstance(table.get(name, ""), str):
-            raise ValueError(f"{name} = {table[name]!r} must be text")
+        check_text(name, table.get(name, ""))
     joint = _joint(
         table.get("joint", {}),
         liner=_material("liner", table.get("liner", {})),
@@ -121,13 +121,15 @@ def _one_of(name: str, chosen: Any, kind: type[Enum]) -> Any:
     """`chosen`, if one of the kind has that value."""
     known = [one.value for one in kind]
     if chosen not in known:
-        raise ValueError(f"{name} = {chosen!r} is not allowed: {' or '.join(map(repr, known))}")
+        raise ValueError(f"{name} = {shown(chosen)} is not allowed: {' or '.join(map(repr, known))}")
     return chosen
 
 
 def _backing(tables: Any) -> tuple[Layer, ...]:
     if not (isinstance(tables, list | tuple) and all(isinstance(table, Mapping) for table in tables)):
-        raise ValueError(f"backing = {tables!r} must be an array of tables: [[backing]] before each layer")
+        raise ValueError(f"backing = {shown(tables)} must be an array of tables: [[backing]] before each layer")
+    if len(tables) > _MOST_LAYERS:
+        raise ValueError(f"{len(tables)} layers are behind the liner; at most {_MOST_LAYERS} are read")
     return tuple(_layer(f"backing[{number}]", table) for number, table in enumerate(tables))
 
 
@@ -178,7 +180,7 @@ def _material(name: str, table: Mapping[str, Any]) -> Material:
 
 def _named_material(name: str, chosen: Any) -> Material:
     """The preset material called `chosen`, in any spelling of capitals."""
-    key = str(chosen).lower().replace(" ", "-").replace("_", "-")
+    key = check_text(f"{name}.material", chosen).lower().replace(" ", "-").replace("_", "-")
     if key not in materials:
-        raise ValueError(f"{name} material {chosen!r} is not known{nearest(key, materials)}")
+        raise ValueError(f"{name} material {shown(chosen)} is not known{nearest(key, materials)}")
     return materials[key]

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable, Mapping
+from math import isinf
 from pathlib import Path
 from typing import Any, TypeVar
+
+from ..checks import shown
 
 Made = TypeVar("Made")
 
 MOST = 100_000
 """Bytes that a file may have."""
+
+_PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.){0,80}+"|'[^'\n]{0,80}+')[ \t]*+"""
+_LONG_KEY = re.compile(rf"(?<![\w-])(?:{_PART}\.[ \t]*+){{16}}")
+"""A key of so many parts, `a.b.c...`, is in no file; the parser would take seconds over one of some thousand."""
 
 
 def read_toml(path: Path, kind: str, make: Callable[[Mapping[str, Any]], Made]) -> Made:
@@ -58,10 +66,21 @@ def _content(raw: bytes, title: str, kind: str) -> Mapping[str, Any]:
     if len(raw) > MOST:
         raise ValueError(f"{title} is larger than {MOST} bytes; a {kind} file is a few lines")
     try:
-        return tomllib.loads(raw.decode("utf-8"))
+        text = raw.decode("utf-8")
+        if _LONG_KEY.search(text):
+            raise ValueError("a name of more than 16 parts with dots between them")
+        return tomllib.loads(text, parse_float=_number)
     except UnicodeDecodeError as error:
         raise ValueError(f"{title} is not text in UTF-8: {error.reason} at byte {error.start}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{title} is not TOML: {error}") from error
     except RecursionError as error:
         raise ValueError(f"{title} is no {kind} file: its brackets are nested too deeply") from error
+    except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
+        raise ValueError(f"{title} is not TOML: {error}") from error
+
+
+def _number(text: str) -> float:
+    """Infinite only where that is what is written."""
+    number = float(text)
+    if isinf(number) and "inf" not in text:
+        raise ValueError(f"{shown(text)} is too large a number")
+    return number

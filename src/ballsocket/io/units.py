@@ -9,16 +9,21 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
-from math import radians
+from math import isinf, radians
 from typing import Any
 
+from ..checks import shown
 from ..kinds import Kind
 
-_FACTOR = r"[A-Za-z\u00b5\u03bc\u00b0]+(?:\s*(?:\*\*|\^)\s*-?\d|[2\u00b2])?"
+LONGEST = 200
+"""Characters of a quantity."""
+
+_FACTOR = r"[A-Za-z\u00b5\u03bc\u00b0]+(?:\s*(?:\*\*|\^)\s*-?[1-9]|[2\u00b2])?"
 # a number and a product or quotient of units: pint alone would also evaluate any arithmetic put before it
 _QUANTITY = re.compile(
-    rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*({_FACTOR}(?:(?:\s*[*/]\s*|\s+){_FACTOR})*)", re.ASCII
+    rf"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)\s*({_FACTOR}(?:(?:\s*[*/]\s*|\s+){_FACTOR})*)", re.ASCII
 )
+_INFINITE = re.compile(r"\s*[-+]?inf(?:inity)?\s*", re.IGNORECASE)
 _SQUARE = re.compile(r"(?<=[A-Za-z])[2\u00b2]")  # of units as people and the CF conventions write them: mm², mm2
 
 _REFUSED = re.compile(r"(?P<name>\w+) = \S+ is not allowed: (?P<rule>.*)")
@@ -50,7 +55,11 @@ def parse(name: str, value: Any, kind: str) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(_refusal(name, value, kind))
+    if isinstance(value, str) and len(value) > LONGEST:
+        raise ValueError(_refusal(name, value, kind))
     number = _number(name, value, kind) + 0.0  # no -0
+    if isinf(number) and not (isinstance(value, float) or _INFINITE.fullmatch(str(value))):
+        raise ValueError(_too_large(name, value))
     return radians(number) if kind == Kind.ANGLE else number
 
 
@@ -64,13 +73,15 @@ def as_given(given: Mapping[str, Any], prefix: str = "") -> Iterator[None]:
         if found is None or found["name"] not in given:
             raise
         rule = found["rule"].replace("(rad)", "(deg)").replace("pi/2", "90")
-        shown = _shown(given[found["name"]])
-        raise ValueError(f"{prefix}{found['name']} = {shown} is not allowed: {rule}") from error
+        value = shown(given[found["name"]])
+        raise ValueError(f"{prefix}{found['name']} = {value} is not allowed: {rule}") from error
 
 
 def _number(name: str, value: float | str, kind: str) -> float:
     try:
         return float(value)
+    except OverflowError as error:
+        raise ValueError(_too_large(name, value)) from error
     except ValueError:
         pass
     if kind == Kind.NUMBER:
@@ -79,15 +90,13 @@ def _number(name: str, value: float | str, kind: str) -> float:
 
 
 def _quantity(name: str, text: str, kind: str) -> float:
-    import pint
-
     found = _QUANTITY.fullmatch(text.strip())
     if found is None:
         raise ValueError(_refusal(name, text, kind))
     number, unit = found.groups()
     try:
         return float(_registry().Quantity(float(number), _plain(unit)).to(_plain(Kind(kind).typed)).magnitude)
-    except (pint.errors.PintError, AttributeError) as error:
+    except Exception as error:  # whatever pint makes of units that nobody meant: it has no list of them
         raise ValueError(_refusal(name, text, kind)) from error
 
 
@@ -104,9 +113,8 @@ def _registry() -> Any:
 
 
 def _refusal(name: str, value: Any, kind: str) -> str:
-    return f"{name} = {_shown(value)} is not {Kind(kind).example}"
+    return f"{name} = {shown(value)} is not {Kind(kind).example}"
 
 
-def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) < 60 else f"{text[:40]}..."
+def _too_large(name: str, value: Any) -> str:
+    return f"{name} = {shown(value)} is too large a number"

@@ -154,7 +154,7 @@ def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distri
     Raises
     ------
     ValueError
-        No distribution, or fewer than one sample.
+        No distribution, fewer than one sample, or a seed below 0.
 
     Examples
     --------
@@ -163,6 +163,7 @@ def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distri
     ('sample',)
     """
     require("count", count, count >= 1, "at least one sample is drawn")
+    require("seed", seed, seed >= 0, "a seed is 0 or more")
     if not distributions:
         raise ValueError("samples need at least one parameter that scatters")
     return Design((SampleAxis(count=count, distributions=tuple(distributions.items()), seed=seed, method=method),))

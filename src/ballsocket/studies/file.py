@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..catalogue import catalogue, judge
-from ..checks import check_names, nearest
+from ..checks import check_names, check_text, nearest, shown
 from ..engines.dask import Distributed
 from ..engines.local import Engine, Processes, Serial
 from ..io.joint_file import JointFile, joint_of, read_joint
@@ -39,6 +39,7 @@ _TOP = (
 )
 _DESCRIBED = ("joint", "liner", "ball", "backing", "cup")
 _ENGINES = ("serial", "processes", "dask")
+_LARGEST = 1 << 53
 models: dict[str, Model] = {**catalogue, judge.name: judge}
 """By the names that files and the command line use."""
 
@@ -81,7 +82,7 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     check_names(content, _TOP, "at the top")
     quantities = content.get("quantities", [])
     if not (isinstance(quantities, list) and all(isinstance(name, str) for name in quantities)):
-        raise ValueError(f"quantities = {quantities!r} must be a list of names")
+        raise ValueError(f"quantities = {shown(quantities)} must be a list of names")
     given = _joint(content, folder)
     return StudyFile(
         model=named_model(content.get("model", "hess-forsbach")).in_cup(given.cup),
@@ -101,8 +102,8 @@ def named_model(name: Any) -> Model:
     ValueError
         A name that is not known, with the nearest one.
     """
-    if name not in models:
-        raise ValueError(f"model {name!r} is not known{nearest(str(name), models)}")
+    if not isinstance(name, str) or name not in models:
+        raise ValueError(f"model {shown(name)} is not known{nearest(name, models)}")
     return models[name]
 
 
@@ -115,11 +116,12 @@ def read_engine(content: Mapping[str, Any]) -> Engine:
     if kind == "serial" and workers is not None:
         raise ValueError("engine kind 'serial' has no workers: 'processes' and 'dask' have")
     if kind not in _ENGINES:
-        raise ValueError(f"engine kind {kind!r} is not known{nearest(str(kind), _ENGINES)}")
-    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int)):
-        raise ValueError(f"workers = {workers!r} must be a whole number")
+        raise ValueError(f"engine kind {shown(kind)} is not known{nearest(kind, _ENGINES)}")
+    if workers is not None:
+        _whole("workers", workers)
     if kind == "dask":
-        return Distributed(address=content.get("address"), workers=workers)
+        address = _text("address", content["address"]) if "address" in content else None
+        return Distributed(address=address, workers=workers)
     if "address" in content:
         raise ValueError(f"engine kind {kind!r} has no address: 'dask' has")
     return Processes(workers=workers) if kind == "processes" else Serial()
@@ -131,14 +133,14 @@ def _joint(content: Mapping[str, Any], folder: Path) -> JointFile:
         return joint_of({name: content[name] for name in _DESCRIBED if name in content})
     others = [name for name in _DESCRIBED[1:] if name in content]
     if given is not None and others:
-        raise ValueError(f"joint = {given!r} is a whole joint: [{others[0]}] belongs to a table [joint]")
+        raise ValueError(f"joint = {shown(given)} is a whole joint: [{others[0]}] belongs to a table [joint]")
     if given is None:
         raise ValueError("a joint is needed: a joint file, a preset's name, or a table [joint]")
     name = _text("joint", given)
     if name in joints:
         return JointFile(joints[name], {})
     if not (folder / name).is_file():
-        raise ValueError(f"joint {name!r} is neither a file nor a preset{nearest(name, joints)}")
+        raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
     return read_joint(folder / name)
 
 
@@ -179,7 +181,7 @@ def _samples(content: Mapping[str, Any]) -> Design:
     method = content.get("method", Method.SOBOL.value)
     known = [one.value for one in Method]
     if method not in known:
-        raise ValueError(f"method {method!r} is not known{nearest(str(method), known)}")
+        raise ValueError(f"method {shown(method)} is not known{nearest(method, known)}")
     scattered = {name: distribution_of(name, value) for name, value in content.items() if name not in own}
     count, seed = _whole("count", content["count"]), _whole("seed", content.get("seed", 0))
     return sample(count, seed=seed, method=Method(method), **scattered)
@@ -211,7 +213,7 @@ def distribution_of(name: str, content: Any) -> Distribution:
                 made: Distribution = make(**numbers)
                 return made
     raise ValueError(
-        f"{name} = {content!r} must be {{low, high}}, {{mean, deviation}} with or without low and high, or "
+        f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, or "
         "{nominal, plus_minus}"
     )
 
@@ -220,18 +222,20 @@ def _whole(name: str, value: Any) -> int:
     if isinstance(value, float) and value.is_integer():
         return int(value)
     if isinstance(value, bool) or not isinstance(value, int):
-        raise ValueError(f"{name} = {value!r} must be a whole number")
+        raise ValueError(f"{name} = {shown(value)} must be a whole number")
+    if not -_LARGEST < value < _LARGEST:
+        raise ValueError(f"{name} = {shown(value)} is too large a number")
     return value
 
 
 def _table_of(content: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     part = content.get(name, {})
     if not isinstance(part, Mapping):
-        raise ValueError(f"{name} = {part!r} must be a table: [{name}]")
+        raise ValueError(f"{name} = {shown(part)} must be a table: [{name}]")
     return part
 
 
 def _text(name: str, value: Any) -> str:
-    if not isinstance(value, str) or not value:
-        raise ValueError(f"{name} = {value!r} must be text")
+    if not check_text(name, value):
+        raise ValueError(f"{name} is empty")
     return value

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from ..checks import check_names
-from ..io.units import parse
+from ..checks import check_names, shown
+from ..io.units import LONGEST, parse
 from ..quantities import QUANTITIES
 from .axes import Span
 from .distributions import Distribution, Rectangular, tolerance
@@ -22,9 +22,9 @@ def range_of(phrase: str) -> tuple[str, float, float]:
     ValueError
         Another form, or a name that is not known.
     """
-    found = re.fullmatch(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", phrase)
+    found = _matched(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", phrase)
     if found is None:
-        raise ValueError(f"{phrase!r} is not a range, such as 'ball_radius=11..23 mm'")
+        raise ValueError(f"{shown(phrase)} is not a range, such as 'ball_radius=11..23 mm'")
     name, low, high = found.groups()
     check_names([name], PARAMETERS, "among what can vary")
     kind = PARAMETERS[name].kind
@@ -45,7 +45,7 @@ def spread_of(phrase: str) -> tuple[str, Distribution]:
     ValueError
         Another form, or a name that is not known.
     """
-    found = re.fullmatch(r"\s*(\w+)\s*=\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+?)\s*", phrase)
+    found = _matched(r"\s*(\w+)\s*=\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+?)\s*", phrase)
     if found is None:
         name, low, high = range_of(phrase)
         return name, Rectangular(low=low, high=high)
@@ -63,13 +63,18 @@ def limit_of(phrase: str) -> Limit:
     ValueError
         Another form, or a name that is not known.
     """
-    found = re.fullmatch(r"\s*(\w+)\s*(<=|>=|≤|≥)\s*(.+?)\s*", phrase)
+    found = _matched(r"\s*(\w+)\s*(<=|>=|≤|≥)\s*(.+?)\s*", phrase)
     if found is None:
-        raise ValueError(f"{phrase!r} is not a limit, such as 'outer_radius<=26 mm'")
+        raise ValueError(f"{shown(phrase)} is not a limit, such as 'outer_radius<=26 mm'")
     name, sign, end = found.groups()
     check_names([name], LIMITED, "among what can be limited")
     value = parse(name, end, QUANTITIES[name].kind)
     return Limit(name=name, high=value) if sign in ("<=", "≤") else Limit(name=name, low=value)
+
+
+def _matched(form: str, phrase: str) -> re.Match[str] | None:
+    """The parts of a phrase; none of one that is too long to be meant, in which a search could take seconds."""
+    return re.fullmatch(form, phrase) if len(phrase) <= LONGEST else None
 
 
 def _with_unit(first: str, last: str) -> str:
