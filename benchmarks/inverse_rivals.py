@@ -14,7 +14,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, elementwise
 
 import ballsocket as bs
-from ballsocket.models.modulus import table_3
+from ballsocket.models.table_3 import table_3
 
 Answer = tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]
 """Indentation, maximum pressure, half angle."""

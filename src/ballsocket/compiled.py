@@ -27,7 +27,8 @@ from .models import kinematics
 from .models.closed_form import Bound
 from .models.foundation import RadialFoundation
 from .models.kinematics import Kinematics
-from .models.modulus import Formula, eq_18
+from .models.modulus import Formula
+from .models.table_3 import eq_18
 from .sources import Source
 from .validity import Range, Status, inside
 

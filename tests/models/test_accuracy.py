@@ -70,7 +70,7 @@ def test_energy_of_the_adhesive_socket():
 def test_table_interpolation_is_scipys_monotone_cubic():
     from scipy.interpolate import PchipInterpolator
 
-    from ballsocket.models.modulus import table_3
+    from ballsocket.models.table_3 import table_3
 
     table = table_3()
     poisson = np.linspace(0.30, 0.49, 400)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.resources import files
 from math import inf, radians
 from typing import Any
 
@@ -16,6 +14,7 @@ from ..checks import numeric, require
 from ..joint import Joint
 from ..sources import Source
 from ..validity import RIGID_BACKING, RIGID_BALL, Promise, Range, inside
+from .table_3 import eq_18, table_formula
 
 Formula = Callable[..., Array]
 """K of R2, L, E, ν and the modulus' own constants."""
@@ -84,9 +83,7 @@ def layer_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
 
 
 def polynomial_formula(R2: Array, L: Array, E: Array, nu: Array, c1: Array, c2: Array, c3: Array) -> Array:
-    # Eq. (18)
-    ratio = R2 / L
-    return E / R2 * (c1 + ratio * (c2 + ratio * c3))
+    return E / R2 * eq_18((c1, c2, c3), R2 / L)
 
 
 def corrected_vessel_formula(R2: Array, L: Array, E: Array, nu: Array, a0: Array, a1: Array, a2: Array) -> Array:
@@ -237,73 +234,6 @@ def constant(modulus: Array) -> Modulus:
     require("modulus", value, (value > 0) & (value < inf), "a foundation modulus (MPa/mm) is above 0 and finite")
 
     return Modulus(name="constant", title=f"{modulus} MPa/mm", formula=constant_formula, constants=(value,))
-
-
-def table_3() -> dict[str, Any]:
-    """Table 3 of the paper: Poisson's ratios and the constants C1, C2, C3."""
-    return tomllib.loads((files("ballsocket") / "data" / "hess_forsbach_2021.toml").read_text(encoding="utf-8"))
-
-
-def _monotone_slopes(x: numpy.ndarray, y: numpy.ndarray) -> numpy.ndarray:
-    """Slopes at the knots of the monotone cubic of Fritsch & Butland 1984 (doi 10.1137/0905021), in rows of y.
-
-    The same as `scipy.interpolate.PchipInterpolator`, which would double the time that importing takes.
-    """
-    width = numpy.diff(x)
-    rise = numpy.diff(y) / width
-    first, last = width[1:] + 2 * width[:-1], 2 * width[1:] + width[:-1]
-    with numpy.errstate(divide="ignore"):
-        inner = (last + first) / (last / rise[:, :-1] + first / rise[:, 1:])
-    inner = numpy.where(rise[:, :-1] * rise[:, 1:] > 0, inner, 0.0)
-    ends = []
-    for (h0, h1), (m0, m1) in (((width[0], width[1]), rise[:, :2].T), ((width[-1], width[-2]), rise[:, :-3:-1].T)):
-        end = ((2 * h0 + h1) * m0 - h0 * m1) / (h0 + h1)
-        end = numpy.where(end * m0 <= 0, 0.0, end)
-        ends.append(numpy.where((m0 * m1 < 0) & (abs(end) > 3 * abs(m0)), 3 * m0, end))
-    return numpy.column_stack([ends[0], inner, ends[1]])
-
-
-Row = tuple[float, ...]
-
-
-def _cubics() -> tuple[Row, Row, Row, Any]:
-    """Table 3 as monotone cubics in ν: knots, widths, (C1, C2, C3) at the first knot, and for each interval the
-    coefficients of the part of it that is passed, of its square and of its cube, for each constant."""
-    table = table_3()
-    knots = numpy.array(table["poisson"])
-    values = numpy.array([table["C1"], table["C2"], table["C3"]])
-    width, rise = numpy.diff(knots), numpy.diff(values) / numpy.diff(knots)
-    slopes = _monotone_slopes(knots, values)
-    second = (3 * rise - 2 * slopes[:, :-1] - slopes[:, 1:]) / width
-    third = (slopes[:, :-1] + slopes[:, 1:] - 2 * rise) / width**2
-    rows = [[_row(part[:, i]) for part in (slopes, second, third)] for i in range(len(width))]
-    return _row(knots), _row(width), _row(values[:, 0]), tuple(map(tuple, rows))
-
-
-def _row(values: numpy.ndarray) -> Row:
-    return tuple(map(float, values))
-
-
-(_X1, _X2, _X3, _X4, _), (_W1, _W2, _W3, _W4), _START, _CUBICS = _cubics()
-(_A1, _B1, _C1), (_A2, _B2, _C2), (_A3, _B3, _C3), (_A4, _B4, _C4) = _CUBICS
-
-
-def eq_18(constants: Row, ratio: Array) -> Array:
-    return constants[0] + ratio * (constants[1] + ratio * constants[2])
-
-
-def table_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
-    # Eq. (18) with the constants of Table 3, constant outside its columns. The increment over each interval is a
-    # cubic in the part of it that is passed: no branch, any array
-    x = R2 / L
-    t1, t2 = clip(nu - _X1, 0.0, _W1), clip(nu - _X2, 0.0, _W2)
-    t3, t4 = clip(nu - _X3, 0.0, _W3), clip(nu - _X4, 0.0, _W4)
-    scaled = eq_18(_START, x)
-    scaled = scaled + t1 * (eq_18(_A1, x) + t1 * (eq_18(_B1, x) + t1 * eq_18(_C1, x)))
-    scaled = scaled + t2 * (eq_18(_A2, x) + t2 * (eq_18(_B2, x) + t2 * eq_18(_C2, x)))
-    scaled = scaled + t3 * (eq_18(_A3, x) + t3 * (eq_18(_B3, x) + t3 * eq_18(_C3, x)))
-    scaled = scaled + t4 * (eq_18(_A4, x) + t4 * (eq_18(_B4, x) + t4 * eq_18(_C4, x)))
-    return E / R2 * scaled
 
 
 def _bulge(contact: Any) -> Array:

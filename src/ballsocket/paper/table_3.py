@@ -12,7 +12,8 @@ from ..arrays import Array
 from ..identify.modulus import Calibration, as_polynomial, calibrate
 from ..joint import Joint, Material
 from ..model import Model
-from ..models.modulus import polynomial, table_3
+from ..models.modulus import polynomial
+from ..models.table_3 import table_3
 from ..presets import STEEL
 
 RATIOS = numpy.array([0.73, 1.0, 1.35, 1.8, 2.3, 2.8, 3.4, 4.1, 4.9, 5.8, 6.7, 7.7])
