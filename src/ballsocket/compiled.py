@@ -206,7 +206,8 @@ def _angle_of(versine: Any) -> Callable[..., Any]:
 def _angle_polynomial(versine: float) -> float:
     """`kinematics.angle_of` up to π/2 without a call into the C library, so that several are computed at once.
 
-    ε = sqrt(2v) P(v), P a Chebyshev fit on [0, 1]: 1e-16.
+    ε = sqrt(2v) P(v); P is asin(x)/x of x = sqrt(v/2) fitted in Chebyshev polynomials over v from 0 to 1, to 1.4e-16:
+    `mpmath.chebyfit` of 18 terms in 50 digits.
     """
     p = 5.3808098398167465e-06
     p = p * versine - 3.6946632563759546e-05

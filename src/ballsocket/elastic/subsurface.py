@@ -50,7 +50,7 @@ def stress(state: State, angle: Array, depth: Array) -> Stress:
 
 def peak(state: State, thickness: float) -> Peak:
     """The largest von Mises stress of one contact in a liner of that thickness, at the surface or below."""
-    angles = float(state.half_angle[0]) * numpy.linspace(0.0, 1.3, 27)
+    angles = float(state.half_angle[0]) * numpy.linspace(0.0, 1.3, 27)  # a little beyond the edge
     deepest = min(thickness, 3 * state.gap.socket_radius * float(numpy.sin(state.half_angle[0])))
     depths = deepest * numpy.linspace(0.0, 1.0, 26)
     for _ in range(4):

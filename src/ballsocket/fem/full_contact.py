@@ -68,7 +68,7 @@ class Brimful:
     @property
     def stiffness(self) -> float:
         """dF/dd in N/mm."""
-        step = 1e-4 * self.indentation
+        step = 1e-4 * self.indentation  # the force is linear in the indentation, or nearly (circular gap)
         sides = (replace(self, indentation=self.indentation + sign * step).force for sign in (0.5, -0.5))
         return (next(sides) - next(sides)) / step
 

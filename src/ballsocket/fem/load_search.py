@@ -15,7 +15,7 @@ from .surfaces import Pair
 
 _RUNGS = 10
 _STEPS = 4
-_CLOSE = 1e-10
+_CLOSE = 1e-10  # of a load
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -19,7 +19,7 @@ from ..gaps import Gap
 from .surfaces import Pair
 
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(6))
-_NEWTON = 1e-13
+_NEWTON = 1e-13  # of the indentation
 _POLE = 0.35
 """Share of the contact whose pressures give the one at the pole, by an even polynomial."""
 

@@ -13,7 +13,7 @@ from ..joint import Joint, Support
 from .mesh import bisected, graded, joined
 
 _CORE = 0.02  # of the ball, left out around its centre
-_FAR = 1e4  # where a massive socket is held
+_FAR = 1e4  # of the bore's radius: where a massive socket is held
 
 
 @dataclass(frozen=True, kw_only=True)

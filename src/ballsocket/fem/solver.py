@@ -21,6 +21,8 @@ from .surfaces import Pair, Surface
 LIMIT = radians(88.0)
 """The widest contact where the socket reaches further."""
 
+_BEYOND = 1.2  # of a class's widest contact: so far a pressure is looked for
+
 LEAST, MOST = 24, 100_000
 """Elements of one size along the bore."""
 
@@ -54,7 +56,7 @@ def curve(settings: Settings, joint: Joint) -> Curve:
 
     def pair(number: int, mesh: int) -> Pair:
         socket, ball = (resolution(one, number, mesh) for one in (settings.spacing, settings.ball_spacing))
-        return _pair(settings, joint, socket, ball, min(1.2 * classes[number], widest))
+        return _pair(settings, joint, socket, ball, min(_BEYOND * classes[number], widest))
 
     gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
     return Curve(pairs=pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order)

@@ -14,6 +14,7 @@ _CLASSES = 24
 _RATIO = 2**-0.5  # of a class's narrowest contact to its widest
 _DEFAULT = 60
 _FEWEST = 12  # elements in the narrowest contact of a uniform mesh
+_BEYOND = 1.2  # of a class's widest contact: so far its elements stay small
 
 
 class Element(Enum):
@@ -62,7 +63,7 @@ class Adapted:
         share = _DEFAULT / self.elements
         return Resolution(
             size=min(2 * widest / self.elements, share * thickness / (2 * radius)),
-            reach=1.2 * widest,
+            reach=_BEYOND * widest,
             growth=self.growth**share,
             widest=share * pi / 12,
             deepest=min(share / 3, 0.5),

@@ -145,7 +145,7 @@ def _squared_tangent(stiffness: Array, load: Array) -> Array:
         return value, 1 / (1 + s) + 4 * s + pi * (1 + 2 * s) * ratio
 
     ratio = broadcast(ratio, load)
-    start = 2 / (pi * ratio + 2.4)
+    start = 2 / (pi * ratio + 2.4)  # right for light loads, at most 4 % off
     found = increasing_root(law, 0.0 * ratio, 0.0 * ratio, 0.0 * ratio + 1.0, start)
     return where(load > 0, found, 0.0 * found)
 

@@ -257,6 +257,10 @@ def _quadrature(widest: float) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndar
     return x, wx, 22 * k, 22 * wk  # Φ - 1 is below 1e-16 beyond k L = 22
 
 
+_POWERS = {"force": (8.0, 3.4, 2.0), "indentation": (4.0, 1.6, 0.8)}
+"""Loads grow with the width like a power that lies between the first and the last of these, and near the second."""
+
+
 def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
     """The solution at the width that belongs to the load (NaN where none below a half angle of π/2 does)."""
     shape = (load, *joint.numbers())
@@ -279,9 +283,7 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
         return -log(value), slope * width * joint.liner_thickness / value
 
     missing = -goal - law(0.0 * goal, reach)[0]  # below 0 where even the widest does not suffice
-    steep, guess, flat = (
-        clip(missing, 0.0, inf) / power for power in ((8.0, 3.4, 2.0) if which == 0 else (4.0, 1.6, 0.8))
-    )
+    steep, guess, flat = (clip(missing, 0.0, inf) / power for power in _POWERS[kind])
     reach = _reach(widest * exp(-steep))
     root = arrays.increasing_root(lambda narrowing: law(narrowing, reach), -goal, steep, flat, guess, steps=24)
     width = where(missing >= 0, widest * exp(-root), float("nan"))

@@ -229,7 +229,7 @@ class _Problem:
         )
 
 
-_TOUCH = 1e-5
+_TOUCH = 1e-5  # of a limit's size: what lies nearer to it is held by it
 
 
 def _size(limit: Limit) -> float:

@@ -63,7 +63,7 @@ def pressable(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, dict[st
     return made, load, possible
 
 
-_ROUNDING = 1e-12
+_ROUNDING = 1e-12  # of a radius
 
 
 def contradiction(names: Mapping[str, object]) -> None:

@@ -21,7 +21,7 @@ SECTORS = 180
 
 _LINES = 12  # of ccx's words, when it fails
 _OPEN, _BEYOND, _NODES = 3e-3, 2, 5  # of the indentation; nodes that are left out, and those that count
-_INNER, _WITHOUT = 0.67, 10
+_INNER, _WITHOUT = 0.67, 10  # of the half angle; nodes next to the pole that are left out
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
