@@ -51,7 +51,7 @@ def test_lines_of_one_dash_differ_in_grey():
 
 
 def test_a_model_of_ones_own_keeps_a_line_that_no_other_has():
-    assert line_of("our liner") == Line("#009E73", (6.0, 2.0))
+    assert line_of("our liner") == Line("#009E73", (4.0, 4.0))
     assert all(line_of(f"own {number}") not in map(line_of, MODELS) for number in range(200))
 
 
