@@ -17,6 +17,7 @@ from ..arrays import Array
 from ..checks import require
 from ..joint import Joint, Material, Support
 from ..quantities import MATERIAL
+from .massive import asymptote_of, massive_excess, series
 from .waves import UNIT, GroundedLayer, fixed, free
 
 
@@ -111,7 +112,7 @@ class Socket:
     @property
     def asymptote(self) -> float:
         """C, the limit of c_n (n + ½): 2 (1 - ν²) R2/E of the innermost layer."""
-        return _asymptote(self.radius, self.shells[0].young, self.shells[0].poisson)
+        return asymptote_of(self.radius, self.shells[0].young, self.shells[0].poisson)
 
     def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
         """c_n in mm/MPa: the pressure p_n P_n widens the bore by c_n p_n P_n."""
@@ -127,7 +128,7 @@ class Socket:
     def excess(self, degrees: ArrayLike) -> numpy.ndarray:
         """ρ_n = c_n (n + ½)/C - 1."""
         n = _checked(degrees)
-        rho = _massive_excess(n + 0.5, self.shells[0].poisson)
+        rho = massive_excess(n + 0.5, self.shells[0].poisson)
         near = n < self.reach(_NOTHING)
         if near.any():
             share = self._layers(n[near])[0].share[0, 0]
@@ -139,7 +140,7 @@ class Socket:
 
         That series converges for n >= 2; what the layers add to it is exponentially small, see `reach`.
         """
-        return _series(self.shells[0].poisson, order)
+        return series(self.shells[0].poisson, order)
 
     def reach(self, tolerance: float = 1e-12) -> int:
         """The degree from which ρ_n is, within `tolerance`, that of the infinite socket of the innermost material."""
@@ -232,7 +233,7 @@ class Ball:
     @property
     def asymptote(self) -> float:
         """C, the limit of c_n (n + ½): 2 (1 - ν²) R1/E."""
-        return _asymptote(self.radius, self.young, self.poisson)
+        return asymptote_of(self.radius, self.young, self.poisson)
 
     def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
         """c_n in mm/MPa: the pressure p_n P_n makes the surface retreat by c_n p_n P_n."""
@@ -246,11 +247,11 @@ class Ball:
         """ρ_n = c_n (n + ½)/C - 1."""
         n = _checked(degrees)
         rigid = n == 1
-        return numpy.where(rigid, -1.0, _massive_excess(-(n + rigid + 0.5), self.poisson))
+        return numpy.where(rigid, -1.0, massive_excess(-(n + rigid + 0.5), self.poisson))
 
     def expansion(self, order: int) -> numpy.ndarray:
         """a_1, ..., a_order of ρ_n = Σ a_j (n + ½)^-j, which converges for n >= 2."""
-        return _series(self.poisson, order) * (-1.0) ** numpy.arange(1, order + 1)
+        return series(self.poisson, order) * (-1.0) ** numpy.arange(1, order + 1)
 
 
 def socket_of(joint: Joint) -> Socket:
@@ -297,32 +298,3 @@ def _checked(degrees: ArrayLike) -> numpy.ndarray:
         raise TypeError(f"degrees must be integers, got an array of {n.dtype}")
     require("degrees", n, n >= 0, "a degree is 0 or more")
     return n.astype(float)
-
-
-def _asymptote(radius: float, young: float, poisson: float) -> float:
-    return 2 * (1 - poisson**2) * radius / young
-
-
-def _polynomials(nu: float) -> tuple[list[float], list[float]]:
-    """Polynomials of ρ in an infinite socket, in falling powers of q = n + ½.
-
-    The numerator begins with q², the denominator with q³.     A ball has -q in place of q.
-    """
-    above = [-((1 - 2 * nu) ** 2) / (2 * (1 - nu)), -(4 - 17 * nu + 12 * nu**2) / (4 * (1 - nu)), -9 / 8]
-    below = [1.0, 3 / 2 - 2 * nu, 3 / 4 - 3 * nu, 9 / 8]  # (q + 3/2)(q² - 2νq + 3/4)
-    return above, below
-
-
-def _massive_excess(q: numpy.ndarray, nu: float) -> numpy.ndarray:
-    above, _ = _polynomials(nu)
-    return numpy.asarray(numpy.polyval(above, q) / ((q + 1.5) * (q * (q - 2 * nu) + 0.75)))
-
-
-def _series(nu: float, order: int) -> numpy.ndarray:
-    """The quotient of the polynomials in powers of 1/q."""
-    above, below = _polynomials(nu)
-    a = [0.0, 0.0, 0.0]
-    for j in range(order):
-        earlier = below[1] * a[-1] + below[2] * a[-2] + below[3] * a[-3]
-        a.append((above[j] if j < 3 else 0.0) - earlier)
-    return numpy.array(a[3:])
