@@ -23,7 +23,7 @@ from ballsocket.io.joint_file import JointFile
 from ballsocket.io.joint_toml import tables_of
 from ballsocket.io.units import parse
 from ballsocket.kinds import Unit
-from ballsocket.quantities import CONTACT, CUP, DERIVED, JOINT, LAYER, LOADS, MATERIAL, PARTS, QUANTITIES
+from ballsocket.quantities import CONTACT, CUP, DERIVED, FIELD, JOINT, LAYER, LOADS, MATERIAL, PARTS, QUANTITIES
 from ballsocket.studies.design import check_values, grid
 from ballsocket.studies.labels import described
 from ballsocket.studies.limits import NAMES as LIMITED
@@ -79,7 +79,7 @@ def test_tables_studies_and_json_speak_of_the_same_objects():
 
 
 def test_nothing_is_named_or_written_twice():
-    assert len(QUANTITIES) == sum(map(len, (CONTACT, JOINT, MATERIAL, PARTS, LAYER, CUP, DERIVED)))
+    assert len(QUANTITIES) == sum(map(len, (CONTACT, JOINT, MATERIAL, PARTS, LAYER, CUP, FIELD, DERIVED)))
     shared = {each.symbol for each in (*MATERIAL.values(), *PARTS.values())}
     symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]
     assert sorted(symbols) == sorted(set(symbols))
@@ -156,7 +156,8 @@ def test_what_a_file_holds_is_what_the_table_names():
 
 _ADDED = """
 import json, ballsocket as bs
-from ballsocket.output import study_plots, terminal
+from ballsocket.output import terminal
+from ballsocket.quantities import QUANTITIES
 from ballsocket.studies.design import grid
 hip = bs.joints["hip-28"]
 contact = bs.HessForsbach().press(hip, force=3000.0)
@@ -167,7 +168,7 @@ print(json.dumps({
     "html": contact._repr_html_(),
     "study": found.conformity.attrs,
     "same": float(found.conformity[1]) == contact.conformity,
-    "label": study_plots.label("conformity"),
+    "label": QUANTITIES["conformity"].label(),
 }))
 terminal.print_press(bs.compare(hip, force=3000.0, models={"hertz": bs.Hertz()}))
 """

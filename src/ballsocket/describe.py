@@ -36,6 +36,10 @@ class Column:
         return self.quantity.symbol
 
     @property
+    def title(self) -> str:
+        return self.quantity.title
+
+    @property
     def unit(self) -> str:
         return self.reading.text
 
@@ -48,6 +52,11 @@ class Column:
     def head(self) -> str:
         """Symbol and unit."""
         return self.quantity.head(self.reading)
+
+    @property
+    def label(self) -> str:
+        """Title, symbol and unit."""
+        return self.quantity.label(self.reading)
 
     def of(self, contact: Any) -> Array:
         """The contact's values in `unit`; -0 is 0."""

@@ -107,6 +107,11 @@ class Quantity:
         """The unit on axes, in the explorer and in a terminal."""
         return self.handy or self.kind.written
 
+    def capital(self, unit: Unit | None = None) -> str:
+        """The label of an input, "Radial clearance c [mm]"."""
+        label = self.label(unit)
+        return label[:1].upper() + label[1:]
+
     def head(self, unit: Unit | None = None) -> str:
         """The head of a column, "pmax [MPa]", in `shown` or another unit."""
         return f"{self.symbol}{(unit or self.shown).bracketed}".strip()
@@ -164,7 +169,7 @@ CONTACT = _table(
              "Pressure at the pole per indentation, p0/d, Eq. (16) of the paper."),
     Quantity("pole_pressure", "p0", "pressure at the pole", Kind.MODULUS,
              "Contact pressure where the axis of the load meets the contact; nearly always the largest."),
-    Quantity("max_pressure_angle", "φmax", "polar angle of the largest pressure", Kind.ANGLE,
+    Quantity("max_pressure_angle", "φmax", "angle of the largest pressure", Kind.ANGLE,
              "From the axis of the load to where the pressure is largest; 0 is the pole."),
 )
 """What a contact is printed with, in this order."""
@@ -217,6 +222,12 @@ MATERIAL = _table(
 )
 """The numbers of a material."""
 
+FIELD = _table(
+    Quantity("angle", "φ", "polar angle", Kind.ANGLE, "From the axis of the load, seen from the centre of the socket."),
+    Quantity("pressure", "p", "contact pressure", Kind.MODULUS, "Of the ball on the socket, at a polar angle."),
+)
+"""What varies along a contact."""
+
 LAYER = _table(
     Quantity("thickness", "", "thickness", Kind.LENGTH, "Of a layer behind the liner; `inf` is a massive body.",
              allows=_positive_or_infinite, allowed="a thickness (mm) is above 0; inf is a massive body"),
@@ -249,6 +260,6 @@ HEADLINE = ("force", "indentation", "half_angle", "max_pressure", "area", "stiff
 """What a table of a contact shows that has no room for all."""
 
 QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
-    {**CONTACT, **JOINT, **MATERIAL, **PARTS, **LAYER, **CUP, **DERIVED}
+    {**CONTACT, **JOINT, **MATERIAL, **PARTS, **LAYER, **CUP, **FIELD, **DERIVED}
 )
 """All of them by their names."""

@@ -6,6 +6,8 @@ import ballsocket as bs
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
+from bokeh.events import Tap
+
 from ballsocket.app import serve
 from ballsocket.app.mapping import mapped
 from ballsocket.app.page import Page
@@ -91,3 +93,15 @@ def test_more_pages_than_there_is_room_for_are_refused(monkeypatch):
 def test_a_port_that_is_none_is_refused():
     with pytest.raises(ValueError, match="port = 70000 is not allowed: a port is 0 to 65535"):
         serve.server(70000)
+
+
+def test_a_map_is_drawn_and_clicked_in_the_unit_that_its_axis_names():
+    """An indentation runs over micrometres, and a click at 40 of them presses 0.04 mm."""
+    page = Page("view=map&preset=hip-28&across=indentation=0.02..0.06&up=ball_radius=12..16")
+    chart = page.view._chart
+    assert chart.figure.xaxis.axis_label == "indentation d [µm]"
+    assert chart.figure.x_range.end == pytest.approx(60.0, rel=0.02)
+    assert chart._here.data["y"] == [pytest.approx(float(page.screen.file.joint.ball_radius))]
+    chart.figure._trigger_event(Tap(chart.figure, x=40.0, y=14.0))
+    assert page.screen.file.load == {"indentation": pytest.approx(0.04)}
+    assert page.screen.file.joint.ball_radius == 14.0

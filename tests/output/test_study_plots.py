@@ -20,7 +20,7 @@ def test_pictures_show_what_was_asked():
     assert [axes.get_title() for axes in figure.axes] == [
         "largest pressure pmax [MPa]",
         "contact area A [mm²]",
-        "contact half angle ε [°]",
+        "half angle ε [°]",
     ]
     scattered = sample(64, clearance=tolerance(0.1, 0.05)) * grid(force=Span(500.0, 3000.0, 5))
     bands = bs.study(bs.HessForsbach(), HIP, scattered)
@@ -29,3 +29,18 @@ def test_pictures_show_what_was_asked():
         study_plots.design_map(bands.isel(force=0))
     with pytest.raises(ValueError, match="bands need samples"):
         study_plots.band_figure(space)
+
+
+def test_axes_are_drawn_in_the_unit_that_they_name():
+    """An indentation of 0.02 to 0.06 mm runs from 20 to 60 µm, and so do its bands, its limits and the best point."""
+    space = bs.study(bs.HessForsbach(), HIP, ball_radius=Span(11.0, 23.0, 9), indentation=Span(0.02, 0.06, 9))
+    limits = (Limit(name="indentation", high=0.05),)
+    figure = study_plots.design_map(space, limits, best={"ball_radius": 16.0, "indentation": 0.04})
+    for axes in figure.axes:
+        assert axes.get_ylabel() == "indentation d [µm]"
+        assert axes.get_ylim() == pytest.approx((20.0, 60.0))
+        assert axes.lines[0].get_xydata()[0] == pytest.approx((16.0, 40.0))
+    scattered = sample(64, clearance=tolerance(0.1, 0.05)) * grid(indentation=Span(0.02, 0.06, 5))
+    bands = study_plots.band_figure(bs.study(bs.HessForsbach(), HIP, scattered))
+    assert bands.axes[0].get_xlabel() == "indentation d [µm]"
+    assert bands.axes[0].lines[0].get_xdata()[-1] == pytest.approx(60.0)

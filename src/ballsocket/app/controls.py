@@ -12,7 +12,9 @@ import panel as pn
 
 from ..io.joint_file import JointFile, joint_of
 from ..io.joint_toml import Tables, tables_of
+from ..kinds import Unit
 from ..presets import joints, materials
+from ..quantities import JOINT, LOADS, QUANTITIES
 from .screen import Screen
 from .slider import Number, Slider
 from .style import inputs
@@ -21,35 +23,45 @@ _OWN, _RIGID = "– own numbers –", "rigid"
 _PRESET = "– choose –"
 
 
-def _number(table: str, key: str, label: str, ends: tuple[float, float], step: float) -> Number:
-    return Number(table=table, key=key, label=label, low=ends[0], high=ends[1], step=step)
+def _number(name: str, table: str, key: str, ends: tuple[float, float], step: float) -> Number:
+    """A quantity in the unit that is shown, where the table has that of files."""
+    quantity = QUANTITIES[name]
+    factor = quantity.shown.factor / quantity.written.factor
+    return Number(table=table, key=key, label=quantity.capital(), low=ends[0], high=ends[1], step=step, factor=factor)
 
 
 _NUMBERS = {
-    "ball_radius": _number("joint", "ball_radius", "Ball radius R1 [mm]", (5.0, 30.0), 0.1),
-    "clearance": _number("joint", "clearance", "Radial clearance ΔR [mm]", (0.0, 0.5), 0.005),
-    "liner_thickness": _number("joint", "liner_thickness", "Liner thickness L [mm]", (0.5, 20.0), 0.1),
-    "liner_young": _number("liner", "young", "Liner: Young's modulus E [MPa]", (100.0, 5000.0), 10.0),
-    "liner_poisson": _number("liner", "poisson", "Liner: Poisson's ratio ν", (0.0, 0.4995), 0.005),
-    "ball_young": _number("ball", "young", "Ball: Young's modulus E1 [MPa]", (1e3, 4e5), 1e3),
-    "ball_poisson": _number("ball", "poisson", "Ball: Poisson's ratio ν1", (0.0, 0.4995), 0.005),
+    "ball_radius": _number("ball_radius", "joint", "ball_radius", (5.0, 30.0), 0.1),
+    "clearance": _number("clearance", "joint", "clearance", (0.0, 0.5), 0.005),
+    "liner_thickness": _number("liner_thickness", "joint", "liner_thickness", (0.5, 20.0), 0.1),
+    "liner_young": _number("liner_young", "liner", "young", (100.0, 5000.0), 10.0),
+    "liner_poisson": _number("liner_poisson", "liner", "poisson", (0.0, 0.4995), 0.005),
+    "ball_young": _number("ball_young", "ball", "young", (1e3, 4e5), 1e3),
+    "ball_poisson": _number("ball_poisson", "ball", "poisson", (0.0, 0.4995), 0.005),
 }
-_DIAMETER = replace(_NUMBERS["ball_radius"], label="Ball diameter 2 R1 [mm]", low=10.0, high=60.0, step=0.2, factor=2.0)
+_DIAMETER = replace(
+    _NUMBERS["ball_radius"],
+    label=f"Ball diameter 2 {JOINT['ball_radius'].head()}",
+    low=10.0,
+    high=60.0,
+    step=0.2,
+    factor=2.0,
+)
 _LOADS = {
-    "force": _number("load", "force", "Force F [N]", (50.0, 5000.0), 50.0),
-    "indentation": replace(_number("load", "indentation", "Indentation d [µm]", (1.0, 200.0), 1.0), factor=1e3),
-    "half_angle": _number("load", "half_angle", "Half angle ε [°]", (1.0, 80.0), 0.5),
+    "force": _number("force", "load", "force", (50.0, 5000.0), 50.0),
+    "indentation": _number("indentation", "load", "indentation", (1.0, 200.0), 1.0),
+    "half_angle": _number("half_angle", "load", "half_angle", (1.0, 80.0), 0.5),
 }
 _IN_RADIANS = replace(
     _LOADS["half_angle"],
-    label="Half angle ε [rad]",
+    label=LOADS["half_angle"].capital(Unit("rad")),
     low=0.02,
     high=1.4,
     step=0.01,
     form="0.[00000]",
     factor=radians(1.0),
 )
-_LOAD_NAMES = {"force": "force", "indentation": "indentation", "half angle": "half_angle"}
+_LOAD_NAMES = {name.replace("_", " "): name for name in LOADS}
 
 
 class JointControls:

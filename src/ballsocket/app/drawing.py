@@ -11,6 +11,7 @@ from bokeh.models import ColumnDataSource, LinearColorMapper
 
 from ..contact import Contact
 from ..io.joint_file import JointFile
+from ..quantities import FIELD
 from .look import Palette, chart, colour_bar
 
 _MASSIVE = 0.8  # of the socket's radius is drawn of what has no end
@@ -40,7 +41,7 @@ class SectionDrawing:
         )
         self._corners = ColumnDataSource({"x": [], "y": []})
         self.figure.scatter("x", "y", source=self._corners, alpha=0.0)
-        self.figure.add_layout(colour_bar(self._colours, palette, "contact pressure [MPa]"), "right")
+        self.figure.add_layout(colour_bar(self._colours, palette, FIELD["pressure"].label()), "right")
 
     def show(
         self, file: JointFile, contact: Contact | None, extent: float | None = None, highest: float | None = None

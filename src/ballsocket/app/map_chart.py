@@ -9,7 +9,6 @@ import numpy
 from bokeh.models import ColumnDataSource, HoverTool, LinearColorMapper
 from bokeh.plotting.contour import contour_data
 
-from ..output.study_plots import label
 from .look import Palette, chart, colour_bar
 from .mapping import good, head, margin, now
 from .screen import Screen
@@ -19,7 +18,7 @@ _NO_IMAGE: dict[str, list[Any]] = {"image": [], "x": [], "y": [], "dw": [], "dh"
 
 
 class MapChart:
-    """A coloured map; `tapped` is told where it was clicked, in the units of its axes."""
+    """A coloured map; `tapped` is told where it was clicked, in the units of a study."""
 
     def __init__(self, palette: Palette, tapped: Callable[[float, float], None]) -> None:
         self.figure = chart("", "", palette, 440)
@@ -46,7 +45,8 @@ class MapChart:
         )
         self._bar = colour_bar(self._colours, palette)
         self.figure.add_layout(self._bar, "right")
-        self.figure.on_event("tap", lambda event: tapped(event.x, event.y))
+        self._turns = (1.0, 1.0)  # from the units of a study to those of the axes
+        self.figure.on_event("tap", lambda event: tapped(event.x / self._turns[0], event.y / self._turns[1]))
 
     def clear(self) -> None:
         """Draw nothing."""
@@ -72,7 +72,8 @@ class MapChart:
             raise ValueError(f"{screen.map_model} has no answer anywhere on this map: choose another model")
         fine = good(found, screen).transpose(up.name, across.name).values
         valid = found.valid.transpose(up.name, across.name).values
-        x, y = found[across.name].values, found[up.name].values
+        heads, self._turns = zip(*(head(axis.name, screen) for axis in (across, up)), strict=True)
+        x, y = (found[axis.name].values * one for axis, one in zip((across, up), self._turns, strict=True))
         box = _box(x, y)
         self._colours.update(low=float(numpy.nanmin(values)), high=float(numpy.nanmax(values)))
         self._image.data = {"image": [values], **box}
@@ -83,12 +84,13 @@ class MapChart:
         grid_x, grid_y = numpy.meshgrid(x, y)
         thinned = (~valid) & (numpy.add.outer(numpy.arange(len(y)), numpy.arange(len(x))) % 4 == 0)
         self._doubt.data = {"x": grid_x[thinned], "y": grid_y[thinned]}
-        self._here.data = {"x": [now(screen.file, across.name)], "y": [now(screen.file, up.name)]}
+        here = (now(screen.file, axis.name) * one for axis, one in zip((across, up), self._turns, strict=True))
+        self._here.data = {place: [value] for place, value in zip("xy", here, strict=True)}
         self.figure.x_range.update(start=box["x"][0], end=box["x"][0] + box["dw"][0])
         self.figure.y_range.update(start=box["y"][0], end=box["y"][0] + box["dh"][0])
-        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = label(across.name), label(up.name)
+        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = heads
         self._bar.title = title
-        places = [(label(across.name), "$x{0.000}"), (label(up.name), "$y{0.000}")]
+        places = [(label, f"${place}{{0.000}}") for label, place in zip(heads, "xy", strict=True)]
         self._hover.tooltips = [*places, (title, "@image{0.000}")]
 
 

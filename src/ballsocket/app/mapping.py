@@ -13,12 +13,14 @@ import numpy
 from ..catalogue import catalogue
 from ..io.joint_file import JointFile
 from ..joint import Joint
-from ..output.study_plots import factor, label
+from ..kinds import Kind
+from ..quantities import QUANTITIES, Quantity
 from ..studies.design import Span, grid
 from ..studies.limits import Limit, allowed, margin_over
 from ..studies.parameters import LOADS, PARAMETERS, pressable
 from ..studies.run import study
 from .screen import MAPPED, Axis, Screen
+from .words import unit_of
 
 _POINTS = 61
 
@@ -56,10 +58,9 @@ def margin(found: Any, screen: Screen) -> numpy.ndarray:
 
 
 def head(name: str, screen: Screen) -> tuple[str, float]:
-    """How a quantity is called, with the unit that is chosen for it, and the factor to it from that of a study."""
-    if name == "half_angle" and screen.angle == "radians":
-        return label(name).replace("[°]", "[rad]"), 1.0
-    return label(name), factor(name)
+    """The label of a quantity with the unit that is chosen for it, and the factor to it from that of a study."""
+    unit = unit_of(QUANTITIES[name], screen.angle)
+    return QUANTITIES[name].label(unit), unit.factor
 
 
 def best(found: Any, screen: Screen) -> dict[str, float] | None:
@@ -78,12 +79,13 @@ def told(found: Any, screen: Screen) -> str:
     if screen.limits:
         words.append(f"{100 * float(fine.mean()):.3g} % of the map is allowed by the limits.")
     if point is not None:
-        where = ", ".join(
-            f"{PARAMETERS[axis].symbol} {value:.4g} {_unit(axis)}".strip() for axis, value in point.items()
-        )
+        where = ", ".join(_said(QUANTITIES[axis], value, screen) for axis, value in point.items())
         title, turn = head(name, screen)
         least = float(found[name].sel(point)) * turn
-        steps = ", ".join(f"{(axis.high - axis.low) / (_POINTS - 1):.2g}" for axis in (screen.across, screen.up))
+        steps = ", ".join(
+            f"{(axis.high - axis.low) / (_POINTS - 1) * head(axis.name, screen)[1]:.2g}"
+            for axis in (screen.across, screen.up)
+        )
         words.append(f"Least {title} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")
     if not bool(found.valid.all()):
         words.append("Crosses: the model is not to be trusted there.")
@@ -93,9 +95,9 @@ def told(found: Any, screen: Screen) -> str:
     return f"<p class='quiet'>{' '.join(words)}</p>"
 
 
-def _unit(name: str) -> str:
-    unit = PARAMETERS[name].unit
-    return "" if unit == "1" else unit
+def _said(quantity: Quantity, value: float, screen: Screen) -> str:
+    unit = unit_of(quantity, screen.angle)
+    return f"{quantity.symbol} {value * unit.factor:.4g} {unit.text}".strip()
 
 
 def now(file: JointFile, name: str) -> float:
@@ -116,7 +118,7 @@ def now(file: JointFile, name: str) -> float:
 
 def around(name: str, middle: float) -> Axis:
     """A range for a parameter: half to twice what it is now, where that is a number."""
-    if name.endswith("poisson"):
+    if PARAMETERS[name].kind is Kind.NUMBER:
         return Axis(name=name, low=0.3, high=0.48)
     middle = middle if 0 < middle < 1e9 else {"force": 3000.0, "indentation": 0.05, "clearance": 0.1}.get(name, 10.0)
     return Axis(name=name, low=float(f"{middle / 2:.2g}"), high=float(f"{2 * middle:.2g}"))

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import degrees, pi
+from math import pi
 
 import numpy
 
 from ..contact import Contact
+from ..output.press_plot import FORCE_CURVE
 from ..output.style import Line
+from ..quantities import FIELD
 from .curves import Curve, CurveChart
 from .look import Palette
 from .pressing import curve, rounded_up
+from .words import unit_of
 
 _ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 60))
 
@@ -20,15 +23,16 @@ class PressCharts:
     """Two charts."""
 
     def __init__(self, palette: Palette) -> None:
-        self._pressure = CurveChart("", "contact pressure [MPa]", palette, ("0.00", "0.00"))
-        self._force = CurveChart("indentation d [µm]", "force F [kN]", palette, ("0.0", "0.00"))
+        depth, force = FORCE_CURVE
+        self._pressure = CurveChart("", FIELD["pressure"].label(), palette, ("0.00", "0.00"))
+        self._force = CurveChart(depth.label, force.label, palette, ("0.0", "0.00"))
         self._force.legend.visible = False  # that of the pressure says it
         self.figures = (self._pressure.figure, self._force.figure)
 
     def show(self, contacts: Mapping[str, Contact], lines: Mapping[str, Line], angle: str) -> None:
         """Draw contacts that have an answer, each with the curve of its own model; angles in "degrees" or "radians"."""
-        unit, turn = ("°", degrees(1.0)) if angle == "degrees" else ("rad", 1.0)
-        self._pressure.figure.xaxis.axis_label = f"polar angle φ [{unit}]"
+        unit = unit_of(FIELD["angle"], angle)
+        self._pressure.figure.xaxis.axis_label = FIELD["angle"].label(unit)
         if not contacts:
             self._pressure.show({}, 1.0, 1.0)
             self._force.show({}, 1.0, 1.0)
@@ -36,12 +40,13 @@ class PressCharts:
         each = contacts.values()
         widest = min(max(float(contact.half_angle) for contact in each), pi / 2)
         highest = max(float(contact.max_pressure) for contact in each)
-        profiles = {name: _profile(contact, turn, lines[name]) for name, contact in contacts.items()}
-        self._pressure.show(profiles, rounded_up(1.02 * widest * turn), rounded_up(1.05 * highest))
+        profiles = {name: _profile(contact, unit.factor, lines[name]) for name, contact in contacts.items()}
+        self._pressure.show(profiles, rounded_up(1.02 * widest * unit.factor), rounded_up(1.05 * highest))
         largest = rounded_up(1.2 * max(float(contact.force) for contact in each))
-        deepest = max(float(contact.indentation) for contact in each)
+        depth, force = FORCE_CURVE
+        deepest = max(float(depth.of(contact)) for contact in each)
         curves = {name: _curve(contact, largest, lines[name]) for name, contact in contacts.items()}
-        self._force.show(curves, rounded_up(1.3e3 * deepest), largest / 1e3)
+        self._force.show(curves, rounded_up(1.3 * deepest), largest * force.factor)
 
 
 def _profile(contact: Contact, turn: float, line: Line) -> Curve:
@@ -51,9 +56,9 @@ def _profile(contact: Contact, turn: float, line: Line) -> Curve:
 
 
 def _curve(contact: Contact, largest: float, line: Line) -> Curve:
-    mark = (float(contact.indentation) * 1e3, float(contact.force) / 1e3)
+    depth, force = FORCE_CURVE
+    mark = (float(depth.of(contact)), float(force.of(contact)))
     press = curve(contact.joint, contact.model.name, largest)
     if press is None:
         return Curve(numpy.empty(0), numpy.empty(0), numpy.empty(0, dtype=bool), line, mark)
-    x, y = numpy.asarray(press.indentation) * 1e3, numpy.asarray(press.force) / 1e3
-    return Curve(x, y, numpy.asarray(press.valid), line, mark)
+    return Curve(depth.of(press), force.of(press), numpy.asarray(press.valid), line, mark)

@@ -12,7 +12,9 @@ from ..catalogue import catalogue, reference
 from ..checks import check_names, shown
 from ..io.joint_file import JointFile, joint_of
 from ..io.joint_toml import Tables, tables_of
+from ..kinds import Kind
 from ..presets import joints
+from ..quantities import QUANTITIES
 from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS
 from ..studies.phrases import limit_of, range_of
@@ -26,7 +28,7 @@ QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press
 MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")
 """What a map can show."""
 
-AXES = tuple(name for name in PARAMETERS if name != "half_angle")
+AXES = tuple(name for name in PARAMETERS if PARAMETERS[name].kind is not Kind.ANGLE)
 """What a map can vary."""
 
 LONGEST_LINK = 8000
@@ -241,7 +243,7 @@ def _nested(flat: Mapping[str, str]) -> Tables:
 
 def _bare(name: str, value: float) -> str:
     """As `units.parse` takes it, to the last digit: a bare angle would be degrees."""
-    return f"{value!r} rad" if name == "half_angle" else repr(value)
+    return f"{value!r} {Kind.ANGLE.unit}" if QUANTITIES[name].kind is Kind.ANGLE else repr(value)
 
 
 def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 from html import escape
 from math import floor, isfinite, isnan, log10
 from typing import Any
@@ -12,59 +11,22 @@ from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
 from ..describe import COLUMNS, Column
-from ..kinds import Unit
+from ..kinds import Kind, Unit
 from ..output.style import THICK, line_of
+from ..quantities import CONTACT, HEADLINE, Quantity
 from .look import Palette, colour_of
 
-_HANDY = {
-    "indentation": ("µm", 1e3),
-    "stiffness": ("kN/mm", 1e-3),
-}
-_TITLES = {
-    "force": "force",
-    "indentation": "indentation",
-    "half_angle_deg": "half angle",
-    "max_pressure": "largest pressure",
-    "max_pressure_angle_deg": "where it is largest",
-    "pole_pressure": "pressure at the pole",
-    "area": "contact area",
-    "stiffness": "stiffness",
-    "energy": "energy",
-    "foundation_modulus": "foundation modulus",
-}
 _DIGITS = 4
 
 
-@dataclass(frozen=True, kw_only=True)
-class Quantity:
-    """A quantity as it is shown: `column` leads from the contact to the number."""
-
-    title: str
-    column: Column
-
-    @property
-    def head(self) -> str:
-        return f"{self.column.symbol} [{self.column.unit}]"
-
-    def number(self, contact: Contact) -> float:
-        """The number in the unit that is shown."""
-        return float(self.column.of(contact))
-
-    def text(self, contact: Contact) -> str:
-        return number_text(self.number(contact))
+def unit_of(quantity: Quantity, angle: str) -> Unit:
+    """The unit in which a quantity is shown, angles in "degrees" or "radians"."""
+    return Unit(quantity.unit) if (quantity.kind, angle) == (Kind.ANGLE, "radians") else quantity.shown
 
 
-def quantities(angle: str) -> tuple[Quantity, ...]:
-    """All of them, angles in "degrees" or "radians"."""
-    return tuple(Quantity(title=_TITLES[column.name], column=_in_units(column, angle)) for column in COLUMNS)
-
-
-def _in_units(column: Column, angle: str) -> Column:
-    if column.name in _HANDY:
-        return replace(column, reading=Unit(*_HANDY[column.name]))
-    if column.name == "half_angle_deg" and angle == "radians":
-        return replace(column, reading=Unit("rad"))
-    return column
+def columns(angle: str) -> tuple[Column, ...]:
+    """Every quantity of a contact in the unit in which it is shown."""
+    return tuple(Column(each, unit_of(each, angle)) for each in CONTACT.values())
 
 
 def number_text(value: float) -> str:
@@ -87,18 +49,18 @@ def notes_list(notes: Iterable[str]) -> str:
 def headline(contact: Contact, angle: str) -> str:
     """The numbers of one contact as a list, with whether it can be trusted."""
     errors: Mapping[str, Any] = getattr(contact, "error", {})
-    cells = "".join(_cell(each, contact, errors) for each in quantities(angle))
+    cells = "".join(_cell(each, contact, errors) for each in columns(angle))
     return f"<dl class='numbers'>{cells}</dl>{trust(contact)}"
 
 
-def _cell(each: Quantity, contact: Contact, errors: Mapping[str, Any]) -> str:
-    value = each.number(contact)
-    share = float(errors.get(each.column.attribute, float("nan")))
+def _cell(each: Column, contact: Contact, errors: Mapping[str, Any]) -> str:
+    value = float(each.of(contact))
+    share = float(errors.get(each.attribute, float("nan")))
     bar = f"<small>± {percent(share)}</small>" if share > 0 else ""
-    unit = "" if isnan(value) else f" <span class='unit'>{escape(each.column.unit)}</span>"
+    unit = "" if isnan(value) else f" <span class='unit'>{escape(each.unit)}</span>"
     return (
-        f"<div><dt>{escape(each.title)} <i>{escape(each.column.symbol)}</i></dt>"
-        f"<dd data-name='{each.column.attribute}' data-value='{value!r}'>{number_text(value)}{unit}{bar}</dd></div>"
+        f"<div><dt>{escape(each.title)} <i>{escape(each.symbol)}</i></dt>"
+        f"<dd data-name='{each.attribute}' data-value='{value!r}'>{number_text(value)}{unit}{bar}</dd></div>"
     )
 
 
@@ -112,7 +74,7 @@ def trust(contact: Contact) -> str:
 
 def models_table(comparison: Comparison, palette: Palette, angle: str) -> str:
     """Every model in a row, with its deviation from the exact answer, its validity, and its line in the charts."""
-    shown = [each for each in quantities(angle) if each.column.name not in ("energy", "foundation_modulus")]
+    shown = [each for each in columns(angle) if each.attribute in HEADLINE]
     heads = "".join(f"<th scope='col'>{escape(each.head)}</th>" for each in shown)
     rows = "".join(_row(comparison, name, shown, palette) for name in comparison)
     missing = "".join(
@@ -127,9 +89,9 @@ def models_table(comparison: Comparison, palette: Palette, angle: str) -> str:
     )
 
 
-def _row(comparison: Comparison, name: str, shown: list[Quantity], palette: Palette) -> str:
+def _row(comparison: Comparison, name: str, shown: list[Column], palette: Palette) -> str:
     contact, apart = comparison[name], comparison.deviation(name)
-    cells = "".join(f"<td>{each.text(contact)}{_apart(apart, each.column.name)}</td>" for each in shown)
+    cells = "".join(f"<td>{number_text(float(each.of(contact)))}{_apart(apart, each.name)}</td>" for each in shown)
     why = "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
     swatch = _swatch(name, palette)
     kind = "reference" if name == reference.name else "valid" if bool(contact.valid) else "doubtful"

@@ -24,6 +24,7 @@ from ..io.joint_file import read_cup
 from ..io.units import parse
 from ..output import section_plot
 from ..output.save import check_format, save
+from ..quantities import CONTACT, LOADS
 from .words import given
 
 
@@ -120,8 +121,10 @@ def remark(contact: MeshedContact, seconds: float) -> str:
         return f"fem: {seconds:.2f} s"
     size = contact.mesh
     mesh = f"fem: {size.elements} elements, {size.element_size:.3g} mm at the contact, {seconds:.2f} s"
-    names = {"indentation": "d", "half_angle": "ε", "max_pressure": "pmax", "force": "F"}
+    told = (*LOADS, "max_pressure")
     bars = ", ".join(
-        f"{names[name]} ±{100 * error:.1g} %" for name, error in contact.error.items() if name in names and error > 1e-9
+        f"{CONTACT[name].symbol} ±{100 * error:.1g} %"
+        for name, error in contact.error.items()
+        if name in told and error > 1e-9
     )
     return f"{mesh}; {bars}" if bars else f"{mesh}; errors not estimated"

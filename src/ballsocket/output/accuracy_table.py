@@ -10,12 +10,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from io import StringIO
 from typing import Any
 
-HEADS = {
-    "indentation": "δ at given F",
-    "max_pressure": "p0 at given F",
-    "half_angle": "ε at given F",
-    "force": "F at given δ",
-}
+from ..quantities import CONTACT, QUANTITIES
+
+_GIVEN = {"indentation": "force", "max_pressure": "force", "half_angle": "force", "force": "indentation"}
+HEADS = {name: f"{CONTACT[name].symbol} at given {CONTACT[load].symbol}" for name, load in _GIVEN.items()}
 """The quantities, as a reader names them."""
 
 Row = Mapping[str, Any]
@@ -50,16 +48,15 @@ def percent(share: float) -> str:
 def worst_joint(row: Row) -> str:
     """Where the largest of all errors of a model lies."""
     name = max(HEADS, key=lambda each: float(row["errors"][each]["worst"]))
-    return f"{HEADS[name].split()[0]}: {place(row['errors'][name])}"
+    return f"{CONTACT[name].symbol}: {place(row['errors'][name])}"
 
 
 def place(error: Row) -> str:
     """The joint and the load of a worst error."""
     at = _numbers(error)
-    return (
-        f"R1 {at['ball_radius']:.3g}, ΔR {at['clearance']:.2g}, L {at['liner_thickness']:.3g}, ν {at['poisson']:.2g}, "
-        f"{at['force']:g} N"
-    )
+    digits = {"ball_radius": 3, "clearance": 2, "liner_thickness": 3, "poisson": 2}
+    joint = ", ".join(f"{QUANTITIES[name].symbol} {at[name]:.{count}g}" for name, count in digits.items())
+    return f"{joint}, {at['force']:g} {CONTACT['force'].unit}"
 
 
 def table(rows: Iterable[Row]) -> str:

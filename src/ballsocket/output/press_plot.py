@@ -9,10 +9,20 @@ import numpy
 
 from .. import arrays
 from ..contact import Contact
+from ..describe import Column
+from ..kinds import Unit
+from ..quantities import CONTACT, FIELD
 from .style import LEGEND, THICK, THIN, Line, finish, in_matplotlib, line_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+FORCE_CURVE = (
+    Column(CONTACT["indentation"], CONTACT["indentation"].shown),
+    Column(CONTACT["force"], Unit("kN", 1e-3)),
+)
+"""What a curve of forces is drawn over and along."""
 
 
 def press_figure(
@@ -48,17 +58,17 @@ def press_figure(
         style = in_matplotlib(line, THICK if contact.valid else THIN)
         angle = _angles(contact)
         left.plot(numpy.degrees(angle), contact.pressure(angle), label=_said(name), **style)
-        curve = curves[name]
-        right.plot(arrays.to_numpy(curve.indentation) * 1e3, arrays.to_numpy(curve.force) / 1e3, **style)
-        right.plot(contact.indentation * 1e3, contact.force / 1e3, "o", color=line.colour, markersize=4.5)
-    finish(left, "polar angle φ [°]", "contact pressure [MPa]")
+        right.plot(*(arrays.to_numpy(axis.of(curves[name])) for axis in FORCE_CURVE), **style)
+        right.plot(*(axis.of(contact) for axis in FORCE_CURVE), "o", color=line.colour, markersize=4.5)
+    finish(left, *(each.label() for each in FIELD.values()))
     left.set_xlim(0.0, 90.0)
     if left.dataLim.ymin > -0.02 * left.dataLim.ymax:
         left.set_ylim(bottom=0.0)
     left.set_xticks(range(0, 91, 15))
-    finish(right, "indentation d [µm]", "force F [kN]")
-    right.set_xlim(0.0, 1.12e3 * max(contact.indentation for contact in contacts.values()) or 1.0)
-    right.set_ylim(0.0, 1.6e-3 * max(contact.force for contact in contacts.values()) or 1.0)
+    finish(right, *(axis.label for axis in FORCE_CURVE))
+    furthest = [max(axis.of(contact) for contact in contacts.values()) for axis in FORCE_CURVE]
+    right.set_xlim(0.0, 1.12 * furthest[0] or 1.0)
+    right.set_ylim(0.0, 1.6 * furthest[1] or 1.0)
     columns = min(len(contacts), 4)
     legend = figure.legend(loc="outside lower center", ncols=columns, **LEGEND)
     for text in legend.get_texts():

@@ -9,6 +9,7 @@ import numpy
 from ..catalogue import judge, reference
 from ..contact import Contact
 from ..fem.contact import MeshedContact
+from ..quantities import FIELD
 from .style import BLUE, LEGEND, finish, in_matplotlib, line_of
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def _draw_pressure(axes: Axes, contact: MeshedContact, exact: Contact | None) ->
     if error > 0:
         bars = {"yerr": error * contact.max_pressure, "capsize": 3, "fmt": "none"}
         axes.errorbar([0.0], [contact.max_pressure], color=line.colour, label=f"p0 ± {100 * error:.1g} %", **bars)
-    finish(axes, "polar angle φ [°]", "contact pressure [MPa]")
+    finish(axes, *(each.label() for each in FIELD.values()))
     axes.set_xlim(0.0, max(1.08 * numpy.degrees(edge), 5.0))
     axes.set_ylim(bottom=0.0)
     axes.legend(**LEGEND)

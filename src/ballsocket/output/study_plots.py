@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..studies.labels import described
+from ..quantities import QUANTITIES
 from ..studies.limits import Limit, allowed, margin_over
 from .style import BLUE, INK, LEGEND, ORANGE, finish
 
@@ -19,12 +18,6 @@ if TYPE_CHECKING:
 
 SHOWN = ("max_pressure", "area", "half_angle")
 """What a design map shows."""
-
-_READ: dict[str, tuple[str, float]] = {
-    "half_angle": ("°", degrees(1.0)),
-    "indentation": ("µm", 1e3),
-    "area": ("mm²", 1.0),
-}
 
 
 def design_map(
@@ -56,8 +49,8 @@ def design_map(
     good = allowed(study, limits).transpose(up, across).values
     trusted = study.valid.transpose(up, across).values
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values = study[name].transpose(up, across).values * factor(name)
-        x, y = study[across].values, study[up].values
+        values = _read(study, name).transpose(up, across).values
+        x, y = _read(study, across).values, _read(study, up).values
         axes.contourf(x, y, values, levels=14, cmap="viridis")
         lines = axes.contour(x, y, values, levels=7, colors="white", linewidths=0.6)
         axes.clabel(lines, fontsize=8)
@@ -69,13 +62,19 @@ def design_map(
             doubt.set_linewidth(0)
         _draw_limits(axes, study, limits, across, up)
         if best is not None:
-            axes.plot(best[across], best[up], "o", color="white", markeredgecolor="black", markersize=8)
-        axes.set_xlabel(label(across))
-        axes.set_ylabel(label(up))
-        axes.set_title(label(name), fontsize=10)
+            place = (best[axis] * QUANTITIES[axis].shown.factor for axis in (across, up))
+            axes.plot(*place, "o", color="white", markeredgecolor="black", markersize=8)
+        axes.set_xlabel(QUANTITIES[across].label())
+        axes.set_ylabel(QUANTITIES[up].label())
+        axes.set_title(QUANTITIES[name].label(), fontsize=10)
     said = [(good, "pale: a limit is broken, or no answer"), (trusted, "hatched: the model is not to be trusted")]
     figure.supxlabel("; ".join(words for where, words in said if not where.all()), fontsize=8, color="0.3")
     return figure
+
+
+def _read(study: xarray.Dataset, name: str) -> xarray.DataArray:
+    """A quantity or axis in the unit in which it is drawn."""
+    return study[name] * QUANTITIES[name].shown.factor
 
 
 def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
@@ -89,7 +88,8 @@ def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], acr
     for limit in limits:
         values = margin_over(study, limit, across, up)
         if numpy.nanmin(values) < 0 < numpy.nanmax(values):
-            axes.contour(study[across].values, study[up].values, values, levels=[0.0], colors="black", linestyles=":")
+            x, y = _read(study, across).values, _read(study, up).values
+            axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
 
 
 def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressure", "half_angle")) -> Figure:
@@ -108,12 +108,12 @@ def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressur
     names = [name for name in quantities if name in study.data_vars]
     figure = Figure(figsize=(5.0 * len(names), 4.0), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values, x = study[name] * factor(name), study[others[0]].values
+        values, x = _read(study, name), _read(study, others[0]).values
         for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
             low, high = (values.quantile(end, dim="sample").values for end in ((1 - share) / 2, (1 + share) / 2))
             axes.fill_between(x, low, high, color=shade, label=f"{100 * share:g} % of the joints", linewidth=0)
         axes.plot(x, values.median(dim="sample").values, color="black", linewidth=1.8, label="median")
-        finish(axes, label(others[0]), label(name))
+        finish(axes, QUANTITIES[others[0]].label(), QUANTITIES[name].label())
     figure.axes[0].legend(**LEGEND)
     return figure
 
@@ -135,11 +135,11 @@ def front_figure(
     figure = Figure(figsize=(6.4, 4.6), layout="constrained")
     axes = figure.subplots()
     good = allowed(study, limits)
-    one, other = ((study[name] * factor(name)).where(good).values.ravel() for name in minimise)
+    one, other = (_read(study, name).where(good).values.ravel() for name in minimise)
     axes.plot(one, other, ".", color="0.75", markersize=3, label="allowed")
-    best = [(front[name] * factor(name)).values for name in minimise]
+    best = [_read(front, name).values for name in minimise]
     axes.plot(*best, "o-", color=INK, markersize=4, linewidth=1.2, label="no other is better in both")
-    finish(axes, label(minimise[0]), label(minimise[1]))
+    finish(axes, *(QUANTITIES[name].label() for name in minimise))
     axes.legend(**LEGEND)
     return figure
 
@@ -169,23 +169,10 @@ def sensitivity_figure(found: xarray.Dataset) -> Figure:
                 edgecolor="white",
                 label=f"{order} order",
             )
-        axes.set_yticks(rows, [described(name)["long_name"] for name in parameters])
+        axes.set_yticks(rows, [QUANTITIES[name].title for name in parameters])
         axes.set_xlim(0.0, 1.05)
         finish(axes, "share of the variance", "")
-        axes.set_title(described(quantity)["long_name"], fontsize=10)
+        axes.set_title(QUANTITIES[quantity].title, fontsize=10)
     figure.axes[0].invert_yaxis()
     figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
     return figure
-
-
-def label(name: str) -> str:
-    """A quantity with its symbol and the unit in which it is drawn."""
-    words = described(name)
-    unit = _READ[name][0] if name in _READ else words["units"]
-    shown = "" if unit == "1" else f" [{unit}]"
-    return f"{words['long_name']} {words['symbol']}{shown}"
-
-
-def factor(name: str) -> float:
-    """From the unit of a study to the one that is drawn."""
-    return _READ[name][1] if name in _READ else 1.0

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import degrees
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy
 from rich.console import Console
 from rich.table import Table
 
-from ..studies.labels import described
+from ..quantities import QUANTITIES
 from ..studies.limits import Limit, allowed
 from ..studies.pieces import pieces
 from ..validity import Status
@@ -116,7 +115,7 @@ def print_front(front: xarray.Dataset, most: int = 12) -> None:
     """Designs that no other beats in both, at most so many of them, evenly chosen."""
     chosen = front.isel(point=numpy.unique(numpy.linspace(0, front.sizes["point"] - 1, most).round().astype(int)))
     names = [*(str(name) for name in front.coords if front[name].dims), *answers(front)]
-    table = _table(*(f"{described(name)['symbol']} [{_unit(name)}]" for name in names))
+    table = _table(*(QUANTITIES[name].head() for name in names))
     for place in range(chosen.sizes["point"]):
         table.add_row(*(_shown(name, float(chosen[name].values[place])) for name in names))
     Console().print(table)
@@ -131,7 +130,8 @@ def print_optimum(best: Optimum) -> None:
     )
     table = _table("number", "value", "unit", f"d {best.minimise} / d number")
     for name, value in best.point.items():
-        table.add_row(name, f"{value:.5g}", _unit(name), f"{best.slopes[name]:.4g}")
+        slope = best.slopes[name] * _factor(best.minimise) / _factor(name)
+        table.add_row(name, f"{value * _factor(name):.5g}", _unit(name), f"{slope:.4g}")
     console.print(table)
     if not best.valid:
         console.print("the model does not trust itself there: ask another", highlight=False)
@@ -163,16 +163,19 @@ def _place(study: xarray.Dataset, flat: int) -> str:
 
 
 def _words(at: Mapping[str, float]) -> str:
-    return ", ".join(f"{described(name)['symbol']} {_shown(name, value)}" for name, value in at.items())
+    return ", ".join(f"{QUANTITIES[name].symbol} {_shown(name, value)}" for name, value in at.items())
 
 
 def _unit(name: str) -> str:
-    unit = str(described(name)["units"])
-    return {"rad": "°", "mm2": "mm²", "1": ""}.get(unit, unit)
+    return QUANTITIES[name].shown.text
+
+
+def _factor(name: str) -> float:
+    return QUANTITIES[name].shown.factor
 
 
 def _shown(name: str, value: float) -> str:
-    return f"{degrees(value) if described(name)['units'] == 'rad' else value:.4g}"
+    return f"{value * _factor(name):.4g}"
 
 
 def _table(*heads: str) -> Table:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import pi
 from typing import TYPE_CHECKING, Any
 
@@ -15,37 +15,28 @@ from rich.text import Text
 from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
-from ..describe import COLUMNS, Column, number_text
+from ..describe import Column, number_text
 from ..identify.modulus import Calibration
 from ..joint import Joint, Material
 from ..model import Theory
 from ..paper.table_3 import RATIOS
 from ..paper.table_3 import Column as TableColumn
 from ..presets import joints, materials
+from ..quantities import CONTACT
 
 if TYPE_CHECKING:
     from ..fem.export.calculix import CcxAnswer
 
 _BARS = " ▁▂▃▄▅▆▇█"
 _BARS_ASCII = " .:-=+*#@"
-_UNITS = {"indentation": ("µm", 1e3), "stiffness": ("kN/mm", 1e-3)}  # handier here than those of JSON
 _NARROW = 72
 _PROFILE = "profile"
 _APART = "deviation"
-_OFF_THE_POLE = ("pole_pressure", "max_pressure_angle_deg")
-# what a narrow terminal does without, first to last
-_DROPPED = (
-    *_OFF_THE_POLE,
-    "foundation_modulus",
-    "energy",
-    "stiffness",
-    "area",
-    _PROFILE,
-    _APART,
-    "indentation",
-    "force",
-    "half_angle_deg",
-)
+_OFF_THE_POLE = ("pole_pressure", "max_pressure_angle")
+_COLUMNS = tuple(Column(each, each.shown) for each in CONTACT.values())
+_LATER = ("stiffness", "area", _PROFILE, _APART, "indentation", "force", "half_angle")
+_DROPPED = (*(name for name in reversed(tuple(CONTACT)) if name not in (*_LATER, "max_pressure")), *_LATER)
+"""What a narrow terminal does without, first to last; never the largest pressure."""
 
 
 def print_press(comparison: Comparison, remarks: Iterable[str] = ()) -> None:
@@ -85,7 +76,7 @@ def _pole(comparison: Comparison) -> tuple[str, ...]:
 
 
 def _press_table(comparison: Comparison, dropped: Sequence[str], bars: str) -> Table:
-    columns = [column for column in COLUMNS if column.name not in dropped]
+    columns = [column for column in _COLUMNS if column.attribute not in dropped]
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
     table.add_column("model", no_wrap=True)
     apart = () if _APART in dropped else _compared(comparison)
@@ -94,7 +85,7 @@ def _press_table(comparison: Comparison, dropped: Sequence[str], bars: str) -> T
     if _PROFILE not in dropped:
         table.add_column(" p, 0° to 90°", no_wrap=True)
     table.add_column("valid", justify="center", no_wrap=True)
-    units = (*(_shown_unit(column)[0] for column in columns), *("%" for _ in apart))
+    units = (*(column.unit for column in columns), *("%" for _ in apart))
     table.add_row("", *(Text(unit, style="dim") for unit in units))
     profiles = {} if _PROFILE in dropped else _profiles(comparison, bars)
     for name, contact in comparison.items():
@@ -112,7 +103,7 @@ def _compared(comparison: Comparison) -> tuple[Column, ...]:
         return ()
     by_depth = len({contact.indentation for contact in comparison.values()}) == 1
     first = "force" if by_depth else "indentation"
-    return tuple(column for column in COLUMNS if column.name in (first, "max_pressure"))
+    return tuple(column for column in _COLUMNS if column.attribute in (first, "max_pressure"))
 
 
 def _percents(deviation: dict[str, Any] | None, columns: Sequence[Column]) -> list[str]:
@@ -126,14 +117,10 @@ def _cells(
     name: str, contact: Contact, columns: Sequence[Column], away: Sequence[str], profile: Sequence[str]
 ) -> list[Text]:
     style = "" if contact.valid else "yellow"
-    numbers = [number_text(column.of(contact) * _shown_unit(column)[1], 4, "-") for column in columns]
+    numbers = [number_text(column.of(contact), 4, "-") for column in columns]
     bars = [Text(f" {bar}", style=style or "cyan") for bar in profile]
     mark = Text("yes", style="green") if contact.valid else Text("no", style="yellow")
     return [*(Text(text, style=style) for text in (name, *numbers, *away)), *bars, mark]
-
-
-def _shown_unit(column: Column) -> tuple[str, float]:
-    return _UNITS.get(column.name, (column.unit, 1.0))
 
 
 def _profiles(comparison: Comparison, bars: str) -> dict[str, str]:
@@ -200,10 +187,10 @@ def print_table_3(columns: Sequence[TableColumn]) -> None:
 def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
     """Our own answer at each step of a deck beside CalculiX', with how far that lies above ours."""
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    heads = ("d", "F", "F ccx", "ΔF", "p0", "p0 ccx", "Δp0", "ε", "ε ccx", "Δε")
-    for head in heads:
+    heads = list(_rival_heads())
+    for head, _ in heads:
         table.add_column(head, justify="right", no_wrap=True)
-    table.add_row(*(Text(unit, style="dim") for unit in ("mm", "N", "N", "%", "MPa", "MPa", "%", "°", "°", "°")))
+    table.add_row(*(Text(unit, style="dim") for _, unit in heads))
     columns = (ours["indentation"], ours["force"], theirs.force, ours["pole_pressure"], theirs.pole_pressure)
     angles = (ours["half_angle_deg"], numpy.degrees(theirs.half_angle))
     for d, F, F_ccx, p, p_ccx, angle, angle_ccx in zip(*columns, *angles, strict=True):
@@ -211,6 +198,14 @@ def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
         pressures = (f"{p:.3f}", f"{p_ccx:.3f}", f"{100 * (p_ccx / p - 1):+.2f}")
         table.add_row(f"{d:.5f}", *forces, *pressures, f"{angle:.2f}", f"{angle_ccx:.2f}", f"{angle_ccx - angle:+.2f}")
     _console().print(table)
+
+
+def _rival_heads() -> Iterator[tuple[str, str]]:
+    """Symbols and units of those columns."""
+    yield CONTACT["indentation"].symbol, CONTACT["indentation"].written.text
+    for name, apart in (("force", "%"), ("pole_pressure", "%"), ("half_angle", "°")):
+        symbol, unit = CONTACT[name].symbol, CONTACT[name].written.text
+        yield from ((symbol, unit), (f"{symbol} ccx", unit), (f"Δ{symbol}", apart))
 
 
 def print_models(models: Iterable[Theory]) -> None:

@@ -17,6 +17,7 @@ from ...output.html import drawn, table
 from ...output.press_plot import press_figure
 from ...output.style import Line, numbered
 from ...presets import joints
+from ...quantities import JOINT
 from ..drawing import SectionDrawing, extent_of
 from ..look import PALETTES
 from ..press_charts import PressCharts
@@ -24,7 +25,7 @@ from ..pressing import pressed
 from ..screen import BESIDE, Screen
 from ..style import html, inputs
 from ..view import Ask, Document
-from ..words import alert, number_rows, number_text, percent, quantities
+from ..words import alert, columns, number_rows, number_text, percent
 
 _CHOOSE = "– choose –"
 
@@ -149,33 +150,32 @@ def answers(files: Mapping[str, JointFile], model: str) -> dict[str, Contact]:
     return {name: contacts[model] for name, contacts in found.items() if model in contacts}
 
 
-_DIMENSIONS = (
-    ("R1 [mm]", "ball_radius"),
-    ("ΔR [mm]", "clearance"),
-    ("L [mm]", "liner_thickness"),
-)
+_DIMENSIONS = ("ball_radius", "clearance", "liner_thickness")
 
 
 def _text_table(
     files: Mapping[str, JointFile], contacts: Mapping[str, Contact], screen: Screen
 ) -> tuple[list[str], list[list[str]]]:
     """A column a joint; answers with their difference from the first that was put beside."""
-    rows = [[head, *(f"{float(getattr(file.joint, name)):g}" for file in files.values())] for head, name in _DIMENSIONS]
+    rows = [
+        [JOINT[name].head(), *(f"{float(getattr(file.joint, name)):g}" for file in files.values())]
+        for name in _DIMENSIONS
+    ]
     if screen.size == "diameter":
-        rows[0] = ["2 R1 [mm]", *(f"{2 * float(file.joint.ball_radius):g}" for file in files.values())]
+        rows[0] = [f"2 {rows[0][0]}", *(f"{2 * float(file.joint.ball_radius):g}" for file in files.values())]
     rows.append(["liner", *(str(file.joint.liner) for file in files.values())])
     rows.append(["ball", *("rigid" if file.joint.ball is None else str(file.joint.ball) for file in files.values())])
     reference = list(files)[min(1, len(files) - 1)]
     first = contacts.get(reference)
-    for each in quantities(screen.angle):
-        row = [f"{each.title} {each.head}"]
+    for each in columns(screen.angle):
+        row = [each.label]
         for name in files:
             contact = contacts.get(name)
             if contact is None:
                 row.append("no answer")
                 continue
-            number = each.number(contact)
-            share = "" if first is None or contact is first else percent(relative(number, each.number(first)), "+")
+            number = float(each.of(contact))
+            share = "" if first is None or contact is first else percent(relative(number, float(each.of(first))), "+")
             apart = f" ({share})" if share else ""
             row.append(f"{number_text(number)}{apart}")
         rows.append(row)

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from math import degrees
 from typing import Any
 
 import panel as pn
 
 from ...output.html import drawn, table
-from ...output.study_plots import design_map, label
+from ...output.study_plots import design_map
 from ...output.study_terminal import map_rows
+from ...quantities import QUANTITIES
 from ...studies.parameters import PARAMETERS
 from ...studies.phrases import limit_of, range_of
 from ..look import PALETTES
@@ -39,7 +39,7 @@ class DesignMap:
             "up": pn.widgets.TextInput(label="from..to", width=150, stylesheets=inputs()),
         }
         self._quantity = pn.widgets.Select(
-            label="Shown", options={label(name): name for name in MAPPED}, width=220, stylesheets=inputs()
+            label="Shown", options={QUANTITIES[name].label(): name for name in MAPPED}, width=220, stylesheets=inputs()
         )
         self._model = pn.widgets.Select(label="Answered by", options=list(QUICK), width=170, stylesheets=inputs())
         self._limits = pn.widgets.TextInput(
@@ -165,8 +165,8 @@ class DesignMap:
             for which, choice in (("across", self._across), ("up", self._up)):
                 axis = getattr(screen, which)
                 choice.value = axis.name
-                unit = PARAMETERS[axis.name].unit
-                self._ranges[which].value = f"{axis.low:g}..{axis.high:g} {'' if unit == '1' else unit}".strip()
+                low, high = (value * PARAMETERS[axis.name].written.factor for value in (axis.low, axis.high))
+                self._ranges[which].value = f"{low:g}..{high:g} {PARAMETERS[axis.name].kind.typed}".strip()
             self._quantity.value = screen.quantity
             self._model.value = screen.map_model
             self._limits.value = ", ".join(phrase for limit in screen.limits for phrase in phrases_of(limit, _typed))
@@ -193,4 +193,4 @@ class DesignMap:
 
 def _typed(name: str, value: float) -> str:
     """A number as it would be typed."""
-    return f"{degrees(value):.6g} deg" if name == "half_angle" else f"{value:.6g}"
+    return f"{value * QUANTITIES[name].written.factor:.6g} {QUANTITIES[name].kind.typed}".strip()

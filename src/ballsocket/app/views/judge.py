@@ -14,11 +14,12 @@ from ...cup import Interface
 from ...io.joint_file import JointFile, read_cup
 from ...io.joint_toml import cup_table
 from ...output.html import picture, table
+from ...quantities import CONTACT, CUP
 from ..judging import LONGEST, Judged, Reached, Refused, Run
 from ..screen import Screen
 from ..style import html, inputs
 from ..view import Ask, Document
-from ..words import alert, notes_list, number_text, percent, quantities
+from ..words import alert, columns, notes_list, number_text, percent
 
 _EVERY = 150  # ms between two questions for news
 
@@ -36,8 +37,8 @@ class Judge:
         self._go = pn.widgets.Button(label="Run finite elements", color="primary", width=180)
         self._halt = pn.widgets.Button(label="Stop", width=90, disabled=True)
         self._bar = pn.indicators.Progress(value=0, max=100, width=220, visible=False)
-        self._arc = pn.widgets.FloatInput(label="Arc of cover [°]", step=5, width=140, stylesheets=inputs())
-        self._chamfer = pn.widgets.FloatInput(label="Chamfer [mm]", step=0.5, width=120, stylesheets=inputs())
+        self._arc = pn.widgets.FloatInput(label=CUP["arc_of_cover"].capital(), step=5, width=140, stylesheets=inputs())
+        self._chamfer = pn.widgets.FloatInput(label=CUP["chamfer"].capital(), step=0.5, width=120, stylesheets=inputs())
         self._interface = pn.widgets.Select(
             label="Liner on its backing", options=[one.value for one in Interface], width=160, stylesheets=inputs()
         )
@@ -141,9 +142,9 @@ class Judge:
         _, judged = self._found
         heads = ["quantity", "finite elements", "their error", "exact"]
         rows = [
-            [name, value, judged.error.get(name.removesuffix("_deg"), ""), (judged.exact or {}).get(name, "")]
-            for name, value in judged.numbers.items()
-            if isinstance(value, float)
+            [name, judged.numbers[name], judged.error.get(quantity.name, ""), (judged.exact or {}).get(name, "")]
+            for name, quantity in ((each.key, each) for each in CONTACT.values())
+            if isinstance(judged.numbers[name], float)
         ]
         body = table(heads, [[str(cell) for cell in row] for row in rows])
         shown = picture(judged.png, "mesh, von Mises stress, and pressure beside the exact one")
@@ -167,17 +168,15 @@ def _looked_at() -> bool:
 def _numbers(judged: Judged, screen: Screen) -> str:
     """Numbers with their error bars, beside the exact answer."""
     rows = []
-    for each in quantities(screen.angle):
-        name, factor = each.column.name, each.column.factor
-        # summaries have the units of JSON: an angle in degrees, a length in mm
-        turn = 1 / degrees(1.0) * factor if name == "half_angle_deg" else factor
-        value = judged.numbers[name] * turn
-        bar = judged.error.get(each.column.attribute)
-        row = [f"{each.title} {each.head}", number_text(value), f"± {percent(bar)}" if bar else "–"]
+    for each in columns(screen.angle):
+        turn = each.factor / each.quantity.written.factor  # the numbers are those of JSON
+        value = judged.numbers[each.name] * turn
+        bar = judged.error.get(each.attribute)
+        row = [each.label, number_text(value), f"± {percent(bar)}" if bar else "–"]
         if judged.exact is None:
             row += ["–", "–"]
         else:
-            exact = judged.exact[name] * turn
+            exact = judged.exact[each.name] * turn
             row += [number_text(exact), percent(float(relative(value, exact)), "+")]
         rows.append(row)
     heads = ["", "finite elements", "their error", "exact, a whole shell", "difference"]
