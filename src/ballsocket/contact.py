@@ -12,7 +12,9 @@ import numpy
 from . import arrays, describe
 from .arrays import Array
 from .checks import numeric, require, vectors
+from .kinds import Unit
 from .outcome import Answerer, Outcome
+from .quantities import QUANTITIES
 
 
 class Pressed(Answerer, Protocol):
@@ -44,13 +46,14 @@ class Laws(Protocol):
     def pressure(self, angle: Array) -> Array: ...
 
 
-def _law(name: str, symbol: str, unit: str, text: str) -> Any:
+def _law(name: str) -> Any:
     """A quantity of the contact, computed by the law of that name when it is first asked for."""
 
     def quantity(self: Contact) -> Array:
         return self._answer(lambda: getattr(self.laws, name))
 
-    quantity.__doc__ = f"{text}, {symbol} in {unit}."
+    said = QUANTITIES[name]
+    quantity.__doc__ = f"{said.capital(Unit(''))} in {said.unit}. {said.meaning}"
     quantity.__name__ = name
     return cached_property(quantity)
 
@@ -79,16 +82,14 @@ class Contact(Outcome):
     force: Array
     indentation: Array
 
-    half_angle = _law("half_angle", "ε", "rad", "Contact half-angle")
-    max_pressure = _law("max_pressure", "pmax", "MPa", "Largest pressure")
-    max_pressure_angle = _law("max_pressure_angle", "φmax", "rad", "Polar angle at which the pressure is largest")
-    pole_pressure = _law("pole_pressure", "p0", "MPa", "Pressure at the pole")
-    stiffness = _law("stiffness", "dF/dd", "N/mm", "Tangent stiffness")
-    energy = _law("energy", "U", "N mm", "Work of the load from first touch")
-    foundation_modulus = _law(
-        "foundation_modulus", "K = p0/d", "MPa/mm", "Pressure at the pole per indentation, Eq. (16)"
-    )
-    pressure_integral = _law("pressure_integral", "∫p dA", "N", "Pressure summed over the area without its direction")
+    half_angle = _law("half_angle")
+    max_pressure = _law("max_pressure")
+    max_pressure_angle = _law("max_pressure_angle")
+    pole_pressure = _law("pole_pressure")
+    stiffness = _law("stiffness")
+    energy = _law("energy")
+    foundation_modulus = _law("foundation_modulus")
+    pressure_integral = _law("pressure_integral")
 
     @property
     def _load(self) -> Array:

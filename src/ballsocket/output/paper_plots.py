@@ -104,8 +104,8 @@ def _limit(axes: Axes, panel: Panel) -> None:
     longest = max(line.x[-1] for line in known)
     if min(line.x[0] for line in panel.lines) < 0.1 * longest:
         axes.set_xlim(left=0.0)
-    if "force" in panel.y:
-        axes.set_ylim(0.0, 4000.0)
+    if panel.highest is not None:
+        axes.set_ylim(0.0, panel.highest)
         axes.set_xlim(0.0, 1.15 * longest)
     else:
         axes.set_ylim(0.0, 1.1 * max(max(line.y) for line in known))

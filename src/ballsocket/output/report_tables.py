@@ -7,8 +7,10 @@ from html import escape
 from itertools import groupby
 from typing import Any
 
+from ..kinds import Unit
 from ..paper.accuracy import RANGES, THICKNESS
 from ..paper.table_3 import RATIOS
+from ..quantities import JOINT
 from .accuracy_table import HEADS, place, spread
 
 Row = Mapping[str, Any]
@@ -44,10 +46,10 @@ def tally(findings: Iterable[Row]) -> str:
 
 def given() -> str:
     """Tables 1 and 2, which are the paper's input and ours."""
-    ranges = (RANGES["ball_radius"], THICKNESS, RANGES["clearance"], RANGES["outer_radius"])
+    named = {"liner_thickness": THICKNESS, **{name: RANGES[name] for name in JOINT if name in RANGES}}
     geometry = _table(
-        ("Table 1", "head radius R1", "liner thickness L", "radial clearance ΔR", "outer radius R2 + L"),
-        [("range", *(f"{low:g} to {high:g} mm" for low, high in ranges))],
+        ("Table 1", *(JOINT[name].label(Unit("")) for name in named)),
+        [("range", *(f"{low:g} to {high:g} mm" for low, high in named.values()))],
         "",
     )
     material = _table(

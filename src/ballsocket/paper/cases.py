@@ -10,6 +10,7 @@ import numpy
 from ..arrays import Numbers
 from ..joint import Joint, Material
 from ..presets import STEEL
+from ..quantities import JOINT
 from .accuracy import RANGES, THICKNESS
 from .table_3 import paper_joint
 
@@ -64,7 +65,8 @@ def series() -> dict[str, Joint]:
 
 def named_series() -> Iterator[tuple[str, Joint, tuple[float, ...]]]:
     """Series of joints, each with the symbol and the values of what varies."""
-    yield from zip(("ΔR", "R1", "L"), series().values(), (CLEARANCES, HEAD_RADII, THICKNESSES), strict=True)
+    symbols = (JOINT[name].symbol for name in ("clearance", "ball_radius", "liner_thickness"))
+    yield from zip(symbols, series().values(), (CLEARANCES, HEAD_RADII, THICKNESSES), strict=True)
 
 
 def by_ratio(ratio: Numbers, poisson: Numbers | float) -> Joint:

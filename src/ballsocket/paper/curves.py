@@ -13,6 +13,7 @@ from ..contact import Contact
 from ..joint import Joint
 from ..model import Model
 from ..models.foundation import HessForsbach
+from ..quantities import CONTACT, DERIVED, FIELD, JOINT
 from . import cases
 from .figure import Figure, Line, Map, Panel
 
@@ -30,7 +31,7 @@ def _line(model: str, case: str, x: Any, y: Any) -> Line:
 _FORCES = numpy.array([100.0, 200.0, 350.0, 500.0, 750.0, 1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0])
 _CLEARANCES = numpy.linspace(0.05, 0.2, 7)
 _RATIOS = numpy.array([0.8, 1.2, 1.8, 2.5, 3.3, 4.2, 5.2, 6.3, 7.5])
-_MODULUS = "p0 R2/(δ E)"
+_MODULUS = "p0 R2/(d E)"
 
 
 def figure_2(poisson: float, references: Models) -> Figure:
@@ -38,7 +39,7 @@ def figure_2(poisson: float, references: Models) -> Figure:
     panels = _modulus_panels(poisson, {**references, FIT: HessForsbach()}, f"ν {poisson:g}")
     return Figure(
         title="Figure 2",
-        caption="Dimensionless foundation modulus by force (R2 18, L 6.75, ΔR 0.1 mm), by radial clearance, and by R2/L"
+        caption="Dimensionless foundation modulus by force (R2 18, L 6.75, c 0.1 mm), by radial clearance, and by R2/L"
         " (outer radius 24 mm), the latter two averaged over 1 to 3 kN.",
         columns=3,
         panels=[Panel(title=title, x=x, y=_MODULUS, lines=lines) for (title, x), lines in panels.items()],
@@ -50,7 +51,7 @@ def figure_2_models(poisson: float, models: Models) -> Figure:
     panels = _modulus_panels(poisson, models, "")
     return Figure(
         title="Figure 2, with every model",
-        caption="The dimensionless modulus p0 R2/(δ E) of every model, one row for each Poisson's ratio.",
+        caption="The dimensionless modulus p0 R2/(d E) of every model, one row for each Poisson's ratio.",
         columns=3,
         panels=[
             Panel(title=f"ν {poisson:g}, {title}", x=x, y=_MODULUS, lines=lines) for (title, x), lines in panels.items()
@@ -69,9 +70,9 @@ def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str
         by_clearance.append(_line(name, case, _CLEARANCES, _mean_modulus(model, wide)))
         by_ratio.append(_line(name, case, _RATIOS, _mean_modulus(model, family)))
     return {
-        ("by force", "normal force [N]"): by_force,
-        ("by clearance", "radial clearance ΔR [mm]"): by_clearance,
-        ("by R2/L", "R2/L"): by_ratio,
+        ("by force", CONTACT["force"].label()): by_force,
+        ("by clearance", JOINT["clearance"].label()): by_clearance,
+        ("by R2/L", DERIVED["thickness_ratio"].head()): by_ratio,
     }
 
 
@@ -93,14 +94,14 @@ def figure_3_or_4(number: int, models: Models) -> Figure:
     joint = cases.hip(poisson)
     return Figure(
         title=f"Figure {number}",
-        caption=f"Force by indentation, and pressure by angle at 3 kN: R2 18, L 6.75, ΔR 0.1 mm, ν {poisson:g}.",
+        caption=f"Force by indentation, and pressure by angle at 3 kN: R2 18, L 6.75, c 0.1 mm, ν {poisson:g}.",
         columns=2,
         panels=[_load_panel("force", "", joint, models), _pressure_panel("pressure at 3 kN", "", joint, models)],
     )
 
 
 SERIES: dict[str, dict[str, Joint]] = {
-    "clearance": {f"ΔR {c:g} mm": cases.joint(clearance=c) for c in (0.05, 0.1, 0.2)},
+    "clearance": {f"c {c:g} mm": cases.joint(clearance=c) for c in (0.05, 0.1, 0.2)},
     "head radius": {f"R1 {r:g} mm": cases.joint(head_radius=r) for r in (11.0, 16.0, 23.0)},
     "liner thickness": {f"L {t:g} mm": cases.joint(liner_thickness=t) for t in (3.0, 6.0, 12.0)},
 }
@@ -117,7 +118,7 @@ def figure_5(series: str, case: str, models: Models) -> Figure:
     return Figure(
         title="Figure 5",
         caption="Force by indentation, and pressure at 3 kN, by clearance, head radius and liner thickness around "
-        "R1 16, L 6, ΔR 0.1 mm, ν 0.4. Pressure is shown over the arc R1 φ where the head's radius varies.",
+        "R1 16, L 6, c 0.1 mm, ν 0.4. Pressure is shown over the arc R1 φ where the head's radius varies.",
         columns=2,
         panels=[
             _load_panel(f"({left}) {series}: force", case, joint, models),
@@ -148,15 +149,16 @@ def figure_5_pressures(series: str, case: str, models: Models) -> Figure:
 
 def _load_panel(title: str, case: str, joint: Joint, models: Models) -> Panel:
     forces = 4000.0 * numpy.linspace(0.06, 1.0, _STEPS) ** 2
+    depth, force = CONTACT["indentation"], CONTACT["force"]
     lines = []
     for name, model in models.items():
-        depth = model.press(joint, force=forces).indentation
-        lines.append(_line(name, case, numpy.append(0.0, 1e3 * depth), numpy.append(0.0, forces)))
-    return Panel(title=title, x="indentation δ [µm]", y="normal force [N]", lines=lines)
+        pressed = model.press(joint, force=forces).indentation * depth.shown.factor
+        lines.append(_line(name, case, numpy.append(0.0, pressed), numpy.append(0.0, forces)))
+    return Panel(title=title, x=depth.label(), y=force.label(), lines=lines, highest=float(forces[-1]))
 
 
 Place = tuple[str, Callable[[Joint, Numbers], Numbers]]
-_BY_ANGLE: Place = ("polar angle φ [°]", lambda joint, angle: numpy.degrees(angle))
+_BY_ANGLE: Place = (FIELD["angle"].label(), lambda joint, angle: numpy.degrees(angle))
 _BY_ARC: Place = ("arc from the pole R1 φ [mm]", lambda joint, angle: angle * joint.ball_radius)
 
 
@@ -167,7 +169,7 @@ def _pressure_panel(title: str, case: str, joint: Joint, models: Models, place: 
         contact = model.press(joint, force=cases.LOAD)
         angle = float(contact.half_angle) * numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 60))
         lines.append(_line(name, case, position(joint, angle), contact.pressure(angle)))
-    return Panel(title=title, x=label, y="contact pressure [MPa]", lines=lines)
+    return Panel(title=title, x=label, y=FIELD["pressure"].label(), lines=lines)
 
 
 def figure_6(name: str, model: Model, points: int = 25) -> Figure:
@@ -176,12 +178,12 @@ def figure_6(name: str, model: Model, points: int = 25) -> Figure:
     contact = model.press(grid.joint, force=cases.LOAD)
     return Figure(
         title=f"Figure 6, {name}",
-        caption="Peak pressure and contact area at 3 kN by head radius and liner thickness, ΔR 0.1 mm, ν 0.4. Dotted: "
+        caption="Peak pressure and contact area at 3 kN by head radius and liner thickness, c 0.1 mm, ν 0.4. Dotted: "
         "outer radius 16 and 26 mm.",
         columns=2,
         maps=[
-            grid.map("peak pressure [MPa]", contact.max_pressure),
-            grid.map("contact area [mm²]", contact.area),
+            grid.map(CONTACT["max_pressure"].label(), contact.max_pressure),
+            grid.map(CONTACT["area"].label(), contact.area),
         ],
     )
 
@@ -228,8 +230,8 @@ class _Grid:
         rows = [[None if numpy.isnan(value) else value for value in row] for row in whole.tolist()]
         return Map(
             title=title,
-            x_label="head radius R1 [mm]",
-            y_label="liner thickness L [mm]",
+            x_label=JOINT["ball_radius"].label(),
+            y_label=JOINT["liner_thickness"].label(),
             x=self.radius.tolist(),
             y=self.thickness.tolist(),
             z=rows,

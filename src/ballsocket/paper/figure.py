@@ -20,12 +20,13 @@ class Line:
 
 @dataclass(frozen=True, kw_only=True)
 class Panel:
-    """One part of a figure."""
+    """One part of a figure; `highest` is where its upright axis ends, None a little above its lines."""
 
     title: str
     x: str
     y: str
     lines: list[Line]
+    highest: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -91,7 +91,7 @@ def half_angles_of_jin(reference: Model) -> Finding:
         )
         half_angle = numpy.degrees(reference.press(joints, force=2500.0).half_angle)
         for clearance, angle in zip(_JIN_CLEARANCES, half_angle, strict=True):
-            angles[f"{name}, L {thickness:g}, ΔR {clearance:g}, °"] = float(angle)
+            angles[f"{name}, L {thickness:g}, c {clearance:g}, °"] = float(angle)
     low, high = min(angles.values()), max(angles.values())
     return Finding(
         name="half-angles-of-jin",

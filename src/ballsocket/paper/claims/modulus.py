@@ -159,7 +159,7 @@ def stiffer_where_confined(reference: Model) -> Finding:
         cases.by_ratio(numpy.array([7.5, 7.5]), numpy.array([0.4, 0.49])),
     )
     rise = {}
-    for name, joints in (("ΔR 0.05 mm", tight), ("ΔR 0.2 mm", loose), ("R2/L 1.2", thick), ("R2/L 7.5", thin)):
+    for name, joints in (("c 0.05 mm", tight), ("c 0.2 mm", loose), ("R2/L 1.2", thick), ("R2/L 7.5", thin)):
         contact = reference.press(joints, force=cases.LOAD)
         modulus = contact.max_pressure / contact.indentation
         rise[f"K at ν 0.49 over K at 0.4, {name}"] = float(modulus[1] / modulus[0])
