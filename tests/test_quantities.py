@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from importlib import import_module
 from math import inf, nan, pi
 from operator import attrgetter
 from pathlib import Path
@@ -31,6 +32,7 @@ from ballsocket.studies.parameters import PARAMETERS
 from ballsocket.studies.task import QUANTITIES as ANSWERS
 
 from .joints import HIP
+from .places import ROOT
 
 EVERY = pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=attrgetter("name"))
 CHECKED = [each for each in QUANTITIES.values() if each.allowed]
@@ -83,6 +85,7 @@ def test_nothing_is_named_or_written_twice():
     shared = {each.symbol for each in (*MATERIAL.values(), *PARTS.values())}
     symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]
     assert sorted(symbols) == sorted(set(symbols))
+    assert len({each.title.casefold() for each in QUANTITIES.values()}) == len(QUANTITIES)
     for each in QUANTITIES.values():
         assert each.title
         assert each.meaning.endswith(".")
@@ -192,6 +195,16 @@ def test_a_quantity_is_added_by_one_entry(tmp_path):
     assert told["same"]
     assert told["label"] == "conformity c/d"
     assert any(line.split()[:2] == ["model", "c/d"] for line in rest)
+
+
+def test_the_glossary_of_the_site_has_every_quantity(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "docs" / "_ext")
+    written = import_module("generated")._glossary(QUANTITIES.values())
+    for each in QUANTITIES.values():
+        entry = re.search(rf"^{re.escape(each.title)}\n  (.*)$", written, flags=re.MULTILINE)[1]
+        assert entry.startswith(f"`{each.name}`")
+        assert each.meaning in entry
+        assert each.allowed[1:] in entry
 
 
 def test_the_package_offers_the_table_and_nothing_hides_it():

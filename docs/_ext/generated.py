@@ -14,6 +14,7 @@ from ballsocket.evidence.validity import measure, promising
 from ballsocket.output.accuracy_table import markdown
 from ballsocket.output.report import write_report
 from ballsocket.paper.plan import quick_plan
+from ballsocket.quantities import QUANTITIES
 from ballsocket.sources import Source, bibliography
 
 _COLUMNS = 88  # of the terminal whose help texts are shown
@@ -37,6 +38,7 @@ def write(folder: Path) -> None:
         "claims": _claims(results["claims"]),
         "elsewhere": _claims(results["elsewhere"]),
         "commands": _commands(),
+        "glossary": _glossary(QUANTITIES.values()),
         "joints": _presets(bs.joints),
         "materials": _presets(bs.materials, lambda name: f"`{name}`, in Python `{name.replace('-', '_').upper()}`"),
         "nearness": _nearness(),
@@ -99,6 +101,25 @@ def _off(answers, name: str) -> str:
     percent = 100 * (contact.max_pressure / answers["exact"].max_pressure - 1)
     text = f"{percent:+.{1 if abs(percent) < 10 else 0}f}\u202f%"
     return f"**{text}**" if contact.valid else text
+
+
+# --- quantities ---
+
+
+def _glossary(quantities) -> str:
+    """The words of the table of quantities as a Sphinx glossary."""
+    entries = sorted(quantities, key=lambda each: each.title.casefold())
+    return "\n".join(["```{glossary}", "\n\n".join(map(_word, entries)), "```"])
+
+
+def _word(quantity) -> str:
+    """Title, then name, symbol, units, meaning and what is allowed."""
+    inside = quantity.unit.replace("mm2", "mm²").removeprefix("1")
+    read = [text for text in dict.fromkeys((quantity.written.text, quantity.shown.text)) if text not in ("", inside)]
+    names = ", ".join(f"`{text}`" for text in (quantity.name, quantity.symbol) if text)
+    units = (f" in {inside}" if inside else "") + (f", shown in {' and '.join(read)}" if read else "")
+    rule = f" {quantity.allowed[0].upper()}{quantity.allowed[1:]}." if quantity.allowed else ""
+    return f"{quantity.title}\n  {names}{units}. {quantity.meaning}{rule}"
 
 
 # --- presets, statuses, publications ---

@@ -35,7 +35,7 @@ class Kind(StrEnum):
 
     @property
     def unit(self) -> str:
-        """The unit inside, spelled as the CF conventions do: "mm2", "1"."""
+        """The unit inside, spelled as the CF conventions do ("mm2", "1")."""
         return _KINDS[self][0]
 
     @property
@@ -45,7 +45,7 @@ class Kind(StrEnum):
 
     @property
     def written(self) -> Unit:
-        """The unit in JSON, in files and in tables of plain numbers: degrees, and else the unit inside."""
+        """The unit in JSON, files and tables of plain numbers, which is degrees for an angle, else the unit inside."""
         return _WRITTEN.get(self, Unit(self.unit))
 
     @property

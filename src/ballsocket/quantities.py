@@ -160,7 +160,7 @@ CONTACT = _table(
     Quantity("half_angle", "ε", "half angle", Kind.ANGLE,
              "From the axis of the load to the edge of the contact, seen from the centre of the socket.",
              allows=_up_to_the_equator, allowed="a half angle (rad) is 0 or more and below pi/2"),
-    Quantity("max_pressure", "pmax", "largest pressure", Kind.MODULUS, "Peak of the contact pressure, wherever it is."),
+    Quantity("max_pressure", "pmax", "largest pressure", Kind.MODULUS, "Wherever it is; also peak pressure."),
     Quantity("area", "A", "contact area", Kind.AREA, "On the ball: 2π R1² (1 - cos ε), Eq. (19) of the paper."),
     Quantity("stiffness", "dF/dd", "tangent stiffness", Kind.STIFFNESS, "Slope of the force over the indentation.",
              Unit("kN/mm", 1e-3)),
@@ -185,7 +185,7 @@ DERIVED = _table(
              "Clearance over indentation; 0 is a ball of the socket's own radius."),
     Quantity("thickness_ratio", "R2/L", "thickness ratio", Kind.NUMBER, "Socket radius over liner thickness."),
     Quantity("clearance_ratio", "c/R2", "clearance ratio", Kind.NUMBER, "Radial clearance over socket radius."),
-    Quantity("modulus_ratio", "E/E1", "modulus ratio", Kind.NUMBER,
+    Quantity("modulus_ratio", "E/E_ball", "modulus ratio", Kind.NUMBER,
              "Young's modulus of the liner over that of the ball; 0 for a rigid ball."),
     Quantity("backing_ratio", "E/E_backing", "backing ratio", Kind.NUMBER,
              "Young's modulus of the liner over that of the softest layer behind it; 0 for a rigid backing, "
