@@ -4,15 +4,13 @@ import doctest
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 from importlib.util import find_spec
-from os import environ
 
 import pytest
 
 import ballsocket as bs
 
+from .cli.command import run
 from .places import ROOT
 
 DOCS = ROOT / "docs"
@@ -53,13 +51,10 @@ def test_the_python_of_a_page_gives_what_it_shows(path, folder):
 def test_the_commands_of_a_page_print_what_it_shows(path, folder):
     for block in fenced(path.read_text("utf-8"), "console"):
         command, _, shown = block.partition("\n")
-        done = subprocess.run(
-            [sys.executable, "-m", *shlex.split(command.removeprefix("$ "))],
-            capture_output=True,
-            encoding="utf-8",
-            check=True,
-            env={**environ, "COLUMNS": "100", "PYTHONIOENCODING": "utf-8"},
-        )
+        program, *words = shlex.split(command.removeprefix("$ "))
+        assert program == "ballsocket"
+        done = run(*words)
+        assert (done.returncode, done.stderr) == (0, "")
         assert [line.rstrip() for line in done.stdout.splitlines()] == shown.splitlines()
 
 

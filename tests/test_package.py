@@ -47,7 +47,16 @@ def test_a_material_is_a_constant_and_a_name():
         assert getattr(bs, name.replace("-", "_").upper()) is material
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
+MANY_ELEMENTS = "when_does_the_rim_matter"  # hundreds of contacts of finite elements
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, id=path.stem, marks=[pytest.mark.long] if path.stem == MANY_ELEMENTS else [])
+        for path in sorted((ROOT / "examples").glob("*.py"))
+    ],
+)
 def test_examples_run(path, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(path), run_name="__main__")

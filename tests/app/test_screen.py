@@ -6,7 +6,7 @@ from urllib.parse import parse_qs
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import ballsocket as bs
@@ -98,13 +98,11 @@ def near(one, other):
     )
 
 
-@settings(deadline=None)
 @given(made_files)
 def test_a_joint_file_that_is_written_is_read(file):
     assert near(file, parse_joint(toml_of(file).encode(), "file"))
 
 
-@settings(deadline=None)
 @given(screens())
 def test_a_link_leads_back(screen):
     again = read_link(parse_qs(link_of(screen), keep_blank_values=True))

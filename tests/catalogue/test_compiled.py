@@ -5,6 +5,7 @@ import pytest
 
 import ballsocket as bs
 
+from ..extent import some
 from ..joints import HIP, random_joint
 
 pytest.importorskip("numba")
@@ -31,7 +32,7 @@ def assert_same(one: bs.Contact, other: bs.Contact) -> None:
         np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=2e-14, err_msg=name)
 
 
-@pytest.mark.parametrize("model", MODELS, ids=lambda model: f"{model.modulus.name}-{model.kinematics.name}")
+@pytest.mark.parametrize("model", some(MODELS, 5), ids=lambda model: f"{model.modulus.name}-{model.kinematics.name}")
 def test_same_answer(model):
     joint = random_joint(2_000, seed=11)
     force = joint.liner.young * joint.ball_radius**2 * 1e-6

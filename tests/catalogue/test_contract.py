@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 import ballsocket as bs
 from ballsocket.arrays import gauss_legendre
 
+from ..extent import either
 from ..joints import CLOSED_FORMS, HIP, NUMERICAL, floats, joints
 
 EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
@@ -218,7 +219,7 @@ def test_friction_torque_is_bounded_and_known_for_spin(model):
 
 
 @CLOSED
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=either(quick=8, long=60))
 @given(joint=joints, share=floats(-7.0, -2.0), two=st.booleans())
 def test_any_joint_presses_back_and_forth(model, joint, share, two):
     d = joint.ball_radius * 10.0**share * (2.0 if two else 1.0)

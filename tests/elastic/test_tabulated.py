@@ -9,6 +9,7 @@ import ballsocket as bs
 from ballsocket.elastic.tabulated import build as build_tables
 from ballsocket.elastic.tabulated import chebyshev
 
+from ..extent import either
 from ..joints import HIP
 
 RIGID = replace(HIP, ball=None)
@@ -27,7 +28,7 @@ def random(count, seed, **more):
 
 @pytest.mark.parametrize(("elastic", "rtol"), [(False, 1e-5), (True, 2e-4)])
 def test_random_joints_agree_with_the_exact_answer(elastic, rtol):
-    angle, numbers = random(300, 1, elastic=elastic)
+    angle, numbers = random(either(quick=60, long=300), 1, elastic=elastic)
     joint = build_tables.joint_of(*numbers, clearance=0.02)
     exact = bs.Exact(tolerance=1e-8).press(joint, half_angle=angle)
     good = exact.status == bs.Status.OK
@@ -132,6 +133,7 @@ def test_the_tables_are_small():
     assert build_tables.SHIPPED.stat().st_size < 2_000_000
 
 
+@pytest.mark.long
 def test_the_builder_reproduces_the_shipped_profile():
     built = build_tables._KINDS["profile"].fitted(lambda sample, liners, chunksize: map(sample, liners))
     with np.load(build_tables.SHIPPED) as stored:
@@ -139,7 +141,7 @@ def test_the_builder_reproduces_the_shipped_profile():
 
 
 def test_the_report_names_where_it_is_worst():
-    report = build_tables.check(points=50, workers=1)
+    report = build_tables.check(points=either(quick=20, long=50), workers=1)
     assert max(worst.error for worst in report.rigid) < 1e-5
     assert "pressure_integral" in str(report)
     assert "R2/L" in str(report)

@@ -78,6 +78,7 @@ def test_calculix_table_is_the_reference_file():
     np.testing.assert_array_equal(elsewhere.calculix()["force"], forces)
 
 
+@pytest.mark.long
 def test_the_papers_mesh_is_fine_enough_and_calculix_agrees_with_elements():
     found = [claim(EXACT) for claim in claims.MESHED_CLAIMS + claims.MESHED_ELSEWHERE]
     assert [finding.verdict for finding in found] == [claims.Verdict.HOLDS] * 2

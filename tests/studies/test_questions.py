@@ -1,8 +1,7 @@
 """Questions asked of many joints: maps, fronts, optima, tolerances, sensitivities; in Python and in the shell."""
 
 import json
-import subprocess
-import sys
+import re
 from importlib.util import find_spec
 from math import pi
 
@@ -19,6 +18,9 @@ from ballsocket.studies.pareto import pareto
 from ballsocket.studies.phrases import limit_of, range_of, spread_of
 from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.studies.slopes import differences, elasticities, traced
+
+from ..cli.command import run
+from ..extent import some
 
 HIP = bs.joints["hess-forsbach"]
 SHELL = (Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0))
@@ -73,7 +75,7 @@ def test_a_front_is_beaten_by_nothing_and_misses_nothing(design_space):
         pareto(design_space, limits=[Limit(name="outer_radius", high=1.0)])
 
 
-@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)
+@pytest.mark.parametrize("model", some([bs.HessForsbach(), bs.Tabulated()], 1), ids=lambda model: model.name)
 def test_an_optimum_is_better_than_every_point_of_a_fine_grid(model):
     ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
     best = optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL)
@@ -296,30 +298,12 @@ def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, old, new
     done = command(tmp_path, "study", "s.toml")
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1
-    import re
-
     assert re.search(message, done.stderr)
     assert not (tmp_path / "out").exists()
 
 
 def command(folder, *words):
-    return subprocess.run(
-        [sys.executable, "-m", "ballsocket", *words], cwd=folder, capture_output=True, encoding="utf-8", check=False
-    )
-
-
-def test_the_edge_distance_is_that_of_the_cup_in_the_joint_file(tmp_path):
-    """A vertical load on a cup that is inclined by 30°: of the 75° to its rim 45° are left."""
-    cup = '[cup]\narc_of_cover = "150 deg"\ninclination = 30\n'
-    (tmp_path / "hip.toml").write_text(f"{FILE}{cup}", encoding="utf-8")
-    asked = ("map", "hip.toml", "--model", "hess-forsbach", "--force", "3 kN", "--points", "9", "--json")
-    answer = json.loads(command(tmp_path, *asked, "--limit", "edge_distance>=2 mm").stdout)
-    joint, axes = bs.read_joint(tmp_path / "hip.toml").joint, {"ball_radius": Span(11.0, 23.0, 9)}
-    found = bs.study(bs.HessForsbach(), joint, **axes, liner_thickness=Span(3.0, 15.0, 9), force=3e3)
-    left = (np.radians(45.0) - found.half_angle) * (found.ball_radius + 0.1)
-    least = found.max_pressure.where(left >= 2.0).min().item()
-    assert least > found.max_pressure.min().item()
-    assert answer["quantities"]["max_pressure"][0]["value"] == pytest.approx(least, rel=1e-12)
+    return run(*words, folder=folder)
 
 
 def test_questions_on_the_command_line(tmp_path):

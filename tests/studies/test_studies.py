@@ -19,6 +19,8 @@ from ballsocket.studies.export import export
 from ballsocket.studies.rows import table
 from ballsocket.studies.run import read
 
+from ..extent import either
+
 HIP = bs.joints["hess-forsbach"]
 AXES = {"clearance": [0.05, 0.1, 0.2], "ball_radius": [14.0, 17.9], "force": [500.0, 1500.0, 3000.0, 4000.0]}
 
@@ -94,7 +96,6 @@ def test_a_block_outside_the_domain_is_a_status():
     assert bs.study(bs.BondedLayer(), HIP, liner_poisson=[0.5], force=1000.0).max_pressure.isnull().all()
 
 
-@settings(deadline=None)
 @given(
     shape=st.lists(st.integers(1, 25), min_size=0, max_size=3).map(tuple),
     most=st.integers(1, 2000),
@@ -110,7 +111,7 @@ def test_blocks_cover_every_point_once(shape, most):
         blocks[len(blocks)]
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=either(quick=5, long=25))
 @given(mean=st.floats(0.05, 0.2), deviation=st.floats(0.001, 0.03), seed=st.integers(0, 1000))
 def test_samples_follow_their_distributions(mean, deviation, seed):
     design = sample(
