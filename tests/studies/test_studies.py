@@ -2,6 +2,7 @@
 
 import csv
 import json
+import time
 
 import numpy as np
 import pytest
@@ -164,6 +165,53 @@ def test_rows_of_a_table(tmp_path):
 
     parquet.write_table(pyarrow.table({"ball_radius": [16.0], "force": [3000.0]}), tmp_path / "rows.parquet")
     assert bs.study(bs.HessForsbach(), HIP, table(tmp_path / "rows.parquet")).max_pressure.shape == (1,)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b'force\n"1\n2\n', "rows.csv is not CSV: unexpected end of data, in line 3"),
+        (b'force\n"1"2\n', "rows.csv is not CSV: .* in line 2"),
+        (b"force\n" + b"1" * 99_000 + b"\n", "force in row 0 of rows.csv = inf"),
+        (b"force\n" + b"1" * 200_000 + b"\n", "rows.csv has a line of more than 100000 characters"),
+        (b'force\n"' + b"1\n" * 80_000 + b'"', "rows.csv is not CSV: field larger than field limit"),
+        (",".join(f"c{i}" for i in range(20_000)).encode(), "more than 100000 characters"),
+        (b",".join([b"force"] * 16_000), "rows.csv has force twice"),
+        (b"force\n" + b"," * 90_000, "row 0 of rows.csv has more cells than there are columns"),
+        (b"\x1b[31m\n1\n", r"'.x1b\[31m' among the columns of rows.csv is not known"),
+        (b"a" * 90_000 + b"\n1\n", "'a{39}... among the columns of rows.csv is not known"),
+        (b"force\n\xff\n", "rows.csv is not text in UTF-8: invalid start byte"),
+        (b"force\n1\0\n", "force in row 0 of rows.csv = nan"),
+    ],
+    ids=range(12),
+)
+def test_a_csv_that_is_none_is_one_sentence_at_once(content, message, tmp_path):
+    (tmp_path / "rows.csv").write_bytes(content)
+    start = time.perf_counter()
+    with pytest.raises(ValueError, match=message) as refused:
+        table(tmp_path / "rows.csv")
+    assert time.perf_counter() - start < 1.0
+    assert len(str(refused.value)) < 300
+
+
+def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, monkeypatch):
+    (tmp_path / "endless.csv").symlink_to("/dev/zero")
+    with pytest.raises(ValueError, match="endless.csv is no file"):
+        table(tmp_path / "endless.csv")
+    for content in (b"", b"PAR1" * 100, b"force\n1\n"):
+        (tmp_path / "rows.parquet").write_bytes(content)
+        with pytest.raises(ValueError, match="rows.parquet is not Parquet that can be read"):
+            table(tmp_path / "rows.parquet")
+    import pyarrow
+    from pyarrow import parquet
+
+    parquet.write_table(pyarrow.table({"force": np.ones(10**6)}), tmp_path / "rows.parquet")
+    (tmp_path / "rows.csv").write_text("force\n" + "1\n" * 10**5, encoding="utf-8")
+    monkeypatch.setattr("ballsocket.studies.room._free_memory", lambda: 10**6)
+    with pytest.raises(ValueError, match=r"1e\+06 rows of rows.parquet take about 24 MB, and there are 1 MB of memory"):
+        table(tmp_path / "rows.parquet")
+    with pytest.raises(ValueError, match="rows of rows.csv take about .* and there are 1 MB of memory"):
+        table(tmp_path / "rows.csv")
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,15 @@ def check_room(task: Task, path: Path | None, points: int | None = None) -> None
     _refuse(time, answers + labels, _free_disk(path), "on the disk of the store")
 
 
+def check_rows(title: str, rows: int, columns: int) -> None:
+    """Raise ValueError where the values of so many rows do not fit into the memory."""
+    size, free = _COPIES * 8 * rows * columns, _free_memory()
+    if size > free:
+        raise ValueError(
+            f"{rows:.3g} rows of {title} take about {_bytes(size)}, and there are {_bytes(free)} of memory"
+        )
+
+
 _COPIES = 3  # of the values along an axis: as drawn, as scaled, as labels
 
 

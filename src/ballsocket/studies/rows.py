@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from array import array
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy
 
-from ..arrays import Numbers
 from ..checks import check_names
 from .axes import TableAxis, column
+from .columns import read_columns
 from .design import Design
 from .parameters import PARAMETERS
 
@@ -22,62 +22,30 @@ def table(path: str | Path) -> Design:
     Raises
     ------
     ValueError
-        A column that is not known; a value that is missing or no number, named with its row.
+        A column that is not known; a value that is missing or no number, named with its row; what is no such file,
+        or has more rows than there is memory for.
     OSError
         The file cannot be read.
     """
     path = Path(path)
-    if path.suffix.lower() not in _READERS:
-        raise ValueError(f"{str(path)!r} must end in {' or '.join(_READERS)}")
     columns = {}
-    for name, values in _READERS[path.suffix.lower()](path).items():
-        parameter = _NAMES.get(name, name)
-        if parameter in columns:
-            raise ValueError(f"{path.name} has {parameter} twice")
-        check_names([parameter], PARAMETERS, f"among the columns of {path.name}")
-        found = column(parameter, values, row=f" in row {{}} of {path.name}")
-        columns[parameter] = numpy.radians(found) if name != parameter else found
-    if not columns:
-        raise ValueError(f"{path.name} has no columns")
+    for head, values in read_columns(path, lambda heads: _check_heads(heads, path.name)).items():
+        name = _NAMES.get(head, head)
+        found = column(name, values, row=f" in row {{}} of {path.name}")
+        columns[name] = numpy.radians(found) if name != head else found
     return Design((TableAxis(columns),))
 
 
 _NAMES = {quantity.key: name for name, quantity in PARAMETERS.items()}
 
 
-def _read_csv(path: Path) -> dict[str, Numbers]:
-    import csv
-
-    with path.open(encoding="utf-8-sig", newline="") as stream:
-        reader = csv.reader(stream, strict=True)
-        heads = next(reader, [])
-        for name in heads:
-            if heads.count(name) > 1:
-                raise ValueError(f"{path.name} has {name} twice")
-        columns = [array("d") for _ in heads]
-        for number, row in enumerate(row for row in reader if row):
-            if len(row) > len(heads):
-                raise ValueError(f"row {number} of {path.name} has more cells than there are columns")
-            for place, found in enumerate(columns):
-                found.append(_number(row[place] if place < len(row) else ""))
-    return {name: numpy.array(found) for name, found in zip(heads, columns, strict=True)}
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return float("nan")
-
-
-def _read_parquet(path: Path) -> dict[str, Numbers]:
-    from ..checks import needs
-
-    needs("study", "pyarrow")
-    from pyarrow import parquet
-
-    read = parquet.read_table(path)
-    return {name: read.column(name).to_numpy() for name in read.column_names}
-
-
-_READERS = {".csv": _read_csv, ".parquet": _read_parquet}
+def _check_heads(heads: Sequence[str], title: str) -> None:
+    """Raise ValueError unless every column is a parameter, and each of them comes once."""
+    seen: set[str] = set()
+    for name in (_NAMES.get(head, head) for head in heads):
+        check_names([name], PARAMETERS, f"among the columns of {title}")
+        if name in seen:
+            raise ValueError(f"{title} has {name} twice")
+        seen.add(name)
+    if not seen:
+        raise ValueError(f"{title} has no columns")
