@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from shutil import rmtree
 from tempfile import TemporaryDirectory
+
+try:
+    import fcntl
+except ImportError:  # Windows: what a killed process left stays
+    fcntl = None  # type: ignore[assignment]
+
+_DRAFT = ".draft"
+_SHORT = 40  # characters of a name, so that what is made of it is no longer than a name may be
+_YOUNG = 60.0  # seconds
 
 
 @contextmanager
@@ -18,10 +29,50 @@ def at_once(path: Path) -> Iterator[Path]:
     OSError
         A folder that cannot be written to.
     """
-    with TemporaryDirectory(dir=path.parent) as folder:
-        draft = Path(folder) / path.name
+    with draft_folder(path) as folder:
+        draft = folder / path.name
         yield draft
         os.replace(draft, path)
+
+
+@contextmanager
+def draft_folder(path: Path) -> Iterator[Path]:
+    """A folder beside `path` that goes when it is left; those of processes that were killed go too.
+
+    Raises
+    ------
+    OSError
+        A folder that cannot be written to.
+    """
+    begin = f".{path.name[:_SHORT]}."
+    with suppress(OSError):
+        for old in path.parent.iterdir():
+            if old.name.startswith(begin) and old.name.endswith(_DRAFT) and _forsaken(old):
+                rmtree(old, ignore_errors=True)
+    with TemporaryDirectory(prefix=begin, suffix=_DRAFT, dir=path.parent) as folder, _locked(Path(folder)):
+        yield Path(folder)
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[bool]:
+    """A lock that goes with the process that holds it, however that ends; false where another has it, or none can."""
+    if fcntl is None:
+        yield False
+        return
+    held = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield True
+    except BlockingIOError:
+        yield False
+    finally:
+        os.close(held)
+
+
+def _forsaken(folder: Path) -> bool:
+    """Whether nobody writes there any more; one that is young may be about to be locked."""
+    with _locked(folder) as free:
+        return free and time.time() - folder.stat().st_mtime > _YOUNG
 
 
 def write_text(path: Path, text: str, encoding: str = "utf-8") -> Path:

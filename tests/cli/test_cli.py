@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -36,6 +37,53 @@ def test_a_process_prints_what_a_call_prints(words, encoding):
     """The other tests call the command: it is the same."""
     here, there = (way(*words, encoding=encoding) for way in (run, run_process))
     assert (there.returncode, there.stdout, there.stderr) == (here.returncode, here.stdout, here.stderr)
+
+
+@pytest.mark.parametrize("words", [("presets",), ("models",), ("cite",), ("press", EXAMPLE, "--json")], ids=" ".join)
+def test_who_reads_no_further_ends_it_quietly(words):
+    command = [sys.executable, "-m", "ballsocket", *words]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8") as process:
+        process.stdout.close()  # before anything is written, as `head` does after a line
+        assert process.stderr.read() == ""
+        assert process.wait() == 141
+
+
+def test_a_disk_that_is_full_is_one_line():
+    full = Path("/dev/full")
+    if not full.exists():
+        pytest.skip("there is no such device here")
+    with full.open("w") as out:
+        done = subprocess.run(
+            [sys.executable, "-m", "ballsocket", "presets"], stdout=out, stderr=subprocess.PIPE, encoding="utf-8"
+        )
+    assert (done.returncode, done.stderr) == (2, "ballsocket: output: No space left on device\n")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
+def test_a_process_that_is_asked_to_end_cleans_up(tmp_path):
+    study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 1_000_000}\n"
+    (tmp_path / "s.toml").write_text(study, encoding="utf-8")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "ballsocket", "study", "s.toml", "--out", "s.csv"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    deadline = time.monotonic() + 60
+    while not list(tmp_path.glob(".s.csv.*")) and time.monotonic() < deadline:  # it is writing the numbers
+        time.sleep(0.001)
+    process.terminate()
+    process.communicate(timeout=60)
+    assert process.returncode == 143
+    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+def test_names_of_files_are_shown_as_any_terminal_can(tmp_path):
+    done = run("press", "a\x1b[31m.toml", folder=tmp_path)
+    assert done.stderr.startswith(r"ballsocket: 'a\x1b[31m.toml' is neither a file nor a preset")
+    (tmp_path / "a\x1b[31m.toml").write_text("joint = 3", encoding="utf-8")
+    done = run("press", "a\x1b[31m.toml", folder=tmp_path)
+    assert done.stderr == "ballsocket: a\\x1b[31m.toml: joint = 3 must be a table: [joint]\n"
 
 
 def test_press_a_file():

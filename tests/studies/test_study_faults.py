@@ -1,5 +1,6 @@
 """What can go wrong with a stored study, and that nothing done is lost and nothing wrong is kept."""
 
+import json
 import os
 from contextlib import contextmanager
 from pathlib import Path
@@ -173,6 +174,87 @@ def test_what_is_no_study_is_left_alone(store):
     with pytest.raises(ValueError, match="is there already and is no study"):
         presses(store)
     assert (store / "precious.txt").read_text(encoding="utf-8") == "mine"
+
+
+LABEL = b'{"zarr_format": 3, "node_type": "group", "attributes": '
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"null",
+        b"[]",
+        b'"a"',
+        b"3",
+        b"",
+        b"\xff",
+        b"[" * 100_000,
+        LABEL + b"[]}",
+        LABEL + b'{"study": null}}',
+        LABEL + b'{"study": "a"}}',
+        LABEL + b'{"study": []}}',
+        LABEL + b'{"study": ' + b"[" * 2000 + b"]" * 2000 + b"}}",
+    ],
+    ids=range(12),
+)
+def test_a_store_whose_label_says_nothing_is_no_study(store, content):
+    presses(store)
+    (store / "zarr.json").write_bytes(content)
+    with pytest.raises(ValueError, match=r"s.zarr is there already and is no study$"):
+        presses(store)
+    with pytest.raises(ValueError, match=r"s.zarr is there already and is no study$"):
+        read(store)
+
+
+def test_of_a_store_that_differs_in_everything_a_few_differences_are_told(store):
+    presses(store)
+    other = {f"{number}{'x' * 100}": "y" * 1000 for number in range(1000)}
+    (store / "zarr.json").write_bytes(LABEL + f'{{"study": {json.dumps(other)}}}}}'.encode())
+    with pytest.raises(ValueError, match="holds another study: 0x+[.]{3} is y+[.]{3} there and missing here; 1x") as no:
+        presses(store)
+    assert len(str(no.value)) < 2000
+
+
+def test_two_studies_that_begin_together_share_their_store(store, monkeypatch):
+    """While one makes the store, another has made it: both have the answers."""
+    from ballsocket.studies import store as module
+
+    make = module._make
+
+    def make_slowly(path, task, asked):
+        make(path, task, asked)
+        if not store.exists():
+            monkeypatch.setattr(module, "_make", make)
+            presses(store)
+
+    monkeypatch.setattr(module, "_make", make_slowly)
+    found, blocks = presses(store)
+    assert blocks == 0
+    assert found.identical(presses(store)[0])
+    assert np.array_equal(found.max_pressure.values, reference().max_pressure.values)
+
+
+def test_what_a_killed_process_was_writing_goes_with_the_next(store):
+    old = store.parent / ".s.zarr.abc.draft"
+    young, other = store.parent / ".s.zarr.def.draft", store.parent / ".mine.draft"
+    for folder in (old, young, other):
+        folder.mkdir()
+        (folder / "part").write_text("half", encoding="utf-8")
+    for folder in (old, other):
+        os.utime(folder, (0, 0))
+    presses(store)
+    assert sorted(path.name for path in store.parent.iterdir()) == [".mine.draft", ".s.zarr.def.draft", "s.zarr"]
+
+
+def test_what_is_being_written_stays(tmp_path):
+    from ballsocket.atomic import at_once, write_text
+
+    with at_once(tmp_path / "a.txt") as draft:
+        os.utime(draft.parent, (0, 0))
+        write_text(tmp_path / "a.txt", "theirs")
+        draft.write_text("ours", encoding="utf-8")
+    assert (tmp_path / "a.txt").read_text(encoding="utf-8") == "ours"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
 
 
 def test_a_disk_that_is_full_stops_with_one_sentence_and_keeps_what_is_done(store, monkeypatch):

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import codecs
+import os
+import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import TextIOWrapper
 from typing import Annotated, Any
 
@@ -22,6 +27,7 @@ app = typer.Typer(
 
 UsageError: Any = typer.BadParameter.__base__  # typer brings a click of its own, and does not export this
 DONE, MISUSE, FAILURE = 0, 2, 3
+STOPPED, NOBODY_READS = 130, 141  # as a shell says it of the signals
 _IN_ASCII = {"≤": "<=", "≥": ">=", "°": "o", "µ": "u", "ε": "e", "ν": "v", "²": "2", "ß": "ss"}
 
 
@@ -58,11 +64,26 @@ def _write_in_any_encoding() -> None:
 def main() -> None:
     """The command `ballsocket`: one line on stderr for misuse, no tracebacks for what a user can mend."""
     _write_in_any_encoding()
+    with _cleaning_up_when_ended():
+        sys.exit(_status())
+
+
+def _status() -> int:
+    """Do what is asked; the exit status."""
     status = MISUSE
     try:
-        sys.exit(app(standalone_mode=False) or DONE)
+        done = app(standalone_mode=False) or DONE
+        _flush()
+        return int(done)
+    except SystemExit as ended:
+        if isinstance(ended.__context__, BrokenPipeError):  # rich ends at once, as if it were an error
+            return NOBODY_READS
+        raise
+    except BrokenPipeError:
+        _write_no_more()
+        return NOBODY_READS
     except typer.Abort:
-        sys.exit(130)
+        return STOPPED
     except UsageError as error:
         message = error.format_message()
     except OSError as error:
@@ -75,5 +96,40 @@ def main() -> None:
         message, status = str(error), FAILURE
     except (ArithmeticError, MemoryError) as error:
         message, status = f"these numbers are too large or too small to calculate with ({error})", FAILURE
-    print("ballsocket: " + " ".join(message.split()), file=sys.stderr)
-    sys.exit(status)
+    print(f"ballsocket: {_one_line(message)}", file=sys.stderr)
+    return status
+
+
+def _one_line(message: str) -> str:
+    """As any terminal can show it, whatever the names in it are."""
+    text = " ".join(message.split())
+    return "".join(char if char.isprintable() else ascii(char)[1:-1] for char in text)
+
+
+def _flush() -> None:
+    """What is still to be written is written while there is somebody to hear that it cannot be."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
+
+
+def _write_no_more() -> None:
+    """Nobody reads what is written: not even at the end of the process is there anything to flush."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+@contextmanager
+def _cleaning_up_when_ended() -> Iterator[None]:
+    """A process that is asked to end leaves no half-written folders behind."""
+
+    def end(number: int, frame: Any) -> None:
+        sys.exit(128 + number)
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

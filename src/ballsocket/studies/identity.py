@@ -88,8 +88,8 @@ def _numbers(values: numpy.ndarray) -> Any:
 def differences(kept: Mapping[str, Any], asked: Mapping[str, Any], path: str = "") -> list[str]:
     """Where two identities differ, in words."""
     found = []
-    for key in dict.fromkeys((*kept, *asked)):
-        one, other = kept.get(key), asked.get(key)
+    for name in dict.fromkeys((*kept, *asked)):
+        key, one, other = _short(name), kept.get(name), asked.get(name)
         if isinstance(one, Mapping) and isinstance(other, Mapping):
             found += differences(one, other, f"{path}{key}.")
         elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):

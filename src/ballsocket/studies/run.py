@@ -130,9 +130,13 @@ def read(path: str | Path) -> xarray.Dataset:
     ------
     OSError
         There is no such store.
+    ValueError
+        What is there is no study.
     """
     import xarray
 
+    if Path(path).exists():
+        Store(Path(path)).study()
     found = xarray.open_dataset(path, engine="zarr", consolidated=False, chunks=None)
     return found[[name for name in DTYPES if name in found.data_vars]]
 

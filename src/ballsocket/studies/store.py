@@ -8,14 +8,14 @@ import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import gettempdir
 from typing import Any
 from zlib import crc32
 
 import numpy
 
 from ..arrays import Numbers
-from ..atomic import at_once
+from ..atomic import at_once, draft_folder
 from ..checks import needs
 from .identity import differences, identity
 from .labels import attributes, coordinates, described
@@ -29,6 +29,12 @@ NOT_COMPUTED = -1
 
 _STUDY = "study"
 """The attribute that says which study this is."""
+
+_LABEL, _LONGEST = "zarr.json", 10_000_000
+"""The file with the attributes, and the bytes that it may have."""
+
+_TOLD = 8  # differences
+_NO_FILE = (FileNotFoundError, NotADirectoryError, IsADirectoryError)
 
 
 @dataclass(frozen=True)
@@ -51,22 +57,30 @@ class Store:
         asked = json.loads(json.dumps(identity(task)))
         if not self.path.exists():
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            with at_once(self.path) as draft:
-                _make(draft, task, asked)
-            return
-        kept = self._kept()
+            if self._made(task, asked):
+                return
+        kept = self.study()
         if kept == asked:
             self._label(task, asked)
         else:
-            raise ValueError(
-                f"{self.path} holds another study: {'; '.join(differences(kept, asked))}. Choose another folder, or "
-                "remove this one"
-            )
+            apart = "; ".join(differences(kept, asked)[:_TOLD])
+            raise ValueError(f"{self.path} holds another study: {apart}. Choose another folder, or remove this one")
+
+    def _made(self, task: Task, asked: Mapping[str, Any]) -> bool:
+        """Make the group; false where another process was quicker, and nothing is made."""
+        try:
+            with at_once(self.path) as draft:
+                _make(draft, task, asked)
+        except OSError:
+            if not self.path.exists():
+                raise
+            return False
+        return True
 
     def _label(self, task: Task, asked: Mapping[str, Any]) -> None:
         """Put every label, which is all that a store without answers has, where it is damaged or gone."""
-        with TemporaryDirectory() as folder:
-            draft = Path(folder) / "draft"
+        with draft_folder(Path(gettempdir()) / self.path.name) as folder:  # where the store is may be read-only
+            draft = folder / self.path.name
             _make(draft, task, asked)
             for fresh in draft.rglob("*"):
                 here = self.path / fresh.relative_to(draft)
@@ -74,13 +88,21 @@ class Store:
                     here.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(fresh, here)
 
-    def _kept(self) -> Any:
-        import zarr
+    def study(self) -> Mapping[str, Any]:
+        """Which study it is.
 
+        Raises
+        ------
+        ValueError
+            It is no study.
+        """
         try:
-            found: Any = zarr.open_group(self.path, mode="r").attrs[_STUDY]
-        except (KeyError, ValueError, FileNotFoundError, NotADirectoryError) as error:
+            with (self.path / _LABEL).open("rb") as stream:
+                found = json.loads(stream.read(_LONGEST))["attributes"][_STUDY]
+        except (*_NO_FILE, ValueError, LookupError, TypeError, RecursionError) as error:
             raise ValueError(f"{self.path} is there already and is no study") from error
+        if not isinstance(found, Mapping):
+            raise ValueError(f"{self.path} is there already and is no study")
         return found
 
     def missing(self, task: Task) -> list[int]:
