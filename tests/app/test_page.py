@@ -77,7 +77,7 @@ def test_a_load_of_zero_is_compared_without_shares():
 def test_what_is_too_long_for_a_link_does_not_come_on_the_screen():
     page = Page("")
     before = page.screen
-    page._uploaded('1\nname = "' + "x" * 9000 + '"\n' + toml_of(before.file).partition("source")[2].partition("\n")[2])
+    page._uploaded('1\nname = "' + "€" * 999 + '"\n' + toml_of(before.file).partition("source")[2].partition("\n")[2])
     assert page.screen == before
     assert "a link to this would be longer than 8000 characters" in page._trouble.object
 
