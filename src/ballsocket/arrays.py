@@ -1,12 +1,14 @@
 """Which array library is this? The few functions the formulas need, and the one bracketed inversion.
 
-The formulas of this package are written once, with plain arithmetic and the functions below. They run on
-NumPy, JAX, PyTorch and any other library that follows the array API standard, and - because the functions
-below are all they call - a compiler can be taught to run them on scalars (`ballsocket.compiled`).
+The formulas of this package are written once, with plain arithmetic and the functions below. They run on Python
+numbers, NumPy, JAX, PyTorch and any other library that follows the array API standard, and - because the functions
+below are all they call - a compiler can be taught to run them on scalars (`ballsocket.compiled`). A Python number stays
+one, and takes the quick way of the module `math`; what has no value there is infinite or NaN as in NumPy.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
@@ -20,6 +22,7 @@ Array = Any
 Numbers = numpy.ndarray
 """An array of NumPy, where no other library is let in: inside solvers, in studies and in files."""
 
+_ROUNDING = float(numpy.finfo(float).eps)
 _OF_NUMPY = (float, int, numpy.ndarray, numpy.generic)
 
 
@@ -40,8 +43,36 @@ def namespace(*values: Array) -> Any:
         raise TypeError(f"arrays of one library are needed, got {', '.join(kinds)}") from error
 
 
+def _elementwise(name: str, of_number: Callable[[float], float]) -> Callable[[Array], Array]:
+    """The function of that name, of a Python number or of an array."""
+
+    def function(x: Array) -> Array:
+        if type(x) is not float:
+            return getattr(namespace(x), name)(x)
+        try:
+            return of_number(x)
+        except (ValueError, OverflowError):
+            with numpy.errstate(all="ignore"):
+                return float(getattr(numpy, name)(x))
+
+    function.__name__ = name
+    return function
+
+
+exp = _elementwise("exp", math.exp)
+log = _elementwise("log", math.log)
+sin = _elementwise("sin", math.sin)
+cos = _elementwise("cos", math.cos)
+tan = _elementwise("tan", math.tan)
+atan = _elementwise("atan", math.atan)
+asinh = _elementwise("asinh", math.asinh)
+asin = _elementwise("asin", math.asin)
+
+
 def sqrt(x: Array) -> Array:
     """√x. At 0 its derivative is taken as 0, so that a point without load does not make every derivative NaN."""
+    if type(x) is float:
+        return math.sqrt(x) if x >= 0 else math.nan
     xp = namespace(x)
     if xp is numpy:
         return numpy.sqrt(x)
@@ -50,57 +81,34 @@ def sqrt(x: Array) -> Array:
 
 def power(x: Array, exponent: float) -> Array:
     """x^exponent for a positive exponent, with the derivative at 0 as in `sqrt`."""
+    if type(x) is float:
+        return x**exponent if x >= 0 else math.nan
     if namespace(x) is numpy:
         return x**exponent
     return where(x == 0, 0.0 * x, where(x == 0, 1.0, x) ** exponent)
-
-
-def exp(x: Array) -> Array:
-    return namespace(x).exp(x)
-
-
-def log(x: Array) -> Array:
-    return namespace(x).log(x)
-
-
-def sin(x: Array) -> Array:
-    return namespace(x).sin(x)
-
-
-def cos(x: Array) -> Array:
-    return namespace(x).cos(x)
-
-
-def tan(x: Array) -> Array:
-    return namespace(x).tan(x)
-
-
-def atan(x: Array) -> Array:
-    return namespace(x).atan(x)
 
 
 def atan2(y: Array, x: Array) -> Array:
     return namespace(y, x).atan2(y, x)
 
 
-def asinh(x: Array) -> Array:
-    return namespace(x).asinh(x)
-
-
-def asin(x: Array) -> Array:
-    return namespace(x).asin(x)
-
-
 def where(condition: Array, this: Array, that: Array) -> Array:
+    if type(condition) is bool and type(this) is float and type(that) is float:
+        return this if condition else that
     return namespace(condition, this, that).where(condition, this, that)
 
 
 def clip(x: Array, low: float, high: float) -> Array:
-    return min(max(x, low), high) if is_plain(x) else namespace(x).clip(x, low, high)
+    return min(max(x, low), high) if isinstance(x, float) else namespace(x).clip(x, low, high)
 
 
 def isfinite(x: Array) -> Array:
-    return namespace(x).isfinite(x)
+    return math.isfinite(x) if type(x) is float else namespace(x).isfinite(x)
+
+
+def false(condition: Array) -> Array:
+    """Where a condition does not hold."""
+    return condition ^ True
 
 
 def divisor(x: Array) -> Array:
@@ -115,6 +123,8 @@ def device(x: Array) -> Any:
 
 def rounding(x: Array) -> float:
     """The relative rounding error of `x`'s dtype."""
+    if type(x) is float:
+        return _ROUNDING
     return float(namespace(x).finfo(x.dtype).eps)
 
 
@@ -166,7 +176,9 @@ def common(*values: Array) -> tuple[Array, ...]:
 
 
 def broadcast(x: Array, *others: Array) -> Array:
-    """`x` in the shape that it and `others` broadcast to."""
+    """`x` in the shape that it and `others` broadcast to; a Python number among such stays one."""
+    if type(x) is float and all(type(value) is float for value in others):
+        return x
     shape = numpy.broadcast_shapes(*(tuple(getattr(value, "shape", ())) for value in (x, *others)))
     return broadcast_to(x, shape)
 
@@ -197,54 +209,100 @@ def weighted_sum(values: Sequence[Array], weights: Sequence[float]) -> Array:
     return total
 
 
+Law = Callable[..., tuple[Array, Array]]
+"""x, ... -> (value, slope), both of the shape of x."""
+
+
 def increasing_root(
-    law: Callable[[Array], tuple[Array, Array]],
+    law: Law,
     target: Array,
     low: Array,
     high: Array,
     start: Array,
     *,
+    given: tuple[Any, ...] = (),
     steps: int = 60,
-    tolerance: float = 1e-10,
+    tolerance: float = 1e-8,
 ) -> Array:
-    """Solve `law(x)[0] == target` for an increasing law, element by element, inside the bracket [low, high].
+    """Solve `law(x, *given)[0] == target` for an increasing law, element by element, inside the bracket [low, high].
 
-    Newton's method with the slope `law(x)[1]`; a step that leaves the bracket is replaced by its middle, and the
-    bracket shrinks with every evaluation, so the result never leaves it. At most `steps` evaluations (all of them
-    inside `jax.jit`), fewer once every element moves by less than `tolerance` of itself; two more Newton steps then
-    take that to rounding. Automatic differentiation gives the derivatives
-    of the root (the implicit function theorem), not of the way to it.
+    Newton's method with the slope `law(x, *given)[1]`, see `bracketed`. At most `steps` evaluations (all of them inside
+    `jax.jit`), fewer once every element moves by less than `tolerance` of itself, which leaves an error of the order of
+    its square. Automatic differentiation gives the derivatives of the root (the implicit function theorem), not of the
+    way to it.
 
     Parameters
     ----------
     law : callable
-        x -> (value, slope), both of the shape of x.
+        x, *given -> (value, slope), both of the shape of x.
     target, low, high, start : array
         Broadcastable; low <= start <= high.
+    given : tuple
+        What else the law takes.
 
     Returns
     -------
     array
         The root; the nearest end of the bracket where there is none.
     """
-    xp = namespace(target, low, high, start)
+    if type(start) is float:
+        return root_of_number(law, target, low, high, start, given, steps, tolerance)
 
     def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
-        x, low, high, _ = state
-        value, slope = law(x)
-        low = where(value <= target, x, low)
-        high = where(value >= target, x, high)
-        newton = x - (value - target) / divisor(slope)
-        safe = (slope > 0) & (newton >= low) & (newton <= high)
-        after = where(safe, newton, low + (high - low) / 2)
-        return after, low, high, xp.abs(after - x) > tolerance * xp.abs(after)
+        return bracketed(law, target, given, tolerance, *state[:-1])
 
-    x = _repeated(step, (start, low, high, start == start), steps)
+    x = _repeated(step, (start, low, high, start < high, start == start), steps)
+    if namespace(x) is numpy:
+        return x
     x = frozen(x)
     for _ in range(2):  # each step at the root keeps its value and doubles the order of the derivatives that are right
-        value, slope = law(x)
+        value, slope = law(x, *given)
         x = x - where(slope > 0, (value - target) / divisor(slope), 0.0)
     return x
+
+
+def root_of_number(
+    law: Law,
+    target: float,
+    low: float,
+    high: float,
+    start: float,
+    given: tuple[Any, ...],
+    steps: int,
+    tolerance: float,
+) -> float:
+    """`increasing_root` of one number."""
+    x, fresh = start, start < high
+    for _ in range(steps):
+        x, low, high, fresh, moving = bracketed(law, target, given, tolerance, x, low, high, fresh)
+        if not moving:
+            break
+    return x
+
+
+def bracketed(
+    law: Law,
+    target: Array,
+    given: tuple[Any, ...],
+    tolerance: float,
+    x: Array,
+    low: Array,
+    high: Array,
+    fresh: Array,
+) -> tuple[Array, Array, Array, Array, Array]:
+    """One step of Newton's method inside a bracket, which shrinks: x, low, high, fresh, and whether x moved.
+
+    A step that leaves the bracket is replaced by its middle, or by its upper end if that is `fresh`: not tried yet.
+    """
+    value, slope = law(x, *given)
+    low = where(value <= target, x, low)
+    high = where(value >= target, x, high)
+    fresh = fresh & (x < high)
+    newton = x - (value - target) / divisor(slope)
+    safe = (slope > 0) & (newton >= low) & (newton <= high)
+    other = where(fresh & (newton > high), high, low + (high - low) / 2)
+    after = where(safe, newton, other)
+    return after, low, high, fresh, abs(after - x) > tolerance * abs(after)
 
 
 def to_numpy(x: Array) -> numpy.ndarray:
@@ -265,7 +323,7 @@ def _repeated(step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tup
         return jax.lax.fori_loop(0, times, lambda _, now: step(now), state)[0]
     for _ in range(times):
         state = step(state)
-        if truth(~state[-1]):
+        if truth(false(state[-1])):
             break
     return state[0]
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, inf, pi, sin
+from operator import attrgetter
 from typing import Any, Protocol
 
 import numpy
@@ -12,6 +14,7 @@ import numpy
 from . import arrays, describe
 from .arrays import Array
 from .checks import numeric, require, vectors
+from .joint import Joint
 from .kinds import Unit
 from .outcome import Answerer, Outcome
 from .quantities import QUANTITIES
@@ -22,6 +25,7 @@ class Pressed(Answerer, Protocol):
 
     @property
     def planar(self) -> bool: ...
+    def careful_laws(self, joint: Joint, indentation: float) -> Laws: ...
 
 
 class Laws(Protocol):
@@ -50,7 +54,9 @@ def _law(name: str) -> Any:
     """A quantity of the contact, computed by the law of that name when it is first asked for."""
 
     def quantity(self: Contact) -> Array:
-        return self._answer(lambda: getattr(self.laws, name))
+        return self._asked(law)
+
+    law = attrgetter(name)
 
     said = QUANTITIES[name]
     quantity.__doc__ = f"{said.capital(Unit(''))} in {said.unit}. {said.meaning}"
@@ -100,7 +106,7 @@ class Contact(Outcome):
         """Contact area on the ball, A = 2π R1² (1 - cos ε) in mm², Eq. (19)."""
         half_sine = arrays.sin(arrays.clip(self.half_angle, 0.0, pi) / 2)
         with numpy.errstate(all="ignore"):
-            return self._plain(4 * pi * self._numbers.ball_radius**2 * half_sine**2)
+            return self._plain(4 * pi * self.joint.ball_radius * self.joint.ball_radius * half_sine * half_sine)
 
     @property
     def indentation_ratio(self) -> Array:
@@ -138,8 +144,10 @@ class Contact(Outcome):
         float or array
             Of the shape that angle and contact broadcast to.
         """
+        if self._is_plain and arrays.is_plain(angle):
+            return self._asked(lambda laws: laws.pressure(float(angle)))
         _, angle = arrays.common(self.indentation, angle)
-        return self._answer(lambda: self.laws.pressure(angle))
+        return self._asked(lambda laws: laws.pressure(angle))
 
     def pressure_at(self, direction: Array) -> Array:
         """Contact pressure in MPa where a ray from the centre of the socket meets its surface; 0 outside the contact.
@@ -201,8 +209,20 @@ class Contact(Outcome):
             arc = angle if self.model.planar else arrays.sin(angle)
             return self.pressure(angle) * _mean_lever(angle, axis_angle) * arc * width
 
-        lever = coefficient * self._numbers.ball_radius
-        return self._plain(lever * 2 * pi * self._numbers.socket_radius**2 * arrays.integral(ring, 24))
+        R2 = self.joint.socket_radius
+        lever = coefficient * self.joint.ball_radius
+        return self._plain(lever * 2 * pi * R2 * R2 * arrays.integral(ring, 24))
+
+    def _asked(self, law: Callable[[Laws], Array]) -> Array:
+        """What a law says, in NumPy's numbers where Python's raise."""
+
+        def value() -> Array:
+            try:
+                return law(self.laws)
+            except ArithmeticError:
+                return law(self.model.careful_laws(self.joint, self.indentation))
+
+        return self._answer(value)
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON in N, mm, MPa and degrees; arrays become (nested) lists, a missing number None."""

@@ -248,6 +248,11 @@ class Joint:
             source=self.source,
         )
 
+    def with_floats(self) -> Joint:
+        """The same joint of Python numbers with all of them floats."""
+        numbers = self.numbers()
+        return self if all(type(number) is float for number in numbers) else self.with_numbers(map(float, numbers))
+
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON in mm and MPa; arrays become lists, and what is infinite the text "inf"."""
         lengths = ("ball_radius", "socket_radius", "clearance", "liner_thickness")

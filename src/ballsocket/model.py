@@ -95,6 +95,8 @@ class Model(Theory):
         Roughly, for one of many points on one core: studies cut their work by it.
     contact_type : type
         What `press` answers with: `Contact`, or a kind of it that knows more.
+    of_numbers : bool
+        Whether the formulas take Python numbers as they are, which is quicker than arrays of one.
     """
 
     planar: ClassVar[bool] = False
@@ -102,6 +104,7 @@ class Model(Theory):
     smooth_step: ClassVar[float] = 1e-4
     seconds_a_press: ClassVar[float] = 4e-7
     contact_type: ClassVar[type[Contact]] = Contact
+    of_numbers: ClassVar[bool] = False
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -142,15 +145,40 @@ class Model(Theory):
             Not exactly one load; a load that is not allowed; no point at all inside the model's domain.
         """
         kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
+        if self._takes_numbers(joint, given):
+            try:
+                return self._press_numbers(joint, kind, float(given))
+            except ArithmeticError:
+                pass  # where Python's numbers raise, NumPy's become infinite or NaN
         plain, whole, load = prepared(joint, given, *self.parameters)
         points = inside(self.domain, whole, self.name)
         with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
             answer = self._solve(whole, kind, load)
             return _finished(self, joint if plain else whole, kind, load, points, answer, plain)
 
+    def _takes_numbers(self, joint: Joint, load: Array) -> bool:
+        """Whether these are Python numbers, or such as can be made them, and the model has formulas for those."""
+        own = (type(number) in (float, int) for number in self.parameters)
+        return self.of_numbers and all(map(arrays.is_plain, (*joint.numbers(), load))) and all(own)
+
+    def _press_numbers(self, joint: Joint, kind: str, load: float) -> Contact:
+        """`press` with nothing but Python numbers."""
+        whole = joint.with_floats()
+        inside(self.domain, whole, self.name)
+        return _finished_number(self, joint, kind, load, self._solve(whole, kind, load))
+
+    def careful_laws(self, joint: Joint, indentation: float) -> Laws:
+        """The laws of a contact of Python numbers in those of NumPy, which become infinite or NaN where those raise."""
+        _, whole, d = prepared(joint, indentation)
+        with numpy.errstate(all="ignore"):
+            return self._solve(whole, "indentation", d).laws
+
     @abstractmethod
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        """The answer to a load of one kind ("force", "indentation", "half_angle"), all numbers being arrays."""
+        """The answer to a load of one kind ("force", "indentation", "half_angle"), all numbers being arrays.
+
+        Where the model is one `of_numbers` they may all be Python numbers instead, and then so is the answer.
+        """
 
     def in_cup(self, cup: Cup) -> Model:
         """This model in a cup; one that takes the socket for a whole sphere is trusted away from the rim alone."""
@@ -320,4 +348,18 @@ def _finished(
     F, d = where(answered | (kind == "force"), F, xp.nan), where(answered | (kind == "indentation"), d, xp.nan)
     if plain:
         F, d, status = float(F), float(d), Status(int(status))
+    return model.contact_type(model=model, laws=answer.laws, joint=joint, force=F, indentation=d, status=status)
+
+
+def _finished_number(model: Model, joint: Joint, kind: str, load: float, answer: Answer) -> Contact:
+    """`_finished` of Python numbers, inside the domain."""
+    F, d, status = answer.force, answer.indentation, Status.OK
+    failures = {**answer.failures, Status.NOT_REACHED: not (arrays.isfinite(F) and arrays.isfinite(d))}
+    for code in _GRAVER:
+        if failures.get(code):
+            status = code
+    if status.failed:
+        F, d = numpy.nan, numpy.nan
+    if kind != "half_angle":
+        F, d = (load, d) if kind == "force" else (F, load)
     return model.contact_type(model=model, laws=answer.laws, joint=joint, force=F, indentation=d, status=status)

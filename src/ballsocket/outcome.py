@@ -77,9 +77,11 @@ class Outcome(ABC):
     def _answer(self, law: Callable[[], Array]) -> Array:
         with numpy.errstate(all="ignore"):  # a point without an answer has a status, not a warning
             value = law()
-            if arrays.truth(self._failed ^ True) is not True:
-                value = arrays.where(self._failed, numpy.nan, value)
-            return self._plain(value)
+            return self._plain(arrays.where(self._failed, numpy.nan, value) if self._some_failed else value)
+
+    @cached_property
+    def _some_failed(self) -> bool:
+        return self.status.failed if self._is_plain else arrays.truth(arrays.false(self._failed)) is not True
 
     @cached_property
     def _numbers(self) -> Joint:
@@ -88,6 +90,8 @@ class Outcome(ABC):
 
     def _plain(self, value: Array) -> Array:
         """The answer to plain numbers in plain numbers."""
+        if type(value) is float:
+            return value
         if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:
             return float(value)
         if hasattr(self._load, "shape"):

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 from math import inf
 from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
-from .arrays import Array, to_numpy, truth
+from .arrays import Array, false, to_numpy, truth
 from .kinds import Unit
 from .quantities import QUANTITIES
 
@@ -34,21 +35,19 @@ class Status(IntEnum):
     @property
     def failed(self) -> bool:
         """Whether the numbers are missing (NaN)."""
-        return self in (
-            Status.OUTSIDE_DOMAIN,
-            Status.NOT_REACHED,
-            Status.NOT_CONVERGED,
-            Status.NOT_ROUND,
-            Status.NO_JOINT,
-        )
+        return self in _FAILED
+
+
+_FAILED = frozenset(
+    (Status.OUTSIDE_DOMAIN, Status.NOT_REACHED, Status.NOT_CONVERGED, Status.NOT_ROUND, Status.NO_JOINT)
+)
 
 
 def missing(status: Array) -> Array:
     """Where a status says that the numbers are missing, point by point."""
     bad = status != status
-    for one in Status:
-        if one.failed:
-            bad = bad | (status == int(one))
+    for one in _FAILED:
+        bad = bad | (status == int(one))
     return bad
 
 
@@ -90,8 +89,10 @@ class Range:
     high: float = inf
     why: str = ""
 
-    def of(self, contact: Any) -> Array:
-        return self.quantity(contact) if callable(self.quantity) else attrgetter(self.quantity)(contact)
+    @cached_property
+    def of(self) -> Callable[[Any], Array]:
+        """The quantity of a contact."""
+        return self.quantity if callable(self.quantity) else attrgetter(self.quantity)
 
     def holds(self, contact: Any) -> Array:
         """Inside the closed range."""
@@ -174,9 +175,10 @@ class Nowhere(Range):
 def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     """Where all of a model's (or modulus') domain holds for a joint; OutsideDomainError where it does nowhere."""
     points: Array = joint.ball_radius == joint.ball_radius
+    asked = SimpleNamespace(joint=joint)
     for limit in domain:
-        holds = limit.strictly_holds(SimpleNamespace(joint=joint))
-        if truth(holds ^ True):
+        holds = limit.strictly_holds(asked)
+        if truth(false(holds)):
             raise OutsideDomainError(f"{name} has no answer for {limit.value_text(joint)}: {limit.why}")
         points = points & holds
     return points

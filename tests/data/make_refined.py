@@ -19,7 +19,8 @@ import numpy as np
 from scipy.optimize import least_squares, linprog
 
 import ballsocket as bs
-from ballsocket.models import refined
+from ballsocket.models.liner_compliance import liner_of
+from ballsocket.models.refined_state import Fit, fit_of, state
 
 SIZES = {"waves": 4, "level": 4, "edge": 10, "exponent": 5}
 ROUGH = np.array([0.6, 2.0, 4.0, 20.0, *[0.0] * 4, 0.1, 0.25, *[0.0] * 8, -0.3, -0.5, *[0.0] * 3])
@@ -65,28 +66,27 @@ def grid() -> Points:
     return points
 
 
-def put(x: np.ndarray) -> None:
-    """Make `Refined` use these coefficients."""
+def fit_from(x: np.ndarray) -> Fit:
+    """The coefficients by their names."""
     ends = np.cumsum([0, *SIZES.values()])
-    for name, (first, last) in zip(SIZES, pairwise(ends), strict=True):
-        refined.coefficients()[name][:] = x[first:last].tolist()
+    return fit_of(**{name: x[first:last].tolist() for name, (first, last) in zip(SIZES, pairwise(ends), strict=True)})
 
 
-def logs_of(points: Points, angle: np.ndarray, which: np.ndarray) -> np.ndarray:
-    """ln d, ln p0, ln F of `Refined` at half angles."""
+def logs_of(x: np.ndarray, points: Points, angle: np.ndarray, which: np.ndarray) -> np.ndarray:
+    """ln d, ln p0, ln F of `Refined` with these coefficients at half angles."""
     joint = joint_of(*points.pairs[which].T)
     with np.errstate(all="ignore"):
-        at = refined.state(joint, angle)
-        d = joint.clearance * at.indentation.value
-        p0 = d * joint.liner.young / (joint.socket_radius * at.compliance.value)
-        force = d * joint.liner.young * joint.socket_radius * at.secant.value
+        liner = liner_of(joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius)
+        at = state(angle, liner, fit_from(x))
+        d = joint.clearance * at.indentation
+        p0 = d * joint.liner.young / (joint.socket_radius * at.compliance)
+        force = d * joint.liner.young * joint.socket_radius * at.secant
         return np.log([d, p0, force])
 
 
 def errors(x: np.ndarray, points: Points, which: np.ndarray) -> np.ndarray:
     """Five rows: of d, p0, F at the half angle, of d, p0 at the force."""
-    put(x)
-    d, p0, force = logs_of(points, points.angle[which], which) - points.logs[:, which]
+    d, p0, force = logs_of(x, points, points.angle[which], which) - points.logs[:, which]
     slope = points.slopes[:, which]
     shift = force / slope[2]
     rows = np.stack([d, p0, force, d - shift * slope[0], p0 - shift * slope[1]]) * points.weight[which]
@@ -94,9 +94,8 @@ def errors(x: np.ndarray, points: Points, which: np.ndarray) -> np.ndarray:
 
 
 def update_slopes(x: np.ndarray, points: Points) -> None:
-    put(x)
     every, step = np.arange(len(points.angle)), 1e-5
-    above, below = (logs_of(points, points.angle * np.exp(sign * step), every) for sign in (1, -1))
+    above, below = (logs_of(x, points, points.angle * np.exp(sign * step), every) for sign in (1, -1))
     points.slopes = (above - below) / (2 * step)
 
 

@@ -138,8 +138,20 @@ class State:
         """p0 in MPa."""
         return self._integral(0.5 / numpy.sin(self._places / 2))
 
+    @property
+    def _falls(self) -> Array:
+        """Whether the pressure is sure to fall from the pole to the edge.
+
+        By p = 2 sqrt(Δ)/C ∫ g dz, g = G/sin s (see `pressure`), it does where g sqrt(sin²(ε/2) - sin²(s/2)) falls.
+        """
+        s = self._places
+        room = numpy.sin(self.half_angle / 2)[:, None] ** 2 - numpy.sin(s / 2) ** 2
+        return numpy.all(numpy.diff(self._G[0] / numpy.sin(s) * numpy.sqrt(room), axis=-1) < 0, axis=-1)
+
     @cached_property
     def _largest(self) -> tuple[Array, Array]:
+        if self._falls.all():
+            return self.pole_pressure, 0.0 * self.half_angle
         return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _ROUNDING)
 
     @property

@@ -139,13 +139,16 @@ class AdhesiveSocket(ClosedForm):
         return self._factor(joint) / 2 * where(u < c, partial, d * (d - c) / 3)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        # between the springs without adhesion (too strong) and with all of the hemisphere hanging on (too weak)
+        # between the springs without adhesion (too strong) and with all of the hemisphere hanging on (too weak);
+        # a contact that is small against the clearance has F = π R2² K (d² - u_c²)/c, from which it starts
         R2, c, K = joint.socket_radius, joint.clearance, self.modulus.of(joint)
-        low = linear_indentation(R2, c, K, force)
+        low, stretch = linear_indentation(R2, c, K, force), self.critical_stretch(joint)
         high = 3 * force / self._factor(joint) + c / 2
-        shape = (low, high, self.critical_stretch(joint))
-        low, high = broadcast(low, *shape), broadcast(where(high > low, high, low), *shape)
-        return increasing_root(lambda d: (self.force(joint, d), self.stiffness(joint, d)), force, low, high, high)
+        high = where(high > low, high, low)
+        start = sqrt(low * low + stretch * stretch)
+        ends = low, high, where(start < high, start, high)
+        low, high, start = (broadcast(end, *ends) for end in ends)
+        return increasing_root(lambda d: (self.force(joint, d), self.stiffness(joint, d)), force, low, high, start)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         return angle_of(self._versine(joint, indentation))

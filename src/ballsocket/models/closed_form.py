@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from math import cos, pi, sin
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy
 
@@ -22,8 +22,10 @@ class ClosedForm(Model):
     A new model states `force`, `stiffness`, `energy`, `half_angle`, `pole_pressure` and `pressure`, and the
     indentation that belongs to a half angle. The indentation that belongs to a force is found here, once for all;
     a model with a closed inverse states that too, and one whose pressure is highest off the pole says where and how
-    high. All laws take a joint of arrays and d > 0 or d = 0.
+    high. All laws take a joint of arrays, or of Python numbers, and d > 0 or d = 0.
     """
+
+    of_numbers: ClassVar[bool] = True
 
     @abstractmethod
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -107,16 +109,16 @@ class ClosedForm(Model):
             F = self.force(joint, d)
         else:
             d, F = load, self.force(joint, load)
-        xp = arrays.namespace(load)
         safe = where(arrays.isfinite(d), d, 0.0)
         # an error of rounding in d: F alone is no measure where it is a small difference of large parts (adhesion)
-        scale = xp.abs(F) + safe * self.stiffness(joint, safe)
+        scale = abs(F) + safe * self.stiffness(joint, safe)
+        near = abs(self.force(joint, safe) - F) <= 1e3 * arrays.rounding(safe) * scale
         return Answer(
             laws=Bound(model=self, joint=joint, indentation=d),
             force=F,
             indentation=d,
             failures={
-                Status.NOT_CONVERGED: ~(xp.abs(self.force(joint, safe) - F) <= 1e3 * arrays.rounding(safe) * scale),
+                Status.NOT_CONVERGED: arrays.false(near),
                 Status.BEYOND_EQUATOR: self.half_angle(joint, safe) > pi / 2 * (1 + 1e-6),
             },
         )

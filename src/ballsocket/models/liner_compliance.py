@@ -1,108 +1,177 @@
-"""The modal compliance of a bonded liner between the integers: how it answers waves of any length."""
+"""The modal compliance of a bonded liner between the integers: how it answers waves of any length.
+
+c(n) E/R2 for real n > 0 is (1 + ν) N/D with k² = n(n + 1), q = n + ½, b = 1 + L/R2, k0 = 3 - 4ν, g = 8(1 - ν)(1 - 2ν):
+
+    N = f(q) b^2q + f(-q) b^-2q - 4q²(k² + g) b² - 8(1 - 2ν)(q² - 1) k² + 4q²(k0 k² - g/2) b^-2
+    D = h(q) b^2q + h(-q) b^-2q + 4q²(k² - 2)(k² + g) b² - 8(k² - 2)(q² - 1) k² + 4q²(k⁴ - 2k² + 4 - 4ν²) b^-2
+    f(q) = (2k0 q - 1)(4(1 - ν)q² + 2(2 - 3ν)q - 1 + 2ν),  h(q) = (2q + 3)(2k0 q - 1)(q² - 2νq + 3/4)
+
+Both vanish at q = 1, where two of the shell's four solutions coincide.
+"""
 
 from __future__ import annotations
 
-from math import factorial
 from typing import NamedTuple
 
 from .. import arrays
-from ..arrays import Array, where
-from .dual_numbers import Dual, either, horner
+from ..arrays import Array, exp, log, sqrt, where
+
+Pair = tuple[Array, Array]
+"""A value and its slope."""
 
 
-def compliance(k: Dual, nu: Array, b: Array) -> Dual:
-    """c(n) E/R2 of the bonded liner for real n > 0, n(n + 1) = k²; b = 1 + L/R2.
+class Liner(NamedTuple):
+    """What does not depend on the wave: coefficients of polynomials in Q = q².
 
-    With q = n + 1/2, k0 = 3 - 4ν and g = 8(1 - ν)(1 - 2ν) it is (1 + ν) N/D,
-
-        N = f(q) b^2q + f(-q) b^-2q - 4q²(k² + g) b² - 8(1 - 2ν)(q² - 1) k² + 4q²(k0 k² - g/2) b^-2
-        D = h(q) b^2q + h(-q) b^-2q + 4q²(k² - 2)(k² + g) b² - 8(k² - 2)(q² - 1) k² + 4q²(k⁴ - 2k² + 4 - 4ν²) b^-2
-        f(q) = (2k0 q - 1)(4(1 - ν)q² + 2(2 - 3ν)q - 1 + 2ν),  h(q) = (2q + 3)(2k0 q - 1)(q² - 2νq + 3/4)
-
-    Both vanish at q = 1, where two of the shell's four solutions coincide. Of several k along the first axis only the
-    first may come near.
+    N b^-2q and D b^-2q are f(q) + y [rest + y b^-4 f(-q)] with y = b^(2 - 2q) and f(±q) = even ± q odd. `above` and
+    `below` are their coefficients, falling: of even (3), odd (2) and rest (4).
     """
-    away = k.value * k.value - 0.75
+
+    poisson: Array
+    growth: Array
+    """ln b"""
+    shrink: Array
+    """b^-2"""
+    above: tuple[Array, ...]
+    below: tuple[Array, ...]
+
+
+def liner_of(nu: Array, b: Array) -> Liner:
+    """The liner of Poisson's ratio ν and b = 1 + L/R2."""
+    k0, g, t, z = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 2 * nu, 1 / (b * b)
+    bent, none = 4 - 6 * nu, 0.0 * nu
+    above = (
+        *(none, 2 * k0 * bent - 4 * (1 - nu), t),
+        *(8 * k0 * (1 - nu), -2 * k0 * t - bent),
+        *(none * z, 4 * (k0 * z * z - 2 * t * z - 1), 1 - 4 * g + z * (10 * t - z * (k0 + 2 * g)), -2 * t * z),
+    )
+    last = 2.25 + 16 * (1 - nu * nu)
+    below = (
+        *(4 * k0, 3 * k0 - 3 - 4 * nu * (3 * k0 - 1), none - 2.25),
+        *(6 * k0 - 2 - 8 * nu * k0, 4.5 * k0 - 1.5 + 6 * nu),
+        *(
+            4 * (1 - z) * (1 - z) + none,
+            4 * g - 10 + z * (28 - 10 * z),
+            2.25 - 9 * g - z * (24.5 - last * z),
+            4.5 * z + none,
+        ),
+    )
+    return Liner(poisson=nu, growth=log(b), shrink=z, above=above, below=below)
+
+
+def log_compliance(k: Array, liner: Liner) -> Pair:
+    """ln(c E/R2) and its slope by ln k, away from q = 1."""
+    Q = k * k + 0.25
+    q = sqrt(Q)
+    y = exp((1 - q) * (2 * liner.growth))
+    above, rise = _sum(q, Q, y, liner, liner.above)
+    below, fall = _sum(q, Q, y, liner, liner.below)
+    return log((1 + liner.poisson) * (above / below)), 2 * k * k * (rise / above - fall / below)
+
+
+def _sum(q: Array, Q: Array, y: Array, liner: Liner, coefficients: tuple[Array, ...]) -> Pair:
+    """N or D over b^2q, and its slope by Q."""
+    e2, e1, e0, o1, o0, r3, r2, r1, r0 = coefficients
+    even, even_slope = (e2 * Q + e1) * Q + e0, 2 * e2 * Q + e1
+    odd, odd_slope = q * (o1 * Q + o0), (3 * o1 * Q + o0) / (2 * q)
+    rest, rest_slope = ((r3 * Q + r2) * Q + r1) * Q + r0, (3 * r3 * Q + 2 * r2) * Q + r1
+    shrunk = y * liner.shrink * liner.shrink
+    back = shrunk * (even - odd)
+    value = even + odd + y * (rest + back)
+    decay = y * liner.growth / q
+    return value, even_slope + odd_slope + y * (rest_slope + shrunk * (even_slope - odd_slope)) - decay * (
+        rest + 2 * back
+    )
+
+
+def log_compliance_anywhere(k: Array, liner: Liner) -> Pair:
+    """ln(c E/R2) and its slope by ln k, near q = 1 (k² = 3/4) too."""
+    away = k * k - 0.75
     near = (away > -0.05) & (away < 0.05)
-    if arrays.truth(~near):
-        above, below = (sums.direct(b) for sums in _sums(k, nu))
-        return above / below * (1 + nu)
-    elsewhere = Dual(where(near, 2.0, k.value), k.slope)
-    above, below = (sums.direct(b) for sums in _sums(elsewhere, nu))
-    above_near, below_near = (sums.beside_one(b) for sums in _sums(Dual(k.value[:1, ...], k.slope[:1, ...]), nu))
-    return either(near, above_near / below_near, above / below) * (1 + nu)
+    if arrays.truth(near ^ True):
+        return log_compliance(k, liner)
+    value, slope = log_compliance(where(near, 2.0, k), liner)
+    value_near, slope_near = _log_compliance_near(k, liner)
+    return where(near, value_near, value), where(near, slope_near, slope)
 
 
-class _Sum(NamedTuple):
-    """grown b^2q + decayed b^-2q + first b² + middle (q² - 1) + last b^-2, which vanishes at q = 1.
-
-    Also the polynomials (of n = q - 1/2, the highest power first) that remain of grown + first and of decayed + last
-    when q - 1 is divided out.
-    """
-
-    q: Dual
-    grown: Dual
-    decayed: Dual
-    first: Dual
-    middle: Dual
-    last: Dual
-    grown_first: tuple[Array, ...]
-    decayed_last: tuple[Array, ...]
-
-    def direct(self, b: Array) -> Dual:
-        """The sum, over b^2q."""
-        q, b2 = self.q, b * b
-        y = ((1 - q) * (2 * arrays.log(b))).exp()
-        return self.grown + y * (self.first + ((q * q - 1) * self.middle + (self.last + y * self.decayed) / b2) / b2)
-
-    def beside_one(self, b: Array) -> Dual:
-        """The sum, over b^2q (q - 1)."""
-        q, b2, n, rate = self.q, b * b, self.q - 0.5, 2 * arrays.log(b)
-        x = (q - 1) * rate
-        y, z = (-x).exp(), _decay_mean(x) * rate  # z = (1 - y)/(q - 1)
-        start = horner(n, self.grown_first) - z * self.first
-        end = horner(n, self.decayed_last) - z * self.decayed
-        return start + y * ((q + 1) * self.middle + end / b2) / b2
-
-
-def _sums(k: Dual, nu: Array) -> tuple[_Sum, _Sum]:
-    """N and D of `compliance`."""
-    k2, k0, g, t = k * k, 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 4 * nu
-    square = 4 * k2 + 1  # 4q²
-    q = square.sqrt() / 2
-
-    def f(q: Dual) -> Dual:
-        return (q * (2 * k0) - 1) * horner(q, (4 * (1 - nu), 4 - 6 * nu, 2 * nu - 1))
-
-    def h(q: Dual) -> Dual:
-        return (2 * q + 3) * (q * (2 * k0) - 1) * horner(q, (1.0, -2 * nu, 0.75))
-
-    above = _Sum(
-        q=q,
-        grown=f(q),
-        decayed=f(-q),
-        first=-square * (k2 + g),
-        middle=k2 * (16 * nu - 8),
-        last=square * (k2 * k0 - g / 2),
+def _log_compliance_near(k: Array, liner: Liner) -> Pair:
+    """The same near q = 1, with q - 1 divided out of N and D."""
+    nu = liner.poisson
+    k0, g, t = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 4 * nu
+    q = sqrt(k * k + 0.25)
+    above, rise = _divided(
+        q,
+        liner,
+        liner.above,
+        first=(-4.0, 1 - 4 * g, 0.0),
+        middle=(16 * nu - 8, 2 - 4 * nu),
         grown_first=(-4.0, 2 * (g + t) - 4, 3 * g + 2 * t, g),
         decayed_last=(4 * k0, 2 * k0 * (2 - t), -g - 2 * k0 * t, -g),
     )
-    below = _Sum(
-        q=q,
-        grown=h(q),
-        decayed=h(-q),
-        first=square * (k2 - 2) * (k2 + g),
-        middle=k2 * (2 - k2) * 8,
-        last=square * ((k2 - 2) * k2 + 4 * (1 - nu * nu)),
+    below, fall = _divided(
+        q,
+        liner,
+        liner.below,
+        first=(4.0, 4 * g - 10, 2.25 - 9 * g, 0.0),
+        middle=(-8.0, 20.0, -4.5),
         grown_first=(4.0, 14.0, 4 * g + 4 * t + 20, 12 * g + 10 * t + 16, 9 * g + 4 * t, 2 * g),
         decayed_last=(4.0, 14.0, 24 - 16 * nu, 10 + 8 * nu * t, 12 + 8 * nu * t, 8 * (1 - nu * nu)),
     )
-    return above, below
+    return log((1 + nu) * (above / below)), k * k / q * (rise / above - fall / below)
 
 
-def _decay_mean(x: Dual) -> Dual:
-    """(1 - exp(-x))/x, by its series near 0."""
-    small = (x.value > -0.05) & (x.value < 0.05)
-    safe = Dual(where(small, 1.0, x.value), x.slope)
-    series = horner(-x, [1 / factorial(j + 1) for j in range(7, -1, -1)])
-    return either(small, series, (1 - (-safe).exp()) / safe)
+def _divided(
+    q: Array,
+    liner: Liner,
+    coefficients: tuple[Array, ...],
+    *,
+    first: tuple[Array, ...],
+    middle: tuple[Array, ...],
+    grown_first: tuple[Array, ...],
+    decayed_last: tuple[Array, ...],
+) -> Pair:
+    """N or D over b^2q (q - 1), and its slope by q.
+
+    f(q) b^2q with the first of the middle terms, and f(-q) b^-2q with the last, are q - 1 times polynomials of q - ½.
+    With those and z = (1 - y)/(q - 1) it is
+
+        `grown_first` - z `first` + y b^-2 [(q + 1) `middle` + b^-2 (`decayed_last` - z f(-q))].
+    """
+    rate, Q = 2 * liner.growth, q * q
+    y, (z, z_slope) = exp((1 - q) * rate), _decay_mean((q - 1) * rate)
+    z, z_slope = z * rate, z_slope * rate * rate
+    e2, e1, e0, o1, o0 = coefficients[:5]
+    back, back_slope = (e2 * Q + e1) * Q + e0 - q * (o1 * Q + o0), 2 * q * (2 * e2 * Q + e1) - 3 * o1 * Q - o0
+    P, P_slope = _polynomial(Q, first)
+    M, M_slope = _polynomial(Q, middle)
+    G, G_slope = _polynomial(q - 0.5, grown_first)
+    H, H_slope = _polynomial(q - 0.5, decayed_last)
+    inner = (q + 1) * M + liner.shrink * (H - z * back)
+    inner_slope = M + (q + 1) * 2 * q * M_slope + liner.shrink * (H_slope - z_slope * back - z * back_slope)
+    value = G - z * P + y * liner.shrink * inner
+    slope = G_slope - z_slope * P - z * 2 * q * P_slope + y * liner.shrink * (inner_slope - rate * inner)
+    return value, slope
+
+
+_DECAY = (-1 / 40320, 1 / 5040, -1 / 720, 1 / 120, -1 / 24, 1 / 6, -1 / 2, 1.0)
+"""(-1)^j/(j + 1)!, falling."""
+
+
+def _decay_mean(x: Array) -> Pair:
+    """(1 - exp(-x))/x and its slope, by their series near 0."""
+    small = (x > -0.05) & (x < 0.05)
+    safe = where(small, 1.0, x)
+    series, series_slope = _polynomial(x, _DECAY)
+    left = exp(-safe)
+    mean = (1 - left) / safe
+    return where(small, series, mean), where(small, series_slope, (left - mean) / safe)
+
+
+def _polynomial(x: Array, falling: tuple[Array, ...]) -> Pair:
+    """The polynomial of x with these coefficients, the highest power first, and its slope."""
+    value, slope = falling[0] + 0.0 * x, 0.0 * x
+    for coefficient in falling[1:]:
+        slope = slope * x + value
+        value = value * x + coefficient
+    return value, slope

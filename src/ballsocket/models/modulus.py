@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from math import inf, radians
 from typing import Any
 
@@ -62,11 +63,19 @@ class Modulus:
 
     def of(self, joint: Joint) -> Array:
         """K in MPa/mm, unchecked."""
-        liner = joint.liner
-        return self.formula(joint.socket_radius, joint.liner_thickness, liner.young, liner.poisson, *self.constants)
+        R2, L, E, nu = joint.socket_radius, joint.liner_thickness, joint.liner.young, joint.liner.poisson
+        if type(R2) is float and type(L) is float and type(E) is float and type(nu) is float and not self.constants:
+            return _of_numbers(self.formula, R2, L, E, nu)
+        return self.formula(R2, L, E, nu, *self.constants)
 
     def __repr__(self) -> str:
         return self.name.replace("-", "_")
+
+
+@lru_cache(maxsize=256)
+def _of_numbers(formula: Formula, R2: float, L: float, E: float, nu: float) -> float:
+    """Kept, since the laws of a joint ask for it one after the other."""
+    return float(formula(R2, L, E, nu))
 
 
 def vessel_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
-from importlib.resources import files
-from math import inf, log, nan, pi, radians
-from typing import ClassVar, NamedTuple
+from functools import cached_property
+from math import inf, nan, pi, radians
+from typing import ClassVar
 
 from .. import arrays
 from ..arrays import Array, broadcast, clip, divisor, integral, sin, where
@@ -16,11 +13,8 @@ from ..joint import Joint
 from ..model import Answer, Model
 from ..sources import Source
 from ..validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Status
-from .dual_numbers import Dual
-from .liner_compliance import compliance
-
-WIDEST = radians(85.0)
-"""The largest half angle that is answered."""
+from .liner_compliance import Liner, liner_of
+from .refined_state import WIDEST, State, edge_of_force, edge_of_indentation, state
 
 _FITTED = "fitted there, with a rigid ball"
 
@@ -38,7 +32,8 @@ class Refined(Model):
     Heß & Forsbach 2021, doi 10.3390/app112311170, for the problem; the formulas are derived in the docs (refined).
     """
 
-    seconds_a_press: ClassVar[float] = 3e-5
+    seconds_a_press: ClassVar[float] = 4e-6
+    of_numbers: ClassVar[bool] = True
     name: ClassVar[str] = "refined"
     title: ClassVar[str] = "closed form from the liner's own compliance, 23 coefficients"
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(8), (16)"),)
@@ -87,7 +82,7 @@ class Refined(Model):
             laws=solution,
             force=force,
             indentation=indentation,
-            failures={Status.NOT_CONVERGED: ~(solution.miss(indentation) <= 1e5 * arrays.rounding(load))},
+            failures={Status.NOT_CONVERGED: arrays.false(solution.miss(indentation) <= 1e5 * arrays.rounding(load))},
         )
 
 
@@ -99,8 +94,12 @@ class RefinedSolution:
     edge: Array
 
     @cached_property
+    def _liner(self) -> Liner:
+        return _liner(self.joint)
+
+    @cached_property
     def _state(self) -> State:
-        return state(self.joint, divisor(self.edge))
+        return state(divisor(self.edge), self._liner)
 
     def _or_zero(self, value: Array) -> Array:
         return where(self.edge > 0, value, 0.0 * self.edge)
@@ -108,20 +107,20 @@ class RefinedSolution:
     @property
     def _secant(self) -> Array:
         """F/d in N/mm."""
-        return self.joint.liner.young * self.joint.socket_radius * self._state.secant.value
+        return self.joint.liner.young * self.joint.socket_radius * self._state.secant
 
     def loads(self, kind: str, load: Array) -> tuple[Array, Array]:
         """F and d, from the one that was given if one was."""
         if kind == "force":
             d = load / self._secant
             return self._or_zero(load), self._or_zero(d)
-        d = load if kind == "indentation" else self.joint.clearance * self._state.indentation.value
+        d = load if kind == "indentation" else self.joint.clearance * self._state.indentation
         return self._or_zero(d * self._secant), self._or_zero(d)
 
     def miss(self, indentation: Array) -> Array:
         """By how much of itself the half angle misses an indentation."""
         d = self._state.indentation
-        wrong = arrays.namespace(self.edge).abs(d.value - indentation / self.joint.clearance) / d.slope
+        wrong = abs(1 - indentation / (self.joint.clearance * d)) / self._state.indentation_rate
         return where(self.edge > 0, wrong, 0.0)
 
     @property
@@ -131,26 +130,24 @@ class RefinedSolution:
     @property
     def indentation(self) -> Array:
         """d in mm."""
-        return self._or_zero(self.joint.clearance * self._state.indentation.value)
+        return self._or_zero(self.joint.clearance * self._state.indentation)
 
     @cached_property
     def stiffness(self) -> Array:
-        d, secant = self._state.indentation, self._state.secant
-        relative = secant.slope / secant.value * (d.value / d.slope)
-        return self._or_zero(self._secant * (1 + relative))
+        return self._or_zero(self._secant * (1 + self._state.secant_rate / self._state.indentation_rate))
 
     @cached_property
     def energy(self) -> Array:
         # ∫ F (dd/dε) dε; the points crowd towards the edge as fast as d grows there
-        edge, d = divisor(self.edge), self._state.indentation
-        rate = d.slope / (d.value * edge)
+        edge = divisor(self.edge)
+        rate = self._state.indentation_rate / edge
         width = arrays.log(1 + rate * edge)
 
         def work(x: float) -> Array:
             far = arrays.exp(width * x)
             angle = edge - (far - 1) / rate
-            at = state(self.joint, angle)
-            return at.secant.value * at.indentation.value * at.indentation.slope / angle * (far * width / rate)
+            at = state(angle, self._liner)
+            return at.secant * at.indentation**2 * at.indentation_rate / angle * (far * width / rate)
 
         scale = self.joint.liner.young * self.joint.socket_radius * self.joint.clearance**2
         return self._or_zero(scale * integral(work, 24))
@@ -158,7 +155,7 @@ class RefinedSolution:
     @property
     def _modulus(self) -> Array:
         """K = p0/d in MPa/mm."""
-        return self.joint.liner.young / (self.joint.socket_radius * self._state.compliance.value)
+        return self.joint.liner.young / (self.joint.socket_radius * self._state.compliance)
 
     @property
     def foundation_modulus(self) -> Array:
@@ -191,7 +188,7 @@ class RefinedSolution:
     def _fullness(self) -> Array:
         """β of the profile, from 2π R2² ∫ p cos φ sin φ dφ = F."""
         S = self._edge_share
-        mean = self._state.secant.value * self._state.compliance.value / (4 * pi * S)
+        mean = self._state.secant * self._state.compliance / (4 * pi * S)
         return (mean - 2 / 3 + 8 * S / 15) / (4 / 15 - 32 * S / 105)
 
     @cached_property
@@ -208,96 +205,21 @@ class RefinedSolution:
         return where(y < 1, self.pole_pressure * self._profile(y), self._or_zero(0.0 * y))
 
 
-class State(NamedTuple):
-    """A contact of half angle ε in scaled numbers, with their slopes."""
-
-    share: Dual
-    """S = sin²(ε/2)."""
-    gap: Dual
-    """cos ε - λ: 0 where the fit is perfect, d infinite."""
-    compliance: Dual
-    """χ = d E/(p0 R2)."""
-    secant: Dual
-    """F/(E R2 d)."""
-
-    @property
-    def indentation(self) -> Dual:
-        """d/c, from cos ε = (c + λ d)/(c + d)."""
-        return 2 * self.share / self.gap
-
-
-def state(joint: Joint, half_angle: Array) -> State:
-    """The model itself: what belongs to a half angle ε > 0."""
-    k = _waves(half_angle) / half_angle
-    log_c = compliance(Dual(k, -k), joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius).log()
-    S = Dual(sin(half_angle / 2) ** 2, half_angle * sin(half_angle) / 2)
-    chi, edge, m = _shape([Dual(log_c.value[i, ...], log_c.slope[i, ...]) for i in range(4)], S)
-    force = 4 * pi * S * (1 - 2 * S / (m + 2)) / (m + 1)  # of p0 (1 - y)^m, over p0 R2²
-    return State(share=S, gap=1 - 2 * S - edge, compliance=chi, secant=force / chi)
-
-
-def _waves(like: Array) -> Array:
-    """The four wave numbers times the half angle, along an axis before those of `like`."""
-    xp = arrays.namespace(like)
-    waves = xp.asarray(coefficients()["waves"], dtype=like.dtype, device=arrays.device(like))
-    return xp.reshape(waves, (-1, *(1 for _ in like.shape)))
-
-
-def _shape(log_c: Sequence[Dual], S: Dual) -> tuple[Dual, Dual, Dual]:
-    """χ, λ = u(ε)/d and the pressure's exponent m from ln c at the four waves.
-
-    Where c ~ k^-s they are those of a plane bed, exactly: d/p0 = c(k) k^s 2^-s Γ(1 - s/2) Γ(2 - s/2), λ = s/2,
-    m = 1 - s/2. The fitted terms vanish without the bends v, w of ln c over ln k and the curvature S = sin²(ε/2).
-    """
-    fit = coefficients()
-    k = fit["waves"]
-    s, s2, s3 = ((log_c[i] - log_c[i + 1]) / log(k[i + 1] / k[i]) for i in range(3))
-    v, w = s2 - s, s3 - s2
-    gamma = log(k[1] / 1.8515) * s + 0.3199 * s * s + 0.0543 * s * s * s
-    level = _sum(fit["level"], (v * v, s * v, s * w * w, v * S))
-    edge = _sum(fit["edge"], (w, v, s * v, s * w, w * S, S, v * v * S, v * v * w, s * S, s * v * S))
-    exponent = _sum(fit["exponent"], (w, v, w * w * S, s * S, s * v * S))
-    return (log_c[1] + gamma + level).exp(), s / 2 + edge, 1 - s / 2 + exponent
-
-
-def _sum(factors: Sequence[float], terms: Sequence[Dual]) -> Dual:
-    """The fitted part of a formula."""
-    return sum((factor * term for factor, term in zip(factors[1:], terms[1:], strict=True)), factors[0] * terms[0])
-
-
-@cache
-def coefficients() -> dict[str, list[float]]:
-    """The fitted numbers (`data/refined.toml`)."""
-    return tomllib.loads((files("ballsocket") / "data" / "refined.toml").read_text(encoding="utf-8"))
-
-
 def _given(joint: Joint, half_angle: Array) -> Array:
     """The half angle as it was given, NaN where it is too wide."""
     edge = broadcast(half_angle, half_angle, *joint.numbers())
-    d = state(joint, divisor(edge)).indentation.value
+    d = RefinedSolution(joint=joint, edge=edge)._state.indentation
     return where((edge == 0) | ((edge <= WIDEST) & (d > 0)), edge, nan)
 
 
 def _found(joint: Joint, kind: str, given: Array) -> Array:
-    """The half angle that belongs to F or d, NaN where it is too wide.
-
-    Solved for ln x/(1 + x), x = d/c or F/(E R2 c), which passes through the perfect fit without a pole.
-    """
+    """The half angle that belongs to F or d, NaN where it is too wide."""
     by_force = kind == "force"
     scale = joint.clearance * (joint.liner.young * joint.socket_radius if by_force else 1.0)
     load = broadcast(divisor(given) / scale, given, *joint.numbers())
-
-    def law(log_angle: Array) -> tuple[Array, Array]:
-        at = state(joint, arrays.exp(log_angle))
-        rise = 2 * at.share * (at.secant if by_force else 1.0)  # the load is rise/gap
-        value = (rise / (rise + at.gap)).log()
-        return value.value, value.slope
-
-    # F ~ ε³ and d ~ ε² as in Hertz, but never wide
-    start = arrays.log(load / (2.5 + load / 3)) / 3 if by_force else arrays.log(load / (1 + load / 2)) / 2
-    high = 0.0 * start + log(WIDEST)
-    most = law(high)[0]
-    goal = arrays.log(load / (1 + load))
-    root = arrays.increasing_root(law, where(goal < most, goal, most), start - 6.0, high, start)
-    edge = where(goal < most, arrays.exp(root), nan)
+    edge = (edge_of_force if by_force else edge_of_indentation)(load, _liner(joint))
     return where(given > 0, edge, 0.0 * given)
+
+
+def _liner(joint: Joint) -> Liner:
+    return liner_of(joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius)

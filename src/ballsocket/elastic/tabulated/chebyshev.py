@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -95,6 +96,14 @@ class Table:
             found = _applied(own(self.ball, first), *ball, found)
         return arrays.namespace(first).reshape(own(self.curves, first) @ found, (*self.shape, -1))
 
+    def of_one(self, places: list[float]) -> numpy.ndarray:
+        """The same (functions, angles) of one joint."""
+        first, second, *ball = (waves_at(*both) for both in zip(places, self.counts, strict=False))
+        found = self.liner @ numpy.outer(first, second).ravel()
+        if ball:
+            found = self.ball @ numpy.outer(numpy.outer(*ball), found).ravel()
+        return (self.curves @ found).reshape(self.shape)
+
 
 def _applied(matrix: Array, *factors: Array) -> Array:
     """matrix (rows, products) times all products of the rows of the factors (each its rows, joints or 1).
@@ -126,6 +135,16 @@ def polynomials(place: Array, count: int) -> Array:
         numpy.multiply(twice, rows[k - 1], out=rows[k])
         rows[k] -= rows[k - 2]
     return rows
+
+
+def waves_at(place: float, count: int) -> numpy.ndarray:
+    """T_0 ... T_count-1 at one place."""
+    return numpy.cos(_orders(count) * math.acos(min(max(place, -1.0), 1.0)))
+
+
+@cache
+def _orders(count: int) -> numpy.ndarray:
+    return numpy.arange(count, dtype=float)
 
 
 def own(values: numpy.ndarray, like: Array) -> Array:

@@ -49,6 +49,7 @@ class Tabulated(Model):
     file: str = ""
 
     seconds_a_press: ClassVar[float] = 4e-6
+    of_numbers: ClassVar[bool] = True
     name: ClassVar[str] = "tabulated"
     title: ClassVar[str] = "elastic ball and bonded liner, from tables of the exact answer"
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(6)"), Source("goodman1965"))
@@ -82,7 +83,7 @@ class Tabulated(Model):
             laws=solution,
             force=F,
             indentation=d,
-            failures={Status.NOT_CONVERGED: ~(_miss(kind, load, d, F) <= 1e4 * arrays.rounding(load))},
+            failures={Status.NOT_CONVERGED: arrays.false(_miss(kind, load, d, F) <= 1e4 * arrays.rounding(load))},
         )
 
 
@@ -90,4 +91,4 @@ def _miss(kind: str, load: Array, d: Array, F: Array) -> Array:
     if kind == "half_angle":
         return 0.0 * F
     given = broadcast(load, F)
-    return arrays.namespace(F).abs((F if kind == "force" else d) - given) / divisor(given)
+    return abs((F if kind == "force" else d) - given) / divisor(given)

@@ -13,10 +13,11 @@ import numpy
 from ... import arrays
 from ...arrays import Array, broadcast, clip, divisor, gauss_legendre, sin, sqrt, where
 from ...joint import Joint
-from .chebyshev import LIMIT, angle_place, polynomials
-from .curves import LITTLE, Curves, summed
+from .chebyshev import LIMIT, angle_place, polynomials, waves_at
+from .curves import LITTLE, Curves, curves_of_one
+from .formulas import summed
 
-_BLOCK = 1024  # contacts at a time: what stays in the cache
+_BLOCK = 2048  # contacts at a time: what stays in the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -105,6 +106,8 @@ def _clenshaw(series: Array, x: Array) -> Array:
 
 def _profile(curves: Curves, angle: Array) -> tuple[Array]:
     series = curves.series("profile")
+    if series.ndim == 2:
+        return (series @ waves_at(angle_place(angle, curves.ratio), series.shape[1]),)
     waves = polynomials(angle_place(angle, curves.ratio), series.shape[1])
     return (arrays.namespace(angle).stack([summed(series[k, ...], waves) for k in range(series.shape[0])]),)
 
@@ -135,7 +138,7 @@ def solution_of(file: str, joint: Joint, kind: str, load: Array) -> TableSolutio
         return (angle, *curves.contact(angle)[:4])
 
     found = _in_blocks(file, joint, load, law)
-    fits = ~(found[1] < 0)  # a ball that filled its socket at less has no wider contact
+    fits = arrays.false(found[1] < 0)  # a ball that filled its socket at less has no wider contact
     angle, d, F, p0, stiffness = (
         where(broadcast(load, part) > 0, where(fits, part, float("nan")), 0.0) for part in found
     )
@@ -146,6 +149,8 @@ def _in_blocks(
     file: str, joint: Joint, load: Array, law: Callable[[Curves, Array], tuple[Array, ...]]
 ) -> tuple[Array, ...]:
     """law(curves, load) in the shape of the contacts, with a little in place of loads that are not above 0."""
+    if type(load) is float:
+        return law(curves_of_one(file, joint), load if load > 0 else LITTLE)
     xp, numbers = arrays.namespace(load), joint.numbers()
     shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
     alone = all(prod(part.shape) == 1 for part in numbers)

@@ -1,0 +1,218 @@
+"""The formulas of `Refined` at a half angle, with their slopes: d, p0 and F of a contact in scaled numbers."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from importlib.resources import files
+from math import log as ln
+from math import nan, pi, radians
+from typing import NamedTuple
+
+from .. import arrays
+from ..arrays import Array, exp, log, sin, tan, where
+from .liner_compliance import Liner, Pair, log_compliance, log_compliance_anywhere
+
+
+class Fit(NamedTuple):
+    """The fitted numbers."""
+
+    waves: tuple[float, ...]
+    """Wave numbers times ε."""
+    level: tuple[float, ...]
+    edge: tuple[float, ...]
+    exponent: tuple[float, ...]
+    spans: tuple[float, float, float]
+    """From each of the waves to the next, in ln k."""
+    gamma: tuple[float, float, float]
+    """Of ln[(k2/2)^s Γ(1 - s/2) Γ(2 - s/2)], a cubic in s that is right at s = 1, 0 and -2."""
+
+
+def fit_of(waves: Sequence[float], level: Sequence[float], edge: Sequence[float], exponent: Sequence[float]) -> Fit:
+    k1, k2, k3, k4 = waves
+    return Fit(
+        waves=tuple(waves),
+        level=tuple(level),
+        edge=tuple(edge),
+        exponent=tuple(exponent),
+        spans=(ln(k2 / k1), ln(k3 / k2), ln(k4 / k3)),
+        gamma=(ln(k2 / 1.8515), 0.3199, 0.0543),
+    )
+
+
+FIT = fit_of(**tomllib.loads((files("ballsocket") / "data" / "refined.toml").read_text(encoding="utf-8")))
+"""`data/refined.toml`."""
+
+
+class State(NamedTuple):
+    """A contact of half angle ε in scaled numbers; slopes are those by ln ε, rates those of a logarithm by ln ε."""
+
+    share: Array
+    """S = sin²(ε/2)."""
+    share_rate: Array
+    gap: Array
+    """cos ε - λ: 0 where the fit is perfect, d infinite."""
+    gap_slope: Array
+    compliance: Array
+    """χ = d E/(p0 R2)."""
+    secant: Array
+    """F/(E R2 d)."""
+    secant_rate: Array
+
+    @property
+    def indentation(self) -> Array:
+        """d/c, from cos ε = (c + λ d)/(c + d)."""
+        return 2 * self.share / self.gap
+
+    @property
+    def indentation_rate(self) -> Array:
+        return self.share_rate - self.gap_slope / self.gap
+
+
+def state(half_angle: Array, liner: Liner, fit: Fit = FIT) -> State:
+    """The model itself: what belongs to a half angle ε > 0.
+
+    χ, λ = u(ε)/d and the pressure's exponent m come from ln c at four waves. Where c ~ k^-s they are those of a plane
+    bed, exactly: d/p0 = c(k) k^s 2^-s Γ(1 - s/2) Γ(2 - s/2), λ = s/2, m = 1 - s/2. The fitted terms vanish without the
+    bends v, w of ln c over ln k and the curvature S = sin²(ε/2).
+    """
+    waves = log_compliances(half_angle, liner, fit.waves)
+    (c1, rise1), (c2, rise2), (c3, rise3), (c4, rise4) = waves  # by ln k, and k = k_i/ε
+    s, v, w = bends(c1, c2, c3, c4, fit.spans)
+    S, S_rate = sin(half_angle / 2) ** 2, half_angle / tan(half_angle / 2)
+    s_, v_, w_ = bends(-rise1, -rise2, -rise3, -rise4, fit.spans)
+    slopes = s_, v_, w_, S * S_rate
+    level = _log_compliance(c2, s, v, w, S, fit)
+    edge, exponent = _edge(s, v, w, S, fit.edge), _exponent(s, v, w, S, fit.exponent)
+    m, m_slope = exponent[0], along(exponent, slopes)
+    taken = 2 * S / (m + 2)
+    secant_rate = (
+        S_rate - taken * (S_rate - m_slope / (m + 2)) / (1 - taken) - m_slope / (m + 1) - (along(level, slopes) - rise2)
+    )
+    chi = exp(level[0])
+    return State(
+        share=S,
+        share_rate=S_rate,
+        gap=1 - 2 * S - edge[0],
+        gap_slope=-2 * S * S_rate - along(edge, slopes),
+        compliance=chi,
+        secant=4 * pi * S * (1 - taken) / ((m + 1) * chi),  # of p0 (1 - y)^m, over p0 R2²
+        secant_rate=secant_rate,
+    )
+
+
+def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
+    """ln c and its slope by ln k at the four waves, of which only the longest may come near q = 1."""
+    if arrays.is_plain(half_angle):
+        return one_by_one(half_angle, liner, waves)
+    xp = arrays.namespace(half_angle)
+    short = xp.asarray(waves[1:], dtype=half_angle.dtype, device=arrays.device(half_angle))
+    values, slopes = log_compliance(xp.reshape(short, (-1, *(1 for _ in half_angle.shape))) / half_angle, liner)
+    second, third, fourth = ((values[i, ...], slopes[i, ...]) for i in range(3))
+    return log_compliance_anywhere(waves[0] / half_angle, liner), second, third, fourth
+
+
+def one_by_one(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
+    """The same of one number."""
+    return (
+        log_compliance_anywhere(waves[0] / half_angle, liner),
+        log_compliance(waves[1] / half_angle, liner),
+        log_compliance(waves[2] / half_angle, liner),
+        log_compliance(waves[3] / half_angle, liner),
+    )
+
+
+def bends(c1: Array, c2: Array, c3: Array, c4: Array, spans: tuple[float, float, float]) -> tuple[Array, Array, Array]:
+    """s, v and w of ln c: how steeply it falls over ln k, and how that changes."""
+    s, s2, s3 = (c1 - c2) / spans[0], (c2 - c3) / spans[1], (c3 - c4) / spans[2]
+    return s, s2 - s, s3 - s2
+
+
+Parts = tuple[Array, Array, Array, Array, Array]
+"""A value and its slopes by s, v, w and S."""
+
+
+def _log_compliance(c2: Array, s: Array, v: Array, w: Array, S: Array, fit: Fit) -> Parts:
+    """ln χ; its slope by ln c is 1."""
+    A1, A2, A3 = fit.gamma
+    G1, G2, G3, G4 = fit.level
+    return (
+        c2 + s * (A1 + s * (A2 + s * A3)) + v * (G1 * v + G2 * s + G4 * S) + G3 * s * w * w,
+        A1 + s * (2 * A2 + s * 3 * A3) + G2 * v + G3 * w * w,
+        2 * G1 * v + G2 * s + G4 * S,
+        2 * G3 * s * w,
+        G4 * v,
+    )
+
+
+def _edge(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> Parts:
+    """λ"""
+    L1, L2, L3, L4, L5, L6, L7, L8, L9, L10 = fit
+    by_s = 0.5 + L3 * v + L4 * w + S * (L9 + L10 * v)
+    by_w = L1 + L5 * S + L8 * v * v
+    return (
+        s * by_s + w * by_w + v * L2 + S * (L6 + L7 * v * v),
+        by_s,
+        L2 + L3 * s + 2 * v * (L7 * S + L8 * w) + L10 * s * S,
+        by_w + L4 * s,
+        L5 * w + L6 + L7 * v * v + s * (L9 + L10 * v),
+    )
+
+
+def _exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> Parts:
+    """m"""
+    M1, M2, M3, M4, M5 = fit
+    by_s = -0.5 + S * (M4 + M5 * v)
+    return (
+        1 + s * by_s + M1 * w + M2 * v + M3 * w * w * S,
+        by_s,
+        M2 + M5 * s * S,
+        M1 + 2 * M3 * w * S,
+        M3 * w * w + s * (M4 + M5 * v),
+    )
+
+
+def along(parts: Parts, slopes: tuple[Array, Array, Array, Array]) -> Array:
+    """The slope of a formula by ln ε from those of s, v, w and S."""
+    return parts[1] * slopes[0] + parts[2] * slopes[1] + parts[3] * slopes[2] + parts[4] * slopes[3]
+
+
+WIDEST = radians(85.0)
+"""The largest half angle that is answered."""
+
+_END = -1.0
+"""The unknown is ln ε, shifted so that it has this value at the widest contact and is zero nowhere."""
+
+
+def edge_of_indentation(load: Array, liner: Liner) -> Array:
+    """ε that belongs to d/c, NaN where it is too wide."""
+    return _edge_of(_indentation_miss, load, log(1.5 * load / (1 + load)) / 2, liner)
+
+
+def edge_of_force(load: Array, liner: Liner) -> Array:
+    """ε that belongs to F/(E R2 c), NaN where it is too wide."""
+    return _edge_of(_force_miss, load, log(load / (2.5 + load / 3)) / 3, liner)
+
+
+def _edge_of(miss: arrays.Law, load: Array, start: Array, liner: Liner) -> Array:
+    """By Newton's method from ln ε = `start`, which is near: F ~ ε³ and d ~ ε² as in Hertz, but never wide."""
+    start = start + (_END - ln(WIDEST))
+    end = 0.0 * start + (_END + 1e-12)  # the widest contact itself is answered
+    root = arrays.increasing_root(miss, 0.0 * start, start - 6.0, end, start, given=(load, liner))
+    return where(root < end, exp(root - _END) * WIDEST, nan)
+
+
+def _indentation_miss(unknown: Array, load: Array, liner: Liner) -> Pair:
+    """ln x/(1 + x) at a half angle less that of the load, x = d/c, and its slope: without a pole at the perfect fit."""
+    at = state(exp(unknown - _END) * WIDEST, liner)
+    whole = 2 * at.share + at.gap
+    miss = log(2 * at.share / whole * (1 + 1 / load))
+    return miss, (at.share_rate * at.gap - at.gap_slope) / whole
+
+
+def _force_miss(unknown: Array, load: Array, liner: Liner) -> Pair:
+    """The same of the indentation that belongs to the load by the secant at that half angle."""
+    at = state(exp(unknown - _END) * WIDEST, liner)
+    whole = 2 * at.share + at.gap
+    miss = log(2 * at.share / whole * (1 + at.secant / load))
+    return miss, (at.share_rate * at.gap - at.gap_slope) / whole + at.secant_rate * at.secant / (at.secant + load)

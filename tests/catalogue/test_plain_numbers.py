@@ -1,0 +1,93 @@
+"""A press of Python numbers takes a quicker way: to the same answer, the same status and the same types."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from ..joints import HIP, random_joint
+
+NAMES = (
+    "force",
+    "indentation",
+    "half_angle",
+    "max_pressure",
+    "max_pressure_angle",
+    "pole_pressure",
+    "stiffness",
+    "energy",
+    "foundation_modulus",
+    "pressure_integral",
+    "area",
+)
+QUICK = {name: model for name, model in bs.catalogue.items() if model.of_numbers}
+EACH = pytest.mark.parametrize("model", QUICK.values(), ids=QUICK)
+LOADS = (
+    *({"force": force} for force in (0.0, 1.0, 3000.0, 1e9, 1e300)),
+    *({"indentation": indentation} for indentation in (0.0, 0.06, 1e5, 1e200)),
+    *({"half_angle": angle} for angle in (0.0, 0.7, 1.5)),
+)
+
+
+def assert_alike(one: bs.Contact, other: bs.Contact, rtol: float = 1e-12) -> None:
+    """A contact of Python numbers and one of arrays of one number."""
+    assert one.status == bs.Status(int(other.status[0]))
+    assert type(one.status) is bs.Status
+    assert one.valid is bool(other.valid[0])
+    for name in NAMES:
+        assert type(getattr(one, name)) is float, name
+        np.testing.assert_allclose(getattr(one, name), getattr(other, name)[0], rtol=rtol, err_msg=name)
+
+
+@EACH
+@pytest.mark.parametrize("load", LOADS, ids=str)
+def test_numbers_and_arrays_of_one_number_are_answered_alike(model, load):
+    one = model.press(HIP, **load)
+    other = model.press(HIP, **{kind: np.array([value]) for kind, value in load.items()})
+    assert_alike(one, other)
+    for angle in (0.0, 0.3, 1.2, 4.0):
+        pressure = one.pressure(angle)
+        assert type(pressure) is float
+        np.testing.assert_allclose(pressure, other.pressure(np.array([angle]))[0], rtol=1e-10)
+    assert one.pressure(np.array([0.1, 0.2])).shape == (2,)
+
+
+@EACH
+def test_so_are_joints_of_any_kind(model):
+    size = 60
+    many = random_joint(size, seed=3)
+    force = many.liner.young * many.ball_radius**2 * 10 ** np.random.default_rng(3).uniform(-10, -1, size)
+    together = model.press(many, force=force)
+    for place in range(size):
+        alone = many.with_numbers([float(number[place]) for number in many.numbers()])
+        try:
+            contact = model.press(alone, force=float(force[place]))
+        except ValueError:
+            assert together.status[place] == bs.Status.OUTSIDE_DOMAIN
+            continue
+        assert contact.status == together.status[place]
+        for name in ("indentation", "half_angle", "pole_pressure", "stiffness"):
+            # near a perfect fit numbers are worth as much less as they grow faster
+            np.testing.assert_allclose(getattr(contact, name), getattr(together, name)[place], rtol=1e-9, err_msg=name)
+
+
+@EACH
+def test_numbers_of_other_kinds_are_taken_as_they_are(model):
+    expected = model.press(HIP, force=3000.0)
+    whole = replace(HIP, ball_radius=17, clearance=1, liner_thickness=7, liner=bs.Material(young=1000, poisson=0.4))
+    assert type(model.press(whole, force=3000).indentation) is float
+    assert model.press(HIP, force=3000).indentation == expected.indentation
+    assert model.press(HIP, force=np.float64(3000.0)).indentation == expected.indentation
+    assert type(model.press(HIP, force=np.float64(3000.0)).pole_pressure) is float
+
+
+def test_where_python_numbers_raise_there_is_an_answer_all_the_same():
+    """Quotients by nothing and powers beyond all numbers become infinite or NaN, as in arrays, and have a status."""
+    huge = bs.Joint(ball_radius=1e200, clearance=1e-3, liner_thickness=1e200, liner=bs.UHMWPE)
+    for model in (bs.HessForsbach(), bs.Bartel(), bs.Hertz()):
+        one, other = model.press(huge, force=1.0), model.press(huge, force=np.array([1.0]))
+        assert one.status == other.status[0]
+        np.testing.assert_allclose(one.indentation, other.indentation[0])
+        np.testing.assert_allclose(one.energy, other.energy[0])
