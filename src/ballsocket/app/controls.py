@@ -14,7 +14,7 @@ from ..io.joint_file import JointFile, joint_of
 from ..io.joint_toml import Tables, tables_of
 from ..kinds import Unit
 from ..presets import joints, materials
-from ..quantities import JOINT, LOADS, QUANTITIES
+from ..quantities import JOINT, LOADS, MATERIAL, QUANTITIES
 from .screen import Screen
 from .slider import Number, Slider
 from .style import inputs
@@ -27,7 +27,8 @@ def _number(name: str, table: str, key: str, ends: tuple[float, float], step: fl
     """A quantity in the unit that is shown, where the table has that of files."""
     quantity = QUANTITIES[name]
     factor = quantity.shown.factor / quantity.written.factor
-    return Number(table=table, key=key, label=quantity.capital(), low=ends[0], high=ends[1], step=step, factor=factor)
+    label = f"{table.capitalize()}: {MATERIAL[key].title} {quantity.head()}" if key in MATERIAL else quantity.capital()
+    return Number(table=table, key=key, label=label, low=ends[0], high=ends[1], step=step, factor=factor)
 
 
 _NUMBERS = {

@@ -86,7 +86,7 @@ def told(found: Any, screen: Screen) -> str:
             f"{(axis.high - axis.low) / (_POINTS - 1) * head(axis.name, screen)[1]:.2g}"
             for axis in (screen.across, screen.up)
         )
-        words.append(f"Least {title} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")
+        words.append(f"Smallest value of {title} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")
     if not bool(found.valid.all()):
         words.append("Crosses: the model is not to be trusted there.")
     if not bool(fine.all()):

@@ -22,6 +22,7 @@ from ..fem.progress import listening
 from ..fem.spacing import Adapted, Element, Spacing, Uniform
 from ..io.joint_file import read_cup
 from ..io.units import parse
+from ..kinds import Kind
 from ..output import section_plot
 from ..output.save import check_format, save
 from ..quantities import CONTACT, LOADS
@@ -57,7 +58,7 @@ class MeshWords:
     def _spacing(self) -> Spacing:
         if self.element_size is None:
             return Adapted()
-        length = parse("element_size", self.element_size, "length")
+        length = parse("element_size", self.element_size, Kind.LENGTH)
         require("element_size", length, length > 0, "an element's size (mm) is above 0")
         return Uniform(size=length)
 

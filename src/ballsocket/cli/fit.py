@@ -14,6 +14,7 @@ import ballsocket as bs
 from ..checks import nearest
 from ..identify.modulus import FORCES, Form
 from ..io.units import parse
+from ..kinds import Kind
 from ..output import terminal
 from ..paper.table_3 import refit_table_3
 from .root import app
@@ -50,9 +51,9 @@ def calibrate(
         raise ValueError(f"form {form!r} is not known{nearest(form, _FORMS)}")
     given = named_joint(joint).joint
     if thickness:
-        lengths = [parse("thickness", text, "length") for text in thickness]
+        lengths = [parse("thickness", text, Kind.LENGTH) for text in thickness]
         given = dataclasses.replace(given, liner_thickness=numpy.array(lengths))
-    loads = [parse("force", text, "force") for text in force or []] or FORCES
+    loads = [parse("force", text, Kind.FORCE) for text in force or []] or FORCES
     fit = bs.calibrate(given, force=loads, form=_FORMS[form])
     if as_json:
         echo_json({"version": bs.__version__, "joint": given.summary(), **fit.summary()})

@@ -28,7 +28,7 @@ app = typer.Typer(
 UsageError: Any = typer.BadParameter.__base__  # typer brings a click of its own, and does not export this
 DONE, MISUSE, FAILURE = 0, 2, 3
 STOPPED, NOBODY_READS = 130, 141  # as a shell says it of the signals
-_IN_ASCII = {"≤": "<=", "≥": ">=", "°": "o", "µ": "u", "ε": "e", "ν": "v", "²": "2", "ß": "ss"}
+_IN_ASCII = {"≤": "<=", "≥": ">=", "°": "o", "µ": "u", "ε": "e", "ν": "v", "φ": "f", "Δ": "D", "²": "2", "ß": "ss"}
 
 
 def _version(wanted: bool) -> None:
