@@ -197,6 +197,14 @@ def test_a_quantity_is_added_by_one_entry(tmp_path):
     assert any(line.split()[:2] == ["model", "c/d"] for line in rest)
 
 
+def test_a_range_is_written_with_the_symbol_and_the_unit_of_its_quantity():
+    assert str(bs.Range(quantity="half_angle", high=pi / 18)) == "ε ≤ 10°"
+    assert str(bs.Range(quantity="joint.thickness_ratio", low=2.0)) == "R2/L ≥ 2"
+    assert str(bs.Range(quantity="joint.liner.poisson", low=0.3, high=0.4)) == "ν 0.3 to 0.4"
+    assert str(bs.Range(quantity="joint.roughness", high=0.1)) == "roughness ≤ 0.1"
+    assert str(bs.Range(quantity="joint.clearance", symbol="gap", high=0.1)) == "gap ≤ 0.1"
+
+
 def test_the_glossary_of_the_site_has_every_quantity(monkeypatch):
     monkeypatch.syspath_prepend(ROOT / "docs" / "_ext")
     written = import_module("generated")._glossary(QUANTITIES.values())

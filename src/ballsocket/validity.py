@@ -76,7 +76,7 @@ class Range:
     quantity : str or function
         The attribute path from a contact ("joint.liner.poisson", "half_angle"), or a function of it.
     symbol : str
-        How people write it.
+        How people write it; by default the symbol of the quantity of that name.
     low, high : float
         In the quantity's own unit. A half angle is stored in rad and printed in degrees.
     why : str
@@ -84,10 +84,15 @@ class Range:
     """
 
     quantity: str | Callable[[Any], Array]
-    symbol: str
+    symbol: str = ""
     low: float = -inf
     high: float = inf
     why: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.symbol and isinstance(self.quantity, str):
+            name = self.quantity.rpartition(".")[2]
+            object.__setattr__(self, "symbol", QUANTITIES[name].symbol if name in QUANTITIES else name)
 
     @cached_property
     def of(self) -> Callable[[Any], Array]:
@@ -186,19 +191,15 @@ def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
 
 CLOSE_FIT = Range(
     quantity="joint.clearance_ratio",
-    symbol="c/R2",
     high=0.02,
     why="Eq. (6) neglects sin²φ, 1 % of p0 here: ask with gap=CircularGap",
 )
 SMALL_STRAIN = Range(
     quantity="depth_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"
 )
-RIGID_BALL = Range(
-    quantity="joint.modulus_ratio", symbol="E/E_ball", high=0.02, why="the model takes the ball as rigid"
-)
+RIGID_BALL = Range(quantity="joint.modulus_ratio", high=0.02, why="the model takes the ball as rigid")
 RIGID_BACKING = Range(
     quantity="joint.backing_ratio",
-    symbol="E/E_backing",
     high=0.01,
     why="the model takes the liner's backing as rigid",
 )

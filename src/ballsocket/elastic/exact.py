@@ -87,7 +87,6 @@ class Exact(Model):
     domain: ClassVar[tuple[Range, ...]] = (
         Range(
             quantity="joint.clearance",
-            symbol="c",
             low=0.0,
             why="without clearance every load gives the same half angle, beyond 85°: ask cosine-limit",
         ),
@@ -98,7 +97,7 @@ class Exact(Model):
             high=0.49991,
             why="between fixed walls a liner of ν = 0.5 does not give way to a uniform pressure: 0.4999 is solved",
         ),
-        Range(quantity="joint.thickness_ratio", symbol="R2/L", high=200.0, why="so thin a liner is not solved"),
+        Range(quantity="joint.thickness_ratio", high=200.0, why="so thin a liner is not solved"),
     )
 
     @property

@@ -101,7 +101,6 @@ class FiniteElement(Model):
     domain: ClassVar[tuple[Range, ...]] = (
         Range(
             quantity="joint.clearance",
-            symbol="c",
             low=0.0,
             why="without clearance every load has the same half angle: take a millionth of the radius",
         ),
@@ -112,7 +111,7 @@ class FiniteElement(Model):
             high=0.49995,
             why="an incompressible body has no bulk modulus: 0.4999 is solved",
         ),
-        Range(quantity="joint.thickness_ratio", symbol="R2/L", high=200.0, why="so thin a liner is not meshed"),
+        Range(quantity="joint.thickness_ratio", high=200.0, why="so thin a liner is not meshed"),
     )
     reach: ClassVar[str] = (
         "half angles up to half the arc of cover, at most 88°, less where the ball fills its socket before or "

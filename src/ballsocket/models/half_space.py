@@ -29,7 +29,6 @@ class HalfSpace(ClosedForm):
     domain: ClassVar[tuple[Range, ...]] = (
         Range(
             quantity="joint.clearance",
-            symbol="c",
             low=0.0,
             why="the effective radius R1 R2/c is infinite without clearance, so a half-space carries no finite load",
         ),
@@ -126,11 +125,10 @@ def _peak(order: int) -> tuple[float, float]:
 _FIRST_TOUCH = (
     Range(
         quantity="half_angle",
-        symbol="ε",
         high=radians(7.0),
         why="a half-space ignores that the surfaces curve (d is up to 15 % too large at 7°)",
     ),
-    Range(quantity="width_ratio", symbol="a/L", high=0.15, why="a half-space ignores the backing of the liner"),
+    Range(quantity="width_ratio", high=0.15, why="a half-space ignores the backing of the liner"),
     SMALL_STRAIN,
 )
 

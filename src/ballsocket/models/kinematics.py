@@ -223,7 +223,7 @@ cosine_kinematics = Kinematics(
     versine=cosine_versine,
     indentation_of_versine=cosine_indentation_of_versine,
     displacement=cosine_displacement,
-    validity=(Range(quantity="conformity", symbol="c/d", high=0.05, why="the limit of a ball that fills its socket"),),
+    validity=(Range(quantity="conformity", high=0.05, why="the limit of a ball that fills its socket"),),
 )
 """u = d cos φ: Eq. (6) in the limit of vanishing clearance, half angle 90 degrees at any load."""
 

@@ -53,8 +53,8 @@ class LiuReconstruction(ClosedForm):
         massive = "made for a massive socket: the liner's thickness does not enter"
         return (
             Nowhere(why="a reconstruction with a coefficient that was fitted to nothing"),
-            Range(quantity="joint.modulus_ratio", symbol="E/E_ball", low=0.5, high=2.0, why=same),
-            Range(quantity="joint.thickness_ratio", symbol="R2/L", high=1.0, why=massive),
+            Range(quantity="joint.modulus_ratio", low=0.5, high=2.0, why=same),
+            Range(quantity="joint.thickness_ratio", high=1.0, why=massive),
             SMALL_STRAIN,
         )
 

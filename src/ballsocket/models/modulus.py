@@ -106,22 +106,21 @@ def constant_formula(R2: Array, L: Array, E: Array, nu: Array, K: Array) -> Arra
 
 
 def _poisson(low: float, high: float, why: str) -> Range:
-    return Range(quantity="joint.liner.poisson", symbol="ν", low=low, high=high, why=why)
+    return Range(quantity="joint.liner.poisson", low=low, high=high, why=why)
 
 
 def _thickness_ratio(low: float, high: float, why: str) -> Range:
-    return Range(quantity="joint.thickness_ratio", symbol="R2/L", low=low, high=high, why=why)
+    return Range(quantity="joint.thickness_ratio", low=low, high=high, why=why)
 
 
 def _contact_width(low: float, why: str) -> Range:
-    return Range(quantity="width_ratio", symbol="a/L", low=low, why=why)
+    return Range(quantity="width_ratio", low=low, why=why)
 
 
 _SPRINGS = Promise(within=0.15)
 _COMPRESSIBLE = _poisson(-1.0, 0.5, "the modulus is unbounded for an incompressible liner (ν = 0.5)")
 _FINITE_LAYER = Range(
     quantity="joint.liner_thickness",
-    symbol="L",
     low=0.0,
     high=inf,
     why="a layer of infinite thickness has no stiffness",
@@ -153,7 +152,6 @@ bonded_layer = Modulus(
         _poisson(0.0, 0.4, "its pressure is 10 % high at 0.4, 30 % at 0.45 and without bound towards 0.5"),
         Range(
             quantity="joint.thickness_ratio",
-            symbol="R2/L",
             low=5.5,
             why="a flat layer has one area inside and outside: a thicker shell gives way less",
         ),
@@ -259,10 +257,9 @@ hess_forsbach = Modulus(
     validity=(
         _poisson(0.30, 0.49, "Table 3 ends there; its last column is kept beyond"),
         _thickness_ratio(0.73, 7.7, "Table 1: R1 11 to 23 mm, L 3 to 15 mm"),
-        Range(quantity="joint.clearance_ratio", symbol="c/R2", high=0.018, why="Table 1: clearance up to 0.2 mm"),
+        Range(quantity="joint.clearance_ratio", high=0.018, why="Table 1: clearance up to 0.2 mm"),
         Range(
             quantity="half_angle",
-            symbol="ε",
             low=radians(20.0),
             why="fitted at 1 to 3 kN; near first touch the liner answers like a half-space, not like springs",
         ),

@@ -44,7 +44,7 @@ class PinInHole(Theory):
         massive = "an infinite plate"
         return (
             Range(quantity="joint.modulus_ratio", symbol="E/E_pin", low=0.99, high=1.01, why=same),
-            Range(quantity="joint.thickness_ratio", symbol="R2/L", high=0.1, why=massive),
+            Range(quantity="joint.thickness_ratio", high=0.1, why=massive),
         )
 
     def press(self, joint: Joint, *, line_load: Array | None = None, half_angle: Array | None = None) -> LineContact:

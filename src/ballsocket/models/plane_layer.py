@@ -44,20 +44,17 @@ class PlaneLayer(Model):
     domain: ClassVar[tuple[Range, ...]] = (
         Range(
             quantity="joint.clearance",
-            symbol="c",
             low=0.0,
             why="the effective radius R1 R2/c is infinite without clearance",
         ),
         Range(
             quantity="joint.liner_thickness",
-            symbol="L",
             low=0.0,
             high=inf,
             why="a layer of infinite thickness is a half-space: ask hertz",
         ),
         Range(
             quantity="joint.thickness_ratio",
-            symbol="R2/L",
             high=THINNEST,
             why="a layer so thin would need very many points: ask bonded-layer",
         ),
@@ -65,7 +62,6 @@ class PlaneLayer(Model):
     validity: ClassVar[tuple[Range, ...]] = (
         Range(
             quantity="half_angle",
-            symbol="ε",
             high=radians(15.0),
             why="the plane layer has no curvature: p0 is 23 % low at 45° (R2 18, L 6.75)",
         ),

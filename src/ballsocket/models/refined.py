@@ -40,31 +40,27 @@ class Refined(Model):
     domain: ClassVar[tuple[Range, ...]] = (
         Range(
             quantity="joint.clearance",
-            symbol="c",
             low=0.0,
             why="without clearance every load gives the same half angle: ask cosine-limit",
         ),
         Range(
             quantity="joint.liner_thickness",
-            symbol="L",
             low=0.0,
             high=inf,
             why="a layer of infinite thickness has no modes of its own: ask hertz or exact",
         ),
         Range(
             quantity="joint.thickness_ratio",
-            symbol="R2/L",
             high=100.0,
             why="a layer so thin is lost to rounding: ask bonded-layer",
         ),
     )
     validity: ClassVar[tuple[Range, ...]] = (
-        Range(quantity="joint.liner.poisson", symbol="ν", low=0.3, high=0.46, why=_FITTED),
-        Range(quantity="joint.thickness_ratio", symbol="R2/L", low=1.0, high=6.5, why=_FITTED),
-        Range(quantity="half_angle", symbol="ε", low=radians(15.0), high=radians(60.0), why=_FITTED),
+        Range(quantity="joint.liner.poisson", low=0.3, high=0.46, why=_FITTED),
+        Range(quantity="joint.thickness_ratio", low=1.0, high=6.5, why=_FITTED),
+        Range(quantity="half_angle", low=radians(15.0), high=radians(60.0), why=_FITTED),
         Range(
             quantity="joint.modulus_ratio",
-            symbol="E/E_ball",
             high=0.0045,
             why="the model takes the ball as rigid, and is so close that softer ones show",
         ),

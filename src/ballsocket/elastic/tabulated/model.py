@@ -54,12 +54,10 @@ class Tabulated(Model):
     title: ClassVar[str] = "elastic ball and bonded liner, from tables of the exact answer"
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(6)"), Source("goodman1965"))
     domain: ClassVar[tuple[Range, ...]] = (
-        Range(quantity="joint.clearance", symbol="c", low=0.0, why="no clearance: ask cosine-limit"),
-        Range(quantity="joint.liner.poisson", symbol="ν", low=POISSON[0], high=POISSON[1], why=_ASK),
-        Range(
-            quantity="joint.thickness_ratio", symbol="R2/L", low=THICKNESS_RATIO[0], high=THICKNESS_RATIO[1], why=_ASK
-        ),
-        Range(quantity="joint.modulus_ratio", symbol="E/E_ball", high=0.0201, why=_ASK),
+        Range(quantity="joint.clearance", low=0.0, why="no clearance: ask cosine-limit"),
+        Range(quantity="joint.liner.poisson", low=POISSON[0], high=POISSON[1], why=_ASK),
+        Range(quantity="joint.thickness_ratio", low=THICKNESS_RATIO[0], high=THICKNESS_RATIO[1], why=_ASK),
+        Range(quantity="joint.modulus_ratio", high=0.0201, why=_ASK),
         Range(quantity=_ball_poisson, symbol="ν_ball", low=-0.01, high=0.501, why=_ASK),
         Range(quantity=_layers, symbol="layers behind the liner", high=1.0, why=_ASK),
     )
