@@ -279,6 +279,10 @@ class Covered(Model):
         return self.model.planar
 
     @property
+    def of_numbers(self) -> bool:  # type: ignore[override]
+        return self.model.of_numbers
+
+    @property
     def contact_type(self) -> type[Contact]:  # type: ignore[override]
         return self.model.contact_type
 
