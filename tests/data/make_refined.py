@@ -20,7 +20,7 @@ from scipy.optimize import least_squares, linprog
 
 import ballsocket as bs
 from ballsocket.models.liner_compliance import liner_of
-from ballsocket.models.refined_state import Fit, fit_of, state
+from ballsocket.models.refined_state import NUMBERS, Fit, fit_of, state
 
 SIZES = {"waves": 4, "level": 4, "edge": 10, "exponent": 5}
 ROUGH = np.array([0.6, 2.0, 4.0, 20.0, *[0.0] * 4, 0.1, 0.25, *[0.0] * 8, -0.3, -0.5, *[0.0] * 3])
@@ -69,7 +69,8 @@ def grid() -> Points:
 def fit_from(x: np.ndarray) -> Fit:
     """The coefficients by their names."""
     ends = np.cumsum([0, *SIZES.values()])
-    return fit_of(**{name: x[first:last].tolist() for name, (first, last) in zip(SIZES, pairwise(ends), strict=True)})
+    parts = {name: x[first:last].tolist() for name, (first, last) in zip(SIZES, pairwise(ends), strict=True)}
+    return fit_of(**parts, plane=NUMBERS["plane"])
 
 
 def logs_of(x: np.ndarray, points: Points, angle: np.ndarray, which: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.models.liner_compliance import liner_of, log_compliance, log_compliance_anywhere
+from ballsocket.models.refined_state import NUMBERS
 
 from ..joints import HIP, random_joint
 from ..places import DATA
@@ -97,6 +98,18 @@ def test_a_small_contact_is_hertzian():
     for name in (*QUANTITIES, "stiffness", "energy"):
         # up to c/R2, by which the effective radius R1 R2/c differs from R2²/c
         np.testing.assert_allclose(getattr(ours, name), getattr(hertz, name), rtol=5e-3, err_msg=name)
+
+
+@pytest.mark.parametrize(("low", "high", "within"), [(-2, -2, 2.3e-3), (1, 1, 2.4e-4), (0, 1, 0.01), (-2, 0, 0.032)])
+def test_the_plane_bed_is_a_cubic_that_is_as_near_as_it_says(low, high, within):
+    scale, square, cube = NUMBERS["plane"]
+    for s in np.linspace(low, high, 51):
+        true = mpmath.log(mpmath.gamma(1 - s / 2) * mpmath.gamma(2 - s / 2) / mpmath.mpf(2) ** s)
+        assert abs(-s * np.log(scale) + square * s**2 + cube * s**3 - true) < within
+
+
+def test_the_plane_bed_begins_as_it_should():
+    assert -np.log(NUMBERS["plane"][0]) == pytest.approx(float(mpmath.euler - mpmath.log(2) - 0.5), abs=7e-5)
 
 
 def shell_compliance(k: mpmath.mpf, nu: float, b: float) -> mpmath.mpf:

@@ -25,22 +25,33 @@ class Fit(NamedTuple):
     spans: tuple[float, float, float]
     """From each of the waves to the next, in ln k."""
     gamma: tuple[float, float, float]
-    """Of ln[(k2/2)^s Γ(1 - s/2) Γ(2 - s/2)], a cubic in s that is right at s = 1, 0 and -2."""
+    """Of ln[(k2/2)^s Γ(1 - s/2) Γ(2 - s/2)] as a cubic in s."""
 
 
-def fit_of(waves: Sequence[float], level: Sequence[float], edge: Sequence[float], exponent: Sequence[float]) -> Fit:
+def fit_of(
+    waves: Sequence[float],
+    level: Sequence[float],
+    edge: Sequence[float],
+    exponent: Sequence[float],
+    plane: Sequence[float],
+) -> Fit:
+    """From the numbers of `data/refined.toml`, by their names there."""
     k1, k2, k3, k4 = waves
+    scale, square, cube = plane
     return Fit(
         waves=tuple(waves),
         level=tuple(level),
         edge=tuple(edge),
         exponent=tuple(exponent),
         spans=(ln(k2 / k1), ln(k3 / k2), ln(k4 / k3)),
-        gamma=(ln(k2 / 1.8515), 0.3199, 0.0543),
+        gamma=(ln(k2 / scale), square, cube),
     )
 
 
-FIT = fit_of(**tomllib.loads((files("ballsocket") / "data" / "refined.toml").read_text(encoding="utf-8")))
+NUMBERS: dict[str, list[float]] = tomllib.loads(
+    (files("ballsocket") / "data" / "refined.toml").read_text(encoding="utf-8")
+)
+FIT = fit_of(**NUMBERS)
 """`data/refined.toml`."""
 
 
