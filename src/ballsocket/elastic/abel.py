@@ -21,14 +21,12 @@ from math import ceil, pi
 
 import numpy
 
-from ..arrays import gauss_legendre
+from ..arrays import Numbers, gauss_legendre
 from ..gaps import Gap
 from ..per_joint import largest_pressure
 from .grid import Grid
 from .intervals import Intervals, KeptIntervals
 from .kernel import Kernel
-
-Array = numpy.ndarray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -43,7 +41,7 @@ class State:
     intervals: Intervals | KeptIntervals
 
     @property
-    def half_angle(self) -> Array:
+    def half_angle(self) -> Numbers:
         return self.intervals.half_angle
 
     @property
@@ -51,21 +49,21 @@ class State:
         return self.intervals.grid
 
     @cached_property
-    def _targets(self) -> Array:
+    def _targets(self) -> Numbers:
         """t in rad at the points, and ε."""
         return self.half_angle[:, None] * self.grid.place
 
     @property
-    def _places(self) -> Array:
+    def _places(self) -> Numbers:
         return self._targets[:, :-1]
 
     @cached_property
-    def _weights(self) -> Array:
+    def _weights(self) -> Numbers:
         """Weights of integrals over [0, ε] at the points."""
         return self.half_angle[:, None] * (self.grid.weights * self.grid.slope)[self.grid.points :]
 
     @cached_property
-    def _operators(self) -> tuple[Array, Array]:
+    def _operators(self) -> tuple[Numbers, Numbers]:
         even, odd = self.kernel.operators(self.intervals)
         unit = pi / 2 * numpy.eye(self.grid.points)
         even[:, :-1] += unit
@@ -73,21 +71,21 @@ class State:
         return even, odd
 
     @cached_property
-    def _inverse(self) -> Array:
+    def _inverse(self) -> Numbers:
         """Inverse of the even equation at the points: it has three right-hand sides, one after the other."""
         return numpy.linalg.inv(self._operators[0][:, :-1])
 
     @cached_property
-    def _edge_weights(self) -> Array:
+    def _edge_weights(self) -> Numbers:
         """From a right-hand side at the points to the integral at t = ε."""
         return (self._operators[0][:, -1:] @ self._inverse)[:, 0]
 
-    def _at_edge(self, side: Array) -> Array:
+    def _at_edge(self, side: Numbers) -> Numbers:
         """H(ε) of a right-hand side at the targets."""
         return 2 / pi * (side[:, -1] - numpy.sum(self._edge_weights * side[:, :-1], axis=-1))
 
     @cached_property
-    def indentation(self) -> Array:
+    def indentation(self) -> Numbers:
         """d in mm: H(ε) = 0, by Newton's method."""
         d = numpy.zeros_like(self.half_angle)[:, None]
         for _ in range(self.gap.steps):
@@ -99,12 +97,12 @@ class State:
         return d[:, 0]
 
     @cached_property
-    def _deepening(self) -> Array:
+    def _deepening(self) -> Numbers:
         """A[∂u/∂d] at the targets."""
         return self.gap.deepening(self._targets, self.indentation[:, None])
 
     @cached_property
-    def _G(self) -> tuple[Array, Array]:  # noqa: N802
+    def _G(self) -> tuple[Numbers, Numbers]:  # noqa: N802
         """G at the points and at ε."""
         side = -self.gap.slope(self._targets, self.indentation[:, None])
         odd = self._operators[1]
@@ -112,14 +110,14 @@ class State:
         return inside, 2 / pi * (side[:, -1] - numpy.sum(odd[:, -1] * inside, axis=-1))
 
     @cached_property
-    def error(self) -> Array:
+    def error(self) -> Numbers:
         """How far the two solutions disagree: H at the points against the integral of G, over the largest H."""
         side = self.gap.transform(self._places, self.indentation[:, None])
         H = (self._inverse @ side[..., None])[..., 0]
         steps = self._G[0] * (self.grid.slope[self.grid.points :] * self.half_angle[:, None])
         return numpy.max(abs(H - steps @ self.grid.to_edge.T), axis=-1) / numpy.max(abs(H), axis=-1)
 
-    def _integral(self, factor: Array) -> Array:
+    def _integral(self, factor: Numbers) -> Numbers:
         """∫ factor G ds/C over [0, ε]."""
         return numpy.sum(self._weights * factor * self._G[0], axis=-1) / self.kernel.compliance
 
@@ -129,17 +127,17 @@ class State:
         return self.gap.socket_radius * self.gap.socket_radius
 
     @cached_property
-    def force(self) -> Array:
+    def force(self) -> Numbers:
         """F in N."""
         return 4 * pi / 3 * self._area * self._integral(numpy.sin(1.5 * self._places))
 
     @cached_property
-    def pole_pressure(self) -> Array:
+    def pole_pressure(self) -> Numbers:
         """p0 in MPa."""
         return self._integral(0.5 / numpy.sin(self._places / 2))
 
     @property
-    def _falls(self) -> Array:
+    def _falls(self) -> Numbers:
         """Whether the pressure is sure to fall from the pole to the edge.
 
         By p = 2 sqrt(Δ)/C ∫ g dz, g = G/sin s (see `pressure`), it does where g sqrt(sin²(ε/2) - sin²(s/2)) falls.
@@ -149,47 +147,47 @@ class State:
         return numpy.all(numpy.diff(self._G[0] / numpy.sin(s) * numpy.sqrt(room), axis=-1) < 0, axis=-1)
 
     @cached_property
-    def _largest(self) -> tuple[Array, Array]:
+    def _largest(self) -> tuple[Numbers, Numbers]:
         if self._falls.all():
             return self.pole_pressure, 0.0 * self.half_angle
         return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _ROUNDING)
 
     @property
-    def max_pressure(self) -> Array:
+    def max_pressure(self) -> Numbers:
         """The largest pressure in MPa."""
         return self._largest[0]
 
     @property
-    def max_pressure_angle(self) -> Array:
+    def max_pressure_angle(self) -> Numbers:
         """Where the pressure is largest, in rad from the pole."""
         return self._largest[1]
 
     @cached_property
-    def pressure_integral(self) -> Array:
+    def pressure_integral(self) -> Numbers:
         """∫ p dA in N."""
         return 4 * pi * self._area * self._integral(numpy.sin(self._places / 2))
 
     @cached_property
-    def stiffness(self) -> Array:
+    def stiffness(self) -> Numbers:
         """dF/dd in N/mm: since G does not jump at the edge, that of a punch which the contact does not outgrow."""
         punch = (self._inverse @ self._deepening[:, :-1, None])[..., 0]
         total = numpy.sum(self._weights * numpy.cos(1.5 * self._places) * punch, axis=-1)
         return 2 * pi * self._area * total / self.kernel.compliance
 
     @cached_property
-    def widening(self) -> Array:
+    def widening(self) -> Numbers:
         """dd/dε in mm/rad: a deeper punch adds at the edge what a wider contact takes away."""
         return self._G[1] / self._at_edge(self._deepening)
 
     @cached_property
-    def energy(self) -> Array:
+    def energy(self) -> Numbers:
         """∫ F dd in N mm."""
         if not self.gap.conservative:
             return self._work()
         spread = 16 * pi / 3 * self._area * self._integral(numpy.sin(self._places / 2) ** 3)
         return (self.indentation * self.force - self.gap.clearance * spread) / 2
 
-    def _work(self) -> Array:
+    def _work(self) -> Numbers:
         nodes, weights = (numpy.array(part) for part in gauss_legendre(16))
         angles = (nodes[:, None] * self.half_angle).ravel()
         parts = State(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angles, grid=self.grid))
@@ -197,14 +195,14 @@ class State:
         return self.half_angle * (weights @ power)
 
     @cached_property
-    def _expansion(self) -> Array:
+    def _expansion(self) -> Numbers:
         """G/sin s as a series of even Legendre polynomials in y."""
         size = self.grid.points
         y, w = (part[size:] for part in self.grid.nodes)
         P = numpy.polynomial.legendre.legvander(y, 2 * size - 1)[:, ::2]
         return (self._G[0] / numpy.sin(self._places)) @ (w[:, None] * P * (4 * numpy.arange(size) + 1))
 
-    def pressure(self, angle: Array) -> Array:
+    def pressure(self, angle: Numbers) -> Numbers:
         """p(φ) in MPa at angles (anything, loads); 0 outside the contact.
 
         With sin²(s/2) = sin²(φ/2) + Δ z², Δ = sin²(ε/2) - sin²(φ/2): p = 2 sqrt(Δ)/C ∫ G/sin s dz over [0, 1].
@@ -221,7 +219,7 @@ class State:
             total += weight * pi / 2 * numpy.cos(pi / 2 * node) * _even_series(self._expansion.T, y)
         return numpy.where(inside, 2 * numpy.sqrt(room) / self.kernel.compliance * total, 0.0)
 
-    def modes(self, count: int) -> Array:
+    def modes(self, count: int) -> Numbers:
         """p_n in MPa for n below count: p = Σ p_n P_n(cos φ). Shape (loads, count).
 
         By Gauss-Legendre points in panels that are short against the waves.
@@ -246,7 +244,7 @@ _ROUNDING = 1e-9  # of a pressure
 _BLOCK = 64  # modes
 
 
-def _even_series(coefficients: Array, y: Array) -> Array:
+def _even_series(coefficients: Numbers, y: Numbers) -> Numbers:
     """Σ coefficients[k] P_2k(y), by Clenshaw's recurrence in y²."""
     square = y * y
     ahead, here = 0.0, coefficients[-1]
@@ -257,7 +255,7 @@ def _even_series(coefficients: Array, y: Array) -> Array:
     return here + 0.0 * y
 
 
-def _step(n: int, square: Array) -> Array:
+def _step(n: int, square: Numbers) -> Numbers:
     lead = (2 * n + 1) * (2 * n + 3) / ((n + 1) * (n + 2))
     shift = (n + 1) ** 2 / ((2 * n + 1) * (2 * n + 3)) + (n**2 / ((2 * n + 1) * (2 * n - 1)))
     return lead * (square - shift)

@@ -10,30 +10,30 @@ from math import ceil, log, pi
 
 import numpy
 
-Array = numpy.ndarray
+from ..arrays import Numbers
 
 ORDER = 6
 _TERMS = 30  # of the power series, which converge like (x/2π)²
 
 
-def logarithmic(a: Array) -> Array:
+def logarithmic(a: Numbers) -> Numbers:
     """g as a polynomial in x²."""
     return numpy.array([-a[0], a[2] / 2, -a[4] / 24])
 
 
-def modular(a: Array) -> Array:
+def modular(a: Numbers) -> Numbers:
     """h as a polynomial in x²."""
     return -pi / 2 * numpy.array([a[1], -a[3] / 6, a[5] / 120])
 
 
-def smooth(a: Array, reach: float) -> Array:
+def smooth(a: Numbers, reach: float) -> Numbers:
     """s as a polynomial in x², up to x = reach."""
     terms = min(_TERMS, 4 + ceil(log(1e-17) / log(max((reach / (2 * pi)) ** 2, 1e-9))))
     return _series()[:terms] @ a
 
 
 @cache
-def _series() -> Array:
+def _series() -> Numbers:
     """From a_1 .. a_6 to the coefficients of s."""
     from scipy.special import zeta  # would double the time that importing the package takes
 

@@ -8,6 +8,7 @@ from math import radians
 
 import numpy
 
+from ..arrays import Numbers
 from ..gaps import Gap
 from ..per_joint import Piece
 from .abel import State
@@ -15,17 +16,15 @@ from .grid import grid
 from .intervals import Intervals, KeptIntervals
 from .kernel import Kernel
 
-Array = numpy.ndarray
-
 LIMIT = radians(85.0)
 """The widest contact that is solved."""
 
-_GRIDS = (14, 20, 28, 40, 56, 80)
+_GRIDS = (14, 20, 28, 40, 56, 80)  # points, more of them until the error is small enough
 _COARSE = 10
 _STEPS = 8
-_CLOSE = 1e-10
-_SAFETY = 3.0
-_END = 1.03 * LIMIT
+_CLOSE = 1e-10  # of a load
+_SAFETY = 3.0  # over how far the two solutions of the equation disagree
+_END = 1.03 * LIMIT  # of the contacts that are computed, to see which are too wide
 _DEGREES = (0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85)
 _ANGLES = numpy.append(numpy.radians(_DEGREES), _END)
 _FIRST_LOOK = KeptIntervals(half_angle=_ANGLES, grid=grid(_COARSE))
@@ -40,7 +39,7 @@ class Curve:
     gap: Gap
     tolerance: float
 
-    def press(self, kind: str, load: Array) -> Piece:
+    def press(self, kind: str, load: Numbers) -> Piece:
         """The contacts that belong to loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         given = load[touching]
@@ -55,10 +54,10 @@ class Curve:
             angle = numpy.where(angle <= self._end, state.half_angle, angle)
         return Piece(load=load, touching=touching, state=state, reached=reached, error=error)
 
-    def _state(self, angle: Array, points: int) -> State:
+    def _state(self, angle: Numbers, points: int) -> State:
         return State(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angle, grid=grid(points)))
 
-    def _solved(self, kind: str, given: Array, angle: Array, points: int) -> tuple[State, Array]:
+    def _solved(self, kind: str, given: Numbers, angle: Numbers, points: int) -> tuple[State, Numbers]:
         """The state at the half angle that gives the load, by Newton's method in the logarithms, and what it misses."""
         state = self._state(angle, points)
         if kind == "half_angle":
@@ -71,7 +70,7 @@ class Curve:
             state = self._state(self._bounded(state.half_angle * numpy.exp(-step)), points)
         return state, abs(miss)
 
-    def _bounded(self, angle: Array) -> Array:
+    def _bounded(self, angle: Numbers) -> Numbers:
         """Angles up to where contacts are still computed to see that they are too wide; so is what is no number."""
         return numpy.where(angle < self._end, angle, self._end)
 
@@ -105,13 +104,13 @@ class Curve:
         return self._state(numpy.append(inside, self._end - room * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE)
 
     @cached_property
-    def _knots(self) -> dict[str, tuple[Array, Array, Array]]:
+    def _knots(self) -> dict[str, tuple[Numbers, Numbers, Numbers]]:
         """ln(load), ln ε and their slope at the coarse contacts."""
         coarse = self._coarse
         y = numpy.log(coarse.half_angle)
         return {kind: (numpy.log(law(coarse)), y, 1 / _steepness(kind, coarse)) for kind, law in _LAWS.items()}
 
-    def _guess(self, kind: str, given: Array) -> Array:
+    def _guess(self, kind: str, given: Numbers) -> Numbers:
         """The half angle by cubics between a few coarse contacts; like a power of the load below the first."""
         x, y, slope = self._knots[kind]
         goal = numpy.log(given)
@@ -126,19 +125,19 @@ class Curve:
         return numpy.exp(numpy.where(t < 0, y[0] + slope[0] * (goal - x[0]), inside))
 
 
-def _sound(state: State) -> Array:
+def _sound(state: State) -> Numbers:
     """Whether there is a contact: not beyond the perfect fit, nor where the ball does not reach."""
     with numpy.errstate(invalid="ignore"):
         return (state.indentation > 0) & (state.force > 0) & (state.pole_pressure > 0)
 
 
-def _steepness(kind: str, state: State) -> Array:
+def _steepness(kind: str, state: State) -> Numbers:
     """d ln(load)/d ln ε."""
     deepening = state.half_angle * state.widening
     return deepening / state.indentation if kind == "indentation" else deepening * state.stiffness / state.force
 
 
-def _errors(kind: str, state: State) -> dict[str, Array]:
+def _errors(kind: str, state: State) -> dict[str, Numbers]:
     """Relative errors of each quantity, at the given load."""
     own = _SAFETY * state.error
     steepness = {name: _steepness(name, state) for name in _LAWS}

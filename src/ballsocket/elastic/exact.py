@@ -8,6 +8,7 @@ from math import inf
 from typing import Any, ClassVar
 
 from .. import arrays
+from ..arrays import Array
 from ..checks import numeric, require
 from ..contact import Contact
 from ..gaps import CircularGap, LinearGap, check_gap
@@ -20,8 +21,6 @@ from .contact import ElasticContact
 from .curve import Curve
 from .kernel import Kernel
 from .modes import ball_of, socket_of
-
-Array = arrays.Array
 
 
 def _locking(contact: Any) -> Array:

@@ -12,7 +12,7 @@ from math import pi
 
 import numpy
 
-Array = numpy.ndarray
+from ..arrays import Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -25,23 +25,23 @@ class Grid:
     points: int
 
     @cached_property
-    def nodes(self) -> tuple[Array, Array]:
+    def nodes(self) -> tuple[Numbers, Numbers]:
         """y of the sources, in (-1, 1), and their weights."""
         return numpy.polynomial.legendre.leggauss(2 * self.points)
 
     @property
-    def right(self) -> tuple[Array, Array]:
+    def right(self) -> tuple[Numbers, Numbers]:
         """y of the points and their weights."""
         y, w = self.nodes
         return y[self.points :], w[self.points :]
 
     @property
-    def weights(self) -> Array:
+    def weights(self) -> Numbers:
         """Weights of the sources, in y."""
         return self.nodes[1]
 
     @cached_property
-    def to_edge(self) -> Array:
+    def to_edge(self) -> Numbers:
         """From an odd function of y at the points to its integral from there to y = 1."""
         y, w = self.right
         degree = 2 * numpy.arange(self.points) + 1
@@ -49,37 +49,37 @@ class Grid:
         return (P[:, degree - 1] - P[:, degree + 1]) @ (w[:, None] * P[:, degree]).T
 
     @cached_property
-    def slope(self) -> Array:
+    def slope(self) -> Numbers:
         """dt/dy/ε of the sources."""
         return pi / 2 * numpy.cos(pi / 2 * self.nodes[0])
 
     @cached_property
-    def _targets(self) -> Array:
+    def _targets(self) -> Numbers:
         return numpy.append(self.nodes[0][self.points :], 1.0)
 
     @cached_property
-    def place(self) -> Array:
+    def place(self) -> Numbers:
         """t/ε of the targets."""
         return numpy.sin(pi / 2 * self._targets)
 
     @cached_property
-    def _stretch(self) -> Array:
+    def _stretch(self) -> Numbers:
         """(t - s)/(y - y')/ε of targets and sources."""
         y, z = self._targets[:, None], self.nodes[0]
         return pi / 2 * numpy.cos(pi / 4 * (y + z)) * numpy.sinc((y - z) / 4)
 
     @cached_property
-    def distance(self) -> Array:
+    def distance(self) -> Numbers:
         """|t - s|/ε."""
         return abs(self._targets[:, None] - self.nodes[0]) * self._stretch
 
     @cached_property
-    def log_weights(self) -> Array:
+    def log_weights(self) -> Numbers:
         """Weights of ln(|t - s|/ε), in y."""
         return _from_moments(_log_moments, self) + self.weights * numpy.log(self._stretch)
 
     @cached_property
-    def modulus_weights(self) -> Array:
+    def modulus_weights(self) -> Numbers:
         """Weights of |t - s|/ε, in y."""
         return _from_moments(_modulus_moments, self) * self._stretch
 
@@ -89,7 +89,7 @@ def grid(points: int) -> Grid:
     return Grid(points=points)
 
 
-def _from_moments(moments, grid: Grid) -> Array:  # type: ignore[no-untyped-def]
+def _from_moments(moments, grid: Grid) -> Numbers:  # type: ignore[no-untyped-def]
     """Product weights: exact for polynomials in y, from ∫ kernel(y, y') P_l(y') dy'."""
     size = 2 * grid.points
     z, w = grid.nodes
@@ -97,7 +97,7 @@ def _from_moments(moments, grid: Grid) -> Array:  # type: ignore[no-untyped-def]
     return moments(grid._targets, size) @ projection
 
 
-def _log_moments(y: Array, size: int) -> Array:
+def _log_moments(y: Numbers, size: int) -> Numbers:
     """∫ ln|y - z| P_l(z) dz over [-1, 1]: 2 (Q_l+1 - Q_l-1)/(2l + 1)."""
     inside = y < 1
     Q = numpy.zeros((size + 1, len(y)))
@@ -114,7 +114,7 @@ def _log_moments(y: Array, size: int) -> Array:
     return moments
 
 
-def _modulus_moments(y: Array, size: int) -> Array:
+def _modulus_moments(y: Numbers, size: int) -> Numbers:
     """∫ |y - z| P_l(z) dz over [-1, 1]: twice the second antiderivative of P_l."""
     P = numpy.polynomial.legendre.legvander(y, size + 1)
     degree = numpy.arange(2, size)

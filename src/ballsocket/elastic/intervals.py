@@ -12,12 +12,12 @@ from math import ceil, pi
 
 import numpy
 
+from ..arrays import Numbers
 from .closed_forms import ORDER, logarithmic, modular, smooth
 from .grid import Grid
 from .scratch import scratch
 
-Array = numpy.ndarray
-Operators = tuple[Array, Array]
+Operators = tuple[Numbers, Numbers]
 """Operators of even functions and of odd ones."""
 
 _BLOCK = 16_384  # waves at a time: what stays in the cache
@@ -30,10 +30,10 @@ _KEPT = (32, 64, 128)  # so many waves are kept
 class Intervals:
     """[-ε, ε] for half angles ε (loads,) on a grid."""
 
-    half_angle: Array
+    half_angle: Numbers
     grid: Grid
 
-    def closed(self, a: Array) -> Operators:
+    def closed(self, a: Numbers) -> Operators:
         """The operators of the closed forms with the coefficients a_1 .. a_6."""
         grid, edge = self.grid, self.half_angle[:, None, None]
         square = numpy.multiply(edge, grid.distance, out=scratch("square", (edge.size, *grid.distance.shape)))
@@ -51,7 +51,7 @@ class Intervals:
         left, right = weights[..., : grid.points][..., ::-1], weights[..., grid.points :]
         return left + right, right - left
 
-    def add_rest(self, rest: Array, operators: Operators) -> None:
+    def add_rest(self, rest: Numbers, operators: Operators) -> None:
         """Adds those of the rest r_n, in place."""
         size = max(1, _BLOCK // (_fine(self.half_angle, self.grid, len(rest)).count * len(rest)))
         for first in range(0, len(self.half_angle), size):
@@ -64,7 +64,7 @@ class Intervals:
 class KeptIntervals:
     """`Intervals` that many joints ask for: what does not depend on the joint is computed once."""
 
-    half_angle: Array
+    half_angle: Numbers
     grid: Grid
 
     @cached_property
@@ -79,14 +79,14 @@ class KeptIntervals:
         return even, odd
 
     @cached_property
-    def _known(self) -> dict[int, tuple[Array, Array, Array, Array]]:
+    def _known(self) -> dict[int, tuple[Numbers, Numbers, Numbers, Numbers]]:
         return {}
 
-    def closed(self, a: Array) -> Operators:
+    def closed(self, a: Numbers) -> Operators:
         even, odd = self._closed
         return even @ a, odd @ a
 
-    def add_rest(self, rest: Array, operators: Operators) -> None:
+    def add_rest(self, rest: Numbers, operators: Operators) -> None:
         if len(rest) > _KEPT[-1]:
             self._fresh.add_rest(rest, operators)
             return
@@ -99,14 +99,14 @@ class KeptIntervals:
         _add((even[..., some], odd[..., some], even_back[:, some], odd_back[:, some]), rest, operators)
 
 
-def _add(waves: tuple[Array, Array, Array, Array], rest: Array, operators: Operators) -> None:
+def _add(waves: tuple[Numbers, Numbers, Numbers, Numbers], rest: Numbers, operators: Operators) -> None:
     even, odd, even_back, odd_back = waves
     for whole, there, back in zip(operators, (even, odd), (even_back, odd_back), strict=True):
         strong = numpy.multiply(there, rest, out=scratch("strong waves", there.shape))
         whole += numpy.matmul(strong, back, out=scratch("rest", whole.shape))
 
 
-def _waves_between(half_angle: Array, grid: Grid, count: int) -> tuple[Array, Array, Array, Array]:
+def _waves_between(half_angle: Numbers, grid: Grid, count: int) -> tuple[Numbers, Numbers, Numbers, Numbers]:
     """The waves cos and sin of (n + ½) t at the targets (loads, points + 1, count), and the integrals of functions at
     the points against them (loads, count, points). They are good until the next call.
 
@@ -124,12 +124,12 @@ def _waves_between(half_angle: Array, grid: Grid, count: int) -> tuple[Array, Ar
     return even, odd, back, odd_back
 
 
-def _fine(half_angle: Array, grid: Grid, count: int) -> _Panels:
+def _fine(half_angle: Numbers, grid: Grid, count: int) -> _Panels:
     """Points for that many waves."""
     return _panels(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
 
 
-def _waves(name: str, angle: Array, count: int) -> tuple[Array, Array]:
+def _waves(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
     """cos and sin of (n + ½) angle for n below count, along a new last axis, good until that name is asked for."""
     waves = scratch("waves", (*angle.shape, count), complex)
     waves[..., 0] = numpy.exp(0.5j * angle)
@@ -140,7 +140,7 @@ def _waves(name: str, angle: Array, count: int) -> tuple[Array, Array]:
     return parts
 
 
-def _horner(name: str, coefficients: Array, x: Array) -> Array:
+def _horner(name: str, coefficients: Numbers, x: Numbers) -> Numbers:
     total = scratch(name, x.shape)
     total[...] = coefficients[-1]
     for coefficient in coefficients[-2::-1]:
@@ -161,19 +161,19 @@ class _Panels:
         return self.panels * self.points
 
     @cached_property
-    def nodes(self) -> tuple[Array, Array]:
+    def nodes(self) -> tuple[Numbers, Numbers]:
         """y and weights."""
         x, w = numpy.polynomial.legendre.leggauss(self.points)
         y = (numpy.arange(self.panels)[:, None] + (1 + x) / 2).ravel() / self.panels
         return y, numpy.tile(w / (2 * self.panels), self.panels)
 
     @property
-    def place(self) -> Array:
+    def place(self) -> Numbers:
         """t/ε."""
         return numpy.sin(pi / 2 * self.nodes[0])
 
     @property
-    def width(self) -> Array:
+    def width(self) -> Numbers:
         """Weights of integrals over t/ε."""
         y, w = self.nodes
         return pi / 2 * numpy.cos(pi / 2 * y) * w
@@ -192,17 +192,17 @@ def _panels_of(panels: int, points: int) -> _Panels:
 
 
 @cache
-def _even_between(grid: Grid, fine: _Panels) -> Array:
+def _even_between(grid: Grid, fine: _Panels) -> Numbers:
     """From an even function at the points of a grid to its weighted values at those of the panels."""
     return _between(grid, fine, 0)
 
 
 @cache
-def _odd_between(grid: Grid, fine: _Panels) -> Array:
+def _odd_between(grid: Grid, fine: _Panels) -> Numbers:
     return _between(grid, fine, 1)
 
 
-def _between(grid: Grid, fine: _Panels, parity: int) -> Array:
+def _between(grid: Grid, fine: _Panels, parity: int) -> Numbers:
     y, w = grid.right
     degree = 2 * numpy.arange(grid.points) + parity
     P, Q = (numpy.polynomial.legendre.legvander(part, 2 * grid.points)[:, degree] for part in (y, fine.nodes[0]))

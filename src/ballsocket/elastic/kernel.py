@@ -17,11 +17,10 @@ from math import ceil
 
 import numpy
 
+from ..arrays import Numbers
 from .closed_forms import ORDER
 from .intervals import Intervals, KeptIntervals, Operators
 from .modes import Ball, Socket
-
-Array = numpy.ndarray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +36,7 @@ class Kernel:
         """C in mm/MPa: the common limit of c_n (n + ½) at high degrees."""
         return self.socket.asymptote + (0.0 if self.ball is None else self.ball.asymptote)
 
-    def excess(self, degrees: Array) -> Array:
+    def excess(self, degrees: Numbers) -> Numbers:
         """ρ_n."""
         socket = self.socket.excess(degrees)
         if self.ball is None:
@@ -46,7 +45,7 @@ class Kernel:
         return (1 - share) * socket + share * self.ball.excess(degrees)
 
     @cached_property
-    def expansion(self) -> Array:
+    def expansion(self) -> Numbers:
         """a_1 .. a_8."""
         socket = self.socket.expansion(ORDER + 2)
         if self.ball is None:
@@ -55,7 +54,7 @@ class Kernel:
         return (1 - share) * socket + share * self.ball.expansion(ORDER + 2)
 
     @cached_property
-    def rest(self) -> Array:
+    def rest(self) -> Numbers:
         """r_n, from n = 0 up to where it no longer counts."""
         a = self.expansion
         tail = (abs(a[ORDER]) / (ORDER * self.tolerance)) ** (1 / ORDER)

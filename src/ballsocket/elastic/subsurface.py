@@ -6,10 +6,9 @@ from math import log1p, radians
 
 import numpy
 
+from ..arrays import Numbers
 from ..stress import Peak, Stress
 from .abel import State
-
-Array = numpy.ndarray
 
 NARROWEST = radians(1.0)
 """The narrowest contact whose inside is summed."""
@@ -18,14 +17,14 @@ _WAVES = 600  # n ε up to which modes are summed at the surface
 _FEWEST, _MOST = 2000, 35_000
 
 
-def surface_displacement(state: State, angle: Array) -> Array:
+def surface_displacement(state: State, angle: Numbers) -> Numbers:
     """Radial displacement of the socket's surface in mm, outwards, of one contact; shape of `angle`."""
     count = _modes(state, 0.0)
     amplitudes = _tapered(state, count) * state.kernel.socket.compliance(numpy.arange(count))
     return (amplitudes @ _legendre(angle.ravel(), count)[0]).reshape(angle.shape)
 
 
-def stress(state: State, angle: Array, depth: Array) -> Stress:
+def stress(state: State, angle: Numbers, depth: Numbers) -> Stress:
     """Stresses of one contact at polar angles (rad) and depths below the surface of the socket (mm)."""
     angle, depth = numpy.broadcast_arrays(angle, depth)
     angles, which = numpy.unique(angle.ravel(), return_inverse=True)
@@ -35,7 +34,7 @@ def stress(state: State, angle: Array, depth: Array) -> Stress:
     P, slope = _legendre(angles, count)
     modes = _tapered(state, count)
 
-    def total(field: Array, wave: Array) -> Array:
+    def total(field: Numbers, wave: Numbers) -> Numbers:
         table = (modes[:, None] * field).T @ wave  # depths by angles
         return table[level.ravel(), which.ravel()].reshape(angle.shape)
 
@@ -64,7 +63,7 @@ def peak(state: State, thickness: float) -> Peak:
 _HALF = 4
 
 
-def _around(values: Array, i: int) -> Array:
+def _around(values: Numbers, i: int) -> Numbers:
     """A finer row from the neighbour below to the neighbour above."""
     low, high = values[max(i - 1, 0)], values[min(i + 1, len(values) - 1)]
     below = numpy.linspace(low, values[i], _HALF + 1)
@@ -78,14 +77,14 @@ def _modes(state: State, depth: float) -> int:
     return int(min(surface, max(fading, 200)))
 
 
-def _tapered(state: State, count: int) -> Array:
+def _tapered(state: State, count: int) -> Numbers:
     """p_n of one contact, the last half let out gently so that the sum does not ring."""
     n = numpy.arange(count)
     taper = numpy.cos(numpy.pi * numpy.clip(n / count - 0.5, 0.0, 0.5)) ** 2
     return state.modes(count)[0] * taper
 
 
-def _legendre(angle: Array, count: int) -> tuple[Array, Array]:
+def _legendre(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
     """P_n(cos φ) and dP_n/d(cos φ) for n below count, shape (count, angles)."""
     x = numpy.cos(angle)
     P, slope = numpy.empty((count, len(x))), numpy.empty((count, len(x)))

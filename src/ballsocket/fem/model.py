@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from .. import arrays
+from ..arrays import Array
 from ..checks import needs, require
 from ..contact import Contact
 from ..cup import Cup
@@ -17,8 +18,6 @@ from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from .contact import MeshedContact
 from .spacing import SPACINGS, Adapted, Element, Spacing
-
-Array = arrays.Array
 
 
 def _largest_poisson(contact: Any) -> Array:

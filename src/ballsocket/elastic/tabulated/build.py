@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy
 
+from ...arrays import Numbers
 from ...gaps import LinearGap
 from ...joint import Joint, Material
 from ..abel import State
@@ -25,8 +26,6 @@ from ..modes import Ball, Shell, Socket
 from . import chebyshev
 from . import model as table
 
-Array = numpy.ndarray
-
 SHIPPED = Path(__file__).parents[2] / "data" / "exact_tables.npz"
 """The tables that come with the package."""
 
@@ -36,9 +35,9 @@ QUANTITIES = (*BY_ANGLE, "half_angle")
 _BALLS = (0.15, 0.27, 0.38)  # ν of the tabulated balls
 _SHARES = 5  # how soft they are
 _PROFILE = 11  # places along the contact
-_CLEARANCE = 0.005
+_CLEARANCE = 0.005  # of the socket's radius, of the joints that check the tables: the answer scales with it
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-_Numbers = tuple[float, float]
+_Liner = tuple[float, float]  # ν and R2/L
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +80,7 @@ def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
         Processes.
     """
     path = Path(path)
-    stored: dict[str, Array] = {}
+    stored: dict[str, Numbers] = {}
     with _pool(workers) as pool:
         for name, kind in _KINDS.items():
             stored[name] = kind.fitted(pool.map)
@@ -109,19 +108,19 @@ def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 # What is sampled: each takes ν, R2/L and answers with (places of the ball ..., functions, angles)
 
 
-def places(count: int) -> Array:
+def places(count: int) -> Numbers:
     """Chebyshev points from -1 to 1."""
     return -numpy.cos(pi * (numpy.arange(count) + 0.5) / count)
 
 
-def _poisson_at(place: Array) -> Array:
+def _poisson_at(place: Numbers) -> Numbers:
     near, far = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
     return (1 - numpy.exp((far + near - place * (far - near)) / 2)) / 2
 
 
-def _ratio_at(place: Array) -> Array:
-    low, high = (float(numpy.log(end + 0.2)) for end in chebyshev.THICKNESS_RATIO)
-    return numpy.exp((low + high + place * (high - low)) / 2) - 0.2
+def _ratio_at(place: Numbers) -> Numbers:
+    low, high = (float(numpy.log(end + chebyshev.SHIFT)) for end in chebyshev.THICKNESS_RATIO)
+    return numpy.exp((low + high + place * (high - low)) / 2) - chebyshev.SHIFT
 
 
 def _share_at(place: float, poisson: float, ratio: float) -> float:
@@ -129,7 +128,7 @@ def _share_at(place: float, poisson: float, ratio: float) -> float:
     return float(scale * numpy.expm1((place + 1) / 2 * numpy.log1p(chebyshev.STIFFEST_SHARE / scale)))
 
 
-def _state(liner: _Numbers, angle: Array, points: int, share: float = 0.0, ball_poisson: float = 0.3) -> State:
+def _state(liner: _Liner, angle: Numbers, points: int, share: float = 0.0, ball_poisson: float = 0.3) -> State:
     """Contacts with R2 = c = E = 1; `share` is the ball's of the compliance."""
     poisson, ratio = liner
     socket = Socket(radius=1.0, shells=(Shell(thickness=1 / ratio, young=1.0, poisson=poisson),))
@@ -140,32 +139,32 @@ def _state(liner: _Numbers, angle: Array, points: int, share: float = 0.0, ball_
     return State(kernel=kernel, gap=gap, intervals=Intervals(half_angle=angle, grid=grid(points)))
 
 
-def _three(state: State) -> Array:
+def _three(state: State) -> Numbers:
     angle, d, C = state.half_angle, state.indentation, state.kernel.compliance
     share = d / (1 + d) / (2 * numpy.sin(angle / 2) ** 2)
     load, pole = state.force / angle**3, state.pole_pressure / angle
     return numpy.log([share, load * C / (1 + d), pole * C / (1 + d)])
 
 
-def _profile(state: State) -> Array:
+def _profile(state: State) -> Numbers:
     """Chebyshev coefficients of p/(p0 sqrt(1 - v)) in 2v - 1."""
     v = (1 + places(_PROFILE)[:, None]) / 2
     angle = 2 * numpy.arcsin(numpy.sqrt(v) * numpy.sin(state.half_angle / 2))
     return _chebyshev(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
 
 
-def _rigid(liner: _Numbers, *, what: Callable[[State], Array], angles: int, points: int) -> Array:
+def _rigid(liner: _Liner, *, what: Callable[[State], Numbers], angles: int, points: int) -> Numbers:
     return what(_state(liner, chebyshev.angle_at(places(angles), liner[1]), points))
 
 
 def _ball(
-    liner: _Numbers, *, what: Callable[[State], Array], angles: int, points: int, shares: int, balls: Sequence[float]
-) -> Array:
+    liner: _Liner, *, what: Callable[[State], Numbers], angles: int, points: int, shares: int, balls: Sequence[float]
+) -> Numbers:
     """What a ball of each softness and ν adds, over how soft it is."""
     angle = chebyshev.angle_at(places(angles), liner[1])
     rigid = what(_state(liner, angle, points))
 
-    def added(place: float, ball_poisson: float) -> Array:
+    def added(place: float, ball_poisson: float) -> Numbers:
         state = _state(liner, angle, points, _share_at(place, *liner), ball_poisson)
         return (what(state) - rigid) * (2 / (1 + place))
 
@@ -176,13 +175,13 @@ def _ball(
 class _Kind:
     """One table: what is sampled at how many places, and which products are kept."""
 
-    sample: Callable[[_Numbers], Array]
+    sample: Callable[[_Liner], Numbers]
     counts: tuple[int, int]
     order: int
     single: bool = True
     balls: tuple[float, ...] = ()
 
-    def fitted(self, spread: Callable[..., Any]) -> Array:
+    def fitted(self, spread: Callable[..., Any]) -> Numbers:
         """Coefficients (ν, R2/L, share, roundness, function, angle)."""
         poisson, ratio = _poisson_at(places(self.counts[0])), _ratio_at(places(self.counts[1]))
         liners = [(float(nu), float(z)) for nu in poisson for z in ratio]
@@ -198,13 +197,13 @@ class _Kind:
         return values.astype(numpy.float32 if self.single else numpy.float64)
 
 
-def _in_roundness(balls: tuple[float, ...], values: Array) -> Array:
+def _in_roundness(balls: tuple[float, ...], values: Numbers) -> Numbers:
     """Chebyshev coefficients in the roundness of the ball, from values (balls, ...)."""
     basis = numpy.polynomial.chebyshev.chebvander(chebyshev.roundness(numpy.array(balls)), len(balls) - 1)
     return numpy.tensordot(numpy.linalg.inv(basis), values, 1)
 
 
-def _chebyshev(values: Array, axis: int) -> Array:
+def _chebyshev(values: Numbers, axis: int) -> Numbers:
     """Coefficients of the polynomial through values at `places`."""
     count = values.shape[axis]
     turn = pi * (numpy.arange(count) + 0.5) / count
@@ -247,7 +246,7 @@ def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
     return Accuracy(points=points, size=Path(path).stat().st_size, rigid=worst[0], elastic=worst[1])
 
 
-def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Array, ...]:
+def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Numbers, ...]:
     """ε, ν, R2/L, E/E_ball and the ball's ν, uniform (R2/L: in its logarithm); c/R2 is 0.005."""
     random = numpy.random.default_rng(seed)
     angle, poisson = numpy.radians(random.uniform(2, 80, count)), random.uniform(0, 0.499, count)
@@ -257,7 +256,7 @@ def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Ar
 
 
 def joint_of(
-    poisson: Array, ratio: Array, softness: Array, ball_poisson: Array, *, clearance: float = _CLEARANCE
+    poisson: Numbers, ratio: Numbers, softness: Numbers, ball_poisson: Numbers, *, clearance: float = _CLEARANCE
 ) -> Joint:
     """Joints of R2 = E = 1; the ball is rigid where all of them are."""
     ball = Material(young=1 / softness, poisson=ball_poisson) if numpy.all(softness > 0) else None
@@ -266,7 +265,7 @@ def joint_of(
 
 
 def _exact(numbers: tuple[float, ...]) -> list[float]:
-    """QUANTITIES at a half angle, with R2 = E = 1 and c = 0.005."""
+    """QUANTITIES at a half angle, with R2 = E = 1."""
     angle, poisson, ratio, softness, ball_poisson = map(float, numbers)
     plane = (1 - ball_poisson**2) / (1 - poisson**2) * softness * (1 - _CLEARANCE)
     state = _state((poisson, ratio), numpy.array([angle]), 40, plane / (1 + plane), ball_poisson)
@@ -274,7 +273,7 @@ def _exact(numbers: tuple[float, ...]) -> list[float]:
     return [float(getattr(state, name)[0]) * _CLEARANCE ** powers.get(name, 1) for name in QUANTITIES]
 
 
-def _worst(model: table.Tabulated, numbers: tuple[Array, ...], exact: Array) -> tuple[Worst, ...]:
+def _worst(model: table.Tabulated, numbers: tuple[Numbers, ...], exact: Numbers) -> tuple[Worst, ...]:
     known = dict(zip(QUANTITIES, exact, strict=True))
     known["stiffness"] = known["stiffness"] / _CLEARANCE
     joint = joint_of(*numbers[1:])
@@ -284,7 +283,7 @@ def _worst(model: table.Tabulated, numbers: tuple[Array, ...], exact: Array) -> 
     return tuple(_place(name + how, abs(value / right - 1), numbers) for name, value, right, how in found)
 
 
-def _place(name: str, error: Array, numbers: tuple[Array, ...]) -> Worst:
+def _place(name: str, error: Numbers, numbers: tuple[Numbers, ...]) -> Worst:
     k = int(numpy.argmax(numpy.nan_to_num(error, nan=numpy.inf)))
     angle, poisson, ratio, softness, ball_poisson = (float(part[k]) for part in numbers)
     ball = f", E/E_ball {softness:.4f}, ν_ball {ball_poisson:.3f}" if softness else ""

@@ -20,10 +20,14 @@ LIMIT = radians(85.0)
 
 POISSON = (-0.5, 0.4993)
 THICKNESS_RATIO = (0.195, 20.5)
+"""The ends of the tables: a little more than is answered."""
+
 STIFFEST_SHARE = 0.0275
 """β/(1 + β) of the softest ball in the tables: E/E_ball 0.02 and a little more."""
 
-NEAR, _SHIFT = 0.8, 0.2
+NEAR, SHIFT = 0.8, 0.2
+"""Of the axes of ε and R2/L: what is tabulated is smooth in them. Tables belong to the axes they were built with."""
+
 WITH_BALL = {"rigid": "ball", "profile": "profile_ball"}
 
 
@@ -38,8 +42,8 @@ def poisson_place(poisson: Array) -> Array:
 
 def thickness_place(ratio: Array) -> Array:
     """R2/L as its shifted logarithm."""
-    low, high = (log(end + _SHIFT) for end in THICKNESS_RATIO)
-    return (2 * ln(ratio + _SHIFT) - low - high) / (high - low)
+    low, high = (log(end + SHIFT) for end in THICKNESS_RATIO)
+    return (2 * ln(ratio + SHIFT) - low - high) / (high - low)
 
 
 def angle_place(angle: Array, ratio: Array) -> Array:
@@ -173,7 +177,7 @@ def squeezed(coefficients: numpy.ndarray, angles: int = 0) -> Table:
     *counts, functions, given = coefficients.shape
     whole = numpy.pad(coefficients.astype(float), (*[(0, 0)] * 5, (0, max(angles - given, 0))))
     shape, balls = (functions, whole.shape[-1]), counts[2] * counts[3]
-    least = 5e-8 if coefficients.dtype == numpy.float64 else 2e-6
+    least = 5e-8 if coefficients.dtype == numpy.float64 else 2e-6  # in double, in single precision
     liner, rest = _combined(whole.reshape(counts[0] * counts[1], -1), least)
     rest = numpy.moveaxis(rest.reshape(len(rest), balls, prod(shape)), 0, 1).reshape(-1, prod(shape))
     ball, curves = _combined(rest, least) if balls > 1 else (numpy.empty((0, 0)), rest)
