@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..output import terminal
+from ..output.reference_terminal import print_rival
 from .elements import CupWords, MeshWords, timed
 from .groups import grouped
 from .root import app
@@ -40,4 +40,4 @@ def deck(
     made = deck_of(contact, steps=steps, scale=scale)
     typer.echo(f"{made.write(out)}: {contact.mesh.elements} elements, {steps} steps")
     if run:
-        terminal.print_rival(made.expected, run_ccx(out))
+        print_rival(made.expected, run_ccx(out))

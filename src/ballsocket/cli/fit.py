@@ -15,7 +15,7 @@ from ..checks import nearest
 from ..identify.modulus import FORCES, Form
 from ..io.units import parse
 from ..kinds import Kind
-from ..output import terminal
+from ..output.reference_terminal import print_calibration, print_table_3
 from ..paper.table_3 import refit_table_3
 from .root import app
 from .words import AsJson, echo_json, named_joint
@@ -45,7 +45,7 @@ def calibrate(
         if as_json:
             echo_json({"version": bs.__version__, "table_3": [column.summary() for column in columns]})
         else:
-            terminal.print_table_3(columns)
+            print_table_3(columns)
         return
     if form not in _FORMS:
         raise ValueError(f"form {form!r} is not known{nearest(form, _FORMS)}")
@@ -58,7 +58,7 @@ def calibrate(
     if as_json:
         echo_json({"version": bs.__version__, "joint": given.summary(), **fit.summary()})
     else:
-        terminal.print_calibration(fit)
+        print_calibration(fit)
 
 
 @app.command()

@@ -10,20 +10,20 @@ import ballsocket as bs
 
 from ..catalogue import theories
 from ..checks import nearest
-from ..output import terminal
+from ..output.list_terminal import print_models, print_presets
 from .root import app
 
 
 @app.command()
 def models() -> None:
     """The catalogue: every model, where it can be trusted, and where it comes from."""
-    terminal.print_models(theories.values())
+    print_models(theories.values())
 
 
 @app.command()
 def presets() -> None:
     """Materials and joints by name, with the sources of their numbers."""
-    terminal.print_presets()
+    print_presets()
 
 
 @app.command()

@@ -1,9 +1,9 @@
-"""Results in a terminal."""
+"""Models side by side in a terminal, and what every output there shares."""
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from math import pi
 from typing import TYPE_CHECKING, Any
 
@@ -16,20 +16,13 @@ from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
 from ..describe import Column, number_text
-from ..identify.modulus import Calibration
-from ..joint import Joint, Material
-from ..model import Theory
-from ..paper.table_3 import RATIOS
-from ..paper.table_3 import Column as TableColumn
-from ..presets import joints, materials
 from ..quantities import CONTACT
 
 if TYPE_CHECKING:
-    from ..fem.export.calculix import CcxAnswer
+    pass
 
 _BARS = " ▁▂▃▄▅▆▇█"
 _BARS_ASCII = " .:-=+*#@"
-_NARROW = 72
 _PROFILE = "profile"
 _APART = "deviation"
 _OFF_THE_POLE = ("pole_pressure", "max_pressure_angle")
@@ -41,18 +34,20 @@ _DROPPED = (*(name for name in reversed(tuple(CONTACT)) if name not in (*_LATER,
 
 def print_press(comparison: Comparison, remarks: Iterable[str] = ()) -> None:
     """The comparison as a table, each model with its pressure profile from the pole to 90 degrees, and remarks."""
-    console = _console()
-    _print_folded(console, str(comparison.joint), "bold")
-    console.print(_fitting(comparison, console))
+    terminal = console()
+    print_folded(terminal, str(comparison.joint), "bold")
+    terminal.print(_fitting(comparison, terminal))
     for reason in (*remarks, *comparison.notes()):
-        _print_folded(console, reason, "dim")
+        print_folded(terminal, reason, "dim")
 
 
-def _console() -> Console:
+def console() -> Console:
+    """The terminal, in which numbers keep the colour of their text."""
     return Console(highlight=False)
 
 
-def _print_folded(console: Console, text: str, style: str) -> None:
+def print_folded(console: Console, text: str, style: str) -> None:
+    """A line that is folded between words, and indented where it goes on."""
     folded = textwrap.fill(text, max(console.width, 20), subsequent_indent="    ", break_on_hyphens=False)
     console.print(Text(folded, style=style), soft_wrap=True)
 
@@ -137,122 +132,3 @@ def _pressure(contact: Contact, angle: numpy.ndarray) -> numpy.ndarray:
 
 def _bars(share: numpy.ndarray, bars: str) -> str:
     return "".join(bars[round(float(level) * 8)] for level in numpy.clip(share, 0.0, 1.0)).rstrip()
-
-
-def print_calibration(fit: Calibration) -> None:
-    """A fitted modulus with its residual and the error of the closed form that takes it."""
-    console = _console()
-    _print_folded(console, str(fit.joint), "bold")
-    low, high = float(fit.force.min()), float(fit.force.max())
-    constants = ", ".join(f"{number:.6g}" for number in fit.modulus.constants)
-    rows = [
-        (f"{fit.modulus.name}", constants),
-        ("K = p0/d of the reference", number_text(fit.wanted, 5, "-") + " MPa/mm"),
-        (f"spread over {low:g} to {high:g} N", f"{100 * fit.spread:.2f} %"),
-        ("largest residual of the fit", f"{100 * float(numpy.max(abs(fit.residual))):.2f} %"),
-        *(
-            (f"closed form, worst error in {name.replace('_', ' ')}", f"{100 * error:.2f} %")
-            for name, error in fit.error.items()
-        ),
-    ]
-    for name, text in rows:
-        console.print(f"  {name:<46} {text}")
-
-
-def print_table_3(columns: Sequence[TableColumn]) -> None:
-    """Table 3 of the paper beside the same fit to the exact answer."""
-    console = _console()
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in ("", *(f"ν {column.poisson:g}" for column in columns)):
-        table.add_column(head, justify="right" if head else "left", no_wrap=True)
-    for i, name in enumerate(("C1", "C2", "C3")):
-        table.add_row(f"{name}, paper", *(f"{column.paper[i]:.2f}" for column in columns))
-        table.add_row(f"{name}, exact", *(f"{column.ours[i]:.2f}" for column in columns))
-    thick = RATIOS < 4.5
-    for head, part in ((f"paper's K, R2/L to {RATIOS[thick][-1]:g}", thick), (f"to {RATIOS[-1]:g}", RATIOS > 0)):
-        worst = (max(column.difference[part], key=abs) for column in columns)
-        table.add_row(f"{head}: off by", *(f"{100 * share:+.1f} %" for share in worst))
-    residuals = (float(numpy.max(abs(column.calibration.residual))) for column in columns)
-    table.add_row("our fit: largest residual", *(f"{100 * share:.1f} %" for share in residuals))
-    table.add_row("K over 1 to 3 kN: spread", *(f"{100 * column.calibration.spread:.1f} %" for column in columns))
-    for name in ("indentation", "max_pressure", "half_angle", "force"):
-        errors = (100 * column.calibration.error[name] for column in columns)
-        table.add_row(f"closed form: {name.replace('_', ' ')}", *(f"{error:.1f} %" for error in errors))
-    console.print("Table 3 of Heß & Forsbach 2021: K R2/E = C1 + C2 (R2/L) + C3 (R2/L)²", style="bold")
-    console.print(table)
-    text = f"{len(RATIOS)} joints of 24 mm outer radius, clearance 0.1 mm, steel on 1 GPa; mean of p0/d at 1, 2, 3 kN."
-    _print_folded(console, text, "dim")
-
-
-def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
-    """Our own answer at each step of a deck beside CalculiX', with how far that lies above ours."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    heads = list(_rival_heads())
-    for head, _ in heads:
-        table.add_column(head, justify="right", no_wrap=True)
-    table.add_row(*(Text(unit, style="dim") for _, unit in heads))
-    columns = (ours["indentation"], ours["force"], theirs.force, ours["pole_pressure"], theirs.pole_pressure)
-    angles = (ours["half_angle_deg"], numpy.degrees(theirs.half_angle))
-    for d, F, F_ccx, p, p_ccx, angle, angle_ccx in zip(*columns, *angles, strict=True):
-        forces = (f"{F:.1f}", f"{F_ccx:.1f}", f"{100 * (F_ccx / F - 1):+.2f}")
-        pressures = (f"{p:.3f}", f"{p_ccx:.3f}", f"{100 * (p_ccx / p - 1):+.2f}")
-        table.add_row(f"{d:.5f}", *forces, *pressures, f"{angle:.2f}", f"{angle_ccx:.2f}", f"{angle_ccx - angle:+.2f}")
-    _console().print(table)
-
-
-def _rival_heads() -> Iterator[tuple[str, str]]:
-    """Symbols and units of those columns."""
-    yield CONTACT["indentation"].symbol, CONTACT["indentation"].written.text
-    for name, apart in (("force", "%"), ("pole_pressure", "%"), ("half_angle", "°")):
-        symbol, unit = CONTACT[name].symbol, CONTACT[name].written.text
-        yield from ((symbol, unit), (f"{symbol} ccx", unit), (f"Δ{symbol}", apart))
-
-
-def print_models(models: Iterable[Theory]) -> None:
-    """The catalogue with validity and sources."""
-    rows = [(model.name, model.title, _trust(model), _sources(model)) for model in models]
-    _print_rows(("model", "what it is", "trusted for", "source"), rows, gap=1)
-
-
-def _trust(model: Theory) -> str:
-    """What the model promises, and where."""
-    promised = [] if model.promise is None else [f"{model.promise}:"]
-    return "\n".join([*promised, *map(str, model.validity)])
-
-
-def print_presets() -> None:
-    """Materials and joints with the sources of their numbers."""
-    for title, presets in (("materials", materials), ("joints", joints)):
-        rows = [(name, _numbers(preset), preset.source) for name, preset in presets.items()]
-        _print_rows((title, "numbers", "source"), rows, gap=0)
-        _console().print()
-
-
-def _sources(model: Theory) -> str:
-    """A line for each publication, with all its places."""
-    places: dict[str, list[str]] = {}
-    for source in model.sources:
-        places.setdefault(source.short, []).extend([source.place] if source.place else [])
-    return "\n".join(", ".join([short, *place]) for short, place in places.items())
-
-
-def _numbers(preset: Material | Joint) -> str:
-    text = str(preset).removeprefix(preset.name)
-    return text.removeprefix(": ") if isinstance(preset, Joint) else text.strip(" ()")
-
-
-def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], gap: int) -> None:
-    """A table with `gap` empty lines between rows; a paragraph for each row where the terminal is narrow."""
-    console = _console()
-    if console.width < _NARROW:
-        for name, *texts in rows:
-            console.print(Text(name, style="bold"))
-            for text in texts:
-                _print_folded(console, f"  {text.replace(chr(10), '; ')}", "")
-        return
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, gap, 0))
-    for head in heads:
-        table.add_column(head, overflow="fold", no_wrap=head == heads[0])
-    for name, *texts in rows:
-        table.add_row(Text(name, style="bold"), *map(Text, texts))
-    console.print(table)

@@ -1,0 +1,65 @@
+"""Lists in a terminal: models and presets, with what is to be said of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from rich.table import Table
+from rich.text import Text
+
+from ..joint import Joint, Material
+from ..model import Theory
+from ..presets import joints, materials
+from .terminal import console, print_folded
+
+_NARROW = 72  # columns: lists are paragraphs below
+
+
+def print_models(models: Iterable[Theory]) -> None:
+    """The catalogue with validity and sources."""
+    rows = [(model.name, model.title, _trust(model), _sources(model)) for model in models]
+    _print_rows(("model", "what it is", "trusted for", "source"), rows, gap=1)
+
+
+def _trust(model: Theory) -> str:
+    """What the model promises, and where."""
+    promised = [] if model.promise is None else [f"{model.promise}:"]
+    return "\n".join([*promised, *map(str, model.validity)])
+
+
+def print_presets() -> None:
+    """Materials and joints with the sources of their numbers."""
+    for title, presets in (("materials", materials), ("joints", joints)):
+        rows = [(name, _numbers(preset), preset.source) for name, preset in presets.items()]
+        _print_rows((title, "numbers", "source"), rows, gap=0)
+        console().print()
+
+
+def _sources(model: Theory) -> str:
+    """A line for each publication, with all its places."""
+    places: dict[str, list[str]] = {}
+    for source in model.sources:
+        places.setdefault(source.short, []).extend([source.place] if source.place else [])
+    return "\n".join(", ".join([short, *place]) for short, place in places.items())
+
+
+def _numbers(preset: Material | Joint) -> str:
+    text = str(preset).removeprefix(preset.name)
+    return text.removeprefix(": ") if isinstance(preset, Joint) else text.strip(" ()")
+
+
+def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], gap: int) -> None:
+    """A table with `gap` empty lines between rows; a paragraph for each row where the terminal is narrow."""
+    terminal = console()
+    if terminal.width < _NARROW:
+        for name, *texts in rows:
+            terminal.print(Text(name, style="bold"))
+            for text in texts:
+                print_folded(terminal, f"  {text.replace(chr(10), '; ')}", "")
+        return
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, gap, 0))
+    for head in heads:
+        table.add_column(head, overflow="fold", no_wrap=head == heads[0])
+    for name, *texts in rows:
+        table.add_row(Text(name, style="bold"), *map(Text, texts))
+    terminal.print(table)
