@@ -70,7 +70,7 @@ def test_a_process_that_is_asked_to_end_cleans_up(tmp_path):
         stderr=subprocess.PIPE,
     )
     deadline = time.monotonic() + 60
-    while not list(tmp_path.glob(".s.csv.*")) and time.monotonic() < deadline:  # it is writing the numbers
+    while not list(tmp_path.glob(".s.csv.*/s.csv")) and time.monotonic() < deadline:  # it is writing the numbers
         time.sleep(0.001)
     process.terminate()
     process.communicate(timeout=60)

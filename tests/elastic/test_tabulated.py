@@ -152,3 +152,19 @@ def test_places_and_angles_are_inverse():
     np.testing.assert_allclose(
         chebyshev.angle_place(chebyshev.angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
     )
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"\x93NUMPY", b"tables"])
+def test_a_file_without_tables_is_told_before_anything_is_computed(content, tmp_path):
+    (tmp_path / "tables.npz").write_bytes(content)
+    with pytest.raises(ValueError, match="tables.npz holds no tables"):
+        build_tables.check(tmp_path / "tables.npz", workers=0)
+    np.savez(tmp_path / "tables.npz", rigid=np.ones(3))
+    with pytest.raises(ValueError, match="tables.npz holds no tables"):
+        bs.Tabulated(file=str(tmp_path / "tables.npz")).press(bs.joints["hip-28"], force=1.0)
+
+
+def test_where_tables_cannot_be_written_is_told_before_anything_is_computed(tmp_path):
+    for place in (tmp_path, tmp_path / "none" / "tables.npz"):
+        with pytest.raises(OSError, match="this is a folder|No such file"):
+            build_tables.build(place, workers=0)

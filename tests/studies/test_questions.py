@@ -201,6 +201,10 @@ def test_sobol_indices_of_a_product_of_powers():
             {"distributions": {"liner_poisson": Rectangular(low=0.4, high=0.499999)}},
             "has no answer for .* of 1024 samples",
         ),
+        (
+            {"count": 1 << 30},
+            r"intervals of 1073741824 samples take about .* TB, and there are .* of memory",
+        ),
     ],
 )
 def test_bad_sensitivities_are_one_sentence(words, message):

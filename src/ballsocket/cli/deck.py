@@ -21,7 +21,7 @@ def deck(
     joint: Annotated[str, typer.Argument(help="A joint file (TOML), or the name of a preset.")],
     out: Annotated[Path, typer.Option(help="The folder to write into; made if it is not there.")],
     load: LoadWords,
-    steps: Annotated[int, typer.Option(min=1, help="Equal indentations up to the load's.")] = 8,
+    steps: Annotated[int, typer.Option(min=1, max=1000, help="Equal indentations up to the load's.")] = 8,
     scale: Annotated[
         float, typer.Option(help="Of clearance and indentation; 1 has contact on the deformed shape.")
     ] = 1e-3,

@@ -38,6 +38,15 @@ def check_rows(title: str, rows: int, columns: int) -> None:
         )
 
 
+def check_samples(count: int) -> None:
+    """Raise ValueError where the intervals of indices of so many samples do not fit into the memory."""
+    size, free = 40_000 * count + 25 * count**2, _free_memory()  # as measured: SciPy leaves out each sample in turn
+    if size > free:
+        raise ValueError(
+            f"intervals of {count} samples take about {_bytes(size)}, and there are {_bytes(free)} of memory"
+        )
+
+
 _COPIES = 3  # of the values along an axis: as drawn, as scaled, as labels
 
 

@@ -15,6 +15,7 @@ from ..model import Model
 from .distributions import Distribution
 from .labels import described
 from .parameters import PARAMETERS, contradiction
+from .room import check_samples
 from .slopes import elasticities, pressed
 from .sobol import sobol
 from .task import QUANTITIES
@@ -63,8 +64,8 @@ def sensitivity(
     Raises
     ------
     ValueError
-        A name that is not known, a count that is no power of two, samples that have no answer, an answer that does not
-        change.
+        A name that is not known, a count that is no power of two or needs more memory than there is, samples that have
+        no answer, an answer that does not change.
     """
     needs("study", "xarray")
     import xarray
@@ -72,6 +73,7 @@ def sensitivity(
     wanted, fixed = tuple(quantities), dict(load or {})
     _check(distributions, wanted, fixed)
     require("count", count, count >= 2 and count & (count - 1) == 0, "a power of two of samples")
+    check_samples(count)
     answers = _Answers(model, joint, tuple(distributions), wanted, fixed)
     shares = sobol(answers, list(distributions.values()), count, seed, confidence)
     middle = {name: float(one.frozen.median()) for name, one in distributions.items()}

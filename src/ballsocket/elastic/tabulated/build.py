@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from errno import EISDIR
 from functools import partial
 from math import degrees, pi
 from multiprocessing import get_context
@@ -16,6 +17,7 @@ from typing import Any
 import numpy
 
 from ...arrays import Numbers
+from ...atomic import at_once
 from ...gaps import LinearGap
 from ...joint import Joint, Material
 from ..abel import State
@@ -78,14 +80,22 @@ def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
         Contacts that the tables are checked at, for a rigid ball; a fifth of them for an elastic one.
     workers : int
         Processes.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
     """
     path = Path(path)
-    stored: dict[str, Numbers] = {}
-    with _pool(workers) as pool:
-        for name, kind in _KINDS.items():
-            stored[name] = kind.fitted(pool.map)
-    with path.open("wb") as stream:
-        numpy.savez_compressed(stream, allow_pickle=False, **stored)
+    if path.is_dir():
+        raise IsADirectoryError(EISDIR, "a file is needed, and this is a folder", str(path))
+    with at_once(path) as draft:  # now, and not after two minutes, it is told where nothing can be written
+        stored: dict[str, Numbers] = {}
+        with _pool(workers) as pool:
+            for name, kind in _KINDS.items():
+                stored[name] = kind.fitted(pool.map)
+        with draft.open("wb") as stream:
+            numpy.savez_compressed(stream, allow_pickle=False, **stored)
     return check(path, points=points, workers=workers)
 
 
@@ -235,6 +245,7 @@ _KINDS = {
 
 def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> Accuracy:
     """The tables in a file against the equation: half angles 2 to 80 degrees, ν 0 to 0.499, R2/L 0.2 to 20."""
+    chebyshev.tables(str(path))  # a file that holds none is told at once
     rigid, elastic = random_contacts(points, seed=2021), random_contacts(max(points // 5, 1), seed=2022, elastic=True)
     with _pool(workers) as pool:
         known = [

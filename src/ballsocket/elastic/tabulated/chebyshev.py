@@ -8,6 +8,7 @@ from functools import cache
 from importlib.resources import files
 from math import log, prod, radians
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy
 
@@ -161,10 +162,23 @@ def own(values: numpy.ndarray, like: Array) -> Array:
 
 @cache
 def tables(file: str = "") -> dict[str, Table]:
-    """The tables in a file, read when first asked for: "rigid", its "profile", and what a "ball" adds to each."""
+    """The tables in a file, read when first asked for: "rigid", its "profile", and what a "ball" adds to each.
+
+    Raises
+    ------
+    ValueError
+        Another file.
+    OSError
+        It cannot be read.
+    """
     shipped = files("ballsocket") / "data" / "exact_tables.npz"
     with (Path(file) if file else shipped).open("rb") as stream:
-        stored = dict(numpy.load(stream))
+        try:
+            stored = dict(numpy.load(stream))
+        except (ValueError, TypeError, EOFError, BadZipFile) as error:
+            raise ValueError(f"{file} holds no tables") from error
+    if set(stored) != {*WITH_BALL, *WITH_BALL.values()}:
+        raise ValueError(f"{file} holds no tables")
     angles = {ball: stored[name].shape[-1] for name, ball in WITH_BALL.items()}
     return {name: squeezed(values, angles.get(name, 0)) for name, values in stored.items()}
 

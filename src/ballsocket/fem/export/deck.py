@@ -41,6 +41,9 @@ from .solid import TYPES
 NAME, EXPECTED = "ballsocket", "expected.json"
 """Names of the deck, as CalculiX wants it, and of the file beside it."""
 
+MOST_STEPS = 1000
+"""Steps of a deck; our own answer to each is computed and written beside it."""
+
 _STIFFER = 2000.0
 _FALSE = 2e-3  # of the indentation
 _WIDTH = 100
@@ -58,7 +61,7 @@ def deck_of(contact: MeshedContact, *, steps: int = 8, scale: float = 1e-3) -> D
     contact : MeshedContact
         One contact under load, pressed by a `FiniteElement` with the linear gap.
     steps : int
-        Equal indentations up to the contact's own, one step each; 1 or more.
+        Equal indentations up to the contact's own, one step each; 1 to `MOST_STEPS`.
     scale : float
         What clearance and indentation are multiplied by, above 0 and at most 1. 1 is the real geometry, whose answer
         differs from ours by what small displacements leave out.
@@ -71,7 +74,8 @@ def deck_of(contact: MeshedContact, *, steps: int = 8, scale: float = 1e-3) -> D
     """
     if prod(contact.laws.shape) != 1:
         raise ValueError(f"a deck is for one contact, not {contact.laws.shape}: press it alone")
-    require("steps", steps, isinstance(steps, int) and steps >= 1, "a deck has a whole number of steps, 1 or more")
+    good = isinstance(steps, int) and 1 <= steps <= MOST_STEPS
+    require("steps", steps, good, f"a deck has a whole number of steps, 1 to {MOST_STEPS}")
     require("scale", scale, 0 < scale <= 1, "a scale lies above 0 and is at most 1")
     if contact.model.gap is not LinearGap:
         raise ValueError("a deck tends to the linear gap: press with gap=LinearGap")
