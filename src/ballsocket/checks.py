@@ -26,7 +26,7 @@ def require(name: str, value: Array, good: Array, allowed: str) -> None:
 def _first_bad(value: Array, good: Array) -> str:
     shape = tuple(getattr(value, "shape", ()))
     if not shape:
-        return f" = {float(value):g}"
+        return f" = {shown(value) if isinstance(value, int) else format(float(value), 'g')}"
     xp = namespace(good)
     bad = ~xp.reshape(good, (-1,))
     first = int(xp.argmax(xp.astype(bad, xp.int32)))

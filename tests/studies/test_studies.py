@@ -227,11 +227,13 @@ def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, 
         ({"clearance": [0.1, -0.1], "force": 1.0}, r"clearance\[1\] = -0.1 is not allowed for a radial clearance"),
         ({"force": Span(-1.0, 5.0, 10**6)}, r"force\[0\] = -1 is not allowed for a normal force"),
         ({"force": ["1 kN"]}, "force must be a row of numbers"),
+        ({"force": lambda: Span(1.0, 2.0, 0)}, "count = 0 is not allowed: a span has at least one value"),
+        ({"force": lambda: Span(1.0, 2.0, 10**400)}, "count = 1000.*[.]{3} is not allowed: a span has .* at most 1e15"),
     ],
 )
 def test_bad_designs_are_one_sentence(axes, message):
     with pytest.raises(ValueError, match=message):
-        bs.study(bs.HessForsbach(), HIP, **axes)
+        bs.study(bs.HessForsbach(), HIP, **{name: made() if callable(made) else made for name, made in axes.items()})
 
 
 def test_what_would_be_ignored_is_refused(tmp_path):

@@ -17,6 +17,9 @@ from ..checks import require
 from ..quantities import QUANTITIES
 from .distributions import Distribution
 
+MOST = 10**15
+"""Values along an axis. There is never so much room, but as many can be counted."""
+
 
 class Axis(ABC):
     """One dimension of a study: one or more parameters that vary along it together."""
@@ -76,7 +79,7 @@ class Span:
     Raises
     ------
     ValueError
-        Ends that are not finite, or no number at all.
+        Ends that are not finite, no value at all, or more than `MOST`.
 
     Examples
     --------
@@ -93,7 +96,7 @@ class Span:
         for name in ("low", "high"):
             value = getattr(self, name)
             require(name, value, abs(value) < inf, "the end of a span is finite")
-        require("count", self.count, self.count >= 1, "a span has at least one value")
+        require("count", self.count, 1 <= self.count <= MOST, "a span has at least one value, at most 1e15")
 
 
 class Method(Enum):

@@ -11,7 +11,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..checks import check_names, require
-from .axes import Axis, GridAxis, Method, SampleAxis, Span, SpanAxis, column
+from .axes import MOST, Axis, GridAxis, Method, SampleAxis, Span, SpanAxis, column
 from .distributions import Distribution
 from .parameters import PARAMETERS, contradiction
 
@@ -162,7 +162,7 @@ def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distri
     >>> sample(8, clearance=Rectangular(low=0.05, high=0.15)).dims
     ('sample',)
     """
-    require("count", count, count >= 1, "at least one sample is drawn")
+    require("count", count, 1 <= count <= MOST, "at least one sample is drawn, at most 1e15")
     require("seed", seed, seed >= 0, "a seed is 0 or more")
     if not distributions:
         raise ValueError("samples need at least one parameter that scatters")
