@@ -118,7 +118,7 @@ def read_engine(content: Mapping[str, Any]) -> Engine:
     if kind not in _ENGINES:
         raise ValueError(f"engine kind {shown(kind)} is not known{nearest(kind, _ENGINES)}")
     if workers is not None:
-        _whole("workers", workers)
+        workers = _whole("workers", workers)
     if kind == "dask":
         address = _text("address", content["address"]) if "address" in content else None
         return Distributed(address=address, workers=workers)
