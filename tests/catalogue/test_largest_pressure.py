@@ -53,6 +53,7 @@ def test_a_stiff_shell_on_a_soft_backing_presses_hardest_on_a_ring(joint, pole, 
 
 
 def test_the_elements_find_the_same_ring():
+    pytest.importorskip("skfem")
     joint = shell(25.0, 0.0725, 4.0, 20.0)
     exact = bs.Exact().press(joint, force=3200.0)
     meshed = bs.FiniteElement(cup=bs.Cup(arc_of_cover=np.radians(300.0))).press(joint, force=3200.0)
