@@ -46,7 +46,7 @@ def _numbers(thing):
 
 def test_every_quantity_of_contact_joint_and_cup_is_an_attribute_and_no_other_number_is_one():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
-    assert _numbers(contact) | _numbers(HIP) == {*CONTACT, *DERIVED, *JOINT} - {"outer_radius", "edge_distance"}
+    assert _numbers(contact) | _numbers(HIP) == {*CONTACT, *DERIVED, *JOINT, "shell"} - {"edge_distance"}
     assert _numbers(HIP.liner) == set(MATERIAL)
     assert _numbers(bs.Layer(thickness=3.0, material=bs.TITANIUM)) == set(LAYER)
     assert _numbers(bs.Cup()) - {"rim"} == set(CUP)

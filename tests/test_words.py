@@ -60,6 +60,66 @@ def test_what_is_no_number_or_no_material_is_a_type_error():
         bs.Joint(16.0, 0.1, 6.0, bs.UHMWPE)
 
 
+def test_lengths_in_other_words_make_the_same_joint():
+    rest = {"liner": bs.UHMWPE}
+    same = bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=5.9, **rest)
+    assert bs.Joint(head_diameter=36.0, diametral_clearance=0.2, outer_diameter=48.0, **rest) == same
+    assert bs.Joint(head_diameter=36.0, socket_radius=18.1, outer_radius=24.0, **rest) == same
+    assert bs.Joint(socket_radius=18.1, clearance=0.1, liner_thickness=5.9, **rest) == same
+    assert (same.head_diameter, same.diametral_clearance, same.outer_diameter) == (36.0, 0.2, 48.0)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "message"),
+    [
+        ({"head_diameter": 32.0}, "head_diameter and ball_radius|ball_radius and head_diameter"),
+        ({"diametral_clearance": 0.2}, "clearance and diametral_clearance are one too many"),
+        ({"socket_radius": 16.1}, "ball_radius, socket_radius and clearance are one too many: any two of them fix"),
+        ({"outer_diameter": 44.2}, "outer_diameter and liner_thickness are one too many: either fixes the other"),
+        ({"head_diamter": 32.0}, "'head_diamter' .* is not known; did you mean 'head_diameter'"),
+    ],
+)
+def test_a_length_that_is_given_twice_is_refused_though_it_agrees(lengths, message):
+    with pytest.raises(ValueError, match=message):
+        bs.Joint(**GOOD, **lengths)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "message"),
+    [
+        ({"ball_radius": 16.0, "clearance": 0.1}, "liner_thickness is missing, or outer_radius"),
+        ({"head_diameter": 32.0, "liner_thickness": 6.0}, "two of .* are needed, got head_diameter"),
+        ({"ball_radius": 16.0, "clearance": 0.1, "outer_radius": 16.1}, "outer_radius = 16.1 is not .* no liner"),
+        ({"ball_radius": 16.0, "socket_radius": 15.0, "liner_thickness": 6.0}, "clearance = -1 is not allowed"),
+    ],
+)
+def test_lengths_that_make_no_joint_are_told(lengths, message):
+    with pytest.raises(ValueError, match=message):
+        bs.Joint(**lengths, liner=bs.UHMWPE)
+
+
+def test_a_joint_is_varied():
+    hip = bs.joints["hip-36"]
+    varied = hip.replace(liner=bs.UHMWPE, head_diameter=32)
+    assert varied == replace(hip, ball_radius=16, liner=bs.UHMWPE, name="hip-36, varied", source="")
+    assert varied.replace(clearance=0.2).name == "hip-36, varied"
+    assert hip.replace(outer_diameter=48.0).liner_thickness == pytest.approx(5.9)
+    assert hip.replace(socket_radius=19.0).clearance == pytest.approx(1.0)
+    assert hip.replace(name="mine").name == "mine"
+    assert hip.replace() == hip
+    with pytest.raises(ValueError, match="'linr' in a joint is not known; did you mean 'liner'"):
+        hip.replace(linr=bs.UHMWPE)
+    with pytest.raises(TypeError, match="liner must be a Material, got 'uhmwpe'"):
+        hip.replace(liner="uhmwpe")
+
+
+def test_the_outer_radius_is_that_of_the_shell():
+    joint = bs.Joint(**GOOD, backing=(SHELL, BONE))
+    assert joint.outer_radius == pytest.approx(16.1 + 6.0 + 4.0)
+    assert joint.replace(outer_diameter=50.0).liner_thickness == pytest.approx(4.9)
+    assert bs.Joint(**GOOD, backing=(BONE,)).outer_radius == pytest.approx(22.1)
+
+
 SHELL = bs.Layer(thickness=4.0, material=bs.TITANIUM)
 CEMENT = bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)
 BONE = bs.Layer(thickness=np.inf, material=bs.CORTICAL_BONE)

@@ -115,10 +115,28 @@ def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
 
 
 def nearest(name: Any, known: Iterable[str]) -> str:
-    """A hint: the nearest known name, or all of them."""
-    text = name if isinstance(name, str) else shown(name)
-    close = get_close_matches(text[:_LONGEST], list(known), n=1, cutoff=0.5)
-    return f"; did you mean {close[0]!r}?" if close else f"; known: {', '.join(known)}"
+    """A hint: the nearest known name, or those that there are."""
+    text, all_known = (name if isinstance(name, str) else shown(name))[:_LONGEST], list(known)
+    close = get_close_matches(text, all_known, n=1, cutoff=0.8) or _like(text, all_known)
+    close = close or get_close_matches(text, all_known, n=1, cutoff=0.5)
+    return f"; did you mean {close[0]!r}?" if close else f"; known: {_listed(all_known)}"
+
+
+def _listed(names: list[str]) -> str:
+    """Names, as many as a sentence holds."""
+    text = ", ".join(names)
+    return text if len(text) <= _LISTED else f"{text[: text.rindex(', ', 0, _LISTED)]}, ..."
+
+
+def _like(text: str, known: list[str]) -> list[str]:
+    """Names that begin as the text does, or are the same in other letters."""
+    begin = plain_name(text)
+    return [name for name in known if len(begin) > 2 and plain_name(name).startswith(begin)]
+
+
+def plain_name(text: str) -> str:
+    """A name in small letters with hyphens, as those of materials, joints and models are."""
+    return text.strip().lower().replace(" ", "-").replace("_", "-")
 
 
 def check_text(name: str, value: Any) -> str:
@@ -140,4 +158,5 @@ def shown(value: Any) -> str:
 
 
 _LONGEST_TEXT = 1000
+_LISTED = 200
 _LONGEST = 60  # characters of what is shown, and of a name for which others like it are looked for

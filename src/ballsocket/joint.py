@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from enum import Enum
 from functools import reduce
 from itertools import chain
 from math import inf
-from typing import Any
+from typing import Any, Unpack
 
 from .arrays import Array, is_plain, to_list, where
-from .checks import require
+from .checks import check_names, require
+from .dimensions import OWN, Dimensions, Lengths, made_of
 from .quantities import JOINT, LAYER, MATERIAL
 
 
@@ -106,8 +108,8 @@ class Layer:
         return f"a massive body of {self.material}" if text == "inf" else f"{text} mm of {self.material}"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Joint:
+@dataclass(frozen=True, kw_only=True, init=False)
+class Joint(Dimensions):
     """A ball in a socket of nearly its own radius, lined with an elastic layer.
 
     What is behind the liner is rigid, unless `backing` or `support` say otherwise. Models that take it as rigid all
@@ -123,6 +125,10 @@ class Joint:
         Radial clearance c = R2 - R1 in mm, zero or more.
     liner_thickness : float or array
         L in mm, positive; `inf` is a massive socket.
+    head_diameter, diametral_clearance, socket_radius, outer_radius, outer_diameter : float or array
+        In mm, in place of the radius, the clearance or the thickness that they fix: 2 R1; 2 c; R2, where one of R1 and
+        c is given; R2 + L, with the layer right behind the liner (the shell) if that is of finite thickness; twice
+        that. What is fixed twice is refused.
     liner : Material
         What the socket is lined with.
     ball : Material or None
@@ -139,7 +145,7 @@ class Joint:
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value.
+        A number that is not allowed, named with its value; a length too few or too many.
     TypeError
         What is neither a number nor an array; a liner, ball, backing or support of another type.
 
@@ -149,6 +155,9 @@ class Joint:
     >>> hip = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
     >>> hip.socket_radius
     18.0
+    >>> same = bs.Joint(head_diameter=35.8, diametral_clearance=0.2, outer_diameter=49.5, liner=bs.UHMWPE)
+    >>> same.liner_thickness
+    6.75
     """
 
     ball_radius: Array
@@ -161,17 +170,26 @@ class Joint:
     name: str = ""
     source: str = ""
 
-    def __post_init__(self) -> None:
-        own = ("ball_radius", "clearance", "liner_thickness")
-        numbers = {name: JOINT[name].checked(getattr(self, name)) for name in own}
-        if not isinstance(self.liner, Material):
-            raise TypeError(f"liner must be a Material, got {self.liner!r}")
-        if not (self.ball is None or isinstance(self.ball, Material)):
-            raise TypeError(f"ball must be a Material, or None for a rigid ball, got {self.ball!r}")
-        if not isinstance(self.support, Support):
-            raise TypeError(f"support must be Support.FIXED or Support.FREE, got {self.support!r}")
-        backing = _checked_backing(self.backing)
-        _set(self, **numbers, backing=backing)
+    def __init__(
+        self,
+        *,
+        liner: Material,
+        ball: Material | None = None,
+        backing: Sequence[Layer] = (),
+        support: Support = Support.FIXED,
+        name: str = "",
+        source: str = "",
+        **lengths: Unpack[Lengths],
+    ) -> None:
+        if not isinstance(liner, Material):
+            raise TypeError(f"liner must be a Material, got {liner!r}")
+        if not (ball is None or isinstance(ball, Material)):
+            raise TypeError(f"ball must be a Material, or None for a rigid ball, got {ball!r}")
+        if not isinstance(support, Support):
+            raise TypeError(f"support must be Support.FIXED or Support.FREE, got {support!r}")
+        layers = _checked_backing(backing)
+        _set(self, **made_of(lengths, {}, _shell(layers)))
+        _set(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
         for name, inner in self._thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
 
@@ -181,9 +199,8 @@ class Joint:
         return [("liner_thickness", self.liner_thickness), *layers]
 
     @property
-    def socket_radius(self) -> Array:
-        """R2 = R1 + c in mm."""
-        return self.ball_radius + self.clearance
+    def shell(self) -> Array:
+        return _shell(self.backing)
 
     @property
     def thickness_ratio(self) -> Array:
@@ -248,6 +265,39 @@ class Joint:
             source=self.source,
         )
 
+    def replace(self, **changes: Any) -> Joint:
+        """A joint like this one with other lengths, materials, layers or another name.
+
+        Of radius, clearance and thickness stays what the changes do not fix: with another head the clearance and the
+        liner's thickness are the same. A joint with a name is called "varied" afterwards.
+
+        Parameters
+        ----------
+        **changes
+            As of `Joint`.
+
+        Raises
+        ------
+        ValueError
+            A name that is not known; a number that is not allowed.
+        TypeError
+            As of `Joint`.
+
+        Examples
+        --------
+        >>> import ballsocket as bs
+        >>> print(bs.joints["hip-36"].replace(liner=bs.UHMWPE, head_diameter=32.0).dimensions)
+        R1 16 mm, clearance 0.1 mm, liner 5 mm
+        """
+        known = [each.name for each in fields(self) if each.name not in OWN]
+        check_names(changes, (*JOINT, *known), "in a joint")
+        lengths = {name: value for name, value in changes.items() if name in JOINT}
+        others = {name: value for name, value in changes.items() if name not in JOINT}
+        standing = {name: getattr(self, name) for name in OWN}
+        made = made_of(lengths, standing, _shell(_checked_backing(others.get("backing", self.backing))))
+        called = {"name": f"{self.name.removesuffix(_VARIED)}{_VARIED}", "source": ""} if changes and self.name else {}
+        return replace(self, **made, **called | others)
+
     def with_floats(self) -> Joint:
         """The same joint of Python numbers with all of them floats."""
         numbers = self.numbers()
@@ -277,6 +327,19 @@ class Joint:
         behind = "".join(f" on {layer}" for layer in self.backing)
         free = ", free outside" if self.support is Support.FREE else ""
         return f"{head}{self.dimensions} of {self.liner}{behind}{free}; ball {ball}"
+
+
+_VARIED = ", varied"
+
+
+def _shell(backing: Sequence[Layer]) -> Array:
+    """Thickness of the layer right behind the liner; 0 of none, and of an infinite one."""
+    if not backing:
+        return 0.0
+    thickness = backing[0].thickness
+    if is_plain(thickness):
+        return thickness if thickness < inf else 0.0
+    return where(thickness < inf, thickness, 0.0)
 
 
 def _checked_backing(backing: Any) -> tuple[Layer, ...]:

@@ -199,17 +199,25 @@ DERIVED = _table(
 JOINT = _table(
     Quantity("ball_radius", "R1", "ball radius", Kind.LENGTH, "Of the ball, the femoral head.", allows=_positive,
              allowed="a radius (mm) is above 0 and finite"),
+    Quantity("head_diameter", "2 R1", "head diameter", Kind.LENGTH, "Of the ball, twice its radius.", allows=_positive,
+             allowed="a diameter (mm) is above 0 and finite"),
     Quantity("socket_radius", "R2", "socket radius", Kind.LENGTH, "R1 + c, inner radius of the liner.",
              allows=_positive, allowed="a radius (mm) is above 0 and finite"),
     Quantity("clearance", "c", "radial clearance", Kind.LENGTH,
              "R2 - R1, half of the diametral clearance that implant papers usually quote. The paper writes ΔR.",
              allows=_not_negative,
              allowed="a radial clearance (mm) is 0 or more and finite; negative is a preloaded joint, another problem"),
+    Quantity("diametral_clearance", "2 c", "diametral clearance", Kind.LENGTH,
+             "Twice the radial clearance, the difference of the diameters.", allows=_not_negative,
+             allowed="a diametral clearance (mm) is 0 or more and finite; negative is a preloaded joint"),
     Quantity("liner_thickness", "L", "liner thickness", Kind.LENGTH,
              "Of the elastic layer between the socket's surface and its backing; `inf` is a massive socket.",
              allows=_positive_or_infinite, allowed="a thickness (mm) is above 0; inf is a massive socket"),
-    Quantity("outer_radius", "R2 + L", "outer radius of the liner", Kind.LENGTH, "Where its backing begins.",
+    Quantity("outer_radius", "Ro", "outer radius", Kind.LENGTH,
+             "Of the liner, R2 + L; where a layer of finite thickness is right behind it, of that shell.",
              allows=_positive, allowed="a radius (mm) is above 0 and finite"),
+    Quantity("outer_diameter", "2 Ro", "outer diameter", Kind.LENGTH, "Twice the outer radius.", allows=_positive,
+             allowed="a diameter (mm) is above 0 and finite"),
 )
 """The dimensions of a joint."""
 

@@ -191,7 +191,7 @@ def test_a_link_brings_back_what_was_seen(user, other):
     user.open()
     user.nudge("ball_radius", times=3)
     user.page.locator(".side .bk-btn", has_text="diameter").click()
-    assert user.says("Ball diameter 2 R1 [mm]")
+    assert user.says("Head diameter 2 R1 [mm]")
     expected = bs.Exact().press(replace(HIP, ball_radius=14.3), force=3000.0).max_pressure
     assert user.shows("max_pressure", expected)
     user.page.wait_for_function("window.location.search.includes('size=diameter')")
@@ -201,7 +201,7 @@ def test_a_link_brings_back_what_was_seen(user, other):
     assert parse_qs(urlsplit(link).query)["joint.ball_radius"] == ["14.3"]
     other.open(link.removeprefix(user.address))
     assert other.shows("max_pressure", expected)
-    assert other.says("Ball diameter 2 R1 [mm]")
+    assert other.says("Head diameter 2 R1 [mm]")
 
 
 def test_a_link_that_cannot_be_read_says_so(user):

@@ -227,7 +227,12 @@ def test_figure(tmp_path, ending):
         (["press", EXAMPLE, "--model", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
         (["press", EXAMPLE, "--figure", "a.jpg"], "figure 'a.jpg' must end in .png, .svg, .pdf"),
         (["press", EXAMPLE, "--figure", "/no/such/folder/a.png"], "No such file or directory"),
-        (["press", EXAMPLE, "--young", "1GPa"], "give a joint file or the joint's numbers, not both"),
+        (["press", EXAMPLE, "--liner", "uhmpe"], "liner material 'uhmpe' is not known; did you mean 'uhmwpe'?"),
+        (
+            ["press", EXAMPLE, "--ball-radius", "9", "--head-diameter", "18"],
+            "ball_radius and head_diameter are one too",
+        ),
+        (["press", "hip-36", "--outer-diameter", "30"], "outer_diameter = '30' is not allowed: it leaves no liner"),
         (["press", EXAMPLE, "--colour"], "No such option: --colour"),
         (["press", ".", "--force", "1"], "is a folder; a joint file is needed"),
         (["press", *NUMBERS[:4], *NUMBERS[6:]], "liner_thickness is missing"),
@@ -248,6 +253,35 @@ def test_misuse_is_one_line_that_says_what_to_change(words, message):
     assert done.stderr.startswith("ballsocket: ")
     assert done.stderr.count("\n") == 1
     assert done.stdout == ""
+
+
+def pressed(*words):
+    """The joint that is pressed, and the largest pressures, by JSON."""
+    answer = json.loads(run("press", *words, "--force", "3 kN", "--json").stdout)
+    return answer["joint"], [result["max_pressure"] for result in answer["results"]]
+
+
+def test_a_joint_is_given_by_its_diameters():
+    joint, pressures = pressed(
+        *("--head-diameter", "36 mm", "--diametral-clearance", "0.2 mm", "--outer-diameter", "48 mm"),
+        *("--liner", "crosslinked-pe", "--ball", "alumina"),
+    )
+    assert (joint["ball_radius"], joint["clearance"], joint["liner_thickness"]) == (18.0, 0.1, 5.9)
+    assert pressures == pressed("hip-36", "--liner-thickness", "5.9")[1]
+
+
+def test_a_preset_is_varied():
+    joint, pressures = pressed("hip-36", "--liner", "uhmwpe", "--head-diameter", "32 mm")
+    made = bs.joints["hip-36"].replace(liner=bs.UHMWPE, head_diameter=32.0)
+    assert joint == made.summary()
+    assert bs.HessForsbach().press(made, force=3000.0).max_pressure in pressures
+    stiffer, _ = pressed("hip-36", "--young", "2 GPa")
+    assert stiffer["liner"] == {**bs.joints["hip-36"].liner.summary(), "young": 2000.0}
+
+
+def test_a_file_is_varied():
+    joint, _ = pressed(EXAMPLE, "--poisson", "0.45", "--liner", "pom")
+    assert joint["liner"] == {**bs.POM.summary(), "poisson": 0.45}  # as in a file: numbers win over the material's
 
 
 def test_a_file_with_a_mistake(tmp_path):

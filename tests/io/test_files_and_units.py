@@ -317,6 +317,20 @@ def test_a_cup_that_faces_nowhere_is_told_how(line, message):
         parse_joint(f"{HIP}[cup]\n{line}\n".encode(), "hip")
 
 
+def test_diameters_are_twice_radii():
+    lengths = 'head_diameter = "35.8 mm"\ndiametral_clearance = "200 um"\nouter_diameter = "4.95 cm"\n'
+    said = parse_joint(f"[joint]\n{lengths}[liner]\nmaterial = 'UHMWPE'".encode(), "hip")
+    assert said == parse_joint(HIP.encode(), "hip")
+
+
+def test_what_surrounds_a_liner_ends_at_its_shell():
+    shell = (
+        "[[backing]]\nthickness = 3\nmaterial = 'titanium'\n[[backing]]\nthickness = inf\nmaterial = 'cortical-bone'"
+    )
+    text = HIP.replace('liner_thickness = "6.75 mm"', "outer_diameter = 55.5")
+    assert parse_joint(f"{text}{shell}".encode(), "hip").joint.liner_thickness == 6.75
+
+
 def test_numbers_win_over_the_material():
     file = parse_joint(HIP.replace('"UHMWPE"', '"uhmwpe"\npoisson = 0.45').encode(), "hip")
     assert file.joint.liner.poisson == 0.45
@@ -328,7 +342,27 @@ def test_numbers_win_over_the_material():
     [
         ("clearance", "clearence", "hip: 'clearence' in .joint. is not known; did you mean 'clearance'?"),
         ("[liner]", "[linner]", "hip: 'linner' at the top is not known; did you mean 'liner'?"),
-        ("[joint]", "[ball]", "hip: 'ball_radius' in .ball. is not known"),
+        ("[joint]", "[ball]", "hip: 'ball_radius' in .ball. is not known; it belongs in .joint.$"),
+        ("[joint]", "young = 3\n[joint]", "hip: 'young' at the top is not known; it belongs in .liner. or .ball. or"),
+        ("[joint]", "[joint]\nforce = 3", "hip: 'force' in .joint. is not known; it belongs in .load.$"),
+        (
+            "[joint]",
+            "[joint]\nthickness = 3",
+            r"hip: 'thickness' in .joint. is not known; it belongs in \[\[backing\]\]$",
+        ),
+        (
+            "ball_radius = 17.9",
+            "head_diameter = 0",
+            r"hip: head_diameter = 0 is not allowed: a diameter \(mm\) is above 0",
+        ),
+        (
+            "ball_radius = 17.9",
+            "ball_radius = 17.9\nhead_diameter = 36",
+            "hip: ball_radius and head_diameter are one too",
+        ),
+        ('"6.75 mm"', '6\nouter_diameter = "48 mm"', "hip: outer_diameter and liner_thickness are one too many"),
+        ('"6.75 mm"', '6\ndiametral_clearance = "0.2 mm"', "hip: clearance and diametral_clearance are one too many"),
+        ('liner_thickness = "6.75 mm"', 'outer_diameter = "3 cm"', "hip: outer_diameter = '3 cm' is not .* no liner"),
         ("UHMWPE", "UHMPE", "hip: liner material 'UHMPE' is not known; did you mean 'uhmwpe'?"),
         ('material = "UHMWPE"', "young = 1000", "hip: the liner needs a material, .* missing: poisson"),
         ('"100 um"', '"-100 um"', "hip: clearance = '-100 um' is not allowed: a radial clearance"),
@@ -338,7 +372,7 @@ def test_numbers_win_over_the_material():
         ('clearance = "100 um"', "socket_radius = 17", "hip: clearance = -0.9 is not allowed"),
         ('"6.75 mm"', '"6.75 s"', "hip: liner_thickness = '6.75 s' is not a length, such as '16 mm'"),
         ("ball_radius = 17.9", "", "hip: two of ball_radius, socket_radius, clearance are needed, got clearance"),
-        ("ball_radius = 17.9", "ball_radius = 17.9\nsocket_radius = 18", "needed, got ball_radius, socket_radius, cl"),
+        ("ball_radius = 17.9", "ball_radius = 17.9\nsocket_radius = 18", "any two of them fix the third"),
         ('liner_thickness = "6.75 mm"', "", "hip: liner_thickness is missing"),
         ("[liner]", "[liner", "hip is not TOML"),
         ("[joint]", "load = 3\n[joint]", "hip: load = 3 must be a table"),

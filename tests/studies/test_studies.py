@@ -17,6 +17,7 @@ from ballsocket.studies.blocks import Blocks
 from ballsocket.studies.design import Method, Span, grid, sample
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
+from ballsocket.studies.limits import Limit
 from ballsocket.studies.rows import table
 from ballsocket.studies.run import read
 
@@ -81,6 +82,28 @@ def test_derived_parameters_make_the_joint_they_say():
             ball_radius=radius - 0.2, clearance=0.2, liner_thickness=26.0 - radius, liner=HIP.liner, ball=HIP.ball
         )
         assert pressure == pytest.approx(bs.HessForsbach().press(joint, force=2000.0).max_pressure, rel=1e-12)
+
+
+def test_diameters_are_axes():
+    diameters = {"head_diameter": [30.0, 36.0], "diametral_clearance": 0.2, "outer_diameter": 52.0}
+    found = bs.study(bs.HessForsbach(), HIP, **diameters, force=2000.0)
+    radii = {"ball_radius": [15.0, 18.0], "clearance": 0.1, "outer_radius": 26.0}
+    np.testing.assert_array_equal(
+        found.max_pressure, bs.study(bs.HessForsbach(), HIP, **radii, force=2000.0).max_pressure
+    )
+    for name, limit in (("outer_radius", 26.0), ("ball_radius", [15.0, 18.0]), ("clearance", 0.1)):
+        np.testing.assert_allclose(Limit(name=name).of(found), limit, rtol=1e-12)
+    with pytest.raises(ValueError, match="head_diameter and ball_radius|ball_radius and head_diameter"):
+        bs.study(bs.HessForsbach(), HIP, head_diameter=[30.0], ball_radius=[15.0], force=1.0)
+
+
+def test_an_outer_radius_is_that_of_the_shell():
+    backed = HIP.replace(backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),))
+    found = bs.study(bs.Exact(), backed, outer_radius=[26.0], force=2000.0)
+    thickness = Limit(name="liner_thickness").of(found)
+    np.testing.assert_allclose(thickness, 26.0 - 18.0 - 3.0)
+    made = backed.replace(liner_thickness=5.0)
+    assert found.max_pressure.item() == pytest.approx(bs.Exact().press(made, force=2000.0).max_pressure, rel=1e-9)
 
 
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Exact()], ids=lambda m: m.name)

@@ -10,6 +10,7 @@ from typing import Any
 
 import panel as pn
 
+from ..dimensions import DIAMETERS
 from ..io.joint_file import JointFile, joint_of
 from ..io.joint_toml import Tables, tables_of
 from ..kinds import Unit
@@ -35,19 +36,23 @@ _NUMBERS = {
     "ball_radius": _number("ball_radius", "joint", "ball_radius", (5.0, 30.0), 0.1),
     "clearance": _number("clearance", "joint", "clearance", (0.0, 0.5), 0.005),
     "liner_thickness": _number("liner_thickness", "joint", "liner_thickness", (0.5, 20.0), 0.1),
+    "outer_radius": _number("outer_radius", "joint", "outer_radius", (10.0, 40.0), 0.1),
     "liner_young": _number("liner_young", "liner", "young", (100.0, 5000.0), 10.0),
     "liner_poisson": _number("liner_poisson", "liner", "poisson", (0.0, 0.4995), 0.005),
     "ball_young": _number("ball_young", "ball", "young", (1e3, 4e5), 1e3),
     "ball_poisson": _number("ball_poisson", "ball", "poisson", (0.0, 0.4995), 0.005),
 }
-_DIAMETER = replace(
-    _NUMBERS["ball_radius"],
-    label=f"Ball diameter 2 {JOINT['ball_radius'].head()}",
-    low=10.0,
-    high=60.0,
-    step=0.2,
-    factor=2.0,
-)
+_DIAMETERS = {
+    single: replace(
+        _NUMBERS[single],
+        label=JOINT[double].capital(),
+        low=2 * _NUMBERS[single].low,
+        high=2 * _NUMBERS[single].high,
+        step=2 * _NUMBERS[single].step,
+        factor=2 * _NUMBERS[single].factor,
+    )
+    for double, single in DIAMETERS.items()
+}
 _LOADS = {
     "force": _number("force", "load", "force", (50.0, 5000.0), 50.0),
     "indentation": _number("indentation", "load", "indentation", (1.0, 200.0), 1.0),
@@ -105,6 +110,7 @@ class JointControls:
             self.sliders["ball_radius"].panel,
             self.sliders["clearance"].panel,
             self.sliders["liner_thickness"].panel,
+            self.sliders["outer_radius"].panel,
             self.massive,
             self.kind,
             self.load.panel,
@@ -143,8 +149,9 @@ class JointControls:
             material = getattr(joint, part)
             if material is not None:
                 tables[part] = {"young": float(material.young), "poisson": float(material.poisson)}
+        tables["joint"] = {**tables["joint"], "outer_radius": float(joint.outer_radius)}
         for name, slider in self.sliders.items():
-            spec = _DIAMETER if (name, screen.size) == ("ball_radius", "diameter") else _NUMBERS[name]
+            spec = _DIAMETERS.get(name, _NUMBERS[name]) if screen.size == "diameter" else _NUMBERS[name]
             value = tables.get(spec.table, {}).get(spec.key)
             slider.panel.visible = value is not None and not isinf(value)
             if slider.panel.visible:
@@ -184,6 +191,8 @@ class JointControls:
 
     def _typed(self, spec: Number, value: float) -> None:
         def change(tables: Tables) -> None:
+            if spec.key == "outer_radius":  # in place of the thickness that it fixes
+                tables["joint"].pop("liner_thickness")
             tables.setdefault(spec.table, {})[spec.key] = round(value / spec.factor, 12)
 
         self._edit(change)

@@ -104,8 +104,6 @@ def now(file: JointFile, name: str) -> float:
     """What the joint on the screen has there; NaN where it has no such number."""
     joint = file.joint
     known = {
-        "socket_radius": joint.socket_radius,
-        "outer_radius": joint.socket_radius + joint.liner_thickness,
         "liner_young": joint.liner.young,
         "liner_poisson": joint.liner.poisson,
         "ball_young": None if joint.ball is None else joint.ball.young,

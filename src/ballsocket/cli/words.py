@@ -10,44 +10,55 @@ from typing import Annotated, Any
 import typer
 
 from ..checks import nearest
-from ..io.joint_file import JointFile, joint_of, read_joint, read_load
+from ..io.joint_file import JointFile, joint_of, read_joint, read_load, varied
 from ..presets import joints
+from ..quantities import JOINT
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointWords:
-    """A joint in words, in place of a file."""
+    """A joint in words, or what they change in that of a file or preset."""
 
     ball_radius: Annotated[str | None, typer.Option(help="R1, '16 mm'")] = None
+    head_diameter: Annotated[str | None, typer.Option(help="2 R1, '32 mm', in place of --ball-radius")] = None
     clearance: Annotated[str | None, typer.Option(help="Radial clearance, '0.1 mm'")] = None
+    diametral_clearance: Annotated[str | None, typer.Option(help="Twice that, in place of --clearance")] = None
     liner_thickness: Annotated[str | None, typer.Option(help="L, '6 mm'; inf is a massive socket")] = None
+    outer_radius: Annotated[
+        str | None, typer.Option(help="Of the liner, or its shell, in place of --liner-thickness")
+    ] = None
+    outer_diameter: Annotated[str | None, typer.Option(help="Twice that, '48 mm'")] = None
     young: Annotated[str | None, typer.Option(help="Young's modulus of the liner, '1 GPa'")] = None
     poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the liner")] = None
-    liner: Annotated[str | None, typer.Option(help="Liner material by name, in place of --young --poisson")] = None
+    liner: Annotated[
+        str | None, typer.Option(help="Liner material by name; --young and --poisson win over its own")
+    ] = None
     ball_young: Annotated[str | None, typer.Option(help="Young's modulus of the ball; none is a rigid ball")] = None
     ball_poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the ball")] = None
-    ball: Annotated[str | None, typer.Option(help="Ball material by name, in place of its numbers")] = None
+    ball: Annotated[
+        str | None, typer.Option(help="Ball material by name; --ball-young and --ball-poisson win over its own")
+    ] = None
 
     def tables(self) -> dict[str, dict[str, str]]:
         """The tables of a joint file that the words make up."""
-        lengths = {name: getattr(self, name) for name in ("ball_radius", "clearance", "liner_thickness")}
+        lengths = {name: getattr(self, name) for name in JOINT if hasattr(self, name)}
         liner = {"material": self.liner, "young": self.young, "poisson": self.poisson}
         ball = {"material": self.ball, "young": self.ball_young, "poisson": self.ball_poisson}
         tables = {"joint": given(lengths), "liner": given(liner), "ball": given(ball)}
         return {name: table for name, table in tables.items() if table}
 
     def or_named(self, name: str | None) -> JointFile:
-        """The joint in words, or that of a file or preset: exactly one of them is needed."""
+        """The joint in words, or that of a file or preset with what the words change."""
         tables = self.tables()
-        if name is not None and tables:
-            raise ValueError("give a joint file or the joint's numbers, not both")
         if name is None and not tables:
             raise ValueError(
                 "a joint is needed: a file, a preset's name, or --ball-radius --clearance --liner-thickness ..."
             )
-        return joint_of(tables) if name is None else named_joint(name)
+        if name is None:
+            return joint_of(tables)
+        return varied(named_joint(name), tables) if tables else named_joint(name)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from ..checks import check_names, check_text, nearest, shown
+from ..checks import check_text, nearest, shown
 from ..cup import Cup, Interface, Side
 from ..joint import Joint, Layer, Material, Support
 from ..model import checked_load
@@ -17,17 +17,17 @@ from ..quantities import CUP, JOINT, LAYER, LOADS, MATERIAL
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
-_LENGTHS = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
 _CHOICES: dict[str, type[Enum]] = {"interface": Interface, "side": Side}
 _TABLES = {
     "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
-    "joint": (*_LENGTHS, "support"),
+    "joint": (*JOINT, "support"),
     "liner": ("material", *MATERIAL),
     "ball": ("material", *MATERIAL),
     "cup": (*CUP, *_CHOICES),
     "load": tuple(LOADS),
 }
-_LAYER = (*LAYER, "material", *MATERIAL)
+_KEYS = {**_TABLES, "backing": (*LAYER, "material", *MATERIAL)}
+_HEADS = {"backing": "[[backing]]"}
 _MOST_LAYERS = 20
 
 
@@ -43,15 +43,16 @@ class JointFile:
 def read_joint(path: str | Path) -> JointFile:
     """Read a joint file.
 
-    The file is TOML: a table `joint` with `liner_thickness` and two of `ball_radius`, `socket_radius`, `clearance`;
-    tables `liner` and (for a ball that is not rigid) `ball`, each with a `material` by name or `young` and `poisson`,
-    or both, where the numbers win; a table `load` with one of `force`, `indentation`, `half_angle`. What is behind the
-    liner is rigid, or is an array of tables `[[backing]]` from the liner outwards, each with a `thickness` and a
-    material as above; `support` in the table `joint` says whether its outermost surface is "fixed" (without a word) or
-    "free". A table `cup` holds what finite elements ask for, `arc_of_cover`, `chamfer`, and `interface`, which is
-    "bonded" or "sliding", and where the cup faces: `inclination`, `anteversion`, and `side`, which is "right" or
-    "left". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40 deg") or bare numbers in mm, N,
-    MPa, degrees.
+    The file is TOML: a table `joint` with two of `ball_radius`, `socket_radius`, `clearance` (or `head_diameter`,
+    `diametral_clearance` in their places) and `liner_thickness` (or `outer_radius`, `outer_diameter`: of the liner, or
+    of the shell where one is right behind it); tables `liner` and (for a ball that is not rigid) `ball`, each with a
+    `material` by name or `young` and `poisson`, or both, where the numbers win; a table `load` with one of `force`,
+    `indentation`, `half_angle`. What is behind the liner is rigid, or is an array of tables `[[backing]]` from the
+    liner outwards, each with a `thickness` and a material as above; `support` in the table `joint` says whether its
+    outermost surface is "fixed" (without a word) or "free". A table `cup` holds what finite elements ask for,
+    `arc_of_cover`, `chamfer`, and `interface`, which is "bonded" or "sliding", and where the cup faces: `inclination`,
+    `anteversion`, and `side`, which is "right" or "left". Values are text with a unit ("16 mm", "3 kN", "1 GPa",
+    "40 deg") or bare numbers in mm, N, MPa, degrees.
 
     Returns
     -------
@@ -75,11 +76,11 @@ def parse_joint(raw: bytes, title: str) -> JointFile:
 
 def joint_of(table: Mapping[str, Any]) -> JointFile:
     """Joint and load from the tables of a joint file, or of the command line; see `read_joint`."""
-    for name, known in _TABLES.items():
+    for name in _TABLES:
         part = table.get(name, {}) if name else table
         if not isinstance(part, Mapping):
             raise ValueError(f"{name} = {shown(part)} must be a table: [{name}]")
-        check_names(part, known, f"in [{name}]" if name else "at the top")
+        check_keys(part, name, f"in [{name}]" if name else "at the top", _KEYS)
     for name in ("name", "source"):
         check_text(name, table.get(name, ""))
     joint = _joint(
@@ -91,6 +92,23 @@ def joint_of(table: Mapping[str, Any]) -> JointFile:
         source=table.get("source", ""),
     )
     return JointFile(joint, read_load(table.get("load", {})), read_cup(table.get("cup", {})))
+
+
+def varied(file: JointFile, tables: Mapping[str, Any]) -> JointFile:
+    """A joint file with other lengths or materials, by tables as those of a joint file.
+
+    Raises
+    ------
+    ValueError
+        As of `read_joint`; numbers of a ball that is rigid, without a material.
+    """
+    lengths, joint = tables.get("joint", {}), file.joint
+    changes: dict[str, Any] = {name: parse(name, value, JOINT[name].kind) for name, value in lengths.items()}
+    for part in ("liner", "ball"):
+        if part in tables:
+            changes[part] = _material(part, tables[part], getattr(joint, part))
+    with as_given(lengths):
+        return replace(file, joint=joint.replace(**changes))
 
 
 def read_load(table: Mapping[str, Any]) -> dict[str, float]:
@@ -110,8 +128,17 @@ def read_cup(table: Mapping[str, Any]) -> Cup:
         return Cup(**words)
 
 
+def check_keys(part: Mapping[str, Any], name: str, where: str, tables: Mapping[str, Sequence[str]]) -> None:
+    """Raise ValueError for a key that the table of that name does not know, with the tables that do."""
+    for key in part:
+        if key not in tables[name]:
+            others = [_HEADS.get(other, f"[{other}]") for other, known in tables.items() if other and key in known]
+            hint = f"; it belongs in {' or '.join(others)}" if others else nearest(key, tables[name])
+            raise ValueError(f"{shown(key)} {where} is not known{hint}")
+
+
 def _joint(table: Mapping[str, Any], **words: Any) -> Joint:
-    lengths = _lengths({name: value for name, value in table.items() if name != "support"})
+    lengths: Any = {name: parse(name, value, JOINT[name].kind) for name, value in table.items() if name in JOINT}
     support = Support(_one_of("support", table.get("support", Support.FIXED.value), Support))
     with as_given(table):
         return Joint(**lengths, support=support, **words)
@@ -134,7 +161,7 @@ def _backing(tables: Any) -> tuple[Layer, ...]:
 
 
 def _layer(name: str, table: Mapping[str, Any]) -> Layer:
-    check_names(table, _LAYER, f"in {name}")
+    check_keys(table, "backing", f"in {name}", _KEYS)
     if "thickness" not in table:
         raise ValueError(f"{name}.thickness is missing; inf is a massive body")
     thickness = parse(f"{name}.thickness", table["thickness"], LAYER["thickness"].kind)
@@ -143,37 +170,15 @@ def _layer(name: str, table: Mapping[str, Any]) -> Layer:
         return Layer(thickness=thickness, material=material)
 
 
-def _lengths(table: Mapping[str, Any]) -> dict[str, Any]:
-    lengths: dict[str, Any] = {name: parse(name, value, JOINT[name].kind) for name, value in table.items()}
-    if "liner_thickness" not in lengths:
-        raise ValueError("liner_thickness is missing; inf is a massive socket")
-    given = [name for name in _LENGTHS[:3] if name in lengths]
-    if len(given) != 2:
-        got = ", ".join(given) or "none"
-        raise ValueError(f"two of ball_radius, socket_radius, clearance are needed, got {got}")
-    socket = lengths.pop("socket_radius", None)
-    if socket is not None:
-        if "clearance" in lengths:
-            lengths["ball_radius"] = _difference(socket, lengths["clearance"])
-        else:
-            lengths["clearance"] = _difference(socket, lengths["ball_radius"])
-    return lengths
-
-
-def _difference(larger: float, smaller: float) -> float:
-    """Rounded to a femtometre in a metre, so that 18 - 17.9 is 0.1."""
-    return round(larger - smaller, 12)
-
-
-def _material(name: str, table: Mapping[str, Any]) -> Material:
-    """A material from a table with `material` (by name) and/or `young` and `poisson`."""
+def _material(name: str, table: Mapping[str, Any], standing: Material | None = None) -> Material:
+    """A material from a table with `material` (by name), numbers that win over its own, or both; else what stands."""
     numbers: dict[str, Any] = {
         key: parse(f"{name}.{key}", table[key], quantity.kind) for key, quantity in MATERIAL.items() if key in table
     }
+    preset = _named_material(name, table["material"]) if "material" in table else standing
     missing = [key for key in MATERIAL if key not in numbers]
-    if missing and "material" not in table:
+    if missing and preset is None:
         raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
-    preset = _named_material(name, table["material"]) if "material" in table else None
     with as_given(table, f"{name}."):
         return replace(preset, **numbers) if preset else Material(**numbers)
 

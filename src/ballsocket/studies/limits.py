@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,8 @@ import numpy
 
 from ..checks import check_names, require
 from ..cup import UP, Cup, Direction
+from ..dimensions import OWN, Dimensions, resolved
+from ..quantities import JOINT
 from .parameters import PARAMETERS
 from .task import QUANTITIES
 
@@ -87,21 +89,34 @@ def dimension(study: xarray.Dataset, name: str) -> Any:
     if name in study.coords:
         return study[name]
     joint = json.loads(study.attrs["joint"])
-    if name == "socket_radius":
-        return dimension(study, "ball_radius") + dimension(study, "clearance")
-    if name == "ball_radius" and "socket_radius" in study.coords and "clearance" in study.coords:
-        return study.socket_radius - study.clearance
-    if name == "clearance" and "socket_radius" in study.coords:
-        return study.socket_radius - dimension(study, "ball_radius")
-    if name == "outer_radius":
-        return dimension(study, "socket_radius") + dimension(study, "liner_thickness")
-    if name == "liner_thickness" and "outer_radius" in study.coords:
-        return study.outer_radius - dimension(study, "socket_radius")
+    if name in JOINT:
+        return getattr(_lengths(study, joint), name)
     part, _, number = name.rpartition("_")
     value = joint.get(name) if name in joint else (joint.get(part) or {}).get(number)
     if value is None:
         raise ValueError(f"the joint of this study has no {name}")
     return float(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Lengths(Dimensions):
+    """Those of the joints of a study, each a number or labelled along axes."""
+
+    ball_radius: Any
+    clearance: Any
+    liner_thickness: Any
+    behind: float
+
+    @property
+    def shell(self) -> float:
+        return self.behind
+
+
+def _lengths(study: xarray.Dataset, joint: Mapping[str, Any]) -> _Lengths:
+    given = {str(name): study[name] for name in study.coords if name in JOINT}
+    thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
+    shell = thickness if thickness < inf else 0.0
+    return _Lengths(**resolved(given, {name: float(joint[name]) for name in OWN}, shell), behind=shell)
 
 
 def margin_over(study: xarray.Dataset, limit: Limit, across: str, up: str) -> numpy.ndarray:

@@ -8,6 +8,7 @@ from types import MappingProxyType
 
 from .. import quantities
 from ..arrays import Array, where
+from ..dimensions import DIAMETERS, OWN, check_once, resolved
 from ..joint import Joint, Material
 from ..quantities import JOINT, PARTS, Quantity
 
@@ -21,8 +22,9 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
     """The joint with other numbers, and where they make one.
 
     Two of `ball_radius`, `socket_radius`, `clearance` fix the third; of those that are not given, the ball stays as it
-    is, and else the clearance. `outer_radius` takes the place of `liner_thickness`. A combination that leaves no
-    liner, or no clearance, is no joint: there the first answer is some joint and the second false.
+    is, and else the clearance. `outer_radius`, that of the shell where there is one, takes the place of
+    `liner_thickness`, and a diameter that of its radius. A combination that leaves no liner, or no clearance, is no
+    joint: there the first answer is some joint and the second false.
 
     Parameters
     ----------
@@ -40,16 +42,16 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
     for name in ("ball_young", "ball_poisson"):
         if name in values and joint.ball is None:
             raise ValueError(f"the ball of this joint is rigid: it has no {name}")
-    radius, clearance = _radius_and_clearance(joint, values)
-    thickness = values.get("liner_thickness", joint.liner_thickness)
-    if "outer_radius" in values:
-        thickness = values["outer_radius"] - (radius + clearance)
+    given = {name: value for name, value in values.items() if name in JOINT}
+    said = {DIAMETERS.get(name, name) for name in given}
+    lengths = resolved(given, {name: getattr(joint, name) for name in OWN}, joint.shell)
+    radius, clearance, thickness = (lengths[name] for name in OWN)
     possible = (clearance > -_ROUNDING * radius) & (thickness > _ROUNDING * radius)
     made = replace(
         joint,
         ball_radius=radius,
-        clearance=where(possible & (clearance > 0), clearance, 0.0) if "socket_radius" in values else clearance,
-        liner_thickness=where(possible, thickness, 1.0) if "outer_radius" in values else thickness,
+        clearance=where(possible & (clearance > 0), clearance, 0.0) if "socket_radius" in said else clearance,
+        liner_thickness=where(possible, thickness, 1.0) if "outer_radius" in said else thickness,
         liner=_material(joint.liner, values, "liner"),
         ball=None if joint.ball is None else _material(joint.ball, values, "ball"),
     )
@@ -68,22 +70,10 @@ _ROUNDING = 1e-12  # of a radius
 
 def contradiction(names: Mapping[str, object]) -> None:
     """Raise ValueError for names that cannot vary together."""
-    if all(name in names for name in ("ball_radius", "socket_radius", "clearance")):
-        raise ValueError("ball_radius, socket_radius and clearance are two too many: any two of them fix the third")
-    if "outer_radius" in names and "liner_thickness" in names:
-        raise ValueError("outer_radius and liner_thickness are one too many: either fixes the other")
+    check_once([name for name in names if name in JOINT])
     loads = [name for name in LOADS if name in names]
     if len(loads) > 1:
         raise ValueError(f"one load is needed, got {', '.join(loads)}")
-
-
-def _radius_and_clearance(joint: Joint, values: Mapping[str, Array]) -> tuple[Array, Array]:
-    radius, clearance = values.get("ball_radius", joint.ball_radius), values.get("clearance", joint.clearance)
-    if "socket_radius" not in values:
-        return radius, clearance
-    if "clearance" in values:
-        return values["socket_radius"] - clearance, clearance
-    return radius, values["socket_radius"] - radius
 
 
 def _material(material: Material, values: Mapping[str, Array], part: str) -> Material:

@@ -150,7 +150,10 @@ def answers(files: Mapping[str, JointFile], model: str) -> dict[str, Contact]:
     return {name: contacts[model] for name, contacts in found.items() if model in contacts}
 
 
-_DIMENSIONS = ("ball_radius", "clearance", "liner_thickness")
+_DIMENSIONS = {
+    "radius": ("ball_radius", "clearance", "liner_thickness", "outer_radius"),
+    "diameter": ("head_diameter", "diametral_clearance", "liner_thickness", "outer_diameter"),
+}
 
 
 def _text_table(
@@ -159,10 +162,8 @@ def _text_table(
     """A column a joint; answers with their difference from the first that was put beside."""
     rows = [
         [JOINT[name].head(), *(f"{float(getattr(file.joint, name)):g}" for file in files.values())]
-        for name in _DIMENSIONS
+        for name in _DIMENSIONS[screen.size]
     ]
-    if screen.size == "diameter":
-        rows[0] = [f"2 {rows[0][0]}", *(f"{2 * float(file.joint.ball_radius):g}" for file in files.values())]
     rows.append(["liner", *(str(file.joint.liner) for file in files.values())])
     rows.append(["ball", *("rigid" if file.joint.ball is None else str(file.joint.ball) for file in files.values())])
     reference = list(files)[min(1, len(files) - 1)]
