@@ -1,6 +1,7 @@
 """Finite elements behind the explorer: a process of their own that answers, waits its turn, and can be ended."""
 
 import time
+from functools import partial
 
 import pytest
 
@@ -10,10 +11,15 @@ from ballsocket.io.joint_file import JointFile
 
 pytest.importorskip("skfem")
 pytest.importorskip("bokeh")
-from ballsocket.app import judging
-from ballsocket.app.judging import Judged, Reached, Refused, Run
+from ballsocket.app import running
+from ballsocket.app.judging import judged
+from ballsocket.app.running import Done, Reached, Refused, Run
 
 HIP = JointFile(bs.joints["hip-28"], {"force": 3000.0})
+
+
+def judging(file, **limits):
+    return Run(partial(judged, file), **limits)
 
 
 def until_the_end(run, seconds=600.0):
@@ -22,7 +28,7 @@ def until_the_end(run, seconds=600.0):
         news = run.news()
         if news is not None:
             heard.append(news)
-        if isinstance(news, Judged | Refused):
+        if isinstance(news, Done | Refused):
             return heard
         time.sleep(0.02)
     pytest.fail("the run said nothing for ten minutes")
@@ -31,35 +37,36 @@ def until_the_end(run, seconds=600.0):
 @pytest.fixture(autouse=True)
 def all_places_are_given_back():
     yield
-    assert len(judging.LINE) == 0
+    assert len(running.LINE) == 0
 
 
 def test_a_run_answers_what_a_press_answers():
-    *on_the_way, judged = until_the_end(Run(HIP))
+    *on_the_way, last = until_the_end(judging(HIP))
+    found = last.value
     shares = [news.share for news in on_the_way]
     assert shares == sorted(shares)
     assert all(isinstance(news, Reached) for news in on_the_way)
     contact = bs.FiniteElement().press(HIP.joint, force=3000.0)
-    assert judged.numbers["max_pressure"] == pytest.approx(contact.max_pressure, rel=1e-3)
-    assert judged.exact["max_pressure"] == pytest.approx(bs.Exact().press(HIP.joint, force=3000.0).max_pressure)
-    assert judged.png.startswith(b"\x89PNG")
-    assert b"<svg" in judged.svg
+    assert found.numbers["max_pressure"] == pytest.approx(contact.max_pressure, rel=1e-3)
+    assert found.exact["max_pressure"] == pytest.approx(bs.Exact().press(HIP.joint, force=3000.0).max_pressure)
+    assert found.png.startswith(b"\x89PNG")
+    assert b"<svg" in found.svg
 
 
 def test_a_run_that_takes_too_long_is_ended():
-    refused = until_the_end(Run(HIP, longest=0.2))[-1]
+    refused = until_the_end(judging(HIP, longest=0.2))[-1]
     assert refused.why == "stopped after 0.2 s, the longest that a run may take here"
 
 
 def test_a_run_whose_process_dies_says_so():
-    run = Run(HIP)
+    run = judging(HIP)
     run.news()
     run._process.kill()
-    assert "the process of the finite elements died" in until_the_end(run)[-1].why
+    assert "its process died; it may have had too little memory" in until_the_end(run)[-1].why
 
 
 def test_a_run_that_is_stopped_gives_its_place_back():
-    run = Run(HIP)
+    run = judging(HIP)
     run.news()
     run.stop()
     run.stop()
@@ -67,14 +74,14 @@ def test_a_run_that_is_stopped_gives_its_place_back():
 
 
 def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
-    monkeypatch.setattr(judging, "LINE", judging.Line(1))
-    first, second, third = Run(HIP), Run(HIP), Run(HIP)
+    monkeypatch.setattr(running, "LINE", running.Line(1))
+    first, second, third = (judging(HIP) for _ in range(3))
     first.news()
     for run in (second, third):
         assert run.news().words == "waiting for a free place: others are running"
     second.stop()
-    assert isinstance(until_the_end(first)[-1], Judged)
-    assert isinstance(until_the_end(third)[-1], Judged)
+    assert isinstance(until_the_end(first)[-1], Done)
+    assert isinstance(until_the_end(third)[-1], Done)
 
 
 def test_a_process_that_cannot_be_started_is_said(monkeypatch):
@@ -82,16 +89,16 @@ def test_a_process_that_cannot_be_started_is_said(monkeypatch):
         raise OSError(11, "Resource temporarily unavailable")
 
     monkeypatch.setattr(Run, "_begin", begin)
-    assert Run(HIP).news() == Refused(why="no process could be started: Resource temporarily unavailable")
+    assert judging(HIP).news() == Refused(why="no process could be started: Resource temporarily unavailable")
 
 
 def test_what_cannot_be_meshed_is_said():
     cup = Cup(arc_of_cover=0.75, chamfer=9.0)
-    refused = until_the_end(Run(JointFile(HIP.joint, HIP.load, cup)))[-1]
+    refused = until_the_end(judging(JointFile(HIP.joint, HIP.load, cup)))[-1]
     assert isinstance(refused, Refused)
     assert "chamfer" in refused.why
 
 
 def test_a_contact_as_wide_as_its_cup_is_answered_with_a_note():
-    judged = until_the_end(Run(JointFile(HIP.joint, {"force": 3e4}, Cup(arc_of_cover=0.75))))[-1]
-    assert any("rim" in note for note in judged.notes)
+    found = until_the_end(judging(JointFile(HIP.joint, {"force": 3e4}, Cup(arc_of_cover=0.75))))[-1].value
+    assert any("rim" in note for note in found.notes)

@@ -16,6 +16,7 @@ from .controls import JointControls
 from .downloads import Downloads, Seen
 from .pressing import pressed
 from .screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, link_of, read_link
+from .solving import Errand
 from .style import asset, html, inputs
 from .view import View
 from .views.compare import Compare
@@ -66,7 +67,9 @@ class Page:
             self._controls.panel, pn.Column(self._angle, self._size, **wide), self._downloads.panel, **wide
         )
         self.head = pn.Column(self._view, self._trouble, pn.pane.Bokeh(self._link), pn.pane.Bokeh(self._upload), **wide)
-        self._refresh()
+        self._errand = Errand(self._refresh)
+        self._arrange()
+        pn.state.onload(self._refresh)  # whoever only looks at the address makes nothing work
 
     def _read(self, query: str) -> Screen:
         """The screen of a link; the start where it cannot be read."""
@@ -96,23 +99,29 @@ class Page:
         self.refuse("")
         self._refresh()
 
+    def _arrange(self) -> View:
+        """Every input is what is on the screen, and one view is seen."""
+        self._controls.put(self.screen)
+        self._view.value, self._angle.value, self._size.value = (
+            self.screen.view,
+            self.screen.angle,
+            self.screen.size,
+        )
+        seen = self.view
+        for view in self._views.values():
+            view.panel.visible = view is seen
+        return seen
+
     def _refresh(self) -> None:
         with pn.io.hold():
-            self._controls.put(self.screen)
-            self._view.value, self._angle.value, self._size.value = (
-                self.screen.view,
-                self.screen.angle,
-                self.screen.size,
-            )
-            seen = self.view
-            for view in self._views.values():
-                view.panel.visible = view is seen
+            seen = self._arrange()
             try:
                 seen.show(self.screen)
             except Exception as error:  # a page must not fall silent, whatever it is
                 _LOG.exception("a view failed")
                 self.refuse(f"This cannot be shown: {error}")
             self._link.value = link_of(self.screen)
+        self._errand.ask(*seen.asks(self.screen))
 
     @property
     def view(self) -> View:
@@ -160,6 +169,7 @@ class Page:
 
     def leave(self) -> None:
         """The page is closed."""
+        self._errand.leave()
         for view in self._views.values():
             view.leave()
 

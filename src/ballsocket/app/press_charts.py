@@ -58,7 +58,7 @@ def _profile(contact: Contact, turn: float, line: Line) -> Curve:
 def _curve(contact: Contact, largest: float, line: Line) -> Curve:
     depth, force = FORCE_CURVE
     mark = (float(depth.of(contact)), float(force.of(contact)))
-    press = curve(contact.joint, contact.model.name, largest)
+    press = curve(contact, largest)
     if press is None:
         return Curve(numpy.empty(0), numpy.empty(0), numpy.empty(0, dtype=bool), line, mark)
     return Curve(depth.of(press), force.of(press), numpy.asarray(press.valid), line, mark)

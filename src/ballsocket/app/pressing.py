@@ -2,25 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from math import ceil, log10
 
 import numpy
 
 from ..catalogue import catalogue
-from ..compare import Comparison, compare
+from ..compare import Comparison, compare, force_curves
 from ..contact import Contact
 from ..cup import Cup
 from ..io.joint_file import JointFile
 from ..joint import Joint
+from ..model import Model
 from ..validity import OutsideDomainError
+from .solving import heavy, solved
+from .written import WrittenContact
 
 _POINTS = numpy.linspace(0.0, 1.0, 33) ** 1.5
 
 
 def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
-    """Some models beside each other."""
-    return _pressed(file.joint, file.cup, tuple(file.load.items()), names)
+    """Some models beside each other; those that take long have an answer once they have been asked, see `solving`."""
+    slow = [name for name in names if heavy(file.joint, name)]
+    quick = tuple(name for name in names if name not in slow)
+    found = _pressed(file.joint, file.cup, tuple(file.load.items()), quick)
+    if not slow:
+        return found
+    known = {name: solved(file, name) or _WAITING.format(name, file.joint.thickness_ratio) for name in slow}
+    contacts = {**found.contacts, **{name: each for name, each in known.items() if not isinstance(each, str)}}
+    missing = {name: each for name, each in known.items() if isinstance(each, str)}
+    ordered = {name: contacts[name] for name in names if name in contacts}
+    return Comparison(file.joint, ordered, {**missing, **found.missing})
+
+
+_WAITING = "{} is being solved: at R2/L = {:.3g} that takes seconds"
 
 
 @lru_cache(maxsize=64)
@@ -28,13 +44,26 @@ def _pressed(joint: Joint, cup: Cup, load: tuple[tuple[str, float], ...], names:
     return compare(joint, models={name: catalogue[name] for name in names}, cup=cup, **dict(load))
 
 
+def curve(contact: Contact, largest: float) -> Contact | None:
+    """The model of a contact from first touch to the largest force, or as far as it was solved; None without answer."""
+    if isinstance(contact, WrittenContact):
+        return contact.curve
+    return _curve(contact.joint, contact.model.name, largest)
+
+
 @lru_cache(maxsize=256)
-def curve(joint: Joint, name: str, largest: float) -> Contact | None:
-    """A model from first touch to the largest force; None outside its domain."""
+def _curve(joint: Joint, name: str, largest: float) -> Contact | None:
     try:
         return catalogue[name].press(joint, force=largest * _POINTS)
     except OutsideDomainError:
         return None
+
+
+def fine_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -> dict[str, Contact]:
+    """A curve of each contact, for a file: by `force_curves`, unless it was solved with the contact."""
+    ready = {name: each.curve for name, each in contacts.items() if isinstance(each, WrittenContact) and each.curve}
+    others = {name: each for name, each in contacts.items() if name not in ready}
+    return {**ready, **(force_curves(others, models) if others else {})}
 
 
 def rounded_up(value: float) -> float:

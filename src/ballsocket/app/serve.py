@@ -11,6 +11,7 @@ from typing import Any
 import panel as pn
 
 from ..checks import require
+from .guard import guard
 from .page import Page, template
 from .pressing import pressed
 from .screen import START
@@ -51,7 +52,7 @@ def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (
     pressed(START.file, (START.answered_by, *START.shown))  # what is loaded at the first press is loaded now
     port = port or _free_port(address)
     own = [f"{name}:{port}" for name in dict.fromkeys((LOOPBACK, "localhost", address))]
-    return pn.serve(
+    served = pn.serve(
         {"/": _session},
         port=port,
         address=address,
@@ -66,6 +67,8 @@ def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (
         check_unused_sessions_milliseconds=_IDLE // 4,
         http_server_kwargs={"max_buffer_size": _MESSAGE, "max_body_size": _MESSAGE},
     )
+    guard(served._tornado, (*own, *origins))
+    return served
 
 
 def _free_port(address: str) -> int:

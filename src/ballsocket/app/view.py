@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from ..io.joint_file import JointFile
 from .screen import Screen
 
 Ask = Callable[..., None]
@@ -38,6 +39,10 @@ class View(Protocol):
 
     def document(self, screen: Screen) -> Document:
         """What is on the screen, made for a file."""
+        ...
+
+    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
+        """The joints that it presses by which models, those first that are seen first: what takes long is sent for."""
         ...
 
     def leave(self) -> None:

@@ -155,8 +155,13 @@ def _begin(work: Work) -> None:
     """In each process, once: the work is sent there only once, and Ctrl-C is left to the process that asked."""
     global _work
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    Thread(target=_leave_with, args=(os.getppid(),), daemon=True).start()
+    leave_with_parent()
     _work = work
+
+
+def leave_with_parent() -> None:
+    """In a process that was started for another: it ends when that one does."""
+    Thread(target=_leave_with, args=(os.getppid(),), daemon=True).start()
 
 
 def _leave_with(parent: int) -> None:

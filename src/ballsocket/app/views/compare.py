@@ -10,7 +10,7 @@ from typing import Any
 import panel as pn
 
 from ...catalogue import catalogue
-from ...compare import answered, force_curves, relative
+from ...compare import answered, relative
 from ...contact import Contact
 from ...io.joint_file import JointFile
 from ...output.html import drawn, table
@@ -21,7 +21,7 @@ from ...quantities import JOINT
 from ..drawing import SectionDrawing, extent_of
 from ..look import PALETTES
 from ..press_charts import PressCharts
-from ..pressing import pressed
+from ..pressing import fine_curves, pressed
 from ..screen import BESIDE, Screen
 from ..style import html, inputs
 from ..view import Ask, Document
@@ -115,13 +115,16 @@ class Compare:
         title = f"answered by {screen.answered_by}"
 
         def picture(form: str) -> bytes:
-            return drawn(press_figure(contacts, force_curves(contacts, models), title, _lines(files)), form)
+            return drawn(press_figure(contacts, fine_curves(contacts, models), title, _lines(files)), form)
 
         return Document(
             picture=picture if contacts else None,
             rows=lambda: number_rows("joint", contacts),
             sections=lambda: {"joints": ("Joints", table(*_text_table(files, contacts, screen)))},
         )
+
+    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
+        return list(labelled(screen).values()), (screen.answered_by,)
 
     def leave(self) -> None:
         """Nothing runs on."""
@@ -180,11 +183,11 @@ def _text_table(
             apart = f" ({share})" if share else ""
             row.append(f"{number_text(number)}{apart}")
         rows.append(row)
-    rows.append(["trust it here?", *(_trusted(contacts.get(name)) for name in files)])
+    rows.append(["trust it here?", *(_trusted(contacts.get(name), file, screen) for name, file in files.items())])
     return [screen.answered_by, *files], rows
 
 
-def _trusted(contact: Contact | None) -> str:
+def _trusted(contact: Contact | None, file: JointFile, screen: Screen) -> str:
     if contact is None:
-        return "–"
+        return pressed(file, (screen.answered_by,)).missing.get(screen.answered_by, "–")
     return "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"

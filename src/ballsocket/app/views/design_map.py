@@ -9,6 +9,7 @@ from typing import Any
 
 import panel as pn
 
+from ...io.joint_file import JointFile
 from ...output.html import drawn, table
 from ...output.study_plots import design_map
 from ...output.study_terminal import map_rows
@@ -186,6 +187,9 @@ class DesignMap:
             rows=rows,
             sections=lambda: {"map": ("Design map", table(*map_rows(found, limits)))},
         )
+
+    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
+        return [], ()
 
     def leave(self) -> None:
         """Nothing runs on."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from html import escape
 from math import degrees
 from typing import Any
@@ -15,7 +16,8 @@ from ...io.joint_file import JointFile, read_cup
 from ...io.joint_toml import cup_table
 from ...output.html import picture, table
 from ...quantities import CONTACT, CUP
-from ..judging import LONGEST, Judged, Reached, Refused, Run
+from ..judging import Judged, judged
+from ..running import LONGEST, Done, Reached, Refused, Run, looked_at
 from ..screen import Screen
 from ..style import html, inputs
 from ..view import Ask, Document
@@ -32,6 +34,7 @@ class Judge:
     def __init__(self, ask: Ask, screen: Screen) -> None:
         self._ask, self._screen, self._putting = ask, screen, False
         self._run: Run | None = None
+        self._asked = screen.file
         self._asking: Any = None
         self._found: tuple[JointFile, Judged] | None = None
         self._go = pn.widgets.Button(label="Run finite elements", color="primary", width=180)
@@ -99,7 +102,8 @@ class Judge:
     def _begin(self) -> None:
         if self._run is not None:
             return
-        self._run = Run(self._screen.file)
+        self._asked = self._screen.file
+        self._run = Run(partial(judged, self._asked))
         self._go.disabled, self._halt.disabled = True, False
         self._bar.visible, self._bar.value = True, 0
         self._asking = pn.state.add_periodic_callback(self._hear, period=_EVERY)
@@ -107,7 +111,7 @@ class Judge:
     def _hear(self) -> None:
         if self._run is None:
             return
-        if not _looked_at():
+        if not looked_at():
             self._ended()
             return
         news = self._run.news()
@@ -117,11 +121,11 @@ class Judge:
         elif isinstance(news, Refused):
             self._ended()
             self._refuse(news.why)
-        elif isinstance(news, Judged):
-            self._found = (self._run.file, news)
+        elif isinstance(news, Done):
+            self._found = (self._asked, news.value)
             self._ended()
-            self._numbers.object = _numbers(news, self._screen)
-            self._picture.object = picture(news.png, "mesh, von Mises stress, and pressure beside the exact one")
+            self._numbers.object = _numbers(news.value, self._screen)
+            self._picture.object = picture(news.value.png, "mesh, von Mises stress, and pressure beside the exact one")
             self._say(self._state())
 
     def _stopped(self) -> None:
@@ -154,15 +158,11 @@ class Judge:
             sections=lambda: {"judge": ("Finite elements", body + shown)},
         )
 
+    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
+        return [], ()
+
     def leave(self) -> None:
         self._ended()
-
-
-def _looked_at() -> bool:
-    """Whether somebody still has the page open: nobody else waits for an answer."""
-    document = pn.state.curdoc
-    context = None if document is None else document.session_context
-    return context is None or context.session is None or context.session.connection_count > 0
 
 
 def _numbers(judged: Judged, screen: Screen) -> str:

@@ -8,14 +8,15 @@ from typing import Any
 import panel as pn
 
 from ...catalogue import catalogue
-from ...compare import HEADS, Comparison, answered, force_curves
+from ...compare import HEADS, Comparison, answered
+from ...io.joint_file import JointFile
 from ...output import html as page
 from ...output.press_plot import press_figure
 from ...output.style import line_of
 from ..drawing import SectionDrawing
 from ..look import PALETTES
 from ..press_charts import PressCharts
-from ..pressing import pressed
+from ..pressing import fine_curves, pressed
 from ..screen import Screen
 from ..style import html, inputs
 from ..view import Ask, Document
@@ -94,12 +95,16 @@ class Press:
         found = pressed(screen.file, _EVERY)
         drawn = {name: found[name] for name in screen.shown if name in answered(found)}
         return Document(
-            picture=(lambda form: page.drawn(press_figure(drawn, force_curves(drawn, catalogue)), form))
+            picture=(lambda form: page.drawn(press_figure(drawn, fine_curves(drawn, catalogue)), form))
             if drawn
             else None,
             rows=lambda: _rows(found),
             sections=lambda: {"models": ("Every model", page.table(HEADS, found.rows()) + _notes(found))},
         )
+
+    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
+        first = (screen.answered_by, *screen.shown)
+        return [screen.file], tuple(dict.fromkeys((*first, *_EVERY)))
 
     def leave(self) -> None:
         """Nothing runs on."""

@@ -1,0 +1,163 @@
+"""A page whose answer takes long: others go on, a process of its own solves it, and there is an end to that."""
+
+import asyncio
+import time
+
+import pytest
+
+import ballsocket as bs
+from ballsocket.io.joint_file import JointFile
+
+from ..extent import some
+
+pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tomli_w")
+import panel as pn
+from panel.io.state import set_curdoc
+from tornado.httpclient import AsyncHTTPClient, HTTPRequest
+
+from ballsocket.app import running, serve, solving
+from ballsocket.app.page import Page
+from ballsocket.app.pressing import pressed
+from ballsocket.app.solving import THIN, heavy
+from ballsocket.app.views.press import Press
+from ballsocket.elastic.exact import Exact
+from ballsocket.models.plane_layer import PlaneLayer
+
+
+def link(ratio, poisson=0.3, clearance=0.1, **more):
+    words = {
+        "joint.ball_radius": 20 - clearance,
+        "joint.clearance": clearance,
+        "joint.liner_thickness": 20 / ratio,
+        "liner.young": 800,
+        "liner.poisson": poisson,
+        "load.half_angle": 60,
+        **more,
+    }
+    return "&".join(f"{name}={value}" for name, value in words.items())
+
+
+def waited_for(page, seconds=300.0):
+    """Until nothing is being solved for a page."""
+    start = time.monotonic()
+    while page._errand._run is not None:
+        page._errand.hear()
+        assert time.monotonic() - start < seconds, "nothing more was heard for minutes"
+        time.sleep(0.02)
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_left_running():
+    solving._solved.clear()
+    yield
+    assert len(running.LINE) == 0
+
+
+def presses_of(monkeypatch):
+    """The joints that this process solves by models that take long."""
+    seen = []
+    for kind in (Exact, PlaneLayer):
+        own = kind._solve
+        monkeypatch.setattr(
+            kind, "_solve", lambda self, joint, *rest, own=own: seen.append(joint) or own(self, joint, *rest)
+        )
+    return seen
+
+
+SLOW = [
+    link(190, 0.4999, **{"load.half_angle": 80}),
+    link(99, shown=",".join(bs.catalogue)),
+    link(150, view="compare"),
+    "view=compare&" + link(THIN * 1.01, **{"beside1.preset": "hip-36"}),
+]
+
+
+@pytest.mark.parametrize("query", some(SLOW))
+def test_a_link_to_thin_liners_does_not_hold_the_server(query, monkeypatch):
+    """None of its presses is made in the server's own process; the page says what it waits for."""
+    seen = presses_of(monkeypatch)
+    page = Page(query)
+    page.leave()
+    assert page._trouble.object == ""
+    assert all(float(joint.thickness_ratio) <= THIN for joint in seen)
+    said = page.view._table.object
+    assert "exact is being solved: at R2/L = " in said
+
+
+def test_joints_as_people_make_them_are_pressed_at_once():
+    """A slider's answer does not take the way through another process."""
+    for preset, joint in bs.joints.items():
+        assert not any(heavy(joint, name) for name in bs.catalogue), preset
+
+
+def test_what_was_solved_elsewhere_is_what_a_press_answers():
+    page = Page(link(THIN * 1.2, answered_by="plane-layer"))
+    waited_for(page)
+    joint = page.screen.file.joint
+    for name in ("exact", "plane-layer"):
+        seen, own = pressed(page.screen.file, (name,))[name], bs.catalogue[name].press(joint, **page.screen.file.load)
+        for quantity in ("force", "indentation", "max_pressure", "area", "stiffness", "energy", "foundation_modulus"):
+            assert getattr(seen, quantity) == pytest.approx(getattr(own, quantity), rel=1e-10)
+        for share in (0.0, 0.3, 0.9, 1.1):
+            angle = share * own.half_angle
+            assert seen.pressure(angle) == pytest.approx(own.pressure(angle), abs=2e-3 * own.max_pressure)
+        assert seen.notes == own.notes
+        assert seen.curve.half_angle[-1] > own.half_angle
+    assert f"data-value='{seen.max_pressure!r}'" in page.view._numbers.object
+    assert page._downloads._picture("png").startswith(b"\x89PNG")
+    assert b"exact" in page._downloads._numbers()
+
+
+def test_what_takes_too_long_is_ended_and_said(monkeypatch):
+    monkeypatch.setattr(solving, "LONGEST", 0.01)
+    page = Page(link(190))
+    waited_for(page)
+    words = "exact has no answer here: stopped after 0.01 s, the longest that a run may take here"
+    assert words in page.view._numbers.object
+    assert "hess-forsbach" in page.view._table.object
+    again = Page(link(190))
+    assert again._errand._run is None
+    assert words in again.view._numbers.object
+
+
+def test_only_what_is_on_the_screen_is_solved():
+    """A slider that moves on, or leads back, ends what was asked for before."""
+    page = Page(link(190))
+    first = page._errand._run
+    page._errand.hear()
+    page.ask(file=JointFile(page.screen.file.joint, {"force": 100.0}))
+    assert page._errand._run is not first
+    assert not first._process.is_alive()
+    page.ask(file=JointFile(bs.joints["hip-28"], {"force": 100.0}))
+    assert page._errand._run is None
+
+
+@pytest.fixture
+def served():
+    """A server in this process, whose loop turns while it is asked."""
+    loop = asyncio.new_event_loop()
+    asyncio.set_event_loop(loop)
+    one = serve.server(0)
+    one.start()
+    yield one
+    one.stop()
+    one.io_loop.close()
+    asyncio.set_event_loop(None)
+
+
+def test_who_only_looks_makes_nothing_work(served, monkeypatch):
+    """The answer to a request is a page without numbers; they are found when a browser has opened it."""
+    shown, seen = [], presses_of(monkeypatch)
+    monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen))
+    address = f"http://127.0.0.1:{served.port}/?{link(190)}"
+    for method in ("HEAD", "GET"):
+        request = HTTPRequest(address, method=method, request_timeout=100)
+        served.io_loop.run_sync(lambda request=request: AsyncHTTPClient().fetch(request, raise_error=False))
+    (session,) = served.get_sessions("/")
+    assert not shown
+    assert not seen
+    with set_curdoc(session.document):
+        for callback, _ in pn.state._onload[session.document]:
+            callback()
+    assert [float(screen.file.joint.thickness_ratio) for screen in shown] == [pytest.approx(190)]
