@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .checks import Named
 from .elastic.exact import Exact
 from .elastic.tabulated.model import Tabulated
 from .fem.model import FiniteElement
@@ -37,7 +38,7 @@ _MODELS: tuple[Model, ...] = (
     AdhesiveSocket(),
 )
 
-catalogue: dict[str, Model] = {model.name: model for model in _MODELS}
+catalogue: dict[str, Model] = Named("model", {model.name: model for model in _MODELS})
 """Name -> model: what `--model` and files call them, all of them answering in milliseconds or less."""
 
 theories: dict[str, Theory] = {theory.name: theory for theory in (*_MODELS, judge, PinInHole())}

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, TypeVar
 from unicodedata import category
 
 import numpy
 
 from .arrays import Array, common, is_plain, namespace, truth
+
+Value = TypeVar("Value")
 
 
 def require(name: str, value: Array, good: Array, allowed: str) -> None:
@@ -137,6 +139,42 @@ def _like(text: str, known: list[str]) -> list[str]:
 def plain_name(text: str) -> str:
     """A name in small letters with hyphens, as those of materials, joints and models are."""
     return text.strip().lower().replace(" ", "-").replace("_", "-")
+
+
+def known_name(what: str, name: Any, known: Iterable[str]) -> str:
+    """The known name that is meant, however its capitals, spaces, hyphens and underscores are written.
+
+    Raises
+    ------
+    ValueError
+        None is, with the nearest one.
+    """
+    names = list(known)
+    for each in (name, plain_name(name)) if isinstance(name, str) else ():
+        if each in names:
+            return each
+    raise ValueError(f"{what} {shown(name)} is not known{nearest(name, names)}")
+
+
+class Named(dict[str, Value]):
+    """Things by their names; one that is not known is told with the nearest.
+
+    Examples
+    --------
+    >>> Named("planet", {"earth": 3, "mars": 4})["Mars"]
+    Traceback (most recent call last):
+    KeyError: "planet 'Mars' is not known; did you mean 'mars'?"
+    """
+
+    def __init__(self, what: str, things: Mapping[str, Value]) -> None:
+        super().__init__(things)
+        self._what = what
+
+    def __missing__(self, name: Any) -> Value:
+        raise KeyError(f"{self._what} {shown(name)} is not known{nearest(name, self)}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._what, dict(self))
 
 
 def check_text(name: str, value: Any) -> str:

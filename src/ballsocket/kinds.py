@@ -49,6 +49,11 @@ class Kind(StrEnum):
         return _WRITTEN.get(self, Unit(self.unit))
 
     @property
+    def suffix(self) -> str:
+        """`written` as part of a name: the end of a column's head in CSV, empty for a plain number."""
+        return _SUFFIXES.get(self, self.unit)
+
+    @property
     def typed(self) -> str:
         """The unit of a bare number in a file or on the command line; empty for a plain number."""
         return _TYPED.get(self, self.unit)
@@ -66,4 +71,11 @@ _KINDS = {
     Kind.FOUNDATION: ("MPa/mm", "a foundation modulus, such as '280 MPa/mm'"),
 }
 _WRITTEN = {Kind.ANGLE: Unit("°", degrees(1.0)), Kind.NUMBER: Unit(""), Kind.AREA: Unit("mm²")}
+_SUFFIXES = {
+    Kind.ANGLE: "deg",
+    Kind.NUMBER: "",
+    Kind.STIFFNESS: "N_per_mm",
+    Kind.ENERGY: "N_mm",
+    Kind.FOUNDATION: "MPa_per_mm",
+}
 _TYPED = {Kind.ANGLE: "deg", Kind.NUMBER: ""}

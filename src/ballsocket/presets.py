@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from math import inf
 
+from .checks import Named
 from .joint import Joint, Material
 
 _PAPER = "Heß & Forsbach 2021, Table 2, doi 10.3390/app112311170"
@@ -48,20 +49,23 @@ CANCELLOUS_BONE = Material(
     young=500.0, poisson=0.2, name="cancellous bone", source="representative; varies widely with its density"
 )
 
-materials: dict[str, Material] = {
-    "uhmwpe": UHMWPE,
-    "crosslinked-pe": CROSSLINKED_PE,
-    "pom": POM,
-    "steel": STEEL,
-    "structural-steel": STRUCTURAL_STEEL,
-    "cocr": COCR,
-    "alumina": ALUMINA,
-    "alumina-composite": ALUMINA_COMPOSITE,
-    "titanium": TITANIUM,
-    "bone-cement": BONE_CEMENT,
-    "cortical-bone": CORTICAL_BONE,
-    "cancellous-bone": CANCELLOUS_BONE,
-}
+materials: dict[str, Material] = Named(
+    "material",
+    {
+        "uhmwpe": UHMWPE,
+        "crosslinked-pe": CROSSLINKED_PE,
+        "pom": POM,
+        "steel": STEEL,
+        "structural-steel": STRUCTURAL_STEEL,
+        "cocr": COCR,
+        "alumina": ALUMINA,
+        "alumina-composite": ALUMINA_COMPOSITE,
+        "titanium": TITANIUM,
+        "bone-cement": BONE_CEMENT,
+        "cortical-bone": CORTICAL_BONE,
+        "cancellous-bone": CANCELLOUS_BONE,
+    },
+)
 """Materials by the name that files and the command line use: that of their constant, in small letters with hyphens."""
 
 
@@ -106,5 +110,5 @@ _ALL_JOINTS = (
     ),
 )
 
-joints: dict[str, Joint] = {joint.name: joint for joint in _ALL_JOINTS}
+joints: dict[str, Joint] = Named("joint", {joint.name: joint for joint in _ALL_JOINTS})
 """Joints by name: common hips, reverse shoulder, suspension ball joint, tilting-pad pivot."""

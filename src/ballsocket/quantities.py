@@ -94,8 +94,13 @@ class Quantity:
 
     @property
     def key(self) -> str:
-        """The name in JSON and CSV, where angles are in degrees and say so."""
+        """The name in JSON, where angles are in degrees and say so."""
         return f"{self.name}_deg" if self.kind is Kind.ANGLE else self.name
+
+    @property
+    def column(self) -> str:
+        """The head of a column in CSV and data frames, which ends in the unit, "max_pressure_MPa"."""
+        return f"{self.name}_{self.kind.suffix}" if self.kind.suffix else self.name
 
     @property
     def written(self) -> Unit:

@@ -261,6 +261,42 @@ def pressed(*words):
     return answer["joint"], [result["max_pressure"] for result in answer["results"]]
 
 
+def test_one_model_in_full():
+    text = run("models", "Hess Forsbach").stdout
+    assert text.startswith("hess-forsbach: radial springs")
+    assert "fitted at 1 to 3 kN" in text
+    assert "10.3390/app112311170" in text
+    assert "hertz" not in text
+    listed = json.loads(run("models", "--json").stdout)["models"]
+    assert {each["name"] for each in listed} >= set(bs.catalogue)
+    (one,) = json.loads(run("models", "hess-forsbach", "--json").stdout)["models"]
+    assert one in listed
+    assert one["promise"]["within"] == bs.HessForsbach().promise.within
+    assert run("models", "hess").stderr == "ballsocket: model 'hess' is not known; did you mean 'hess-forsbach'?\n"
+
+
+def test_one_preset_in_full():
+    text = run("presets", "hip-36").stdout
+    for words in (
+        "head diameter         36 mm",
+        "diametral clearance   0.2 mm",
+        "outer diameter        46.2 mm",
+        "alumina",
+    ):
+        assert words in text
+    assert bs.UHMWPE.source[:30] in run("presets", "UHMWPE").stdout
+    listed = json.loads(run("presets", "--json").stdout)
+    assert (set(listed["joints"]), set(listed["materials"])) == (set(bs.joints), set(bs.materials))
+    assert listed["joints"]["hip-36"]["source"] == bs.joints["hip-36"].source
+    assert "did you mean 'hip-36'?" in run("presets", "hip36").stderr
+
+
+@pytest.mark.parametrize("model", ["Exact", "EXACT", " exact"])
+def test_names_in_any_spelling(model):
+    answer = json.loads(run("press", "Hip_36", "--model", model, "--force", "1 kN", "--json").stdout)
+    assert [result["model"] for result in answer["results"]] == ["exact"]
+
+
 def test_a_joint_is_given_by_its_diameters():
     joint, pressures = pressed(
         *("--head-diameter", "36 mm", "--diametral-clearance", "0.2 mm", "--outer-diameter", "48 mm"),

@@ -213,6 +213,52 @@ def test_bad_sensitivities_are_one_sentence(words, message):
         sensitivity(bs.Tabulated(), HIP, asked.pop("distributions"), **asked)
 
 
+def test_sizes_and_materials_are_chosen_from_lists():
+    """The best of all combinations is that of each of them on its own."""
+    sizes, liners, ranges = [28.0, 32.0, 36.0], [bs.POM, bs.UHMWPE], {"clearance": (0.05, 0.2)}
+    common = {"load": {"force": 3000.0}, "limits": [Limit(name="outer_diameter", high=50.0)]}
+    model, hip = bs.HessForsbach(), HIP.replace(liner_thickness=6.0)
+    best = optimise(model, hip, ranges, among={"head_diameter": sizes, "liner": liners}, **common)
+    each = [
+        optimise(model, hip.replace(head_diameter=size, liner=liner), ranges, **common)
+        for size in sizes
+        for liner in liners
+    ]
+    assert best.value == pytest.approx(min(one.value for one in each), rel=1e-9)
+    assert best.point["head_diameter"] == 36.0
+    assert best.materials == {"liner": "UHMWPE"}
+    assert best.joint.liner == bs.UHMWPE
+    assert best.joint.head_diameter == 36.0
+    assert "head_diameter" not in best.slopes
+
+
+def test_lists_alone_are_looked_through():
+    choice, load = {"head_diameter": [28.0, 32.0, 36.0]}, {"force": 3000.0}
+    limits = [Limit(name="outer_diameter", high=46.0)]
+    best = optimise(bs.HessForsbach(), HIP, {}, among=choice, load=load, limits=limits)
+    assert best.point == {"head_diameter": 32.0}
+    with pytest.raises(ValueError, match="head_diameter = 36 is not allowed by outer_diameter ≤ 20"):
+        optimise(bs.HessForsbach(), HIP, {}, among=choice, load=load, limits=[Limit(name="outer_diameter", high=20.0)])
+
+
+def test_lists_in_the_shell(tmp_path):
+    words = ("--vary", "head_diameter=2.8, 3.2, 3.6 cm", "--vary", "liner=pom,UHMWPE", "--force", "3 kN")
+    best = json.loads(command(tmp_path, "optimise", "hip-28", *words, "--json").stdout)
+    assert best["point"] == {"head_diameter": pytest.approx(36.0)}
+    assert best["materials"] == {"liner": "UHMWPE"}
+    front = command(tmp_path, "optimise", "hip-28", *words, "--minimise", "area", "--minimise", "max_pressure")
+    assert "POM" in front.stdout
+    wrong = command(tmp_path, "optimise", "hip-28", "--vary", "liner=pon,UHMWPE", "--force", "1")
+    assert wrong.stderr == "ballsocket: liner material 'pon' is not known; did you mean 'pom'?\n"
+
+
+def test_a_preset_of_questions_is_varied(tmp_path):
+    words = ("--liner", "uhmwpe", "--ball", "cocr", "--liner-thickness", "5", "--head-diameter", "28", "--points", "5")
+    one = command(tmp_path, "map", "hip-36", *words, "--force", "3 kN", "--json")
+    other = command(tmp_path, "map", "hip-28", "--points", "5", "--force", "3 kN", "--json")
+    assert json.loads(one.stdout) == json.loads(other.stdout)
+
+
 def test_phrases_of_the_shell():
     assert range_of("ball_radius = 11..23 mm") == ("ball_radius", 11.0, 23.0)
     assert range_of("force=1 kN .. 3 kN") == ("force", 1000.0, 3000.0)

@@ -17,6 +17,7 @@ from ballsocket.studies.blocks import Blocks
 from ballsocket.studies.design import Method, Span, grid, sample
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
+from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.rows import table
 from ballsocket.studies.run import read
@@ -95,6 +96,80 @@ def test_diameters_are_axes():
         np.testing.assert_allclose(Limit(name=name).of(found), limit, rtol=1e-12)
     with pytest.raises(ValueError, match="head_diameter and ball_radius|ball_radius and head_diameter"):
         bs.study(bs.HessForsbach(), HIP, head_diameter=[30.0], ball_radius=[15.0], force=1.0)
+
+
+LINERS = [bs.UHMWPE, bs.CROSSLINKED_PE, bs.POM]
+
+
+@pytest.mark.parametrize("store", [None, "kept"])
+def test_materials_are_an_axis(store, tmp_path):
+    folder = None if store is None else tmp_path / store
+    found = bs.study(bs.HessForsbach(), HIP, force=[1000.0, 3000.0], liner=LINERS, store=folder)
+    assert found.max_pressure.dims == ("force", "liner")
+    assert found.liner.values.tolist() == ["UHMWPE", "cross-linked PE", "POM"]
+    for liner in LINERS:
+        pressed = bs.HessForsbach().press(HIP.replace(liner=liner), force=np.array([1000.0, 3000.0]))
+        np.testing.assert_array_equal(found.max_pressure.sel(liner=liner.name), pressed.max_pressure)
+        assert found.liner_young.sel(liner=liner.name).item() == liner.young
+    for ending in ("csv", "nc"):
+        export(found, tmp_path / f"study.{ending}")
+    rows = list(csv.DictReader((tmp_path / "study.csv").read_text(encoding="utf-8").splitlines()))
+    assert [row["liner"] for row in rows[:3]] == [liner.name for liner in LINERS]
+    with xr.open_dataset(tmp_path / "study.nc", engine="h5netcdf") as again:
+        assert again.liner.values.tolist() == found.liner.values.tolist()
+
+
+def test_a_rigid_ball_takes_materials():
+    rigid = HIP.replace(ball=None)
+    found = bs.study(bs.Hertz(), rigid, ball=[bs.COCR, bs.POM], force=100.0)
+    assert found.max_pressure.values[1] == bs.Hertz().press(rigid.replace(ball=bs.POM), force=100.0).max_pressure
+
+
+def test_one_material_is_fixed():
+    found = bs.study(bs.HessForsbach(), HIP, liner=bs.POM, force=[1000.0])
+    assert found.max_pressure.dims == ("force",)
+    assert found.liner_young.item() == bs.POM.young
+
+
+@pytest.mark.parametrize(
+    ("axes", "message"),
+    [
+        ({"liner": ["uhmwpe"]}, r"liner must be a list of Materials, got \['uhmwpe'\]"),
+        ({"liner": 1000.0}, "liner must be a Material or a list of Materials, got 1000"),
+        ({"liner": []}, "liner has no values"),
+        ({"liner": [bs.POM, bs.POM]}, "liner has POM twice"),
+        ({"liner": LINERS, "liner_young": [1.0]}, "liner_young varies along two axes"),
+    ],
+)
+def test_what_is_no_axis_of_materials_is_told(axes, message):
+    with pytest.raises(ValueError, match=message):
+        bs.study(bs.HessForsbach(), HIP, **axes, force=1.0)
+
+
+ORDERED = """
+joint = "hip-36"
+[axes]
+ball_radius = [15, 16, 17]
+outer_radius = [24, 25]
+liner = ["uhmwpe", "pom"]
+clearance = [0.05, 0.1]
+force = 3000
+"""
+
+
+def test_a_study_has_one_order_wherever_it_is_kept_and_by_whom_it_is_computed(tmp_path):
+    (tmp_path / "study.toml").write_text(ORDERED, encoding="utf-8")
+    given = read_study(tmp_path / "study.toml")
+    heads = "ball_radius_mm,outer_radius_mm,liner,liner_young_MPa,liner_poisson,clearance_mm,force_N,"
+    texts = []
+    for name, engine in (("here", Serial()), ("there", Processes(workers=2))):
+        for store in (None, tmp_path / name):
+            found = bs.study(given.model, given.joint, given.design, store=store, engine=engine)
+            assert list(found.sizes) == ["ball_radius", "outer_radius", "liner", "clearance"]
+            export(found, tmp_path / "study.csv")
+            texts.append((tmp_path / "study.csv").read_text(encoding="utf-8"))
+    assert texts[0].startswith(f"{heads}indentation_mm,half_angle_deg,max_pressure_MPa,area_mm2,status,valid")
+    assert len(set(texts)) == 1
 
 
 def test_an_outer_radius_is_that_of_the_shell():
@@ -333,7 +408,7 @@ def test_files_for_other_programs(tmp_path):
     export(found, tmp_path / "s.csv")
     rows = list(csv.DictReader((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()))
     assert len(rows) == 4
-    assert float(rows[1]["max_pressure"]) == found.max_pressure.values[0, 1]
+    assert float(rows[1]["max_pressure_MPa"]) == found.max_pressure.values[0, 1]
     assert float(rows[3]["half_angle_deg"]) == np.degrees(found.half_angle.values[1, 1])
     with pytest.raises(ValueError, match=r"must end in .nc or .csv"):
         export(found, tmp_path / "s.xls")

@@ -127,9 +127,9 @@ def percent(share: float, sign: str = "") -> str:
 
 
 def number_rows(head: str, contacts: Mapping[str, Contact]) -> list[list[Any]]:
-    """A table with its head: a row a contact, its numbers named and in the units of JSON."""
+    """A table with its head: a row a contact, its numbers its columns named by quantity and unit."""
     rows = [
-        [name, *(float(column.of(contact)) for column in COLUMNS), bool(contact.valid)]
+        [name, *(float(each.of(contact)) for each in COLUMNS), bool(contact.valid)]
         for name, contact in contacts.items()
     ]
-    return [[head, *(column.name for column in COLUMNS), "valid"], *rows]
+    return [[head, *(each.quantity.column for each in COLUMNS), "valid"], *rows]

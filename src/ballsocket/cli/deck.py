@@ -11,14 +11,15 @@ from ..output.reference_terminal import print_rival
 from .elements import CupWords, MeshWords, timed
 from .groups import grouped
 from .root import app
-from .words import LoadWords, named_joint
+from .words import JointWords, LoadWords
 
 
 @app.command()
 @grouped
 def deck(
     *,
-    joint: Annotated[str, typer.Argument(help="A joint file (TOML), or the name of a preset.")],
+    joint: Annotated[str | None, typer.Argument(help="A joint file (TOML), or the name of a preset.")] = None,
+    words: JointWords,
     out: Annotated[Path, typer.Option(help="The folder to write into; made if it is not there.")],
     load: LoadWords,
     steps: Annotated[int, typer.Option(min=1, max=1000, help="Equal indentations up to the load's.")] = 8,
@@ -30,7 +31,7 @@ def deck(
     run: Annotated[bool, typer.Option("--run", help="Run ccx on it, and show its answer beside ours.")] = False,
 ) -> None:
     """Write the finite-element model of a joint as an input file for CalculiX or Abaqus, with the numbers to expect."""
-    file = named_joint(joint)
+    file = words.or_named(joint)
     contact, _ = timed(mesh.model(cup.on(file.cup), meshes=1), file.joint, load.or_of(file))
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))

@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 
 from ..catalogue import judge
-from ..checks import nearest, require
+from ..checks import known_name, require
 from ..contact import Contact
 from ..cup import Cup
 from ..describe import COLUMNS
@@ -64,9 +64,7 @@ class MeshWords:
 
     def _element(self) -> Element:
         known = {element.name.lower(): element for element in Element}
-        if self.element is not None and self.element not in known:
-            raise ValueError(f"element {self.element!r} is not known{nearest(self.element, known)}")
-        return Element.BIQUADRATIC if self.element is None else known[self.element]
+        return Element.BIQUADRATIC if self.element is None else known[known_name("element", self.element, known)]
 
 
 @dataclass(frozen=True, kw_only=True)

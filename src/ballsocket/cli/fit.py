@@ -11,7 +11,7 @@ import typer
 
 import ballsocket as bs
 
-from ..checks import nearest
+from ..checks import known_name
 from ..identify.modulus import FORCES, Form
 from ..io.units import parse
 from ..kinds import Kind
@@ -47,8 +47,7 @@ def calibrate(
         else:
             print_table_3(columns)
         return
-    if form not in _FORMS:
-        raise ValueError(f"form {form!r} is not known{nearest(form, _FORMS)}")
+    form = known_name("form", form, _FORMS)
     given = named_joint(joint).joint
     if thickness:
         lengths = [parse("thickness", text, Kind.LENGTH) for text in thickness]

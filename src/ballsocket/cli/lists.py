@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated
 
 import typer
@@ -9,21 +10,46 @@ import typer
 import ballsocket as bs
 
 from ..catalogue import theories
-from ..checks import nearest
-from ..output.list_terminal import print_models, print_presets
+from ..checks import known_name
+from ..joint import Joint, Material
+from ..output.list_summary import model_summary, preset_summary
+from ..output.list_terminal import print_model, print_models, print_preset, print_presets
+from ..presets import joints, materials
 from .root import app
+from .words import AsJson, echo_json
+
+ModelName = Annotated[str | None, typer.Argument(help="One of them, in full.")]
+PresetName = Annotated[str | None, typer.Argument(help="A joint or material, in full.")]
 
 
 @app.command()
-def models() -> None:
+def models(name: ModelName = None, *, as_json: AsJson = False) -> None:
     """The catalogue: every model, where it can be trusted, and where it comes from."""
-    print_models(theories.values())
+    chosen = list(theories.values()) if name is None else [theories[known_name("model", name, theories)]]
+    if as_json:
+        echo_json({"version": bs.__version__, "models": list(map(model_summary, chosen))})
+    elif name is None:
+        print_models(chosen)
+    else:
+        print_model(chosen[0])
 
 
 @app.command()
-def presets() -> None:
+def presets(name: PresetName = None, *, as_json: AsJson = False) -> None:
     """Materials and joints by name, with the sources of their numbers."""
-    print_presets()
+    known = [*materials, *joints]
+    names = known if name is None else [known_name("preset", name, known)]
+    if as_json:
+        kinds: dict[str, Mapping[str, Material | Joint]] = {"materials": materials, "joints": joints}
+        listed = {
+            kind: {each: preset_summary(thing) for each, thing in things.items() if each in names}
+            for kind, things in kinds.items()
+        }
+        echo_json({"version": bs.__version__, **listed})
+    elif name is None:
+        print_presets()
+    else:
+        print_preset(names[0])
 
 
 @app.command()
@@ -31,7 +57,5 @@ def cite(
     names: Annotated[list[str] | None, typer.Argument(help="Models by name; all of them if none is given.")] = None,
 ) -> None:
     """BibTeX of what a model is made of."""
-    for name in names or []:
-        if name not in theories:
-            raise ValueError(f"model {name!r} is not known{nearest(name, theories)}")
-    typer.echo(bs.cite(*(theories[name] for name in names or theories)))
+    chosen = [known_name("model", name, theories) for name in names or theories]
+    typer.echo(bs.cite(*(theories[name] for name in chosen)))

@@ -12,7 +12,7 @@ import typer
 import ballsocket as bs
 
 from ..catalogue import judge, reference
-from ..checks import nearest
+from ..checks import known_name
 from ..compare import Comparison, answered, force_curves
 from ..io.joint_file import JointFile
 from ..model import Model
@@ -35,22 +35,20 @@ class ModelWords:
     every: Annotated[bool, typer.Option("--all", help="Every model of the catalogue.")] = False
 
     @property
+    def names(self) -> list[str]:
+        """Those that are named, as the catalogue has them."""
+        return [known_name("model", name, (*bs.catalogue, judge.name)) for name in self.model or ()]
+
+    @property
     def judged(self) -> bool:
         """Whether the finite elements are among them."""
-        return judge.name in (self.model or ())
-
-    def check(self) -> None:
-        """Raise ValueError for a name that is not known."""
-        known = [*bs.catalogue, judge.name]
-        for name in self.model or ():
-            if name not in known:
-                raise ValueError(f"model {name!r} is not known{nearest(name, known)}")
+        return judge.name in self.names
 
     def chosen(self) -> dict[str, Model]:
         """The models by their names, the paper's where none is asked for."""
         if self.every:
             return dict(bs.catalogue)
-        return {name: bs.catalogue.get(name, judge) for name in self.model or [DEFAULT_MODEL]}
+        return {name: bs.catalogue.get(name, judge) for name in self.names or [DEFAULT_MODEL]}
 
 
 @app.command()
@@ -79,7 +77,6 @@ def press(
     files.check()
     if figure is not None:
         check_format(figure)
-    models.check()
     file = words.or_named(joint)
     at = load.or_of(file)
     chosen, remarks, around = models.chosen(), [], cup.on(file.cup)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,6 +13,7 @@ import ballsocket as bs
 
 from ..cup import Cup
 from ..io.joint_file import JointFile
+from ..joint import Joint
 from ..model import Model
 from ..output import study_plots, study_summary, study_terminal
 from ..output.save import check_format, save
@@ -22,17 +23,17 @@ from ..studies.limits import Limit
 from ..studies.optimum import optimise as find_optimum
 from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
-from ..studies.phrases import axis_of, limit_of, range_of, spread_of
+from ..studies.phrases import axis_of, choice_of, limit_of, range_of, spread_of
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
 from .groups import grouped
 from .root import app
-from .words import AsJson, echo_json, given, load_of, named_joint
+from .words import AsJson, JointWords, echo_json, given, load_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-JointName = Annotated[str, typer.Argument(help="A joint file or a preset's name.")]
+JointName = Annotated[str | None, typer.Argument(help="A joint file or a preset's name.")]
 Limits = Annotated[list[str] | None, typer.Option("--limit", help="'outer_radius<=26 mm'; repeat")]
 
 
@@ -86,7 +87,8 @@ class FormWords:
 @grouped
 def design_map(
     *,
-    joint: JointName,
+    joint: JointName = None,
+    words: JointWords,
     x: Annotated[str, typer.Option(help="The axis across, 'ball_radius=11..23 mm'.")] = "ball_radius=11..23 mm",
     y: Annotated[str, typer.Option(help="The axis upwards.")] = "liner_thickness=3..15 mm",
     points: Annotated[int, typer.Option(help="Values along each axis.")] = 41,
@@ -96,7 +98,7 @@ def design_map(
 ) -> None:
     """Map peak pressure, contact area and half angle over two numbers of a joint, with limits drawn."""
     form.check()
-    file = named_joint(joint)
+    file = words.or_named(joint)
     limits = _limits(limit, file.cup)
     axes = _once([axis_of(x, points), axis_of(y, points)])
     design = grid(**axes, **press.load(file, axes))
@@ -109,8 +111,12 @@ def design_map(
 @grouped
 def optimise(
     *,
-    joint: JointName,
-    vary: Annotated[list[str], typer.Option(help="'ball_radius=11..23 mm'; repeat")],
+    joint: JointName = None,
+    words: JointWords,
+    vary: Annotated[
+        list[str],
+        typer.Option(help="'clearance=50..200 um', 'head_diameter=28,32,36 mm', 'liner=uhmwpe,pom'; repeat"),
+    ],
     minimise: Annotated[
         list[str] | None, typer.Option(help="max_pressure (default), area, ...; twice for the front between two")
     ] = None,
@@ -121,26 +127,30 @@ def optimise(
 ) -> None:
     """Find the joint with the smallest answer within limits; with two answers, the joints that none beats in both."""
     form.check()
-    file, chosen = named_joint(joint), minimise or ["max_pressure"]
+    file, chosen = words.or_named(joint), minimise or ["max_pressure"]
     limits = _limits(limit, file.cup)
-    ranges = _once((name, (low, high)) for name, low, high in map(range_of, vary))
+    lists = [choice_of(phrase) for phrase in vary]
+    among = _once(choice for choice in lists if choice is not None)
+    phrases = [phrase for phrase, choice in zip(vary, lists, strict=True) if choice is None]
+    ranges = _once((name, (low, high)) for name, low, high in map(range_of, phrases))
     if form.figure is not None and len(chosen) == 1 and len(ranges) != 2:
         raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
-    load, model = press.load(file, ranges), press.model_in(file.cup)
+    load, model = press.load(file, {**ranges, **among}), press.model_in(file.cup)
 
-    def everywhere() -> Any:
+    def everywhere(joint: Joint, fixed: Mapping[str, Any]) -> Any:
         """The study of all the ranges."""
-        design = grid(**dict(axis_of(phrase, points) for phrase in vary), **load)
-        return bs.study(model, file.joint, design, quantities=_quantities(chosen, limits))
+        design = grid(**dict(axis_of(phrase, points) for phrase in phrases), **fixed, **load)
+        return bs.study(model, joint, design, quantities=_quantities(chosen, limits))
 
     if len(chosen) == 2:
-        _front(everywhere(), (chosen[0], chosen[1]), limits, form)
+        _front(everywhere(file.joint, among), (chosen[0], chosen[1]), limits, form)
         return
     if len(chosen) != 1:
         raise ValueError(f"one answer or two are minimised, got {len(chosen)}")
-    best = find_optimum(model, file.joint, ranges, minimise=chosen[0], limits=limits, load=load)
+    best = find_optimum(model, file.joint, ranges, among=among, minimise=chosen[0], limits=limits, load=load)
     form.print(lambda: {"version": bs.__version__, **best.summary()}, lambda: study_terminal.print_optimum(best))
-    form.draw(lambda: study_plots.design_map(everywhere(), limits, _shown(chosen), best=best.point))
+    sizes = {name: value for name, value in best.point.items() if name in among}
+    form.draw(lambda: study_plots.design_map(everywhere(best.joint, sizes), limits, _shown(chosen), best=best.point))
 
 
 def _front(found: Any, wishes: tuple[str, str], limits: list[Limit], form: FormWords) -> None:
@@ -154,7 +164,8 @@ def _front(found: Any, wishes: tuple[str, str], limits: list[Limit], form: FormW
 @grouped
 def sensitivity(
     *,
-    joint: JointName,
+    joint: JointName = None,
+    words: JointWords,
     spread: Annotated[list[str], typer.Option(help="'clearance=0.10+-0.05 mm' or 'liner_poisson=0.38..0.46'; repeat")],
     press: PressWords,
     count: Annotated[int, typer.Option(help="Samples, a power of two.")] = 1024,
@@ -162,7 +173,7 @@ def sensitivity(
 ) -> None:
     """Tell which number's scatter matters: Sobol indices with intervals, and elasticities."""
     form.check()
-    file = named_joint(joint)
+    file = words.or_named(joint)
     scattered = _once(map(spread_of, spread))
     load, model = press.load(file, scattered), press.model_in(file.cup)
     found = find_sensitivity(model, file.joint, scattered, count=count, load=load)

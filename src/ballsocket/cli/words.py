@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..checks import nearest
+from ..checks import nearest, plain_name
 from ..io.joint_file import JointFile, joint_of, read_joint, read_load, varied
 from ..presets import joints
 from ..quantities import JOINT
@@ -97,8 +97,8 @@ def named_joint(name: str) -> JointFile:
         raise ValueError(f"{name!r} is a folder; a joint file is needed")
     if path.exists():
         return read_joint(path)
-    if name in joints:
-        return JointFile(joints[name], {})
+    if plain_name(name) in joints:
+        return JointFile(joints[plain_name(name)], {})
     raise ValueError(f"{name!r} is neither a file nor a preset{nearest(name, joints)}")
 
 

@@ -8,7 +8,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from ..checks import check_text, nearest, shown
+from ..checks import check_text, known_name, nearest, shown
 from ..cup import Cup, Interface, Side
 from ..joint import Joint, Layer, Material, Support
 from ..model import checked_load
@@ -26,7 +26,7 @@ _TABLES = {
     "cup": (*CUP, *_CHOICES),
     "load": tuple(LOADS),
 }
-_KEYS = {**_TABLES, "backing": (*LAYER, "material", *MATERIAL)}
+KEYS: Mapping[str, Sequence[str]] = {**_TABLES, "backing": (*LAYER, "material", *MATERIAL)}
 _HEADS = {"backing": "[[backing]]"}
 _MOST_LAYERS = 20
 
@@ -80,7 +80,7 @@ def joint_of(table: Mapping[str, Any]) -> JointFile:
         part = table.get(name, {}) if name else table
         if not isinstance(part, Mapping):
             raise ValueError(f"{name} = {shown(part)} must be a table: [{name}]")
-        check_keys(part, name, f"in [{name}]" if name else "at the top", _KEYS)
+        check_keys(part, name, f"in [{name}]" if name else "at the top", KEYS)
     for name in ("name", "source"):
         check_text(name, table.get(name, ""))
     joint = _joint(
@@ -161,7 +161,7 @@ def _backing(tables: Any) -> tuple[Layer, ...]:
 
 
 def _layer(name: str, table: Mapping[str, Any]) -> Layer:
-    check_keys(table, "backing", f"in {name}", _KEYS)
+    check_keys(table, "backing", f"in {name}", KEYS)
     if "thickness" not in table:
         raise ValueError(f"{name}.thickness is missing; inf is a massive body")
     thickness = parse(f"{name}.thickness", table["thickness"], LAYER["thickness"].kind)
@@ -175,7 +175,7 @@ def _material(name: str, table: Mapping[str, Any], standing: Material | None = N
     numbers: dict[str, Any] = {
         key: parse(f"{name}.{key}", table[key], quantity.kind) for key, quantity in MATERIAL.items() if key in table
     }
-    preset = _named_material(name, table["material"]) if "material" in table else standing
+    preset = named_material(name, table["material"]) if "material" in table else standing
     missing = [key for key in MATERIAL if key not in numbers]
     if missing and preset is None:
         raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
@@ -183,9 +183,6 @@ def _material(name: str, table: Mapping[str, Any], standing: Material | None = N
         return replace(preset, **numbers) if preset else Material(**numbers)
 
 
-def _named_material(name: str, chosen: Any) -> Material:
+def named_material(name: str, chosen: Any) -> Material:
     """The preset material called `chosen`, in any spelling of capitals."""
-    key = check_text(f"{name}.material", chosen).lower().replace(" ", "-").replace("_", "-")
-    if key not in materials:
-        raise ValueError(f"{name} material {shown(chosen)} is not known{nearest(key, materials)}")
-    return materials[key]
+    return materials[known_name(f"{name} material", check_text(f"{name}.material", chosen), materials)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from rich.table import Table
 from rich.text import Text
@@ -10,6 +10,7 @@ from rich.text import Text
 from ..joint import Joint, Material
 from ..model import Theory
 from ..presets import joints, materials
+from ..quantities import JOINT, MATERIAL, Quantity
 from .terminal import console, print_folded
 
 _NARROW = 72  # columns: lists are paragraphs below
@@ -33,6 +34,44 @@ def print_presets() -> None:
         rows = [(name, _numbers(preset), preset.source) for name, preset in presets.items()]
         _print_rows((title, "numbers", "source"), rows, gap=0)
         console().print()
+
+
+def print_model(model: Theory) -> None:
+    """One model: what it is, what it promises, where and why only there, and where it comes from."""
+    terminal = console()
+    print_folded(terminal, f"{model.name}: {model.title}", "bold")
+    promise = "" if model.promise is None else f"{model.promise} of the elastic answer, "
+    print_folded(terminal, f"{promise}to be trusted for", "")
+    for limit in model.validity:
+        print_folded(terminal, f"  {limit}: {limit.why}", "")
+    if model.reach:
+        print_folded(terminal, model.reach, "")
+    for source in model.sources:
+        print_folded(terminal, f"source: {source}{f', doi {source.doi}' if source.doi else ''}", "")
+
+
+def print_preset(name: str) -> None:
+    """One material or joint with all its numbers."""
+    terminal = console()
+    preset: Material | Joint = materials[name] if name in materials else joints[name]
+    print_folded(terminal, name, "bold")
+    for title, text in (*_of(preset), ("source", preset.source)):
+        print_folded(terminal, f"  {title:<22}{text}", "")
+
+
+def _of(preset: Material | Joint) -> list[tuple[str, str]]:
+    """Titles with text."""
+    if isinstance(preset, Material):
+        return [("name", preset.name), *_quantities(preset, MATERIAL)]
+    ball = "rigid" if preset.ball is None else str(preset.ball)
+    return [*_quantities(preset, JOINT), ("liner", str(preset.liner)), ("ball", ball)]
+
+
+def _quantities(thing: Material | Joint, named: Mapping[str, Quantity]) -> list[tuple[str, str]]:
+    return [
+        (quantity.title, f"{float(getattr(thing, name)):g} {quantity.written.text}".strip())
+        for name, quantity in named.items()
+    ]
 
 
 def _sources(model: Theory) -> str:

@@ -81,6 +81,9 @@ def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
     long = [str(dim) for dim, size in study.sizes.items() if size > 1]
     if len(long) != 2:
         raise ValueError(f"a map needs two axes of more than one value, got {', '.join(long) or 'none'}")
+    for name in long:
+        if name not in QUANTITIES:
+            raise ValueError(f"a map has axes of numbers, and {name} has names")
     return long[0], long[1]
 
 

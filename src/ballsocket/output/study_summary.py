@@ -9,6 +9,7 @@ import numpy
 
 from ..arrays import to_list
 from ..studies.limits import Limit, allowed
+from ..studies.parameters import PARTS_OF
 from ..studies.pieces import dims_of
 
 if TYPE_CHECKING:
@@ -61,17 +62,26 @@ def sensitivity_summary(found: xarray.Dataset) -> dict[str, Any]:
     }
 
 
+def varying(study: xarray.Dataset) -> list[str]:
+    """The parameters that vary, materials by their names alone."""
+    return [
+        str(name)
+        for name, variable in study.coords.items()
+        if variable.dims and (name in variable.dims or not set(variable.dims) & set(PARTS_OF))
+    ]
+
+
 def answers(study: xarray.Dataset) -> list[str]:
     """What a study holds of the contacts, by name."""
     return [str(name) for name in study.data_vars if name not in ("status", "valid")]
 
 
-def coordinates(study: xarray.Dataset, flat: int) -> dict[str, float]:
+def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
     """The parameters at a point, by its number in the order of the dimensions."""
     dims = dims_of(study)
     place = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
     found = {}
     for name, variable in study.coords.items():
         here = variable.isel({dim: int(place[dim]) for dim in variable.dims})
-        found[str(name)] = float(here)
+        found[str(name)] = here.values.item()
     return found

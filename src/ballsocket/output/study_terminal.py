@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy
 from rich.console import Console
@@ -14,7 +14,7 @@ from ..quantities import QUANTITIES
 from ..studies.limits import Limit, allowed
 from ..studies.pieces import pieces
 from ..validity import Status
-from .study_summary import answers, coordinates, map_summary
+from .study_summary import answers, coordinates, map_summary, varying
 
 if TYPE_CHECKING:
     import xarray
@@ -105,7 +105,7 @@ def map_rows(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[list[str],
     for name, ends in map_summary(study, limits)["quantities"].items():
         row = [name, _unit(name)]
         for end in ends:
-            varied = {axis: value for axis, value in end["at"].items() if study[axis].dims}
+            varied = {axis: end["at"][axis] for axis in varying(study)}
             row += [_shown(name, end["value"]), _words(varied)]
         rows.append(row)
     return ["quantity", "unit", "least", "at", "largest", "at"], rows
@@ -115,9 +115,9 @@ def print_front(front: xarray.Dataset, most: int = 12) -> None:
     """Designs that no other beats in both, at most so many of them, evenly chosen."""
     chosen = front.isel(point=numpy.unique(numpy.linspace(0, front.sizes["point"] - 1, most).round().astype(int)))
     names = [*(str(name) for name in front.coords if front[name].dims), *answers(front)]
-    table = _table(*(QUANTITIES[name].head() for name in names))
+    table = _table(*(_head(name) for name in names))
     for place in range(chosen.sizes["point"]):
-        table.add_row(*(_shown(name, float(chosen[name].values[place])) for name in names))
+        table.add_row(*(_shown(name, chosen[name].values[place].item()) for name in names))
     Console().print(table)
     Console().print(f"{front.sizes['point']} designs that no other beats in both", highlight=False)
 
@@ -130,8 +130,10 @@ def print_optimum(best: Optimum) -> None:
     )
     table = _table("number", "value", "unit", f"d {best.minimise} / d number")
     for name, value in best.point.items():
-        slope = best.slopes[name] * _factor(best.minimise) / _factor(name)
-        table.add_row(name, f"{value * _factor(name):.5g}", _unit(name), f"{slope:.4g}")
+        slope = f"{best.slopes[name] * _factor(best.minimise) / _factor(name):.4g}" if name in best.slopes else "-"
+        table.add_row(name, f"{value * _factor(name):.5g}", _unit(name), slope)
+    for part, material in best.materials.items():
+        table.add_row(part, material, "", "-")
     console.print(table)
     if not best.valid:
         console.print("the model does not trust itself there: ask another", highlight=False)
@@ -159,11 +161,20 @@ def print_sensitivity(found: xarray.Dataset) -> None:
 
 
 def _place(study: xarray.Dataset, flat: int) -> str:
-    return _words({name: value for name, value in coordinates(study, flat).items() if study[name].dims})
+    at = coordinates(study, flat)
+    return _words({name: at[name] for name in varying(study)})
 
 
-def _words(at: Mapping[str, float]) -> str:
-    return ", ".join(f"{QUANTITIES[name].symbol} {_shown(name, value)}" for name, value in at.items())
+def _words(at: Mapping[str, Any]) -> str:
+    return ", ".join(f"{_symbol(name)} {_shown(name, value)}" for name, value in at.items())
+
+
+def _symbol(name: str) -> str:
+    return QUANTITIES[name].symbol if name in QUANTITIES else name
+
+
+def _head(name: str) -> str:
+    return QUANTITIES[name].head() if name in QUANTITIES else name
 
 
 def _unit(name: str) -> str:
@@ -174,8 +185,8 @@ def _factor(name: str) -> float:
     return QUANTITIES[name].shown.factor
 
 
-def _shown(name: str, value: float) -> str:
-    return f"{value * _factor(name):.4g}"
+def _shown(name: str, value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value * _factor(name):.4g}"
 
 
 def _table(*heads: str) -> Table:

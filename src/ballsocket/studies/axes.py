@@ -14,7 +14,8 @@ import numpy
 
 from ..arrays import Numbers
 from ..checks import require
-from ..quantities import QUANTITIES
+from ..joint import Material
+from ..quantities import MATERIAL, QUANTITIES
 from .distributions import Distribution
 
 MOST = 10**15
@@ -35,6 +36,11 @@ class Axis(ABC):
     def names(self) -> tuple[str, ...]:
         """The parameters."""
         return (self.name,)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What its places are called; empty where numbers say it."""
+        return ()
 
     def __len__(self) -> int:
         return len(next(iter(self.values.values())))
@@ -97,6 +103,42 @@ class Span:
             value = getattr(self, name)
             require(name, value, abs(value) < inf, "the end of a span is finite")
         require("count", self.count, 1 <= self.count <= MOST, "a span has at least one value, at most 1e15")
+
+
+@dataclass(frozen=True)
+class MaterialAxis(Axis):
+    """Materials of a part of the joint, "liner" or "ball", whose numbers vary together.
+
+    Raises
+    ------
+    ValueError
+        No material at all, or the same one twice.
+    """
+
+    name: str
+    materials: tuple[Material, ...]
+
+    def __post_init__(self) -> None:
+        if not self.materials:
+            raise ValueError(f"{self.name} has no values")
+        for label in self.labels:
+            if self.labels.count(label) > 1:
+                raise ValueError(f"{self.name} has {label} twice")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(f"{self.name}_{number}" for number in MATERIAL)
+
+    @property
+    def values(self) -> Mapping[str, Numbers]:
+        return {
+            f"{self.name}_{number}": numpy.array([float(getattr(each, number)) for each in self.materials])
+            for number in MATERIAL
+        }
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        return tuple(each.name or str(each) for each in self.materials)
 
 
 class Method(Enum):

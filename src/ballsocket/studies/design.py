@@ -10,10 +10,11 @@ from typing import Any
 import numpy
 
 from ..arrays import Numbers
-from ..checks import check_names, require
-from .axes import MOST, Axis, GridAxis, Method, SampleAxis, Span, SpanAxis, column
+from ..checks import check_names, require, shown
+from ..joint import Material
+from .axes import MOST, Axis, GridAxis, MaterialAxis, Method, SampleAxis, Span, SpanAxis, column
 from .distributions import Distribution
-from .parameters import PARAMETERS, contradiction
+from .parameters import PARAMETERS, PARTS_OF, contradiction
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +84,9 @@ def grid(**axes: Any) -> Design:
 
     Parameters
     ----------
-    **axes : number, Span or sequence of numbers
-        By name of a parameter (`ballsocket.studies.parameters.PARAMETERS`), in mm, N, MPa, rad. A number is fixed and
-        makes no axis.
+    **axes : number, Span or sequence of numbers; Material or sequence of these
+        By name of a parameter (`ballsocket.studies.parameters.PARAMETERS`), in mm, N, MPa, rad; materials by `liner`
+        or `ball`. A number, or one material, is fixed and makes no axis.
 
     Raises
     ------
@@ -97,9 +98,16 @@ def grid(**axes: Any) -> Design:
     >>> grid(ball_radius=[14.0, 16.0], force=[1000.0, 2000.0, 3000.0]).shape
     (2, 3)
     """
-    check_names(axes, PARAMETERS, "among the axes")
-    fixed = {name: _fixed(name, value) for name, value in axes.items() if not isinstance(value, Span) and is_one(value)}
-    varying = {name: value for name, value in axes.items() if name not in fixed}
+    check_names(axes, (*PARAMETERS, *PARTS_OF), "among the axes")
+    fixed: dict[str, float] = {}
+    varying = {}
+    for name, value in axes.items():
+        if isinstance(value, Material):
+            fixed |= {name: float(column[0]) for name, column in _axis(name, [value]).values.items()}
+        elif isinstance(value, Span) or not is_one(value):
+            varying[name] = value
+        else:
+            fixed[name] = _fixed(name, value)
     return Design(tuple(_axis(name, value) for name, value in varying.items()), fixed)
 
 
@@ -130,11 +138,21 @@ def is_one(value: Any) -> bool:
     return numpy.ndim(value) == 0
 
 
+def _materials(name: str, values: Any) -> tuple[Material, ...]:
+    if isinstance(values, Sequence) and all(isinstance(each, Material) for each in values):
+        return tuple(values)
+    raise ValueError(f"{name} must be a list of Materials, got {shown(values)}")
+
+
 def _fixed(name: str, value: Any) -> float:
+    if name in PARTS_OF:
+        raise ValueError(f"{name} must be a Material or a list of Materials, got {shown(value)}")
     return float(column(name, numpy.asarray([value]))[0])
 
 
 def _axis(name: str, value: Any) -> Axis:
+    if name in PARTS_OF:
+        return MaterialAxis(name, _materials(name, value))
     return SpanAxis(name, value) if isinstance(value, Span) else GridAxis(name, column(name, numpy.asarray(value)))
 
 

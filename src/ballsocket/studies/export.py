@@ -15,6 +15,7 @@ from .pieces import blocks_of, dims_of, pieces
 if TYPE_CHECKING:
     import xarray
 
+_SPECIAL = set(',"\r\n')  # what only a cell in quotes may have
 SUFFIXES = (".nc", ".csv")
 
 
@@ -27,8 +28,8 @@ def check_suffix(path: Path) -> None:
 def export(study: xarray.Dataset, path: str | Path) -> None:
     """Write a study as NetCDF (.nc) or CSV (.csv), part by part. The file appears at once.
 
-    CSV has a row a point, the parameters first, in mm, N and MPa; half angles are in degrees, in a column whose name
-    ends in `_deg`.
+    CSV has a row a point, the parameters first, in the order of the design; the names of its columns end in their
+    units, `ball_radius_mm`, `max_pressure_MPa`, `half_angle_deg`.
 
     Raises
     ------
@@ -62,7 +63,7 @@ def _write_csv(study: xarray.Dataset, path: Path) -> None:
 
 
 def _head(name: str) -> str:
-    return QUANTITIES[name].key if name in QUANTITIES else name
+    return QUANTITIES[name].column if name in QUANTITIES else name
 
 
 def _read(name: str, column: numpy.ndarray) -> numpy.ndarray:
@@ -72,4 +73,6 @@ def _read(name: str, column: numpy.ndarray) -> numpy.ndarray:
 def _cell(value: object) -> str:
     if isinstance(value, numpy.bool_):
         return "1" if value else "0"
+    if isinstance(value, str):
+        return '"{}"'.format(value.replace('"', '""')) if _SPECIAL & set(value) else str(value)
     return repr(value.item()) if isinstance(value, numpy.generic) else str(value)

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from ..catalogue import catalogue, judge
-from ..checks import check_names, check_text, nearest, shown
+from ..checks import check_names, check_text, known_name, nearest, plain_name, shown
 from ..engines.dask import Distributed
 from ..engines.local import Engine, Processes, Serial
-from ..io.joint_file import JointFile, joint_of, read_joint
+from ..io.joint_file import KEYS, JointFile, check_keys, joint_of, named_material, read_joint
 from ..io.toml import read_toml
 from ..io.units import as_given, parse
 from ..joint import Joint
@@ -20,7 +20,7 @@ from ..presets import joints
 from .axes import Method, Span
 from .design import Design, grid, sample
 from .distributions import Distribution, Normal, Rectangular, tolerance
-from .parameters import PARAMETERS
+from .parameters import PARAMETERS, PARTS_OF
 from .rows import table
 
 _TOP = (
@@ -38,6 +38,7 @@ _TOP = (
     "engine",
 )
 _DESCRIBED = ("joint", "liner", "ball", "backing", "cup")
+_KEYS = {"": _TOP, **{name: KEYS[name] for name in _DESCRIBED}, "axes": tuple(PARAMETERS)}
 _ENGINES = ("serial", "processes", "dask")
 _LARGEST = 1 << 53
 models: dict[str, Model] = {**catalogue, judge.name: judge}
@@ -59,7 +60,8 @@ class StudyFile:
 def read_study(path: str | Path) -> StudyFile:
     """Read a study file.
 
-    Tables: `axes`, a parameter each, with a number, a list, or `{from, to, count}`; `samples`, with `count`, `seed`,
+    Tables: `axes`, a parameter each, with a number, a list, or `{from, to, count}`, and `liner` or `ball` with a list
+    of materials by name; `samples`, with `count`, `seed`,
     `method` ("sobol", "latin-hypercube") and for each parameter that scatters `{low, high}`, `{mean, deviation}` (with
     `low` and `high` where it is cut off) or `{nominal, plus_minus}`; `table`, with the `path` of a CSV or Parquet file.
     At the top: `model` (by name), `joint` (a joint file or a preset by name, or a table as in joint files, with
@@ -79,7 +81,7 @@ def read_study(path: str | Path) -> StudyFile:
 
 
 def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
-    check_names(content, _TOP, "at the top")
+    check_keys(content, "", "at the top", _KEYS)
     quantities = content.get("quantities", [])
     if not (isinstance(quantities, list) and all(isinstance(name, str) for name in quantities)):
         raise ValueError(f"quantities = {shown(quantities)} must be a list of names")
@@ -102,9 +104,7 @@ def named_model(name: Any) -> Model:
     ValueError
         A name that is not known, with the nearest one.
     """
-    if not isinstance(name, str) or name not in models:
-        raise ValueError(f"model {shown(name)} is not known{nearest(name, models)}")
-    return models[name]
+    return models[known_name("model", name, models)]
 
 
 def read_engine(content: Mapping[str, Any]) -> Engine:
@@ -137,8 +137,8 @@ def _joint(content: Mapping[str, Any], folder: Path) -> JointFile:
     if given is None:
         raise ValueError("a joint is needed: a joint file, a preset's name, or a table [joint]")
     name = _text("joint", given)
-    if name in joints:
-        return JointFile(joints[name], {})
+    if plain_name(name) in joints:
+        return JointFile(joints[plain_name(name)], {})
     if not (folder / name).is_file():
         raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
     return read_joint(folder / name)
@@ -146,7 +146,7 @@ def _joint(content: Mapping[str, Any], folder: Path) -> JointFile:
 
 def _design(content: Mapping[str, Any], folder: Path) -> Design:
     axes, samples, rows = (_table_of(content, name) for name in ("axes", "samples", "table"))
-    check_names(axes, PARAMETERS, "in [axes]")
+    check_names(axes, (*PARAMETERS, *PARTS_OF), "in [axes]")
     design = grid(**{name: _values(name, value) for name, value in axes.items()})
     if samples:
         design = _samples(samples) * design
@@ -159,7 +159,9 @@ def _design(content: Mapping[str, Any], folder: Path) -> Design:
 
 
 def _values(name: str, value: Any) -> Any:
-    """What an axis takes: one number, several, or a span."""
+    """What an axis takes: one number, several, or a span; materials by their names."""
+    if name in PARTS_OF:
+        return [named_material(name, each) for each in (value if isinstance(value, list) else [value])]
     kind = PARAMETERS[name].kind
     if isinstance(value, list):
         return [parse(f"{name}[{place}]", each, kind) for place, each in enumerate(value)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -13,10 +14,18 @@ from ..quantities import QUANTITIES
 from ..validity import Status
 from .design import Design
 from .identity import axes_of
+from .parameters import PARTS_OF
 from .task import Task
 
 if TYPE_CHECKING:
     import xarray
+
+
+PARAMETERS = "parameters"
+"""The attribute with the names of what varies or is fixed, in the order in which they were given."""
+
+LABELS = "labels"
+"""The attribute with the names of materials, by axis, as JSON."""
 
 
 def described(name: str) -> dict[str, Any]:
@@ -29,12 +38,15 @@ def described(name: str) -> dict[str, Any]:
         }
     if name == "valid":
         return {"long_name": "joint and answer lie where the model can be trusted"}
+    if name in PARTS_OF:
+        return {"long_name": f"material of the {name}"}
     quantity = QUANTITIES[name]
     return {"long_name": quantity.title, "symbol": quantity.symbol, "units": quantity.unit}
 
 
 def attributes(task: Task) -> dict[str, Any]:
     """Attributes of the whole study: who computed what, and after whom."""
+    labels = {axis.name: axis.labels for axis in task.design.axes if axis.labels}
     return {
         "title": f"{task.model.title}, pressed at {task.design.size} points",
         "model": task.model.name,
@@ -42,7 +54,9 @@ def attributes(task: Task) -> dict[str, Any]:
         "references": "; ".join(map(str, dict.fromkeys(task.model.sources))),
         "design": json.dumps(axes_of(task.design)),
         "source": f"ballsocket {fingerprint()}",
+        PARAMETERS: " ".join(_in_order(task.design)),
         "Conventions": "CF-1.10",
+        **({LABELS: json.dumps(labels, ensure_ascii=False)} if labels else {}),
     }
 
 
@@ -59,8 +73,29 @@ def dataset(task: Task, answers: dict[str, Numbers]) -> xarray.Dataset:
     """Arrays of the study's shape, labelled."""
     import xarray
 
-    return xarray.Dataset(
-        {name: (task.design.dims, values, described(name)) for name, values in answers.items()},
-        coords={name: (dims, values, described(name)) for name, (dims, values) in coordinates(task.design).items()},
-        attrs=attributes(task),
+    return arranged(
+        xarray.Dataset(
+            {name: (task.design.dims, values, described(name)) for name, values in answers.items()},
+            coords={name: (dims, values, described(name)) for name, (dims, values) in coordinates(task.design).items()},
+            attrs=attributes(task),
+        )
     )
+
+
+def arranged(study: xarray.Dataset) -> xarray.Dataset:
+    """A study whose parameters come in the order of its design, its axes of materials with their names."""
+    import xarray
+
+    labels = json.loads(study.attrs.get(LABELS, "{}"))
+    named = {axis: (axis, numpy.array(names), described(axis)) for axis, names in labels.items()}
+    coords = {**{str(name): one.variable for name, one in study.coords.items()}, **named}
+    order = (name for name in study.attrs.get(PARAMETERS, "").split() if name in coords)
+    answers = {name: one.variable for name, one in study.data_vars.items()}
+    placed = {name: coords[name] for name in dict.fromkeys((*order, *coords))}
+    return xarray.Dataset(answers, coords=placed, attrs=study.attrs)
+
+
+def _in_order(design: Design) -> tuple[str, ...]:
+    """The parameters, each axis of materials before its numbers."""
+    axes = ((*([axis.name] if axis.labels else []), *axis.names) for axis in design.axes)
+    return (*chain.from_iterable(axes), *design.fixed)

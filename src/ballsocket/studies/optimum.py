@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
+from types import MappingProxyType
 from typing import Any
 
 import numpy
@@ -15,7 +17,7 @@ from ..model import Model
 from .design import Design, grid, sample
 from .distributions import Rectangular
 from .limits import EDGE_DISTANCE, Limit, allowed
-from .parameters import LOADS, PARAMETERS, varied
+from .parameters import LOADS, PARAMETERS, PARTS_OF, varied
 from .run import study
 from .slopes import Derive, differences
 from .task import QUANTITIES
@@ -23,6 +25,7 @@ from .task import QUANTITIES
 _SEARCH = 3.0  # s that the search for a start may take
 _FEWEST, _MOST = 64, 4096
 _STARTS = 3
+_NONE: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +36,8 @@ class Optimum:
     ----------
     point : dict of str to float
         What was varied, in mm, MPa, rad.
+    materials : dict of str to str
+        The names of materials that were chosen, by the part that is made of them.
     value : float
         The quantity that was minimised.
     joint : Joint
@@ -54,6 +59,7 @@ class Optimum:
     slopes: dict[str, float]
     valid: bool
     searched: int
+    materials: dict[str, str] = field(default_factory=dict)
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
@@ -61,6 +67,7 @@ class Optimum:
             "minimise": self.minimise,
             "value": self.value,
             "point": self.point,
+            "materials": self.materials,
             "active": list(self.active),
             "slopes": self.slopes,
             "joint": self.joint.summary(),
@@ -75,6 +82,7 @@ def optimise(
     vary: Mapping[str, tuple[float, float]],
     *,
     load: Mapping[str, float],
+    among: Mapping[str, Sequence[Any]] = _NONE,
     minimise: str = "max_pressure",
     limits: Iterable[Limit] = (),
     seed: int = 0,
@@ -93,6 +101,9 @@ def optimise(
         Ranges in mm, MPa.
     load : mapping of str to float
         One of force (N), indentation (mm), half_angle (rad).
+    among : mapping of str to sequence
+        What comes in sizes: numbers (in mm, MPa, rad) by their names, materials by `liner` or `ball`. Every combination
+        is looked at.
     minimise : str
         A quantity of a contact.
     limits : iterable of Limit
@@ -119,15 +130,49 @@ def optimise(
     """
     needs("study", "xarray")
     check_names(vary, PARAMETERS, "among what varies")
+    check_names(among, (*PARAMETERS, *PARTS_OF), "among what is chosen")
     check_names([minimise], QUANTITIES, "among the quantities")
     for name, (low, high) in vary.items():
         require(name, low, low < high, f"a range goes upwards, to {high:g}")
-    if not vary:
+    if not (vary or among):
         raise ValueError("at least one number must vary")
-    problem = _Problem(model, joint, dict(vary), minimise, tuple(limits), dict(load), derive)
-    starts, searched = problem.starts(seed)
-    found = [problem.refined(start) for start in starts]
-    return problem.optimum(min(found, key=lambda each: each[1])[0], searched)
+    choices = [dict(zip(among, values, strict=True)) for values in product(*among.values())]
+    search = _Search(model, dict(vary), minimise, tuple(limits), derive, seed, _SEARCH / max(1, len(choices)))
+    found, refused = [], ValueError("an empty list leaves nothing to choose")
+    for choice in choices:
+        try:
+            found.append(search.best(joint, load, choice))
+        except ValueError as error:
+            refused = error
+    if not found:
+        raise refused
+    return replace(min(found, key=lambda each: each.value), searched=sum(each.searched for each in found))
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """What is asked of every combination of sizes."""
+
+    model: Model
+    vary: dict[str, tuple[float, float]]
+    minimise: str
+    limits: tuple[Limit, ...]
+    derive: Derive
+    seed: int
+    seconds: float
+
+    def best(self, joint: Joint, load: Mapping[str, float], choice: Mapping[str, Any]) -> Optimum:
+        """The best joint of one combination."""
+        materials = {name: value for name, value in choice.items() if name in PARTS_OF}
+        sizes = {name: float(value) for name, value in choice.items() if name not in PARTS_OF}
+        made = joint.replace(**materials)
+        problem = _Problem(
+            self.model, made, self.vary, self.minimise, self.limits, dict(load), self.derive, sizes, self.seconds
+        )
+        starts, searched = problem.starts(self.seed)
+        share = min(map(problem.refined, starts), key=lambda each: each[1])[0]
+        chosen = {name: value.name or str(value) for name, value in materials.items()}
+        return replace(problem.optimum(share, searched), materials=chosen)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,6 +186,8 @@ class _Problem:
     limits: tuple[Limit, ...]
     load: dict[str, float]
     derive: Derive
+    sizes: dict[str, float]
+    seconds: float
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -151,17 +198,19 @@ class _Problem:
         return tuple(dict.fromkeys(wanted))
 
     def at(self, share: Numbers) -> dict[str, float]:
-        return {
+        return self.sizes | {
             name: float(low + one * (high - low))
             for one, (name, (low, high)) in zip(share, self.vary.items(), strict=True)
         }
 
     def starts(self, seed: int) -> tuple[list[Numbers], int]:
         """The best few allowed points of a search, and how many were pressed."""
-        count = int(numpy.clip(_SEARCH / self.model.seconds_a_press, _FEWEST, _MOST))
+        if not self.vary:
+            return [self._alone()], 1
+        count = int(numpy.clip(self.seconds / self.model.seconds_a_press, _FEWEST, _MOST))
         count = 1 << (count.bit_length() - 1)
         ranges: dict[str, Any] = {name: Rectangular(low=low, high=high) for name, (low, high) in self.vary.items()}
-        points = self.study(sample(count, seed=seed, **ranges))
+        points = self.study(sample(count, seed=seed, **ranges) * grid(**self.sizes))
         value = points[self.minimise].where(allowed(points, self.limits)).values
         if numpy.isnan(value).all():
             limits = " and ".join(map(str, self.limits)) or "the model"
@@ -172,11 +221,21 @@ class _Problem:
         )
         return list(shares), count
 
+    def _alone(self) -> Numbers:
+        """The one point where nothing runs over a range."""
+        point = self.study(grid(**self.sizes))
+        if not bool(allowed(point, self.limits)):
+            chosen = " and ".join(f"{name} = {value:g}" for name, value in self.sizes.items()) or "the joint"
+            raise ValueError(f"{chosen} is not allowed by {' and '.join(map(str, self.limits)) or 'the model'}")
+        return numpy.zeros(0)
+
     def study(self, design: Design) -> Any:
         return study(self.model, self.joint, design * grid(**self.load), quantities=self.quantities)
 
     def refined(self, start: Numbers) -> tuple[Numbers, float]:
         """SLSQP from a start; the start itself where that leads nowhere better."""
+        if not self.vary:
+            return start, self.value(start)[0]
         from scipy.optimize import minimize
 
         scale = self.value(start)[0]

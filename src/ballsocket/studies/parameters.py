@@ -10,12 +10,15 @@ from .. import quantities
 from ..arrays import Array, where
 from ..dimensions import DIAMETERS, OWN, check_once, resolved
 from ..joint import Joint, Material
-from ..quantities import JOINT, PARTS, Quantity
+from ..quantities import JOINT, MATERIAL, PARTS, Quantity
 
 PARAMETERS: Mapping[str, Quantity] = MappingProxyType({**JOINT, **PARTS, **quantities.LOADS})
 """By the name under which they are axes of a study."""
 
 LOADS = tuple(quantities.LOADS)
+
+PARTS_OF = ("liner", "ball")
+"""What is of a material: axes of a study by these names take materials."""
 
 
 def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
@@ -39,9 +42,9 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
         A number that no joint may have, named with its value; names that contradict each other.
     """
     contradiction(values)
-    for name in ("ball_young", "ball_poisson"):
-        if name in values and joint.ball is None:
-            raise ValueError(f"the ball of this joint is rigid: it has no {name}")
+    given_of_ball = [f"ball_{number}" for number in MATERIAL if f"ball_{number}" in values]
+    if joint.ball is None and 0 < len(given_of_ball) < len(MATERIAL):
+        raise ValueError(f"the ball of this joint is rigid: it has no {given_of_ball[0]}")
     given = {name: value for name, value in values.items() if name in JOINT}
     said = {DIAMETERS.get(name, name) for name in given}
     lengths = resolved(given, {name: getattr(joint, name) for name in OWN}, joint.shell)
@@ -52,8 +55,8 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
         ball_radius=radius,
         clearance=where(possible & (clearance > 0), clearance, 0.0) if "socket_radius" in said else clearance,
         liner_thickness=where(possible, thickness, 1.0) if "outer_radius" in said else thickness,
-        liner=_material(joint.liner, values, "liner"),
-        ball=None if joint.ball is None else _material(joint.ball, values, "ball"),
+        liner=_material(joint.liner, values, "liner") or joint.liner,
+        ball=_material(joint.ball, values, "ball"),
     )
     return made, possible
 
@@ -76,8 +79,8 @@ def contradiction(names: Mapping[str, object]) -> None:
         raise ValueError(f"one load is needed, got {', '.join(loads)}")
 
 
-def _material(material: Material, values: Mapping[str, Array], part: str) -> Material:
-    young = values.get(f"{part}_young", material.young)
-    poisson = values.get(f"{part}_poisson", material.poisson)
-    same = young is material.young and poisson is material.poisson
-    return material if same else replace(material, young=young, poisson=poisson)
+def _material(material: Material | None, values: Mapping[str, Array], part: str) -> Material | None:
+    given = {number: values[f"{part}_{number}"] for number in MATERIAL if f"{part}_{number}" in values}
+    if not given:
+        return material
+    return Material(**given) if material is None else replace(material, **given)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 from ..checks import check_names, shown
+from ..io.joint_file import named_material
 from ..io.units import LONGEST, parse
 from ..quantities import QUANTITIES
 from .axes import Span
 from .distributions import Distribution, Rectangular, tolerance
 from .limits import NAMES as LIMITED
 from .limits import Limit
-from .parameters import PARAMETERS
+from .parameters import PARAMETERS, PARTS_OF
 
 
 def range_of(phrase: str) -> tuple[str, float, float]:
@@ -29,6 +31,27 @@ def range_of(phrase: str) -> tuple[str, float, float]:
     check_names([name], PARAMETERS, "among what can vary")
     kind = PARAMETERS[name].kind
     return name, parse(name, _with_unit(low, high), kind), parse(name, high, kind)
+
+
+def choice_of(phrase: str) -> tuple[str, list[Any]] | None:
+    """A name with a list, from "head_diameter=28, 32, 36 mm" or "liner=uhmwpe,pom"; None of another form.
+
+    Raises
+    ------
+    ValueError
+        A name, a material or a number that is not known.
+    """
+    found = _matched(r"\s*(\w+)\s*=\s*([^=]+?)\s*", phrase)
+    if found is None or ".." in phrase:
+        return None
+    name, listed = found.groups()
+    texts = [text.strip() for text in listed.split(",")]
+    if name in PARTS_OF:
+        return name, [named_material(name, text) for text in texts]
+    if len(texts) == 1:
+        return None
+    check_names([name], PARAMETERS, "among what can vary")
+    return name, [parse(name, _with_unit(text, texts[-1]), PARAMETERS[name].kind) for text in texts]
 
 
 def axis_of(phrase: str, count: int) -> tuple[str, Span]:

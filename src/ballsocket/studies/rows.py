@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy
-
 from ..checks import check_names
 from .axes import TableAxis, column
 from .columns import read_columns
@@ -17,7 +15,7 @@ from .parameters import PARAMETERS
 def table(path: str | Path) -> Design:
     """The rows of a CSV or Parquet file, whose columns are named like parameters, in mm, N, MPa and rad.
 
-    A column that ends in `_deg` is in degrees.
+    A name may end in its unit as in the CSV of a study: `ball_radius_mm`, `force_N`, `half_angle_deg` (in degrees).
 
     Raises
     ------
@@ -32,11 +30,11 @@ def table(path: str | Path) -> Design:
     for head, values in read_columns(path, lambda heads: _check_heads(heads, path.name)).items():
         name = _NAMES.get(head, head)
         found = column(name, values, row=f" in row {{}} of {path.name}")
-        columns[name] = numpy.radians(found) if name != head else found
+        columns[name] = found if name == head else found / PARAMETERS[name].written.factor
     return Design((TableAxis(columns),))
 
 
-_NAMES = {quantity.key: name for name, quantity in PARAMETERS.items()}
+_NAMES = {quantity.column: name for name, quantity in PARAMETERS.items()}
 
 
 def _check_heads(heads: Sequence[str], title: str) -> None:

@@ -17,7 +17,7 @@ from ..joint import Joint
 from ..model import Model
 from .blocks import Blocks
 from .design import Design, check_values, grid, is_one
-from .labels import dataset
+from .labels import arranged, dataset
 from .parameters import LOADS
 from .room import check_room
 from .store import Store, Writing
@@ -138,7 +138,7 @@ def read(path: str | Path) -> xarray.Dataset:
     if Path(path).exists():
         Store(Path(path)).study()
     found = xarray.open_dataset(path, engine="zarr", consolidated=False, chunks=None)
-    return found[[name for name in DTYPES if name in found.data_vars]]
+    return arranged(found[[name for name in DTYPES if name in found.data_vars]])
 
 
 def _task(model: Model, joint: Joint, design: Design | None, axes: dict[str, Any], quantities: tuple[str, ...]) -> Task:

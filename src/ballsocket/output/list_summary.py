@@ -1,0 +1,39 @@
+"""What is listed, models and presets, as dictionaries for JSON."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+from ..joint import Joint, Material
+from ..model import Theory
+from ..sources import Source
+from ..validity import Range
+
+
+def model_summary(model: Theory) -> dict[str, Any]:
+    """A model: what it promises, and where; angles of ranges are in rad, an open end is null."""
+    promise = model.promise
+    return {
+        "name": model.name,
+        "title": model.title,
+        "promise": None if promise is None else {"within": promise.within, "quantities": list(promise.quantities)},
+        "validity": list(map(_range, model.validity)),
+        "reach": model.reach,
+        "sources": list(map(_source, model.sources)),
+    }
+
+
+def preset_summary(preset: Material | Joint) -> dict[str, Any]:
+    """A material or joint with its source."""
+    return {**preset.summary(), "source": preset.source}
+
+
+def _range(limit: Range) -> dict[str, Any]:
+    low, high = (end if isfinite(end) else None for end in (limit.low, limit.high))
+    name = limit.quantity if isinstance(limit.quantity, str) else None
+    return {"quantity": name, "text": str(limit), "low": low, "high": high, "why": limit.why}
+
+
+def _source(source: Source) -> dict[str, Any]:
+    return {"key": source.key, "text": str(source), "doi": source.doi or None}
