@@ -118,22 +118,18 @@ def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
 
 def nearest(name: Any, known: Iterable[str]) -> str:
     """A hint: the nearest known name, or those that there are."""
-    text, all_known = (name if isinstance(name, str) else shown(name))[:_LONGEST], list(known)
-    close = get_close_matches(text, all_known, n=1, cutoff=0.8) or _like(text, all_known)
-    close = close or get_close_matches(text, all_known, n=1, cutoff=0.5)
-    return f"; did you mean {close[0]!r}?" if close else f"; known: {_listed(all_known)}"
+    text = plain_name((name if isinstance(name, str) else shown(name))[:_LONGEST])
+    known = {plain_name(each): each for each in known}
+    close = get_close_matches(text, known, n=1, cutoff=0.8)
+    close = close or [each for each in known if len(text) > 2 and each.startswith(text)]
+    close = close or get_close_matches(text, known, n=1, cutoff=0.5)
+    return f"; did you mean {known[close[0]]!r}?" if close else f"; known: {_listed(list(known.values()))}"
 
 
 def _listed(names: list[str]) -> str:
     """Names, as many as a sentence holds."""
     text = ", ".join(names)
     return text if len(text) <= _LISTED else f"{text[: text.rindex(', ', 0, _LISTED)]}, ..."
-
-
-def _like(text: str, known: list[str]) -> list[str]:
-    """Names that begin as the text does, or are the same in other letters."""
-    begin = plain_name(text)
-    return [name for name in known if len(begin) > 2 and plain_name(name).startswith(begin)]
 
 
 def plain_name(text: str) -> str:
