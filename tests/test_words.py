@@ -346,6 +346,38 @@ def test_ratios_without_load():
     assert bs.Hertz().press(HIP, force=0.0).foundation_modulus == np.inf
 
 
+PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda: PRESSED.pressure(30), "angle = 30 is not allowed: .* in radians; 30 degrees are 0.5236 radians$"),
+        (lambda: PRESSED.pressure([0.1, 30.0]), r"angle\[1\] = 30 is not allowed: .*; 30 degrees are 0.5236 radians$"),
+        (lambda: PRESSED.friction_torque(0.1, 90), "axis_angle = 90 is .* radians; 90 degrees are 1.571 radians$"),
+        (lambda: bs.Exact().press(HIP, force=1e3).stress(angle=30, depth=1.0), "angle = 30 is .* are 0.5236 radians$"),
+        (lambda: bs.Exact().press(HIP, force=1e3).displacement(30), "angle = 30 is .* 30 degrees are 0.5236 radians$"),
+        (lambda: bs.Exact().press(HIP, half_angle=40), "half_angle = 40 is .*; 40 degrees are 0.6981 radians$"),
+        (lambda: bs.Cup(arc_of_cover=160), "arc_of_cover = 160 is .*; 160 degrees are 2.793 radians$"),
+        (lambda: bs.Cup(inclination=45), "inclination = 45 is .*; 45 degrees are 0.7854 radians$"),
+        (
+            lambda: bs.study(bs.Hertz(), HIP, half_angle=[20, 40]),
+            "half_angle.* = 20 .*; 20 degrees are 0.3491 rad",
+        ),
+        (lambda: bs.studies.Limit(name="half_angle", high=45), "half_angle = 45 .*; 45 degrees are 0.7854 radians$"),
+    ],
+)
+def test_an_angle_that_can_only_be_degrees_is_told_in_radians(ask, message):
+    with pytest.raises(ValueError, match=message):
+        ask()
+
+
+def test_angles_up_to_half_a_turn_are_taken():
+    angles = np.array([0.0, 1.0, np.pi, -1.0, np.nan])
+    assert PRESSED.pressure(angles)[:3].tolist() == [PRESSED.pressure(0.0), 0.0, 0.0]
+    assert PRESSED.pressure(np.float32(np.pi)) == 0.0
+
+
 def test_friction_and_displacement_are_checked():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
     with pytest.raises(ValueError, match="coefficient = -0.1 is not allowed"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from importlib.util import find_spec
+from math import radians
 from typing import Any, TypeVar
 from unicodedata import category
 
@@ -25,20 +26,35 @@ def require(name: str, value: Array, good: Array, allowed: str) -> None:
     raise ValueError(f"{name}{_first_bad(value, good)} is not allowed: {allowed}")
 
 
+def first_bad(value: Array, good: Array) -> float:
+    """The first element of `value` for which `good` is false."""
+    if not _shape(value):
+        return value
+    return float(namespace(value).reshape(value, (-1,))[_first(good)[0]])
+
+
 def _first_bad(value: Array, good: Array) -> str:
-    shape = tuple(getattr(value, "shape", ()))
+    shape = _shape(value)
     if not shape:
         return f" = {shown(value) if isinstance(value, int) else format(float(value), 'g')}"
-    xp = namespace(good)
-    bad = ~xp.reshape(good, (-1,))
-    first = int(xp.argmax(xp.astype(bad, xp.int32)))
-    count = int(xp.sum(xp.astype(bad, xp.int32)))
+    first, count = _first(good)
     index, rest = [], first
     for size in reversed(shape):
         index.append(rest % size)
         rest //= size
     others = f" (and {count - 1} more)" if count > 1 else ""
-    return f"[{', '.join(map(str, reversed(index)))}] = {float(xp.reshape(value, (-1,))[first]):g}{others}"
+    return f"[{', '.join(map(str, reversed(index)))}] = {first_bad(value, good):g}{others}"
+
+
+def _shape(value: Array) -> tuple[int, ...]:
+    return tuple(getattr(value, "shape", ()))
+
+
+def _first(good: Array) -> tuple[int, int]:
+    """Where the first false element lies, and how many there are."""
+    xp = namespace(good)
+    bad = ~xp.reshape(good, (-1,))
+    return int(xp.argmax(xp.astype(bad, xp.int32))), int(xp.sum(xp.astype(bad, xp.int32)))
 
 
 def numeric(name: str, value: Any) -> Array:
@@ -91,6 +107,11 @@ def _refusal(name: str, value: Any) -> str:
         what = "a masked array"
     hint = "; text with units belongs in a joint file or on the command line" if isinstance(value, str) else ""
     return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {what}{hint}"
+
+
+def in_radians(value: float) -> str:
+    """What somebody means who gives an angle in degrees."""
+    return f"{value:g} degrees are {radians(value):.4g} radians"
 
 
 def one_load(**loads: Any) -> tuple[str, Any]:

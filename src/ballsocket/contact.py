@@ -13,7 +13,7 @@ import numpy
 
 from . import arrays, describe
 from .arrays import Array
-from .checks import numeric, require, vectors
+from .checks import in_radians, numeric, require, vectors
 from .joint import Joint
 from .kinds import Unit
 from .outcome import Answerer, Outcome
@@ -143,7 +143,15 @@ class Contact(Outcome):
         -------
         float or array
             Of the shape that angle and contact broadcast to.
+
+        Raises
+        ------
+        ValueError
+            An angle of more than half a turn: degrees are no radians.
+        TypeError
+            What is neither a number nor an array.
         """
+        angle = QUANTITIES["angle"].checked(angle)
         if self._is_plain and arrays.is_plain(angle):
             return self._asked(lambda laws: laws.pressure(float(angle)))
         _, angle = arrays.common(self.indentation, angle)
@@ -195,13 +203,15 @@ class Contact(Outcome):
         Raises
         ------
         ValueError
-            A coefficient that is negative or not finite.
+            A coefficient that is negative or not finite; an angle of more than a turn.
         TypeError
             What is neither a number nor an array.
         """
         coefficient = numeric("coefficient", coefficient)
         allowed = "a coefficient of friction is 0 or more and finite"
         require("coefficient", coefficient, (coefficient >= 0) & (coefficient < inf), allowed)
+
+        require("axis_angle", axis_angle, abs(axis_angle) <= 2 * pi, f"it is in radians; {in_radians(axis_angle)}")
 
         def ring(x: float) -> Array:
             angle = self.half_angle * sin(pi / 2 * x)  # tames a square root at the edge

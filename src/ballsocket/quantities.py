@@ -12,8 +12,8 @@ from math import inf, pi, radians
 from types import MappingProxyType
 from typing import Any
 
-from .arrays import Array
-from .checks import numeric, require
+from .arrays import Array, truth
+from .checks import first_bad, in_radians, numeric, require
 from .kinds import Kind, Unit
 
 
@@ -35,6 +35,11 @@ def _not_negative(x: Array) -> Array:
 
 def _up_to_the_equator(x: Array) -> Array:
     return (x >= 0) & (x < pi / 2)
+
+
+def _half_a_turn(x: Array) -> Array:
+    # nothing is said of a number that is missing, and single precision rounds pi up
+    return (abs(x) <= pi * (1 + 1e-6)) | (x != x)
 
 
 def _ratio(x: Array) -> Array:
@@ -136,8 +141,16 @@ class Quantity:
             What is neither a number nor an array.
         """
         number = numeric(self.name, value)
-        require(self.name, number, self.allows(number), self.allowed)
+        good = self.allows(number)
+        if truth(good) is False:
+            require(self.name, number, good, self.allowed + self.meant(first_bad(number, good)))
         return number
+
+    def meant(self, value: float) -> str:
+        """What a refusal adds where a number is an angle in degrees: the number in radians."""
+        if self.kind is not Kind.ANGLE or not self.allows(radians(value)):
+            return ""
+        return f"; {in_radians(value)}"
 
 
 def _table(*quantities: Quantity) -> Mapping[str, Quantity]:
@@ -236,7 +249,8 @@ MATERIAL = _table(
 """The numbers of a material."""
 
 FIELD = _table(
-    Quantity("angle", "φ", "polar angle", Kind.ANGLE, "From the axis of the load, seen from the centre of the socket."),
+    Quantity("angle", "φ", "polar angle", Kind.ANGLE, "From the axis of the load, seen from the centre of the socket.",
+             allows=_half_a_turn, allowed="a polar angle lies between -pi and pi, in radians"),
     Quantity("pressure", "p", "contact pressure", Kind.MODULUS, "Of the ball on the socket, at a polar angle."),
 )
 """What varies along a contact."""

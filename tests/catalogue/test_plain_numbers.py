@@ -47,7 +47,7 @@ def test_numbers_and_arrays_of_one_number_are_answered_alike(model, load):
     one = model.press(HIP, **load)
     other = model.press(HIP, **{kind: np.array([value]) for kind, value in load.items()})
     assert_alike(one, other)
-    for angle in (0.0, 0.3, 1.2, 4.0):
+    for angle in (0.0, 0.3, 1.2, 3.0):
         pressure = one.pressure(angle)
         assert type(pressure) is float
         np.testing.assert_allclose(pressure, other.pressure(np.array([angle]))[0], rtol=1e-10)

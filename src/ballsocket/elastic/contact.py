@@ -11,6 +11,7 @@ from .. import arrays
 from ..arrays import Array
 from ..checks import numeric, require
 from ..per_joint import SolvedContact
+from ..quantities import QUANTITIES
 from ..stress import Peak, Stress
 from .abel import State
 from .subsurface import NARROWEST, peak, stress, surface_displacement
@@ -31,7 +32,7 @@ class ElasticContact(SolvedContact):
         ValueError
             More than one contact, or one that is narrower than 1 degree: there the half-space (`Hertz`) answers.
         """
-        angles = numpy.asarray(arrays.to_numpy(numeric("angle", angle)), dtype=float)
+        angles = numpy.asarray(arrays.to_numpy(QUANTITIES["angle"].checked(angle)), dtype=float)
         values = surface_displacement(self._single, angles)
         return values if angles.ndim else float(values)
 
@@ -48,7 +49,7 @@ class ElasticContact(SolvedContact):
             outermost layer.
         """
         angles, depths = (
-            numpy.asarray(numeric(name, value), dtype=float) for name, value in (("angle", angle), ("depth", depth))
+            numpy.asarray(value, dtype=float) for value in (QUANTITIES["angle"].checked(angle), numeric("depth", depth))
         )
         thickness = sum(shell.thickness for shell in self._single.kernel.socket.shells)
         good = (depths >= 0) & (depths <= thickness * (1 + 1e-9))

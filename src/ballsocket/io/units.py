@@ -26,6 +26,7 @@ _QUANTITY = re.compile(
 _INFINITE = re.compile(r"\s*[-+]?inf(?:inity)?\s*", re.IGNORECASE)
 _SQUARE = re.compile(r"(?<=[A-Za-z])[2\u00b2]")  # of units as people and the CF conventions write them: mm², mm2
 
+_IN_RADIANS = re.compile(r"; \S+ degrees are \S+ radians$")
 _REFUSED = re.compile(r"(?P<name>\w+) = \S+ is not allowed: (?P<rule>.*)")
 
 
@@ -72,7 +73,7 @@ def as_given(given: Mapping[str, Any], prefix: str = "") -> Iterator[None]:
         found = _REFUSED.fullmatch(str(error))
         if found is None or found["name"] not in given:
             raise
-        rule = found["rule"].replace("(rad)", "(deg)").replace("pi/2", "90")
+        rule = _IN_RADIANS.sub("", found["rule"]).replace("(rad)", "(deg)").replace("pi/2", "90")
         value = shown(given[found["name"]])
         raise ValueError(f"{prefix}{found['name']} = {value} is not allowed: {rule}") from error
 

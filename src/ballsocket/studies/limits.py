@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import inf
+from math import inf, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..checks import check_names, require
+from ..checks import check_names, in_radians, require
 from ..cup import UP, Cup, Direction
 from ..dimensions import OWN, Dimensions, resolved
-from ..quantities import JOINT
+from ..kinds import Kind
+from ..quantities import CONTACT, JOINT
 from .parameters import PARAMETERS
 from .task import QUANTITIES
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 EDGE_DISTANCE = "edge_distance"
 """Arc in mm from the edge of the contact to the rim of the socket, along its surface."""
+
+_ANGLES = tuple(name for name, each in {**PARAMETERS, **CONTACT}.items() if each.kind is Kind.ANGLE)
 
 NAMES = (*PARAMETERS, *QUANTITIES, EDGE_DISTANCE)
 
@@ -55,6 +58,10 @@ class Limit:
 
     def __post_init__(self) -> None:
         check_names([self.name], NAMES, "among what can be limited")
+        if self.name in _ANGLES:
+            for end in (self.low, self.high):
+                good = (abs(end) <= pi) | (abs(end) == inf)
+                require(self.name, end, good, f"it is in radians; {in_radians(end)}")
         require(
             self.name, self.low, self.low <= self.high, f"the lower limit is not above the upper one, {self.high:g}"
         )
