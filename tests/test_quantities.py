@@ -24,7 +24,20 @@ from ballsocket.io.joint_file import JointFile
 from ballsocket.io.joint_toml import tables_of
 from ballsocket.io.units import parse
 from ballsocket.kinds import Unit
-from ballsocket.quantities import CONTACT, CUP, DERIVED, FIELD, JOINT, LAYER, LOADS, MATERIAL, PARTS, QUANTITIES
+from ballsocket.quantities import (
+    BEARING,
+    CONTACT,
+    CUP,
+    DERIVED,
+    FIELD,
+    JOINT,
+    LAYER,
+    LOADS,
+    MATERIAL,
+    PARTS,
+    QUANTITIES,
+    STRENGTH,
+)
 from ballsocket.studies.design import check_values, grid
 from ballsocket.studies.labels import described
 from ballsocket.studies.limits import NAMES as LIMITED
@@ -46,8 +59,8 @@ def _numbers(thing):
 
 def test_every_quantity_of_contact_joint_and_cup_is_an_attribute_and_no_other_number_is_one():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
-    assert _numbers(contact) | _numbers(HIP) == {*CONTACT, *DERIVED, *JOINT, "shell"} - {"edge_distance"}
-    assert _numbers(HIP.liner) == set(MATERIAL)
+    assert _numbers(contact) | _numbers(HIP) == {*CONTACT, *BEARING, *DERIVED, *JOINT, "shell"} - {"edge_distance"}
+    assert _numbers(replace(HIP.liner, **dict.fromkeys(STRENGTH, 1.0))) == {*MATERIAL, *STRENGTH}
     assert _numbers(bs.Layer(thickness=3.0, material=bs.TITANIUM)) == set(LAYER)
     assert _numbers(bs.Cup()) - {"rim"} == set(CUP)
 
@@ -75,13 +88,15 @@ def test_tables_studies_and_json_speak_of_the_same_objects():
     assert all(column.quantity is QUANTITIES[column.attribute] for column in COLUMNS)
     assert all(parameter is QUANTITIES[name] for name, parameter in PARAMETERS.items())
     assert all(load is PARAMETERS[name] is CONTACT[name] for name, load in LOADS.items())
-    assert set(ANSWERS) == set(CONTACT)
+    assert set(ANSWERS) == {*CONTACT, *BEARING}
     assert set(LIMITED) <= set(QUANTITIES)
     assert all(any(head.startswith(QUANTITIES[name].symbol) for head in HEADS) for name in quantities.HEADLINE)
 
 
 def test_nothing_is_named_or_written_twice():
-    assert len(QUANTITIES) == sum(map(len, (CONTACT, JOINT, MATERIAL, PARTS, LAYER, CUP, FIELD, DERIVED)))
+    assert len(QUANTITIES) == sum(
+        map(len, (CONTACT, BEARING, JOINT, MATERIAL, STRENGTH, PARTS, LAYER, CUP, FIELD, DERIVED))
+    )
     shared = {each.symbol for each in (*MATERIAL.values(), *PARTS.values())}
     symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]
     assert sorted(symbols) == sorted(set(symbols))

@@ -172,7 +172,8 @@ def test_a_backing_is_part_of_the_joint():
     rigid = replace(joint, ball=None)
     assert rigid.with_numbers(rigid.numbers()) == rigid
     summary = json.loads(json.dumps(joint.summary(), allow_nan=False))
-    assert summary["backing"][0] == {"thickness": 4.0, "name": "titanium", "young": 110000.0, "poisson": 0.3}
+    titanium = {"name": "titanium", "young": 110000.0, "poisson": 0.3, "yield_stress": 795.0}
+    assert summary["backing"][0] == {"thickness": 4.0, **titanium}
     assert summary["backing"][1]["thickness"] == "inf"
     assert summary["support"] == "free"
     plain = bs.Joint(**GOOD).summary()
@@ -255,7 +256,7 @@ def test_contact_prints_and_summarises():
     summary = json.loads(json.dumps(contact.summary(), allow_nan=False))
     assert list(summary) == [
         *("model", "force", "indentation", "half_angle_deg", "max_pressure", "area", "stiffness", "energy"),
-        *("foundation_modulus", "pole_pressure", "max_pressure_angle_deg", "valid", "notes"),
+        *("foundation_modulus", "pole_pressure", "max_pressure_angle_deg", "utilisation", "valid", "notes"),
     ]
     assert summary["half_angle_deg"] == pytest.approx(44.7199, abs=1e-4)
     assert summary["valid"] is True

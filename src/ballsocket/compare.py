@@ -15,7 +15,7 @@ from .catalogue import catalogue, reference
 from .checks import one_load
 from .contact import Contact
 from .cup import Cup
-from .describe import COLUMNS, count, number_text
+from .describe import COLUMNS, UTILISATION, count, number_text
 from .joint import Joint
 from .model import Model
 from .quantities import HEADLINE
@@ -81,7 +81,7 @@ class Comparison(Mapping[str, Contact]):
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON: version, joint and results, in mm, N, MPa, degrees."""
         answers = [{**self[name].summary(), "deviation": _listed(self.deviation(name))} for name in self]
-        gaps = dict.fromkeys(column.name for column in COLUMNS)
+        gaps = dict.fromkeys(column.name for column in (*COLUMNS, UTILISATION))
         missing = [
             {"model": name, **gaps, "valid": False, "notes": [why], "deviation": None}
             for name, why in self.missing.items()

@@ -11,13 +11,14 @@ from typing import Any, Protocol
 
 import numpy
 
-from . import arrays, describe
+from . import arrays, describe, strength
 from .arrays import Array
 from .checks import in_radians, numeric, require, vectors
 from .joint import Joint
 from .kinds import Unit
 from .outcome import Answerer, Outcome
 from .quantities import QUANTITIES
+from .validity import Range
 
 
 class Pressed(Answerer, Protocol):
@@ -100,6 +101,51 @@ class Contact(Outcome):
     @property
     def _load(self) -> Array:
         return self.indentation
+
+    @cached_property
+    def von_mises(self) -> Array:
+        """Largest von Mises stress in the liner in MPa.
+
+        A share of the largest pressure that is fitted to the exact answer for liners on a rigid backing, typically 6 %
+        off (`strength.share`); models that know the inside of the socket say what is there.
+        """
+        return self._answer(self._largest_von_mises)
+
+    @cached_property
+    def utilisation(self) -> Array:
+        """Largest von Mises stress over yield stress, of liner or ball, whichever is more; NaN where none is known.
+
+        From 1 on the material yields somewhere; a linear answer is not valid beyond 1.38 (`strength.ELASTIC`).
+        """
+        known = any(part is not None and part.yield_stress is not None for part in (self.joint.liner, self.joint.ball))
+        stress = self.von_mises if known else self.max_pressure
+        return self._plain(strength.utilisation(self.joint, stress, self.max_pressure))
+
+    @property
+    def von_mises_between(self) -> tuple[Array, Array]:
+        """What `von_mises` lies between, as far as that is known at once."""
+        return self.von_mises, self.von_mises
+
+    @property
+    def utilisation_between(self) -> tuple[Array, Array]:
+        """What `utilisation` lies between, as far as that is known at once."""
+        least, most = self.von_mises_between
+        pressure = self.max_pressure
+        return strength.utilisation(self.joint, least, pressure), strength.utilisation(self.joint, most, pressure)
+
+    def _largest_von_mises(self) -> Array:
+        liner = self.joint.liner
+        return strength.share(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
+
+    @property
+    def _limits(self) -> tuple[Range, ...]:
+        return (*self.model.validity, _ELASTIC) if self.joint.strengths() else self.model.validity
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What has no answer, what lies outside the model's validity, and what a material does not bear, in words."""
+        told = strength.remarks(self) if self.joint.strengths() else ()
+        return (*super().notes, *(note for good, said in told for note in self._note(good | self._failed, said)))
 
     @cached_property
     def area(self) -> Array:
@@ -244,6 +290,8 @@ class Contact(Outcome):
     def _repr_html_(self) -> str:
         return describe.html(self)
 
+
+_ELASTIC = strength.Elastic()
 
 _UNIT = 1e-10  # square of how far the square of a unit vector may miss 1
 

@@ -11,7 +11,7 @@ import numpy
 from . import arrays
 from .arrays import Array
 from .kinds import Unit
-from .quantities import CONTACT, Quantity
+from .quantities import BEARING, CONTACT, Quantity
 
 
 @dataclass(frozen=True)
@@ -67,11 +67,16 @@ COLUMNS = tuple(Column(each, each.written) for each in CONTACT.values())
 """Every quantity that is printed, in the order in which it is printed and in the units of JSON."""
 
 
+UTILISATION = Column(BEARING["utilisation"], BEARING["utilisation"].written)
+"""What is shown beside them where a strength is known."""
+
+
 def summary(contact: Any) -> dict[str, Any]:
     """One dictionary for JSON."""
     numbers = {column.name: arrays.to_list(column.of(contact)) for column in COLUMNS}
+    borne = {UTILISATION.name: arrays.to_list(UTILISATION.of(contact))}
     valid = arrays.to_list(contact.valid)
-    return {"model": contact.model.name, **numbers, "valid": valid, "notes": list(contact.notes)}
+    return {"model": contact.model.name, **numbers, **borne, "valid": valid, "notes": list(contact.notes)}
 
 
 def text(contact: Any) -> str:
@@ -115,4 +120,12 @@ def number_text(value: Array, digits: int, gap: str) -> str:
 def _rows(contact: Any) -> list[tuple[str, str, str]]:
     digits = 6 if arrays.to_numpy(contact.indentation).size == 1 else 5
     rows = [(column.attribute, number_text(column.of(contact), digits, "no answer"), column.unit) for column in COLUMNS]
-    return [*rows, ("valid", count(contact.valid), "")]
+    return [*rows, *_borne(contact), ("valid", count(contact.valid), "")]
+
+
+def _borne(contact: Any) -> list[tuple[str, str, str]]:
+    """The utilisation of a single contact where it is known."""
+    if arrays.to_numpy(contact.indentation).size != 1 or not contact.joint.strengths():
+        return []
+    value = UTILISATION.of(contact)
+    return [] if value != value else [(UTILISATION.attribute, number_text(value, 3, ""), "")]

@@ -13,7 +13,7 @@ from typing import Any, Unpack
 from .arrays import Array, is_plain, to_list, where
 from .checks import check_names, require
 from .dimensions import OWN, Dimensions, Lengths, made_of
-from .quantities import JOINT, LAYER, MATERIAL
+from .quantities import JOINT, LAYER, MATERIAL, STRENGTH
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +28,8 @@ class Material:
         Poisson's ratio, above -1 and at most 0.5.
     name, source : str
         What it is called, and where the numbers come from.
+    yield_stress, fatigue_limit, allowable_pressure : float or array, optional
+        Strengths in MPa. None, the default, is one that is not known.
 
     Raises
     ------
@@ -46,13 +48,25 @@ class Material:
     poisson: Array
     name: str = ""
     source: str = ""
+    yield_stress: Array | None = None
+    fatigue_limit: Array | None = None
+    allowable_pressure: Array | None = None
 
     def __post_init__(self) -> None:
-        _set(self, **{name: quantity.checked(getattr(self, name)) for name, quantity in MATERIAL.items()})
+        elastic = {name: quantity.checked(getattr(self, name)) for name, quantity in MATERIAL.items()}
+        strong = {name: STRENGTH[name].checked(strength) for name, strength in self.strengths.items()}
+        _set(self, **elastic, **strong)
+
+    @property
+    def strengths(self) -> dict[str, Array]:
+        """Those that are known, by their names."""
+        listed = {name: getattr(self, name) for name in STRENGTH}
+        return {name: strength for name, strength in listed.items() if strength is not None}
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
-        return {"name": self.name, "young": to_list(self.young), "poisson": to_list(self.poisson)}
+        numbers = {"young": self.young, "poisson": self.poisson, **self.strengths}
+        return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
 
     def __str__(self) -> str:
         numbers = f"E {_text(self.young)} MPa, nu {_text(self.poisson)}"
@@ -224,7 +238,7 @@ class Joint(Dimensions):
         0 for a rigid backing: none at all, on a fixed support. `inf` where the outermost surface is free.
         """
         rigid = 0.0 * self.liner.young
-        softest = reduce(_larger, (self.liner.young / layer.material.young for layer in self.backing), rigid)
+        softest = reduce(larger, (self.liner.young / layer.material.young for layer in self.backing), rigid)
         if self.support is Support.FIXED:
             return softest
         _, outermost = self._thicknesses()[-1]
@@ -246,6 +260,17 @@ class Joint(Dimensions):
         own = (self.ball_radius, self.clearance, self.liner_thickness)
         behind = ((layer.thickness, layer.material.young, layer.material.poisson) for layer in self.backing)
         return (*own, self.liner.young, self.liner.poisson, *ball, *chain.from_iterable(behind))
+
+    def strengths(self) -> tuple[Array, ...]:
+        """Every strength that is known of liner and ball."""
+        ball = () if self.ball is None else self.ball.strengths.values()
+        return (*self.liner.strengths.values(), *ball)
+
+    def without_strengths(self) -> Joint:
+        """The same joint of materials whose strengths are not known; no solution depends on them."""
+        ball = None if self.ball is None else _elastic(self.ball)
+        backing = tuple(Layer(thickness=layer.thickness, material=_elastic(layer.material)) for layer in self.backing)
+        return unchecked(Joint, **{**vars(self), "liner": _elastic(self.liner), "ball": ball, "backing": backing})
 
     def with_numbers(self, numbers: Any) -> Joint:
         """A joint like this one with other numbers, in the order of `numbers()`. Nothing is checked."""
@@ -351,12 +376,17 @@ def _checked_backing(backing: Any) -> tuple[Layer, ...]:
     return tuple(backing)
 
 
-def _larger(one: Array, other: Array) -> Array:
+def larger(one: Array, other: Array) -> Array:
+    """The larger of two, element by element."""
     return max(one, other) if is_plain(one) and is_plain(other) else where(one > other, one, other)
 
 
+def _elastic(material: Material) -> Material:
+    return unchecked(Material, **{**vars(material), **dict.fromkeys(STRENGTH)})
+
+
 def _with(material: Material, young: Array, poisson: Array) -> Material:
-    return unchecked(Material, young=young, poisson=poisson, name=material.name, source=material.source)
+    return unchecked(Material, **{**vars(material), "young": young, "poisson": poisson})
 
 
 def _layer_with(layer: Layer, thickness: Array, young: Array, poisson: Array) -> Layer:

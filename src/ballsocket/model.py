@@ -145,6 +145,8 @@ class Model(Theory):
             Not exactly one load; a load that is not allowed; no point at all inside the model's domain.
         """
         kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
+        if not all(map(arrays.is_plain, joint.strengths())):
+            given = _spread(given, joint.strengths())
         if self._takes_numbers(joint, given):
             try:
                 return self._press_numbers(joint, kind, float(given))
@@ -310,6 +312,11 @@ def checked_load(**loads: Array | None) -> tuple[str, Array]:
     """The one load that was given, checked, with its name."""
     kind, given = one_load(**loads)
     return kind, LOADS[kind].checked(given)
+
+
+def _spread(load: Array, strengths: tuple[Array, ...]) -> Array:
+    """The load in the shape that it and the strengths broadcast to, so that contacts can be told how near they are."""
+    return arrays.broadcast(*arrays.common(load, *strengths))
 
 
 def prepared(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:

@@ -44,10 +44,15 @@ class Outcome(ABC):
     def valid(self) -> Array:
         """Whether joint and answer lie inside the model's validity, point by point."""
         inside = self.status == int(Status.OK)
-        for limit in self.model.validity:
+        for limit in self._limits:
             inside = inside & limit.holds(self)
         inside = arrays.broadcast(inside, self._load) if hasattr(inside, "shape") else inside
         return bool(inside) if self._is_plain else inside
+
+    @property
+    def _limits(self) -> tuple[Range, ...]:
+        """What has to hold of a valid answer."""
+        return self.model.validity
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +12,7 @@ from typing import Any
 
 import numpy
 
-from . import arrays
+from . import arrays, strength
 from .arrays import Array
 from .contact import Contact
 from .joint import Joint
@@ -64,6 +65,7 @@ def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve) -> Pieced
     TypeError
         Numbers that are not known yet (inside `jax.jit`, `jax.grad`).
     """
+    joint = joint.without_strengths()
     numbers = [_values(model, number) for number in joint.numbers()]
     loads = _values(model, load)
     shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, loads)))
@@ -87,6 +89,12 @@ def _columns(numbers: list[numpy.ndarray], shape: tuple[int, ...]) -> Iterator[t
     ends = numpy.cumsum(numpy.bincount(which.ravel(), minlength=joints.shape[1]))
     for column, place in zip(joints.T, numpy.split(order, ends[:-1]), strict=False):
         yield column.tolist(), place
+
+
+def joint_at(joint: Joint, shape: tuple[int, ...], place: int) -> Joint:
+    """The joint of plain numbers at a place of the flat shape."""
+    wide = (numpy.broadcast_to(arrays.to_numpy(number), shape) for number in joint.numbers())
+    return joint.with_numbers([float(number.flat[place]) for number in wide])
 
 
 def _values(model: Model, number: Array) -> numpy.ndarray:
@@ -117,6 +125,10 @@ class PiecedSolution:
     def spread(self, quantity: Callable[[Piece], numpy.ndarray]) -> Array:
         """A quantity of every piece at its place; NaN where there is none."""
         return self._own(self._flat(lambda place, piece: quantity(piece)))
+
+    def located(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray]) -> Array:
+        """The same of a quantity that depends on the places of the piece's contacts too."""
+        return self._own(self._flat(quantity))
 
     def _flat(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray], rows: int = 1) -> numpy.ndarray:
         whole = numpy.full((rows, prod(self.shape)), numpy.nan)
@@ -179,6 +191,19 @@ class SolvedContact(Contact):
     def error(self) -> dict[str, Array]:
         """Estimated relative error of each quantity, by name, from the solution itself."""
         return {name: self._plain(error) for name, error in self.laws.error.items()}
+
+    @property
+    def von_mises_between(self) -> tuple[Array, Array]:
+        """What `von_mises` lies between, as far as that is known at once: about what other models say of it."""
+        least, most = strength.between(self, super()._largest_von_mises())
+        return self._plain(least), self._plain(most)
+
+    def _largest_von_mises(self) -> Array:
+        return self.laws.located(self._von_mises_of)
+
+    @abstractmethod
+    def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+        """Largest von Mises stress in the liner of the touching contacts of one joint, which lie at these places."""
 
     @property
     def single_state(self) -> Any:

@@ -15,22 +15,44 @@ _REVIEW = "Di Puccio & Mattei 2015, Table 2, doi 10.5312/wjo.v6.i1.77"
 _PLANK = "thickness: Plank et al. 2007, J. Biomed. Mater. Res. B 80B, 1-10; clearance: representative"
 _GLENOSPHERE = "representative; insert thickness 3-9 mm in Giles et al. 2015, doi 10.1007/s11999-015-4526-0"
 
-UHMWPE = Material(young=1000.0, poisson=0.4, name="UHMWPE", source=f"{_PAPER} (which also uses nu 0.45)")
+UHMWPE = Material(
+    young=1000.0,
+    poisson=0.4,
+    name="UHMWPE",
+    source=f"{_PAPER} (which also uses nu 0.45); yield: least of ASTM F648 type 1 (unverified)",
+    yield_stress=21.0,
+)
 CROSSLINKED_PE = Material(
     young=750.0,
     poisson=0.4,
     name="cross-linked PE",
-    source="representative: middle of 0.5-1 GPa, Heß & Forsbach 2021 after Kurtz et al. 2002, Biomaterials 23, 3681",
+    source="representative: middle of 0.5-1 GPa, Heß & Forsbach 2021 after Kurtz et al. 2002, Biomaterials 23, 3681; "
+    "yield: that of UHMWPE, which irradiation hardly changes (Oral et al. 2006, Biomaterials 27, 917)",
+    yield_stress=21.0,
 )
 POM = Material(
     young=2850.0,
     poisson=0.35,
     name="POM",
-    source="E: Ticona 2008, Hostaform C 9021 data sheet (ISO 527; 1300 MPa after 1000 h); nu: representative",
+    source="E: Ticona 2008, Hostaform C 9021 data sheet (ISO 527; 1300 MPa after 1000 h); nu: representative; "
+    "yield: data sheet of Hostaform C 9021 XAP (ISO 527, 50 mm/min)",
+    yield_stress=64.0,
 )
 STEEL = Material(young=230000.0, poisson=0.3, name="steel head", source=f"{_PAPER}; high for a stainless steel")
-STRUCTURAL_STEEL = Material(young=210000.0, poisson=0.3, name="structural steel", source="CEN 2005, EN 1993-1-1, 3.2.6")
-COCR = Material(young=230000.0, poisson=0.3, name="CoCr", source=_REVIEW)
+STRUCTURAL_STEEL = Material(
+    young=210000.0,
+    poisson=0.3,
+    name="structural steel",
+    source="CEN 2005, EN 1993-1-1, 3.2.6; yield: S235, the least of its grades, Table 3.1 (unverified)",
+    yield_stress=235.0,
+)
+COCR = Material(
+    young=230000.0,
+    poisson=0.3,
+    name="CoCr",
+    source=f"{_REVIEW}; yield: least of annealed bar, ASTM F1537 (unverified)",
+    yield_stress=517.0,
+)
 ALUMINA = Material(
     young=380000.0,
     poisson=0.23,
@@ -40,7 +62,13 @@ ALUMINA = Material(
 ALUMINA_COMPOSITE = Material(
     young=350000.0, poisson=0.26, name="zirconia-toughened alumina", source=f"BIOLOX delta: {_REVIEW}"
 )
-TITANIUM = Material(young=110000.0, poisson=0.3, name="titanium", source="representative of Ti-6Al-4V")
+TITANIUM = Material(
+    young=110000.0,
+    poisson=0.3,
+    name="titanium",
+    source="representative of Ti-6Al-4V; yield: least of annealed ELI bar below 44 mm, ASTM F136",
+    yield_stress=795.0,
+)
 BONE_CEMENT = Material(young=2300.0, poisson=0.33, name="bone cement", source="representative of PMMA, 2-2.5 GPa")
 CORTICAL_BONE = Material(
     young=17000.0, poisson=0.3, name="cortical bone", source="representative; anisotropic, and varies from site to site"

@@ -18,6 +18,7 @@ from .joint import Joint, Layer, Material, unchecked
 from .models.closed_form import Bound
 from .models.plane_layer import LayerSolution
 from .models.refined import RefinedSolution
+from .quantities import STRENGTH
 
 Parts = tuple[Any, ...]
 
@@ -35,7 +36,7 @@ def _register(cls: Any, parts: tuple[str, ...], fixed: tuple[str, ...]) -> None:
     register_pytree_node(cls, flatten, unflatten)
 
 
-_register(Material, ("young", "poisson"), ("name", "source"))
+_register(Material, ("young", "poisson", *STRENGTH), ("name", "source"))
 _register(Layer, ("thickness", "material"), ())
 _register(
     Joint,

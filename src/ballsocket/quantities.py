@@ -157,12 +157,12 @@ def _table(*quantities: Quantity) -> Mapping[str, Quantity]:
     return MappingProxyType({each.name: each for each in quantities})
 
 
-def _of(part: str, symbols: tuple[str, str]) -> Mapping[str, Quantity]:
-    """The moduli of a part of the joint, by the names that they have beside those of another part."""
+def _of(part: str, symbols: tuple[str, str, str]) -> Mapping[str, Quantity]:
+    """The numbers of a part of the joint that can vary, by the names that they have beside those of another part."""
     return _table(
         *(
             replace(each, name=f"{part}_{each.name}", symbol=symbol, title=f"{each.title} of the {part}")
-            for each, symbol in zip(MATERIAL.values(), symbols, strict=True)
+            for each, symbol in zip((*MATERIAL.values(), STRENGTH["yield_stress"]), symbols, strict=True)
         )
     )
 
@@ -246,7 +246,30 @@ MATERIAL = _table(
              "How much a bar that is pulled narrows for its stretch; 0.5 keeps its volume.", allows=_ratio,
              allowed="Poisson's ratio lies above -1, up to 0.5"),
 )
-"""The numbers of a material."""
+"""The elastic numbers of a material."""
+
+STRENGTH = _table(
+    Quantity("yield_stress", "σy", "yield stress", Kind.MODULUS,
+             "Von Mises stress at which a material begins to flow. Not needed; where it is known, contacts tell how "
+             "near to it they are.", allows=_positive, allowed="a yield stress (MPa) is above 0 and finite"),
+    Quantity("fatigue_limit", "σf", "fatigue limit", Kind.MODULUS,
+             "Von Mises stress that a material bears again and again.", allows=_positive,
+             allowed="a fatigue limit (MPa) is above 0 and finite"),
+    Quantity("allowable_pressure", "pa", "allowable pressure", Kind.MODULUS,
+             "Contact pressure that a material may have, by its maker or a rule of design.", allows=_positive,
+             allowed="an allowable pressure (MPa) is above 0 and finite"),
+)
+"""What a material bears; each of them may be left out."""
+
+BEARING = _table(
+    Quantity("von_mises", "σv", "von Mises stress", Kind.MODULUS,
+             "The largest in the liner: where a model knows the inside of the socket from there, else a share of the "
+             "largest pressure that is fitted to the exact answer."),
+    Quantity("utilisation", "σv/σy", "utilisation", Kind.NUMBER,
+             "Largest von Mises stress over yield stress, of the liner or of the ball, whichever is more; unknown "
+             "where neither has a yield stress."),
+)
+"""How a contact bears its load."""
 
 FIELD = _table(
     Quantity("angle", "φ", "polar angle", Kind.ANGLE, "From the axis of the load, seen from the centre of the socket.",
@@ -277,8 +300,8 @@ CUP = _table(
 """How far the socket reaches around the ball, and where it faces."""
 # fmt: on
 
-PARTS = MappingProxyType({**_of("liner", ("E", "ν")), **_of("ball", ("E1", "ν1"))})
-"""The moduli of liner and ball."""
+PARTS = MappingProxyType({**_of("liner", ("E", "ν", "σy")), **_of("ball", ("E1", "ν1", "σy1"))})
+"""Moduli and yield stresses of liner and ball."""
 
 LOADS = MappingProxyType({name: CONTACT[name] for name in ("force", "indentation", "half_angle")})
 """What presses a ball, one of them at a time."""
@@ -287,6 +310,6 @@ HEADLINE = ("force", "indentation", "half_angle", "max_pressure", "area", "stiff
 """What a table of a contact shows that has no room for all."""
 
 QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
-    {**CONTACT, **JOINT, **MATERIAL, **PARTS, **LAYER, **CUP, **FIELD, **DERIVED}
+    {**CONTACT, **BEARING, **JOINT, **MATERIAL, **STRENGTH, **PARTS, **LAYER, **CUP, **FIELD, **DERIVED}
 )
 """All of them by their names."""

@@ -151,7 +151,15 @@ def test_json():
     paper = answer["results"][0]
     assert set(paper) == {
         *("model", "force", "indentation", "half_angle_deg", "max_pressure", "area", "stiffness", "energy"),
-        *("foundation_modulus", "pole_pressure", "max_pressure_angle_deg", "valid", "notes", "deviation"),
+        *(
+            "foundation_modulus",
+            "pole_pressure",
+            "max_pressure_angle_deg",
+            "utilisation",
+            "valid",
+            "notes",
+            "deviation",
+        ),
     }
     assert answer["results"][2]["deviation"] is None
     exact = bs.Exact().press(bs.read_joint(EXAMPLE).joint, force=3000.0)

@@ -3,6 +3,7 @@
 import math
 import re
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.io.joint_file import joint_of, parse_joint
+from ballsocket.io.joint_file import JointFile, joint_of, parse_joint
+from ballsocket.io.joint_toml import tables_of, toml_of
 from ballsocket.io.units import parse
 from ballsocket.kinds import Kind
 from ballsocket.studies.file import read_study
@@ -424,3 +426,33 @@ def test_files_are_refused_alike_whatever_they_should_hold(read, kind, content, 
 def test_a_file_that_is_not_there_is_no_file(read, tmp_path):
     with pytest.raises(FileNotFoundError):
         read(tmp_path / "none.toml")
+
+
+STRONG = (
+    HIP
+    + """young = "0.9 GPa"
+yield_stress = "23 MPa"
+allowable_pressure = 15
+[ball]
+young = 2e5
+poisson = 0.3
+fatigue_limit = "0.4 GPa"
+"""
+)
+
+
+def test_strengths_are_read_with_units_and_written_again():
+    file = parse_joint(STRONG.encode(), "file")
+    liner, ball = file.joint.liner, file.joint.ball
+    assert (liner.young, liner.yield_stress, liner.fatigue_limit, liner.allowable_pressure) == (900.0, 23.0, None, 15.0)
+    assert (ball.yield_stress, ball.fatigue_limit) == (None, 400.0)
+    again = parse_joint(toml_of(file).encode(), "file").joint
+    assert (again.liner.strengths, again.ball) == (liner.strengths, ball)
+    with pytest.raises(ValueError, match="liner.yield_stress = '0 MPa' is not allowed: a yield stress"):
+        parse_joint(STRONG.replace("23 MPa", "0 MPa").encode(), "file")
+
+
+def test_a_preset_whose_yield_stress_is_not_known_is_written_by_its_numbers():
+    bare = replace(bs.joints["hip-28"], liner=replace(bs.UHMWPE, yield_stress=None))
+    again = joint_of(tables_of(JointFile(bare, {}))).joint
+    assert again.liner.yield_stress is None

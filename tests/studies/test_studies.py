@@ -160,7 +160,8 @@ force = 3000
 def test_a_study_has_one_order_wherever_it_is_kept_and_by_whom_it_is_computed(tmp_path):
     (tmp_path / "study.toml").write_text(ORDERED, encoding="utf-8")
     given = read_study(tmp_path / "study.toml")
-    heads = "ball_radius_mm,outer_radius_mm,liner,liner_young_MPa,liner_poisson,clearance_mm,force_N,"
+    heads = "ball_radius_mm,outer_radius_mm,liner,liner_young_MPa,liner_poisson,liner_yield_stress_MPa,"
+    heads += "clearance_mm,force_N,"
     texts = []
     for name, engine in (("here", Serial()), ("there", Processes(workers=2))):
         for store in (None, tmp_path / name):

@@ -14,7 +14,7 @@ from ..catalogue import catalogue
 from ..io.joint_file import JointFile
 from ..joint import Joint
 from ..kinds import Kind
-from ..quantities import QUANTITIES, Quantity
+from ..quantities import PARTS, QUANTITIES, Quantity
 from ..studies.design import Span, grid
 from ..studies.limits import Limit, allowed, margin_over
 from ..studies.parameters import LOADS, PARAMETERS, pressable
@@ -102,15 +102,8 @@ def _said(quantity: Quantity, value: float, screen: Screen) -> str:
 
 def now(file: JointFile, name: str) -> float:
     """What the joint on the screen has there; NaN where it has no such number."""
-    joint = file.joint
-    known = {
-        "liner_young": joint.liner.young,
-        "liner_poisson": joint.liner.poisson,
-        "ball_young": None if joint.ball is None else joint.ball.young,
-        "ball_poisson": None if joint.ball is None else joint.ball.poisson,
-        **file.load,
-    }
-    value = known.get(name, getattr(joint, name, None))
+    part, _, number = name.partition("_") if name in PARTS else ("", "", "")
+    value = getattr(getattr(file.joint, part), number, None) if part else getattr(file.joint, name, file.load.get(name))
     return float("nan") if value is None else float(value)
 
 

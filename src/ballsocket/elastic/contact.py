@@ -10,11 +10,11 @@ import numpy
 from .. import arrays
 from ..arrays import Array
 from ..checks import numeric, require
-from ..per_joint import SolvedContact
+from ..per_joint import Piece, SolvedContact
 from ..quantities import QUANTITIES
 from ..stress import Peak, Stress
 from .abel import State
-from .subsurface import NARROWEST, peak, stress, surface_displacement
+from .subsurface import NARROWEST, largest_von_mises, peak, stress, surface_displacement
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -66,6 +66,9 @@ class ElasticContact(SolvedContact):
             More than one contact, or one without load or narrower than 1 degree.
         """
         return peak(self._single, float(self.joint.liner_thickness))
+
+    def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+        return largest_von_mises(piece.state, piece.reached)
 
     @property
     def _single(self) -> State:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import log1p, radians
 
 import numpy
 
 from ..arrays import Numbers
+from ..strength import share_of_ball
 from ..stress import Peak, Stress
 from .abel import State
+from .intervals import Intervals
 
 NARROWEST = radians(1.0)
 """The narrowest contact whose inside is summed."""
@@ -58,6 +61,20 @@ def peak(state: State, thickness: float) -> Peak:
         angles, depths = _around(angles, int(i)), _around(depths, int(j))
         best = Peak(von_mises=float(values[i, j]), depth=float(depths[_HALF]), angle=float(angles[_HALF]))
     return best
+
+
+def largest_von_mises(state: State, reached: Numbers) -> Numbers:
+    """That in the liner of each contact that was reached (a mask), NaN of the others; of a narrow one as in a ball."""
+    liner = state.kernel.socket.shells[0]
+    values = numpy.full(len(state.half_angle), numpy.nan)
+    for number in numpy.flatnonzero(reached):
+        angle = state.half_angle[number : number + 1]
+        if angle[0] < NARROWEST:  # a half-space
+            values[number] = state.max_pressure[number] * share_of_ball(liner.poisson)
+        else:
+            alone = replace(state, intervals=Intervals(half_angle=angle, grid=state.grid))
+            values[number] = peak(alone, liner.thickness).von_mises
+    return values
 
 
 _HALF = 4

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf, nan
 from typing import TYPE_CHECKING, Any
 
-from ..arrays import to_numpy
+import numpy
+
+from ..arrays import Array, Numbers, to_numpy
+from ..cup import Cup
 from ..joint import Joint
-from ..per_joint import SolvedContact
+from ..per_joint import Piece, SolvedContact, joint_at
 from ..stress import Peak
 from ..validity import Status
 from .memory import MeshSize, mesh_size
@@ -42,6 +46,22 @@ class MeshedContact(SolvedContact):
         from .section import section
 
         return section(self._plain_joint, self.model.cup, self._solved)
+
+    @property
+    def von_mises_between(self) -> tuple[Array, Array]:
+        """What `von_mises` lies between, as far as that is known at once; near a rim that is nothing."""
+        least, most = super().von_mises_between
+        return (least, most) if self.model.cup == Cup() else (0.0 * least, most + inf)
+
+    def _von_mises_of(self, place: Numbers, piece: Piece) -> Numbers:
+        from .section import section
+
+        joint = joint_at(self.joint, self.laws.shape, int(place[0]))
+        found = [
+            section(joint, self.model.cup, one).peak_stress.von_mises if one is not None else nan
+            for one in piece.state.solved
+        ]
+        return numpy.array(found, dtype=float)
 
     @property
     def peak_stress(self) -> Peak:

@@ -13,7 +13,7 @@ from ..cup import Cup, Interface, Side
 from ..joint import Joint, Layer, Material, Support
 from ..model import checked_load
 from ..presets import materials
-from ..quantities import CUP, JOINT, LAYER, LOADS, MATERIAL
+from ..quantities import CUP, JOINT, LAYER, LOADS, MATERIAL, STRENGTH
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
@@ -21,12 +21,12 @@ _CHOICES: dict[str, type[Enum]] = {"interface": Interface, "side": Side}
 _TABLES = {
     "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
     "joint": (*JOINT, "support"),
-    "liner": ("material", *MATERIAL),
-    "ball": ("material", *MATERIAL),
+    "liner": ("material", *MATERIAL, *STRENGTH),
+    "ball": ("material", *MATERIAL, *STRENGTH),
     "cup": (*CUP, *_CHOICES),
     "load": tuple(LOADS),
 }
-KEYS: Mapping[str, Sequence[str]] = {**_TABLES, "backing": (*LAYER, "material", *MATERIAL)}
+KEYS: Mapping[str, Sequence[str]] = {**_TABLES, "backing": (*LAYER, "material", *MATERIAL, *STRENGTH)}
 _HEADS = {"backing": "[[backing]]"}
 _MOST_LAYERS = 20
 
@@ -46,7 +46,8 @@ def read_joint(path: str | Path) -> JointFile:
     The file is TOML: a table `joint` with two of `ball_radius`, `socket_radius`, `clearance` (or `head_diameter`,
     `diametral_clearance` in their places) and `liner_thickness` (or `outer_radius`, `outer_diameter`: of the liner, or
     of the shell where one is right behind it); tables `liner` and (for a ball that is not rigid) `ball`, each with a
-    `material` by name or `young` and `poisson`, or both, where the numbers win; a table `load` with one of `force`,
+    `material` by name or `young` and `poisson`, or both, where the numbers win, and the strengths `yield_stress`,
+    `fatigue_limit`, `allowable_pressure`, which may be left out; a table `load` with one of `force`,
     `indentation`, `half_angle`. What is behind the liner is rigid, or is an array of tables `[[backing]]` from the
     liner outwards, each with a `thickness` and a material as above; `support` in the table `joint` says whether its
     outermost surface is "fixed" (without a word) or "free". A table `cup` holds what finite elements ask for,
@@ -172,8 +173,9 @@ def _layer(name: str, table: Mapping[str, Any]) -> Layer:
 
 def _material(name: str, table: Mapping[str, Any], standing: Material | None = None) -> Material:
     """A material from a table with `material` (by name), numbers that win over its own, or both; else what stands."""
+    known = {**MATERIAL, **STRENGTH}
     numbers: dict[str, Any] = {
-        key: parse(f"{name}.{key}", table[key], quantity.kind) for key, quantity in MATERIAL.items() if key in table
+        key: parse(f"{name}.{key}", table[key], quantity.kind) for key, quantity in known.items() if key in table
     }
     preset = named_material(name, table["material"]) if "material" in table else standing
     missing = [key for key in MATERIAL if key not in numbers]

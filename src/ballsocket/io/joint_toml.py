@@ -98,11 +98,10 @@ def _layer(layer: Layer) -> Tables:
 
 def _material(material: Material) -> Tables:
     """By its name where it is a preset; with the numbers that differ where it has a preset's name."""
-    numbers = {"young": float(material.young), "poisson": float(material.poisson)}
+    numbers = {"young": material.young, "poisson": material.poisson, **material.strengths}
+    numbers = {name: float(value) for name, value in numbers.items()}
     for key, preset in materials.items():
-        if preset.name == material.name:
-            return {
-                "material": key,
-                **{name: value for name, value in numbers.items() if getattr(preset, name) != value},
-            }
+        if preset.name == material.name and set(preset.strengths) <= set(numbers):
+            changed = {name: value for name, value in numbers.items() if getattr(preset, name) != value}
+            return {"material": key, **changed}
     return numbers

@@ -10,7 +10,7 @@ from rich.text import Text
 from ..joint import Joint, Material
 from ..model import Theory
 from ..presets import joints, materials
-from ..quantities import JOINT, MATERIAL, Quantity
+from ..quantities import JOINT, MATERIAL, QUANTITIES, STRENGTH, Quantity
 from .terminal import console, print_folded
 
 _NARROW = 72  # columns: lists are paragraphs below
@@ -62,7 +62,10 @@ def print_preset(name: str) -> None:
 def _of(preset: Material | Joint) -> list[tuple[str, str]]:
     """Titles with text."""
     if isinstance(preset, Material):
-        return [("name", preset.name), *_quantities(preset, MATERIAL)]
+        return [
+            ("name", preset.name),
+            *_quantities(preset, {name: QUANTITIES[name] for name in (*MATERIAL, *preset.strengths)}),
+        ]
     ball = "rigid" if preset.ball is None else str(preset.ball)
     return [*_quantities(preset, JOINT), ("liner", str(preset.liner)), ("ball", ball)]
 
@@ -84,7 +87,10 @@ def _sources(model: Theory) -> str:
 
 def _numbers(preset: Material | Joint) -> str:
     text = str(preset).removeprefix(preset.name)
-    return text.removeprefix(": ") if isinstance(preset, Joint) else text.strip(" ()")
+    if isinstance(preset, Joint):
+        return text.removeprefix(": ")
+    strengths = (f"{STRENGTH[name].title} {value:g} MPa" for name, value in preset.strengths.items())
+    return ", ".join([text.strip(" ()"), *strengths])
 
 
 def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], gap: int) -> None:

@@ -15,7 +15,7 @@ from rich.text import Text
 from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
-from ..describe import Column, number_text
+from ..describe import UTILISATION, Column, number_text
 from ..quantities import CONTACT
 
 if TYPE_CHECKING:
@@ -26,10 +26,13 @@ _BARS_ASCII = " .:-=+*#@"
 _PROFILE = "profile"
 _APART = "deviation"
 _OFF_THE_POLE = ("pole_pressure", "max_pressure_angle")
-_COLUMNS = tuple(Column(each, each.shown) for each in CONTACT.values())
+_COLUMNS = (*(Column(each, each.shown) for each in CONTACT.values()), UTILISATION)
 _LATER = ("stiffness", "area", _PROFILE, _APART, "indentation", "force", "half_angle")
 _DROPPED = (*(name for name in reversed(tuple(CONTACT)) if name not in (*_LATER, "max_pressure")), *_LATER)
-"""What a narrow terminal does without, first to last; never the largest pressure."""
+"""What a narrow terminal does without, first to last; never the largest pressure, nor the utilisation."""
+
+_NEAR = 0.5
+"""The utilisation from which on it is shown."""
 
 
 def print_press(comparison: Comparison, remarks: Iterable[str] = ()) -> None:
@@ -56,7 +59,7 @@ def _fitting(comparison: Comparison, console: Console) -> Table:
     """The table with as many columns as the terminal is wide enough for."""
     unbounded = console.options.update(width=10_000)
     bars = _BARS if console.encoding.startswith("utf") else _BARS_ASCII
-    usual = _pole(comparison)
+    usual = (*_pole(comparison), *_rest(comparison))
     for count in range(len(_DROPPED) + 1):
         table = _press_table(comparison, (*usual, *_DROPPED[:count]), bars)
         if console.measure(table, options=unbounded).maximum <= console.width:
@@ -68,6 +71,12 @@ def _pole(comparison: Comparison) -> tuple[str, ...]:
     """The columns that say nothing new where every pressure that can be trusted is highest at the pole."""
     off = any(contact.valid and contact.max_pressure_angle > 0 for contact in comparison.values())
     return () if off else _OFF_THE_POLE
+
+
+def _rest(comparison: Comparison) -> tuple[str, ...]:
+    """The utilisation, where no model comes near to it, or nothing is known of it."""
+    near = (contact for contact in comparison.values() if contact.utilisation_between[1] > _NEAR)
+    return () if any(contact.utilisation > _NEAR for contact in near) else (UTILISATION.attribute,)
 
 
 def _press_table(comparison: Comparison, dropped: Sequence[str], bars: str) -> Table:

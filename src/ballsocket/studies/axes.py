@@ -126,14 +126,20 @@ class MaterialAxis(Axis):
                 raise ValueError(f"{self.name} has {label} twice")
 
     @property
+    def _numbers(self) -> tuple[str, ...]:
+        """What all of them have."""
+        known = all(each.yield_stress is not None for each in self.materials)
+        return (*MATERIAL, *(["yield_stress"] if known else []))
+
+    @property
     def names(self) -> tuple[str, ...]:
-        return tuple(f"{self.name}_{number}" for number in MATERIAL)
+        return tuple(f"{self.name}_{number}" for number in self._numbers)
 
     @property
     def values(self) -> Mapping[str, Numbers]:
         return {
             f"{self.name}_{number}": numpy.array([float(getattr(each, number)) for each in self.materials])
-            for number in MATERIAL
+            for number in self._numbers
         }
 
     @property

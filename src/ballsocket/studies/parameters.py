@@ -10,7 +10,7 @@ from .. import quantities
 from ..arrays import Array, where
 from ..dimensions import DIAMETERS, OWN, check_once, resolved
 from ..joint import Joint, Material
-from ..quantities import JOINT, MATERIAL, PARTS, Quantity
+from ..quantities import JOINT, MATERIAL, PARTS, STRENGTH, Quantity
 
 PARAMETERS: Mapping[str, Quantity] = MappingProxyType({**JOINT, **PARTS, **quantities.LOADS})
 """By the name under which they are axes of a study."""
@@ -42,8 +42,8 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
         A number that no joint may have, named with its value; names that contradict each other.
     """
     contradiction(values)
-    given_of_ball = [f"ball_{number}" for number in MATERIAL if f"ball_{number}" in values]
-    if joint.ball is None and 0 < len(given_of_ball) < len(MATERIAL):
+    given_of_ball = [name for name in PARTS if name.startswith("ball_") and name in values]
+    if joint.ball is None and given_of_ball and not all(f"ball_{number}" in values for number in MATERIAL):
         raise ValueError(f"the ball of this joint is rigid: it has no {given_of_ball[0]}")
     given = {name: value for name, value in values.items() if name in JOINT}
     said = {DIAMETERS.get(name, name) for name in given}
@@ -80,7 +80,10 @@ def contradiction(names: Mapping[str, object]) -> None:
 
 
 def _material(material: Material | None, values: Mapping[str, Array], part: str) -> Material | None:
-    given = {number: values[f"{part}_{number}"] for number in MATERIAL if f"{part}_{number}" in values}
+    """A part's material with other numbers; another one altogether is as strong as is said of it."""
+    names = (*MATERIAL, "yield_stress")
+    given = {number: values[f"{part}_{number}"] for number in names if f"{part}_{number}" in values}
     if not given:
         return material
-    return Material(**given) if material is None else replace(material, **given)
+    strengths = dict.fromkeys(STRENGTH) if all(number in given for number in MATERIAL) else {}
+    return Material(**given) if material is None else replace(material, **{**strengths, **given})

@@ -13,12 +13,13 @@ from ..describe import COLUMNS
 from ..fingerprint import fingerprint
 from ..joint import Joint
 from ..model import Model
+from ..quantities import BEARING
 from ..validity import OutsideDomainError, Status
 from .blocks import Blocks
 from .design import Design
 from .parameters import pressable
 
-QUANTITIES = tuple(column.attribute for column in COLUMNS)
+QUANTITIES = (*(column.attribute for column in COLUMNS), *BEARING)
 """What a study can answer; `status` and `valid` come with every study."""
 
 USUAL = ("indentation", "half_angle", "max_pressure", "area")

@@ -1,0 +1,127 @@
+"""How near a contact is to what its materials bear, and where linear elasticity ends."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache, reduce
+from importlib.resources import files
+from math import inf, nan, radians
+from typing import Any
+
+import numpy
+
+from .arrays import Array, clip, false, sin, to_numpy, truth, where
+from .joint import Joint, Material, larger
+from .quantities import STRENGTH
+from .validity import RIGID_BACKING, Range
+
+ELASTIC = 1.38
+"""The utilisation up to which a linear answer holds.
+
+A ball on an elastic, perfectly plastic flat keeps to Hertz' force up to 1.9 times the indentation at which its inside
+begins to yield (Jackson & Green 2005, doi 10.1115/1.1866166); the stress is then sqrt(1.9) times as large.
+"""
+
+POWERS = tuple((i, j, k) for i in range(4) for j in range(4 - i) for k in range(4 - i - j))
+"""Of the places, in the terms of the share."""
+
+_THIN, _MASSIVE = 0.05, 1.5
+"""Shares of a thin liner that hardly changes its volume, and of a massive socket whose whole bore is pressed alike."""
+
+_OFF, _LEAST = 0.2, 0.08
+"""How far the share may be off: relative, and besides."""
+
+_WIDEST = radians(85.0)
+
+
+def places(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
+    """What the share is a polynomial of: sin(ε/2), a/(L + a) with a = R2 sin ε, and ν."""
+    angle = clip(half_angle, 0.0, _WIDEST)
+    width = thickness_ratio * sin(angle)
+    return sin(angle / 2), width / (1 + width), clip(poisson, 0.0, 0.5)
+
+
+@cache
+def _terms() -> tuple[tuple[float, int, int, int], ...]:
+    table = tomllib.loads((files("ballsocket") / "data" / "von_mises.toml").read_text(encoding="utf-8"))
+    return tuple((number, *powers) for number, *powers in table["terms"])
+
+
+def share(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
+    """Largest von Mises stress in a liner on a rigid backing over the largest pressure: a fit to the exact answer.
+
+    Within 20 % of it, or 0.08 of the pressure where that is more; typically 6 %.
+    """
+    x, y, nu = places(half_angle, poisson, thickness_ratio)
+    return clip(sum(number * x**i * y**j * nu**k for number, i, j, k in _terms()), _THIN, _MASSIVE)
+
+
+def share_of_ball(poisson: Array) -> Array:
+    """The same in a ball, as in a half-space under Hertz' pressure (Johnson 1985, section 4.2), within 2 %."""
+    # 1.5/(1 + z²) - (1 + ν)(1 - z atan(1/z)) on the axis, at the depth z = 0.48 a
+    return 1.2191 - 0.4608 * (1 + poisson)
+
+
+def between(contact: Any, von_mises: Array) -> tuple[Array, Array]:
+    """Least and most that the largest von Mises stress in the liner may be where the share says `von_mises`."""
+    rigid, floor = contact.joint.backing_ratio <= RIGID_BACKING.high, _LEAST * contact.max_pressure
+    least = where(rigid, (1 - _OFF) * von_mises - floor, 0.0 * von_mises)
+    return least, where(rigid, (1 + _OFF) * von_mises + floor, inf + von_mises)
+
+
+def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
+    """Von Mises stress over yield stress of liner or ball, whichever is more, for so much of it in the liner."""
+    stresses = ((joint.liner, von_mises), (joint.ball, pressure * _share_of_ball(joint)))
+    known = ((stress, material.yield_stress) for material, stress in stresses if material is not None)
+    ratios = [stress / strength for stress, strength in known if strength is not None]
+    return reduce(larger, ratios) if ratios else nan + 0.0 * von_mises
+
+
+def _share_of_ball(joint: Joint) -> Array:
+    return 0.0 if joint.ball is None else share_of_ball(joint.ball.poisson)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Elastic(Range):
+    """The utilisations at which a linear answer holds; it does where no yield stress is known."""
+
+    quantity: str | Callable[[Any], Array] = "utilisation"
+    high: float = ELASTIC
+    why: str = "the material flows, and linear elasticity ends"
+
+    def holds(self, contact: Any) -> Array:
+        """Inside the range; what takes long to know is only asked for where an estimate leaves it open."""
+        least, most = contact.utilisation_between
+        open_ = (most > self.high) & false(least > self.high)
+        return false((least if truth(false(open_)) is not False else contact.utilisation) > self.high)
+
+
+def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
+    """Where each material bears its load (a mask), and what is said where it does not."""
+    joint, pressure = contact.joint, contact.max_pressure
+    yield from _told("liner", joint.liner, contact.von_mises_between[1], lambda: contact.von_mises, pressure)
+    if joint.ball is not None:
+        stress = _share_of_ball(joint) * pressure
+        yield from _told("ball", joint.ball, stress, lambda: stress, pressure)
+
+
+def _told(
+    part: str, material: Material, most: Array, von_mises: Callable[[], Array], pressure: Array
+) -> Iterator[tuple[Array, str]]:
+    """Of one material, whose von Mises stress is `most` at most."""
+    for name, strength in material.strengths.items():
+        by_pressure = name == "allowable_pressure"
+        if truth(false((pressure if by_pressure else most) > strength)):
+            continue
+        ratio = (pressure if by_pressure else von_mises()) / strength
+        what = "pressure" if by_pressure else "von Mises stress"
+        beyond = f": a linear answer holds up to {ELASTIC:g} times" if name == "yield_stress" else ""
+        yield false(ratio > 1), f"{what} {_times(ratio)} the {STRENGTH[name].title} of the {part}{beyond}"
+
+
+def _times(ratio: Array) -> str:
+    listed = to_numpy(ratio)
+    largest = f"{numpy.nanmax(listed, initial=0.0):.2g} times"
+    return largest if listed.size == 1 else f"up to {largest}"

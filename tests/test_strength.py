@@ -1,0 +1,159 @@
+"""Where a material yields, linear elasticity ends, and every model says so."""
+
+from dataclasses import replace
+from math import inf, isnan, radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.strength import ELASTIC, share, share_of_ball
+
+HIP = bs.joints["hip-36"]
+WEAK = bs.Material(young=1000.0, poisson=0.4, yield_stress=8.0, fatigue_limit=5.0, allowable_pressure=10.0)
+PROMISING = {name: model for name, model in bs.catalogue.items() if model.promise is not None and name != "hertz"}
+
+
+@pytest.mark.parametrize("model", [*PROMISING.values(), bs.Exact()], ids=lambda model: model.name)
+def test_eighty_kilonewtons_in_a_hip_are_valid_for_no_model(model):
+    contact = model.press(HIP, force=80e3)
+    if not contact.status.failed:
+        assert contact.utilisation > 3.0
+    assert not contact.valid
+    assert contact.status.failed or any("times the yield stress of the liner" in note for note in contact.notes)
+
+
+def test_yield_is_said_from_one_on_and_ends_validity_at_the_stated_factor():
+    at = {times: _pressed_to(times) for times in (0.97, 1.1, 1.35, 1.41)}
+    assert [contact.valid for contact in at.values()] == [True, True, True, False]
+    told = [[note for note in contact.notes if "yield stress" in note] for contact in at.values()]
+    assert [len(notes) for notes in told] == [0, 1, 1, 1]
+    assert told[1] == [
+        "von Mises stress 1.1 times the yield stress of the liner: a linear answer holds up to 1.38 times"
+    ]
+    assert abs(ELASTIC - 1.9**0.5) < 0.002
+
+
+def _pressed_to(utilisation: float):
+    contact = bs.Exact().press(HIP, force=3000.0)
+    liner = replace(HIP.liner, yield_stress=contact.peak_stress.von_mises / utilisation)
+    return bs.Exact().press(replace(HIP, liner=liner), force=3000.0)
+
+
+@pytest.mark.parametrize("model", [bs.Exact(), bs.FiniteElement(meshes=1)], ids=lambda model: model.name)
+def test_models_that_know_the_inside_say_what_is_there(model):
+    contact = model.press(HIP, force=20e3)
+    assert contact.von_mises == contact.peak_stress.von_mises
+    assert contact.utilisation == contact.von_mises / HIP.liner.yield_stress
+    both = model.press(HIP, force=np.array([0.0, 20e3, 1e3]))
+    assert both.utilisation[0] == 0.0
+    assert both.utilisation[1] == pytest.approx(contact.utilisation, rel=1e-6)
+    assert both.utilisation[2] == pytest.approx(model.press(HIP, force=1e3).utilisation, rel=1e-6)
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45, 0.499])
+@pytest.mark.parametrize("thickness", [2.0, 6.75, inf])
+def test_the_share_of_the_pressure_is_that_of_the_exact_answer(poisson, thickness):
+    joint = bs.Joint(
+        ball_radius=17.9,
+        clearance=0.1,
+        liner_thickness=thickness,
+        liner=bs.Material(young=1000.0, poisson=poisson),
+    )
+    for angle in (10.0, 32.0, 50.0, 70.0):
+        contact = bs.Exact(tolerance=1e-4).press(joint, half_angle=radians(angle))
+        known = contact.peak_stress.von_mises / contact.max_pressure
+        assert share(contact.half_angle, poisson, joint.thickness_ratio) == pytest.approx(known, rel=0.2, abs=0.08)
+        least, most = contact.von_mises_between
+        assert least <= contact.von_mises <= most
+
+
+def test_the_share_in_a_ball_is_hertz():
+    z = np.linspace(0.01, 2.0, 4000)
+    for poisson in (0.0, 0.3, 0.5):
+        stress = 1.5 / (1 + z * z) - (1 + poisson) * (1 - z * np.arctan(1 / z))
+        assert share_of_ball(poisson) == pytest.approx(stress.max(), rel=0.02)
+
+
+def test_a_weak_ball_counts():
+    soft = replace(HIP, ball=replace(bs.COCR, yield_stress=5.0))
+    contact = bs.HessForsbach().press(soft, force=3000.0)
+    assert contact.utilisation == pytest.approx(0.62 * contact.max_pressure / 5.0, rel=0.01)
+    assert any("of the ball" in note for note in contact.notes)
+
+
+def test_without_a_yield_stress_nothing_is_known_and_nothing_is_said():
+    joint = replace(HIP, liner=replace(HIP.liner, yield_stress=None), ball=None)
+    contact = bs.HessForsbach().press(joint, force=3000.0)
+    assert isnan(contact.utilisation)
+    assert contact.valid
+    assert contact.notes == ()
+    assert contact.summary()["utilisation"] is None
+    assert "utilisation" not in repr(contact)
+
+
+def test_fatigue_and_allowable_pressure_are_said_and_leave_the_answer_valid():
+    contact = bs.HessForsbach().press(replace(HIP, liner=WEAK), force=3000.0)
+    assert contact.valid
+    assert [note.split(" of the liner")[0] for note in contact.notes] == [
+        "von Mises stress 1.5 times the fatigue limit",
+        "pressure 1.3 times the allowable pressure",
+    ]
+
+
+def test_strengths_may_be_arrays_and_widen_the_answer():
+    liner = replace(HIP.liner, yield_stress=np.array([4.0, 21.0]))
+    for model in (bs.HessForsbach(), bs.Tabulated(), bs.Exact()):
+        contact = model.press(replace(HIP, liner=liner), force=3000.0)
+        assert contact.force.shape == contact.utilisation.shape == contact.valid.shape == (2,)
+        assert contact.valid.tolist() == [False, True]
+        assert contact.notes[-1].startswith("1 of 2: von Mises stress up to")
+
+
+def test_studies_and_limits_know_the_utilisation():
+    study = bs.study(bs.HessForsbach(), HIP, force=[3000.0, 80e3], quantities=["utilisation"])
+    assert study.utilisation.values == pytest.approx(
+        bs.HessForsbach().press(HIP, force=np.array([3000.0, 80e3])).utilisation
+    )
+
+
+def test_validity_asks_for_no_stresses_where_it_can_be_told_without(monkeypatch):
+    def never(*words):
+        raise AssertionError("asked for the inside")
+
+    monkeypatch.setattr("ballsocket.elastic.contact.largest_von_mises", never)
+    contact = bs.Exact().press(HIP, force=np.array([0.0, 3000.0, 80e3]))
+    assert contact.valid.tolist() == [True, True, False]
+    assert bs.Exact().press(HIP, force=3000.0).notes == ()
+
+
+def test_layers_are_looked_into():
+    """A liner on bone bends: no share of the pressure tells its stress."""
+    bone = bs.Layer(thickness=inf, material=bs.CANCELLOUS_BONE)
+    contact = bs.Exact().press(replace(HIP, liner_thickness=2.0, backing=(bone,)), force=3000.0)
+    assert contact.utilisation == pytest.approx(contact.peak_stress.von_mises / 21.0)
+    flat = share(contact.half_angle, 0.4, contact.joint.thickness_ratio)
+    assert contact.von_mises > 1.3 * flat * contact.max_pressure
+
+
+def test_a_single_number_that_is_not_allowed_is_refused():
+    with pytest.raises(ValueError, match="yield_stress = 0 is not allowed: a yield stress \\(MPa\\) is above 0"):
+        bs.Material(young=1.0, poisson=0.3, yield_stress=0.0)
+    with pytest.raises(TypeError, match="fatigue_limit must be a number"):
+        bs.Material(young=1.0, poisson=0.3, fatigue_limit="5 MPa")
+
+
+def test_presets_that_have_a_yield_stress_say_where_it_is_from():
+    for name, material in bs.materials.items():
+        assert ("yield: " in material.source) == (material.yield_stress is not None), name
+    assert bs.CROSSLINKED_PE.yield_stress is not None
+
+
+def test_each_material_of_an_axis_is_as_strong_as_it_is():
+    axis = {"liner": [bs.UHMWPE, bs.POM], "force": 3000.0}
+    study = bs.study(bs.HessForsbach(), HIP, bs.studies.grid(**axis), quantities=["utilisation"])
+    for material, found in zip(axis["liner"], study.utilisation.values, strict=True):
+        alone = bs.HessForsbach().press(replace(HIP, liner=material), force=3000.0).utilisation
+        assert found == pytest.approx(alone, rel=1e-12)
+    other = bs.studies.grid(liner=[bs.UHMWPE, bs.CORTICAL_BONE], force=3000.0)  # whose yield stress is not known
+    assert np.isnan(bs.study(bs.HessForsbach(), HIP, other, quantities=["utilisation"]).utilisation).all()
