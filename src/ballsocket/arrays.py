@@ -209,17 +209,16 @@ def weighted_sum(values: Sequence[Array], weights: Sequence[float]) -> Array:
     return total
 
 
-Law = Callable[..., tuple[Array, Array]]
+Increasing = Callable[..., tuple[Array, Array]]
 """x, ... -> (value, slope), both of the shape of x."""
 
 
 def increasing_root(
-    law: Law,
+    law: Increasing,
     target: Array,
     low: Array,
     high: Array,
     start: Array,
-    *,
     given: tuple[Any, ...] = (),
     steps: int = 60,
     tolerance: float = 1e-8,
@@ -262,7 +261,7 @@ def increasing_root(
 
 
 def root_of_number(
-    law: Law,
+    law: Increasing,
     target: float,
     low: float,
     high: float,
@@ -271,17 +270,26 @@ def root_of_number(
     steps: int,
     tolerance: float,
 ) -> float:
-    """`increasing_root` of one number."""
+    """`increasing_root` of one number, step by step as in `bracketed`."""
     x, fresh = start, start < high
     for _ in range(steps):
-        x, low, high, fresh, moving = bracketed(law, target, given, tolerance, x, low, high, fresh)
-        if not moving:
+        value, slope = law(x, *given)
+        if value <= target:
+            low = x
+        if value >= target:
+            high = x
+        fresh = fresh and x < high
+        after = x - (value - target) / slope if slope > 0 else math.nan
+        if not low <= after <= high:
+            after = high if fresh and after > high else low + (high - low) / 2
+        moved, x = abs(after - x), after
+        if moved <= tolerance * abs(x):
             break
     return x
 
 
 def bracketed(
-    law: Law,
+    law: Increasing,
     target: Array,
     given: tuple[Any, ...],
     tolerance: float,

@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from math import radians
 from typing import ClassVar
 
 import numpy
@@ -16,6 +17,7 @@ from .checks import one_load, require, vectors
 from .contact import Contact, Laws
 from .cup import Cup, Interface
 from .joint import Joint
+from .law import Law, curve_law
 from .quantities import LOADS
 from .sources import Source
 from .validity import Nowhere, Promise, Range, Status, inside, missing
@@ -182,6 +184,42 @@ class Model(Theory):
         Where the model is one `of_numbers` they may all be Python numbers instead, and then so is the answer.
         """
 
+    def law(self, joint: Joint) -> Law:
+        """Force and tangent of a joint, bound to it once: for programs that ask at one indentation after the other.
+
+        Parameters
+        ----------
+        joint : Joint
+            Of plain numbers.
+
+        Returns
+        -------
+        Law
+            `law(indentation)` is (force, stiffness) in N and N/mm, as a press has them. A closed form says its
+            formulas; any other model a curve in ln d that was put through some hundred of its loads, from a millionth
+            of the clearance on, with a relative error of 1e-9 in the force and 1e-7 in the stiffness. 0 without
+            contact, NaN where a press has no answer.
+
+        Raises
+        ------
+        TypeError
+            Arrays; a model that is too noisy for a curve.
+        ValueError
+            A joint outside the model's domain.
+        """
+        if not all(map(arrays.is_plain, (*joint.numbers(), *self.parameters))):
+            raise TypeError("a law is bound to one joint: its numbers, and those of the model, must be plain")
+        whole = joint.with_floats()
+        inside(self.domain, whole, self.name)
+        return self._law(whole)
+
+    def _law(self, joint: Joint) -> Law:
+        """The law of a joint of floats inside the domain."""
+        widest = (self.press(joint, half_angle=angle) for angle in _WIDE)
+        deepest = next((one.indentation for one in widest if one.status == Status.OK), float(joint.socket_radius))
+        shallowest = _SHALLOW * joint.clearance
+        return curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, deepest, _SMOOTH)
+
     def in_cup(self, cup: Cup) -> Model:
         """This model in a cup; one that takes the socket for a whole sphere is trusted away from the rim alone."""
         return self if cup == Cup() else Covered(model=self, cup=cup)
@@ -306,6 +344,16 @@ def _from_rim(cup: Cup, contact: Contact) -> Array:
     joint = contact.joint
     L, R2 = joint.liner_thickness, joint.socket_radius
     return cup.edge_distance(R2, contact.half_angle) / where(L < R2, L, R2)
+
+
+_WIDE = (radians(89.9), radians(85.0))
+"""Half angles where models end, if their answers do not become infinite before."""
+
+_SHALLOW = 1e-6
+"""Of the clearance: where the curve of a law begins."""
+
+_SMOOTH = 1e-11
+"""Of ln F: what the last terms of a law's curve may amount to."""
 
 
 def checked_load(**loads: Array | None) -> tuple[str, Array]:

@@ -12,6 +12,7 @@ from ..contact import Contact
 from ..cup import Cup
 from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint
+from ..law import Law
 from ..model import Answer, Model
 from ..per_joint import taken_apart
 from ..sources import Source
@@ -120,6 +121,9 @@ class FiniteElement(Model):
     @property
     def validity(self) -> tuple[Range, ...]:
         return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
+
+    def _law(self, joint: Joint) -> Law:
+        raise TypeError("finite elements are too noisy for a law, each load having a mesh of its own: ask exact")
 
     def in_cup(self, cup: Cup) -> FiniteElement:
         return replace(self, cup=cup)

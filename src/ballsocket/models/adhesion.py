@@ -110,24 +110,21 @@ class AdhesiveSocket(ClosedForm):
     def _factor(self, joint: Joint) -> Array:
         return 2 * pi * joint.socket_radius**2 * self.modulus.of(joint)
 
-    def _cosine(self, joint: Joint, indentation: Array) -> Array:
-        """k = cos ε; 0 where the hemisphere sticks."""
-        c = joint.clearance
-        return clip((c - self.critical_stretch(joint)) / divisor(c + indentation), 0.0, 1.0)
-
-    def _versine(self, joint: Joint, indentation: Array) -> Array:
-        c = joint.clearance
-        return clip((indentation + self.critical_stretch(joint)) / divisor(c + indentation), 0.0, 1.0)
+    def _edge(self, joint: Joint, indentation: Array) -> tuple[Array, Array]:
+        """k = cos ε, 0 where the hemisphere sticks, and m = 1 - k."""
+        c, stretch = joint.clearance, self.critical_stretch(joint)
+        e = divisor(c + indentation)
+        return clip((c - stretch) / e, 0.0, 1.0), clip((indentation + stretch) / e, 0.0, 1.0)
 
     def force(self, joint: Joint, indentation: Array) -> Array:
         # F = 2π R2² K [e (1 - k³)/3 - c (1 - k²)/2], with m = 1 - k taken out
-        k, m = self._cosine(joint, indentation), self._versine(joint, indentation)
+        k, m = self._edge(joint, indentation)
         e = joint.clearance + indentation
         return self._factor(joint) * m * (indentation * (1 + k) / 2 - e * m * (1 + 2 * k) / 6)
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
         # the edge moves: dF/de + dF/dk dk/de
-        k, m = self._cosine(joint, indentation), self._versine(joint, indentation)
+        k, m = self._edge(joint, indentation)
         e = divisor(joint.clearance + indentation)
         return self._factor(joint) * (m * (1 + k + k * k) / 3 - k * k * self.critical_stretch(joint) / e)
 
@@ -151,7 +148,7 @@ class AdhesiveSocket(ClosedForm):
         return increasing_root(lambda d: (self.force(joint, d), self.stiffness(joint, d)), force, low, high, start)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        return angle_of(self._versine(joint, indentation))
+        return angle_of(self._edge(joint, indentation)[1])
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         versine = versine_of(half_angle)
@@ -168,4 +165,4 @@ class AdhesiveSocket(ClosedForm):
         """Negative (tension) towards the edge."""
         versine = versine_of(angle)
         u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
-        return where(versine <= self._versine(joint, indentation), self.modulus.of(joint) * u, 0.0)
+        return where(versine <= self._edge(joint, indentation)[1], self.modulus.of(joint) * u, 0.0)

@@ -12,6 +12,7 @@ import numpy
 from .. import arrays
 from ..arrays import Array, where
 from ..joint import Joint
+from ..law import Law
 from ..model import Answer, Model
 from ..validity import Status
 
@@ -122,6 +123,26 @@ class ClosedForm(Model):
                 Status.BEYOND_EQUATOR: self.half_angle(joint, safe) > pi / 2 * (1 + 1e-6),
             },
         )
+
+    def _law(self, joint: Joint) -> Law:
+        return ClosedLaw(model=self, joint=joint)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClosedLaw:
+    """The force and the stiffness of a closed form, bound to a joint of floats."""
+
+    model: ClosedForm
+    joint: Joint
+
+    def __call__(self, indentation: float) -> tuple[float, float]:
+        if indentation < 0:
+            return 0.0, 0.0
+        try:
+            return self.model.force(self.joint, indentation), self.model.stiffness(self.joint, indentation)
+        except ArithmeticError:
+            contact = self.model.press(self.joint, indentation=indentation)
+            return contact.force, contact.stiffness
 
 
 def _bound(law: str) -> Any:

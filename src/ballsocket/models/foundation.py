@@ -98,6 +98,30 @@ class RadialFoundation(ClosedForm):
         inside = (u > 0) & (cos(angle) > 0)
         return where(inside, self.modulus.of(joint) * u, 0.0)
 
+    def _law(self, joint: Joint) -> Springs:
+        return Springs(
+            kinematics=self.kinematics,
+            socket_radius=joint.socket_radius,
+            clearance=joint.clearance,
+            modulus=float(self.modulus.of(joint)),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Springs:
+    """The force and the stiffness of a radial foundation in one joint: lengths in mm, the modulus K in MPa/mm."""
+
+    kinematics: Kinematics
+    socket_radius: float
+    clearance: float
+    modulus: float
+
+    def __call__(self, indentation: float) -> tuple[float, float]:
+        if indentation < 0:
+            return 0.0, 0.0
+        R2, c, K = self.socket_radius, self.clearance, self.modulus
+        return self.kinematics.force(R2, c, K, indentation), self.kinematics.stiffness(R2, c, K, indentation)
+
 
 _NAMES = {
     ("hess-forsbach", "linear"): "hess-forsbach",

@@ -41,54 +41,60 @@ def liner_of(nu: Array, b: Array) -> Liner:
     k0, g, t, z = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 2 * nu, 1 / (b * b)
     bent, none = 4 - 6 * nu, 0.0 * nu
     above = (
-        *(none, 2 * k0 * bent - 4 * (1 - nu), t),
-        *(8 * k0 * (1 - nu), -2 * k0 * t - bent),
-        *(none * z, 4 * (k0 * z * z - 2 * t * z - 1), 1 - 4 * g + z * (10 * t - z * (k0 + 2 * g)), -2 * t * z),
+        none,
+        2 * k0 * bent - 4 * (1 - nu),
+        t,
+        8 * k0 * (1 - nu),
+        -2 * k0 * t - bent,
+        none * z,
+        4 * (k0 * z * z - 2 * t * z - 1),
+        1 - 4 * g + z * (10 * t - z * (k0 + 2 * g)),
+        -2 * t * z,
     )
-    last = 2.25 + 16 * (1 - nu * nu)
     below = (
-        *(4 * k0, 3 * k0 - 3 - 4 * nu * (3 * k0 - 1), none - 2.25),
-        *(6 * k0 - 2 - 8 * nu * k0, 4.5 * k0 - 1.5 + 6 * nu),
-        *(
-            4 * (1 - z) * (1 - z) + none,
-            4 * g - 10 + z * (28 - 10 * z),
-            2.25 - 9 * g - z * (24.5 - last * z),
-            4.5 * z + none,
-        ),
+        4 * k0,
+        3 * k0 - 3 - 4 * nu * (3 * k0 - 1),
+        none - 2.25,
+        6 * k0 - 2 - 8 * nu * k0,
+        4.5 * k0 - 1.5 + 6 * nu,
+        4 * (1 - z) * (1 - z) + none,
+        4 * g - 10 + z * (28 - 10 * z),
+        2.25 - 9 * g - z * (24.5 - z * (2.25 + 16 * (1 - nu * nu))),
+        4.5 * z + none,
     )
     return Liner(poisson=nu, growth=log(b), shrink=z, above=above, below=below)
 
 
 def log_compliance(k: Array, liner: Liner) -> Pair:
     """ln(c E/R2) and its slope by ln k, away from q = 1."""
+    poisson, growth, shrink, upper, lower = liner
     Q = k * k + 0.25
     q = sqrt(Q)
-    y = exp((1 - q) * (2 * liner.growth))
-    above, rise = _sum(q, Q, y, liner, liner.above)
-    below, fall = _sum(q, Q, y, liner, liner.below)
-    return log((1 + liner.poisson) * (above / below)), 2 * k * k * (rise / above - fall / below)
+    y = exp((1 - q) * (2 * growth))
+    shrunk, decay = y * shrink * shrink, y * growth / q
+    above, rise = _sum(q, Q, y, shrunk, decay, upper)
+    below, fall = _sum(q, Q, y, shrunk, decay, lower)
+    return log((1 + poisson) * (above / below)), 2 * k * k * (rise / above - fall / below)
 
 
-def _sum(q: Array, Q: Array, y: Array, liner: Liner, coefficients: tuple[Array, ...]) -> Pair:
-    """N or D over b^2q, and its slope by Q."""
+def _sum(q: Array, Q: Array, y: Array, shrunk: Array, decay: Array, coefficients: tuple[Array, ...]) -> Pair:
+    """N or D over b^2q, and its slope by Q; `shrunk` is y b^-4, `decay` the slope of -y."""
     e2, e1, e0, o1, o0, r3, r2, r1, r0 = coefficients
-    even, even_slope = (e2 * Q + e1) * Q + e0, 2 * e2 * Q + e1
-    odd, odd_slope = q * (o1 * Q + o0), (3 * o1 * Q + o0) / (2 * q)
-    rest, rest_slope = ((r3 * Q + r2) * Q + r1) * Q + r0, (3 * r3 * Q + 2 * r2) * Q + r1
-    shrunk = y * liner.shrink * liner.shrink
+    steep, high = e2 * Q, o1 * Q
+    even, even_slope = (steep + e1) * Q + e0, 2 * steep + e1
+    odd, odd_slope = q * (high + o0), (3 * high + o0) / (2 * q)
+    inner = r3 * Q + r2
+    rest, rest_slope = (inner * Q + r1) * Q + r0, (2 * inner + r3 * Q) * Q + r1
     back = shrunk * (even - odd)
-    value = even + odd + y * (rest + back)
-    decay = y * liner.growth / q
-    return value, even_slope + odd_slope + y * (rest_slope + shrunk * (even_slope - odd_slope)) - decay * (
-        rest + 2 * back
-    )
+    slope = even_slope + odd_slope + y * (rest_slope + shrunk * (even_slope - odd_slope)) - decay * (rest + 2 * back)
+    return even + odd + y * (rest + back), slope
 
 
 def log_compliance_anywhere(k: Array, liner: Liner) -> Pair:
     """ln(c E/R2) and its slope by ln k, near q = 1 (k² = 3/4) too."""
     away = k * k - 0.75
     near = (away > -0.05) & (away < 0.05)
-    if arrays.truth(near ^ True):
+    if arrays.truth(arrays.false(near)):
         return log_compliance(k, liner)
     value, slope = log_compliance(where(near, 2.0, k), liner)
     value_near, slope_near = _log_compliance_near(k, liner)
@@ -125,7 +131,6 @@ def _divided(
     q: Array,
     liner: Liner,
     coefficients: tuple[Array, ...],
-    *,
     first: tuple[Array, ...],
     middle: tuple[Array, ...],
     grown_first: tuple[Array, ...],

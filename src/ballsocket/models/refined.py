@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import inf, nan, pi, radians
 from typing import ClassVar
 
@@ -72,14 +72,7 @@ class Refined(Model):
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         edge = _given(joint, load) if kind == "half_angle" else _found(joint, kind, load)
-        solution = RefinedSolution(joint=joint, edge=edge)
-        force, indentation = solution.loads(kind, load)
-        return Answer(
-            laws=solution,
-            force=force,
-            indentation=indentation,
-            failures={Status.NOT_CONVERGED: arrays.false(solution.miss(indentation) <= 1e5 * arrays.rounding(load))},
-        )
+        return answer_of(RefinedSolution(joint=joint, edge=edge), kind, load)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -210,12 +203,33 @@ def _given(joint: Joint, half_angle: Array) -> Array:
 
 def _found(joint: Joint, kind: str, given: Array) -> Array:
     """The half angle that belongs to F or d, NaN where it is too wide."""
-    by_force = kind == "force"
-    scale = joint.clearance * (joint.liner.young * joint.socket_radius if by_force else 1.0)
-    load = broadcast(divisor(given) / scale, given, *joint.numbers())
-    edge = (edge_of_force if by_force else edge_of_indentation)(load, _liner(joint))
-    return where(given > 0, edge, 0.0 * given)
+    find = edge_of_force if kind == "force" else edge_of_indentation
+    return where(given > 0, find(scaled(joint, kind, given), _liner(joint)), 0.0 * given)
+
+
+def scaled(joint: Joint, kind: str, given: Array) -> Array:
+    """F/(E R2 c) or d/c, and something above zero where there is no load."""
+    scale = joint.clearance * (joint.liner.young * joint.socket_radius if kind == "force" else 1.0)
+    return broadcast(divisor(given) / scale, given, *joint.numbers())
+
+
+def answer_of(solution: RefinedSolution, kind: str, load: Array) -> Answer:
+    """What a solution says of the loads of one kind that it was found for."""
+    force, indentation = solution.loads(kind, load)
+    return Answer(
+        laws=solution,
+        force=force,
+        indentation=indentation,
+        failures={Status.NOT_CONVERGED: arrays.false(solution.miss(indentation) <= 1e5 * arrays.rounding(load))},
+    )
 
 
 def _liner(joint: Joint) -> Liner:
-    return liner_of(joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius)
+    nu, b = joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius
+    return _liner_of_numbers(nu, b) if type(nu) is float and type(b) is float else liner_of(nu, b)
+
+
+@lru_cache(maxsize=256)
+def _liner_of_numbers(nu: float, b: float) -> Liner:
+    """Kept, since more loads on the joint are likely."""
+    return liner_of(nu, b)

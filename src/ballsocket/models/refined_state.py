@@ -10,7 +10,7 @@ from math import nan, pi, radians
 from typing import NamedTuple
 
 from .. import arrays
-from ..arrays import Array, exp, log, sin, tan, where
+from ..arrays import Array, cos, exp, log, sin, where
 from .liner_compliance import Liner, Pair, log_compliance, log_compliance_anywhere
 
 
@@ -90,7 +90,8 @@ def state(half_angle: Array, liner: Liner, fit: Fit = FIT) -> State:
     waves = log_compliances(half_angle, liner, fit.waves)
     (c1, rise1), (c2, rise2), (c3, rise3), (c4, rise4) = waves  # by ln k, and k = k_i/ε
     s, v, w = bends(c1, c2, c3, c4, fit.spans)
-    S, S_rate = sin(half_angle / 2) ** 2, half_angle / tan(half_angle / 2)
+    half = sin(half_angle / 2)
+    S, S_rate = half * half, half_angle * cos(half_angle / 2) / half
     s_, v_, w_ = bends(-rise1, -rise2, -rise3, -rise4, fit.spans)
     slopes = s_, v_, w_, S * S_rate
     level = _log_compliance(c2, s, v, w, S, fit)
@@ -205,7 +206,7 @@ def edge_of_force(load: Array, liner: Liner) -> Array:
     return _edge_of(_force_miss, load, log(load / (2.5 + load / 3)) / 3, liner)
 
 
-def _edge_of(miss: arrays.Law, load: Array, start: Array, liner: Liner) -> Array:
+def _edge_of(miss: arrays.Increasing, load: Array, start: Array, liner: Liner) -> Array:
     """By Newton's method from ln ε = `start`, which is near: F ~ ε³ and d ~ ε² as in Hertz, but never wide."""
     start = start + (_END - ln(WIDEST))
     end = 0.0 * start + (_END + 1e-12)  # the widest contact itself is answered

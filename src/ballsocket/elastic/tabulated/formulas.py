@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy
 
 from ... import arrays
-from ...arrays import Array, exp, log, sin, tan, where
+from ...arrays import Array, cos, exp, log, sin, where
 from .chebyshev import LIMIT, NEAR, angle_place, polynomials, waves_at
 
 Pair = tuple[Array, Array]
@@ -81,7 +81,7 @@ def _widening(angle: Array, place: Array, ratio: Array) -> Array:
 def opening(angle: Array, share: Pair) -> Pair:
     """σ = d/(c + d) and the slope of its logarithm, from the first function."""
     half = sin(angle / 2)
-    return exp(share[0]) * 2 * half * half, share[1] + angle / tan(angle / 2)
+    return exp(share[0]) * 2 * half * half, share[1] + angle * cos(angle / 2) / half
 
 
 def contact(angle: Array, curve: Curve, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
@@ -105,7 +105,7 @@ def angle_of_force(load: Array, curve: Curve) -> Array:
     return _angle_of(_force_miss, load, log(load / (3 + load)) / 3, curve)
 
 
-def _angle_of(miss: arrays.Law, load: Array, start: Array, curve: Curve) -> Array:
+def _angle_of(miss: arrays.Increasing, load: Array, start: Array, curve: Curve) -> Array:
     """By Newton's method from ln ε = `start`, which is near: F ~ ε³ and d ~ ε² as in Hertz, but never wide."""
     start = start + (_END - math.log(LIMIT))
     end = 0.0 * start + (_END + 1e-12)  # the widest contact itself is answered
