@@ -34,9 +34,10 @@ NOTES = (
 def table(inputs: list[numpy.ndarray], chunk: int) -> Rows:
     import numba
 
-    from ballsocket.compiled import Compiled, _kernel
+    from ballsocket.compiled import Compiled
+    from ballsocket.compiled.foundation import kernel as kernel_of
 
-    kernel: Any = _kernel(bs.hess_forsbach.formula, bs.linear_kinematics)
+    kernel: Any = kernel_of(bs.hess_forsbach.formula, bs.linear_kinematics)
     fast, joint, points = Compiled(model=bs.HessForsbach()), joint_of(inputs), inputs[0].size
     targets = [numpy.zeros(points) for _ in range(5)]
     passed = [*inputs, *targets[:3], numpy.zeros(points, dtype=numpy.int8)]

@@ -9,7 +9,8 @@ from ..extent import some
 from ..joints import HIP, random_joint
 
 pytest.importorskip("numba")
-from ballsocket.compiled import Compiled, _angle_polynomial
+from ballsocket.compiled import Compiled
+from ballsocket.compiled.foundation import _angle_polynomial
 from ballsocket.models.kinematics import angle_of
 
 KINEMATICS = (bs.linear_kinematics, bs.exact_kinematics, bs.cosine_kinematics)

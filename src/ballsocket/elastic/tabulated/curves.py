@@ -98,12 +98,14 @@ class Curves:
         """d, F, p0, dF/dd and dd/d(ln ε) at ε > 0."""
         return contact(angle, self.curve, self.scale)
 
+    def scaled(self, kind: str, load: Array) -> Array:
+        """F C/(R2² c) or d/c."""
+        c, area, compliance = self.scale
+        return load * compliance / (area * c) if kind == "force" else load / c
+
     def angle(self, kind: str, load: Array) -> Array:
         """ε > 0 that belongs to a load > 0; NaN beyond the tables."""
-        c, area, compliance = self.scale
-        if kind == "force":
-            return angle_of_force(load * compliance / (area * c), self.curve)
-        return angle_of_indentation(load / c, self.curve)
+        return (angle_of_force if kind == "force" else angle_of_indentation)(self.scaled(kind, load), self.curve)
 
 
 @lru_cache(maxsize=256)

@@ -12,7 +12,7 @@ from ...model import Answer, Model
 from ...sources import Source
 from ...validity import SMALL_STRAIN, Promise, Range, Status
 from .chebyshev import POISSON, THICKNESS_RATIO
-from .solution import solution_of
+from .solution import Reading, reading, solution_of
 
 
 def _ball_poisson(contact: Any) -> Array:
@@ -75,7 +75,11 @@ class Tabulated(Model):
     promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        solution = solution_of(self.file, joint, kind, load)
+        return self.answer(joint, kind, load, reading(kind))
+
+    def answer(self, joint: Joint, kind: str, load: Array, read: Reading) -> Answer:
+        """The answer to a load of one kind, where `read` finds the contacts on their joints' curves."""
+        solution = solution_of(self.file, joint, load, read)
         d, F, _, _ = solution.values
         return Answer(
             laws=solution,

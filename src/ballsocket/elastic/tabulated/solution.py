@@ -17,7 +17,7 @@ from .chebyshev import LIMIT, angle_place, polynomials, waves_at
 from .curves import LITTLE, Curves, curves_of_one
 from .formulas import summed
 
-_BLOCK = 2048  # contacts at a time: what stays in the cache
+_BLOCK = 2000  # contacts at a time: what stays in the cache; rows of a power of two would fall on each other there
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -130,14 +130,13 @@ def _moments(size: int) -> tuple[list[float], list[float]]:
     return [float(w @ part) for part in parts], [float(w @ (part * v)) for part in parts]
 
 
-def solution_of(file: str, joint: Joint, kind: str, load: Array) -> TableSolution:
-    """The contacts that belong to the loads; NaN where the tables end."""
+Reading = Callable[[Curves, Array], tuple[Array, ...]]
+"""From the curves of joints and the loads of contacts (contacts,) to numbers of each contact."""
 
-    def law(curves: Curves, given: Array) -> tuple[Array, ...]:
-        angle = where(given <= LIMIT, given, float("nan")) if kind == "half_angle" else curves.angle(kind, given)
-        return (angle, *curves.contact(angle)[:4])
 
-    found = _in_blocks(file, joint, load, law)
+def solution_of(file: str, joint: Joint, load: Array, read: Reading) -> TableSolution:
+    """The contacts that belong to the loads, NaN where the tables end; `read` finds ε, d, F, p0 and dF/dd."""
+    found = _in_blocks(file, joint, load, read)
     fits = arrays.false(found[1] < 0)  # a ball that filled its socket at less has no wider contact
     angle, d, F, p0, stiffness = (
         where(broadcast(load, part) > 0, where(fits, part, float("nan")), 0.0) for part in found
@@ -145,12 +144,20 @@ def solution_of(file: str, joint: Joint, kind: str, load: Array) -> TableSolutio
     return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness))
 
 
-def _in_blocks(
-    file: str, joint: Joint, load: Array, law: Callable[[Curves, Array], tuple[Array, ...]]
-) -> tuple[Array, ...]:
-    """law(curves, load) in the shape of the contacts, with a little in place of loads that are not above 0."""
+def reading(kind: str) -> Reading:
+    """ε, d, F, p0 and dF/dd of contacts by loads of one kind."""
+
+    def read(curves: Curves, given: Array) -> tuple[Array, ...]:
+        angle = where(given <= LIMIT, given, float("nan")) if kind == "half_angle" else curves.angle(kind, given)
+        return (angle, *curves.contact(angle)[:4])
+
+    return read
+
+
+def _in_blocks(file: str, joint: Joint, load: Array, read: Reading) -> tuple[Array, ...]:
+    """read(curves, load) in the shape of the contacts, with a little in place of loads that are not above 0."""
     if type(load) is float:
-        return law(curves_of_one(file, joint), load if load > 0 else LITTLE)
+        return read(curves_of_one(file, joint), load if load > 0 else LITTLE)
     xp, numbers = arrays.namespace(load), joint.numbers()
     shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
     alone = all(prod(part.shape) == 1 for part in numbers)
@@ -166,7 +173,7 @@ def _in_blocks(
         here = None if which is None else which[block]
         parts = [part if part.shape[0] == 1 else part[block] for part in flat]
         curves = whole if alone else Curves(file, joint.with_numbers(parts), shared, here)
-        results.append(law(curves, loads[block]))
+        results.append(read(curves, loads[block]))
     joined = (xp.concat(parts, axis=-1) if len(parts) > 1 else parts[0] for parts in zip(*results, strict=True))
     return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)
 

@@ -1,0 +1,134 @@
+"""The law of a joint for compiled programs: `law(indentation)` in Python and inside numba's functions alike."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from numba import njit, typeof
+from numba.core import cgutils, types
+from numba.extending import (
+    NativeValue,
+    lower_builtin,
+    make_attribute_wrapper,
+    models,
+    overload_method,
+    register_model,
+    typeof_impl,
+    unbox,
+)
+
+from .. import law as formulas
+from ..law import CurveLaw, Law
+from ..models.foundation import Springs
+from ..models.kinematics import Kinematics
+from . import foundation as _foundation  # noqa: F401 - teaches the formulas of the springs
+from .teaching import taught
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CompiledLaw:
+    """The law of a joint, for Python and for functions that numba compiles: pass it to them as an argument.
+
+    Attributes
+    ----------
+    function : numba function
+        (indentation, *numbers) -> (force, stiffness).
+    numbers : tuple
+        What it knows of the joint.
+
+    Examples
+    --------
+    >>> import numba
+    >>> import ballsocket as bs
+    >>> from ballsocket.compiled import Compiled
+    >>> law = Compiled(model=bs.HessForsbach()).law(bs.joints["hess-forsbach"])
+    >>> @numba.njit
+    ... def work(law, deepest, steps):
+    ...     total = 0.0
+    ...     for step in range(steps):
+    ...         force, _ = law((step + 0.5) / steps * deepest)
+    ...         total += force * deepest / steps
+    ...     return total
+    >>> round(work(law, 0.05, 1000), 3)
+    77.825
+    """
+
+    function: Any
+    numbers: tuple[Any, ...]
+
+    def __call__(self, indentation: float) -> tuple[float, float]:
+        force, stiffness = self.function(indentation, *self.numbers)
+        return force, stiffness
+
+
+def compiled_law(law: Law) -> CompiledLaw:
+    """The same law, compiled."""
+    if isinstance(law, Springs):
+        return CompiledLaw(function=_springs(law.kinematics), numbers=(law.socket_radius, law.clearance, law.modulus))
+    assert isinstance(law, CurveLaw)
+    ends = law.shallowest, law.deepest, law.first, law.density
+    return CompiledLaw(function=_curve(), numbers=(*ends, law.pieces))
+
+
+@cache
+def _springs(motion: Kinematics) -> Any:
+    force, stiffness = taught(motion.force), taught(motion.stiffness)
+
+    @njit(error_model="numpy")
+    def force_and_tangent(indentation, R2, c, K):  # type: ignore[no-untyped-def]
+        if indentation < 0:
+            return 0.0, 0.0
+        return force(R2, c, K, indentation), stiffness(R2, c, K, indentation)
+
+    return force_and_tangent
+
+
+@cache
+def _curve() -> Any:
+    return njit(error_model="numpy")(formulas.force_and_tangent)
+
+
+class _LawType(types.Type):
+    """A `CompiledLaw` for numba: one type for each function."""
+
+    def __init__(self, function: Any, numbers: Any) -> None:
+        self.function, self.numbers = function, numbers
+        super().__init__(name=f"CompiledLaw({id(function)}, {numbers})")
+
+
+@typeof_impl.register(CompiledLaw)
+def _type_of(law: CompiledLaw, _: Any) -> _LawType:
+    return _LawType(law.function, typeof(law.numbers))
+
+
+@register_model(_LawType)
+class _LawModel(models.StructModel):
+    def __init__(self, manager: Any, kind: _LawType) -> None:
+        super().__init__(manager, kind, [("numbers", kind.numbers)])
+
+
+make_attribute_wrapper(_LawType, "numbers", "numbers")
+
+
+@unbox(_LawType)
+def _unboxed(kind: _LawType, value: Any, context: Any) -> NativeValue:
+    numbers = context.pyapi.object_getattr_string(value, "numbers")
+    native = context.unbox(kind.numbers, numbers)
+    context.pyapi.decref(numbers)
+    made = cgutils.create_struct_proxy(kind)(context.context, context.builder)
+    made.numbers = native.value
+    return NativeValue(made._getvalue(), is_error=native.is_error)
+
+
+@overload_method(_LawType, "__call__")
+def _called(law, indentation):  # type: ignore[no-untyped-def]
+    function = law.function
+    return lambda law, indentation: function(indentation, *law.numbers)
+
+
+@lower_builtin(_LawType, _LawType, types.Any)
+def _lowered(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    """The code of a call: numba finds what the call of a value means, and asks for its code separately."""
+    return context.compile_internal(builder, _called(*signature.args), signature, arguments)

@@ -1,0 +1,132 @@
+"""A model whose presses of large arrays are compiled, and whose law compiled programs can call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy
+
+from .. import arrays
+from ..arrays import Array
+from ..contact import Contact
+from ..elastic.tabulated.model import Tabulated
+from ..joint import Joint
+from ..model import Answer, Model, checked_load, prepared
+from ..models.closed_form import Bound
+from ..models.foundation import RadialFoundation
+from ..models.refined import Refined
+from ..sources import Source
+from ..validity import Promise, Range, Status, inside
+from . import foundation, refined, tabulated
+from .law import CompiledLaw, compiled_law
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compiled(Model):
+    """A model whose presses of NumPy float64 arrays are compiled: by force, and by indentation where that is solved.
+
+    Everything else (half angles, other array libraries, dtypes, plain numbers) is passed on to the model. `law(joint)`
+    can be called by compiled programs.
+
+    Parameters
+    ----------
+    model : RadialFoundation, Refined or Tabulated
+        For instance `HessForsbach()`.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.compiled import Compiled
+    >>> fast = Compiled(model=bs.HessForsbach())
+    >>> contact = fast.press(bs.joints["hess-forsbach"], force=numpy.array([1000.0, 3000.0]))
+    >>> contact.max_pressure.round(3)
+    array([ 5.921, 11.27 ])
+    """
+
+    model: RadialFoundation | Refined | Tabulated
+    of_numbers: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.model, RadialFoundation | Refined | Tabulated):
+            kinds = "a RadialFoundation, such as HessForsbach(), Refined() or Tabulated()"
+            raise TypeError(f"model must be {kinds}, got {self.model!r}")
+
+    @property
+    def parameters(self) -> tuple[Array, ...]:
+        return self.model.parameters
+
+    @property
+    def name(self) -> str:
+        return self.model.name
+
+    @property
+    def title(self) -> str:
+        return self.model.title
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return self.model.sources
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        return self.model.domain
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        return self.model.validity
+
+    @property
+    def promise(self) -> Promise | None:
+        return self.model.promise
+
+    def press(
+        self,
+        joint: Joint,
+        *,
+        force: Array | None = None,
+        indentation: Array | None = None,
+        half_angle: Array | None = None,
+    ) -> Contact:
+        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
+        if kind == "force" and isinstance(self.model, RadialFoundation) and self._in_one_pass(joint, given):
+            return self._passed(self.model, joint, given)
+        return super().press(joint, force=force, indentation=indentation, half_angle=half_angle)
+
+    def _in_one_pass(self, joint: Joint, load: Array) -> bool:
+        large = [number for number in (*joint.numbers(), load) if not arrays.is_plain(number)]
+        return bool(large) and all(map(_is_float64, large)) and all(map(arrays.is_plain, self.parameters))
+
+    def _passed(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:
+        _, whole, load = prepared(joint, force)
+        points = inside(self.domain, whole, self.name)
+        d, p0, angle, status = foundation.passed(model, whole, load)
+        if self.domain:
+            status = numpy.where(points, status, numpy.int8(Status.OUTSIDE_DOMAIN))
+            d, p0, angle = (numpy.where(points, part, numpy.nan) for part in (d, p0, angle))
+        contact = Contact(
+            model=self,
+            laws=Bound(model=model, joint=whole, indentation=d),
+            joint=whole,
+            force=numpy.broadcast_to(load, d.shape),
+            indentation=d,
+            status=status,
+        )
+        vars(contact).update(max_pressure=p0, half_angle=angle)
+        return contact
+
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        if kind != "half_angle" and all(map(_is_float64, (*joint.numbers(), load))):
+            if isinstance(self.model, Refined):
+                return refined.solved(joint, kind, load)
+            if isinstance(self.model, Tabulated):
+                return tabulated.solved(self.model, joint, kind, load)
+        return self.model._solve(joint, kind, load)
+
+    def law(self, joint: Joint) -> CompiledLaw:
+        """Force and tangent of a joint, bound to it once; see `Model.law`. Compiled programs can call it as well."""
+        return compiled_law(self.model.law(joint))
+
+
+def _is_float64(number: Any) -> bool:
+    return isinstance(number, numpy.ndarray) and number.dtype == numpy.float64
