@@ -84,44 +84,59 @@ def force_and_tangent(
     return force, power * force / indentation
 
 
+def answered(force: float, stiffness: float) -> tuple[float, float]:
+    """Force and stiffness, both NaN where one of them is no number or infinite."""
+    return (force, stiffness) if math.isfinite(force + stiffness) else (math.nan, math.nan)
+
+
 _DEGREE = 9
 _COUNTS = (24, 48, 96)
-_SCANNED = 200
+_SMOOTH = 1e-11
+"""Of ln F: what the last terms of a curve may amount to."""
+
+_TO_THE_END = 1e-6
 
 
-def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float, tolerance: float) -> CurveLaw:
-    """The law through the loads of many indentations: more of them until the last terms of ln F are below a tolerance.
+def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
+    """The law through the loads of many indentations: more of them until the last terms of ln F are small.
 
     Parameters
     ----------
     force : function
         From indentations in mm to loads in N, NaN where there is none.
     shallowest, deepest : float
-        Where the curve begins and ends, in mm; nearer together where loads are missing.
-    tolerance : float
-        Of ln F.
+        Where the curve begins, and where it ends at the latest: it ends with the loads, in mm.
+
+    Raises
+    ------
+    TypeError
+        A load at the shallowest indentation that is not above 0.
     """
-    low, high = _answered(force, shallowest, deepest)
+    end = _end(force, shallowest, deepest)
     for count in _COUNTS:
-        series = _series(force, low, high, count)
-        if numpy.max(abs(series[:, -1])) <= tolerance:
+        series = _series(force, shallowest, end, count)
+        if numpy.max(abs(series[:, -1])) <= _SMOOTH:
             break
     return CurveLaw(
-        shallowest=low,
-        deepest=high,
-        first=math.log(low),
-        density=count / math.log(high / low),
+        shallowest=shallowest,
+        deepest=end,
+        first=math.log(shallowest),
+        density=count / math.log(end / shallowest),
         pieces=numpy.ascontiguousarray((series @ _powers())[:, ::-1]),
     )
 
 
-def _answered(force: Callable[[Numbers], Numbers], low: float, high: float) -> tuple[float, float]:
-    """The part of the range that has loads."""
-    if numpy.isfinite(force(numpy.array([low, high]))).all():
-        return low, high
-    tried = numpy.geomspace(low, high, _SCANNED)
-    good = tried[numpy.isfinite(force(tried))]
-    return float(good[0]), float(good[-1])
+def _end(force: Callable[[Numbers], Numbers], low: float, high: float) -> float:
+    """The deepest indentation that has a load; a millionth less, since a solver finds that end to its tolerance."""
+    if not force(numpy.array([low]))[0] > 0:
+        raise TypeError(f"no curve of ln F, since a load is not above 0 N: that of {low:.3g} mm")
+    while high / low > 1 + _TO_THE_END:
+        tried = numpy.geomspace(low, high, 17)
+        last = max(numpy.flatnonzero(numpy.isfinite(force(tried))), default=0)
+        if last == 16:
+            return high
+        low, high = float(tried[last]), float(tried[last + 1])
+    return low * (1 - _TO_THE_END)
 
 
 def _series(force: Callable[[Numbers], Numbers], low: float, high: float, count: int) -> Numbers:

@@ -3,37 +3,23 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
-from math import radians
-from typing import ClassVar
+from operator import attrgetter
+from typing import Any, ClassVar
 
 import numpy
 
 from . import arrays
+from .answer import Answer, checked_load, finished, finished_number, prepared, spread
 from .arrays import Array, where
-from .checks import one_load, require, vectors
+from .checks import require, vectors
 from .contact import Contact, Laws
 from .cup import Cup, Interface
 from .joint import Joint
-from .law import Law, curve_law
-from .quantities import LOADS
+from .law import CurveLaw, Law, curve_law
 from .sources import Source
-from .validity import Nowhere, Promise, Range, Status, inside, missing
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Answer:
-    """What a solver hands back: force and indentation, where the further quantities come from, and what went wrong.
-
-    `failures` are masks by the status that they mean; a point without force or indentation needs none.
-    """
-
-    laws: Laws
-    force: Array
-    indentation: Array
-    failures: Mapping[Status, Array] = field(default_factory=dict)
+from .validity import Nowhere, Promise, Range, inside
 
 
 class Theory(ABC):
@@ -147,8 +133,7 @@ class Model(Theory):
             Not exactly one load; a load that is not allowed; no point at all inside the model's domain.
         """
         kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
-        if not all(map(arrays.is_plain, joint.strengths())):
-            given = _spread(given, joint.strengths())
+        given = spread(given, joint.strengths())
         if self._takes_numbers(joint, given):
             try:
                 return self._press_numbers(joint, kind, float(given))
@@ -158,7 +143,7 @@ class Model(Theory):
         points = inside(self.domain, whole, self.name)
         with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
             answer = self._solve(whole, kind, load)
-            return _finished(self, joint if plain else whole, kind, load, points, answer, plain)
+            return finished(self, joint if plain else whole, kind, load, points, answer, plain)
 
     def _takes_numbers(self, joint: Joint, load: Array) -> bool:
         """Whether these are Python numbers, or such as can be made them, and the model has formulas for those."""
@@ -169,7 +154,7 @@ class Model(Theory):
         """`press` with nothing but Python numbers."""
         whole = joint.with_floats()
         inside(self.domain, whole, self.name)
-        return _finished_number(self, joint, kind, load, self._solve(whole, kind, load))
+        return finished_number(self, joint, kind, load, self._solve(whole, kind, load))
 
     def careful_laws(self, joint: Joint, indentation: float) -> Laws:
         """The laws of a contact of Python numbers in those of NumPy, which become infinite or NaN where those raise."""
@@ -195,10 +180,11 @@ class Model(Theory):
         Returns
         -------
         Law
-            `law(indentation)` is (force, stiffness) in N and N/mm, as a press has them. A closed form says its
-            formulas; any other model a curve in ln d that was put through some hundred of its loads, from a millionth
-            of the clearance on, with a relative error of 1e-9 in the force and 1e-7 in the stiffness. 0 without
-            contact, NaN where a press has no answer.
+            `law(indentation)` is (force, stiffness) in N and N/mm, as a press has them; 0 below an indentation of 0,
+            NaN where a press has no answer. A closed form says its formulas. Any other model says a curve in ln d that
+            was put through some hundred of its presses, which is what binding costs: with a relative error of 1e-9 in
+            the force and 1e-7 in the stiffness from a millionth of the clearance on, a power of d below, and NaN
+            beyond the socket's radius.
 
         Raises
         ------
@@ -215,10 +201,12 @@ class Model(Theory):
 
     def _law(self, joint: Joint) -> Law:
         """The law of a joint of floats inside the domain."""
-        widest = (self.press(joint, half_angle=angle) for angle in _WIDE)
-        deepest = next((one.indentation for one in widest if one.status == Status.OK), float(joint.socket_radius))
-        shallowest = _SHALLOW * joint.clearance
-        return curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, deepest, _SMOOTH)
+        return self.curve(joint)
+
+    def curve(self, joint: Joint) -> CurveLaw:
+        """The law of a joint as a curve through its presses, up to an indentation of the socket's radius."""
+        shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
+        return curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, joint.socket_radius)
 
     def in_cup(self, cup: Cup) -> Model:
         """This model in a cup; one that takes the socket for a whole sphere is trusted away from the rim alone."""
@@ -254,8 +242,46 @@ class Model(Theory):
         return -displacement * (force / length)[..., None]
 
 
+def _passed_on(name: str) -> Any:
+    """What the wrapped model says of itself."""
+    return property(attrgetter(f"model.{name}"))
+
+
 @dataclass(frozen=True, kw_only=True)
-class Covered(Model):
+class Wrapped(Model):
+    """A model around another: whatever it does not say itself is what that one says.
+
+    Parameters
+    ----------
+    model : Model
+    """
+
+    model: Model
+
+    name = _passed_on("name")
+    title = _passed_on("title")
+    sources = _passed_on("sources")
+    domain = _passed_on("domain")
+    validity = _passed_on("validity")
+    promise = _passed_on("promise")
+    reach = _passed_on("reach")
+    parameters = _passed_on("parameters")
+    planar = _passed_on("planar")
+    differentiable = _passed_on("differentiable")
+    smooth_step = _passed_on("smooth_step")
+    seconds_a_press = _passed_on("seconds_a_press")
+    contact_type = _passed_on("contact_type")
+    of_numbers = _passed_on("of_numbers")
+
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        return self.model._solve(joint, kind, load)
+
+    def _law(self, joint: Joint) -> Law:
+        return self.model._law(joint)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Covered(Wrapped):
     """A model in a cup that it knows nothing of: its own answers, with a validity that ends before the rim.
 
     Parameters
@@ -265,24 +291,7 @@ class Covered(Model):
         Pressed by a force that points upwards in its frame.
     """
 
-    model: Model
     cup: Cup
-
-    @property
-    def name(self) -> str:
-        return self.model.name
-
-    @property
-    def title(self) -> str:
-        return self.model.title
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return self.model.sources
-
-    @property
-    def domain(self) -> tuple[Range, ...]:
-        return self.model.domain
 
     @property
     def validity(self) -> tuple[Range, ...]:
@@ -290,47 +299,8 @@ class Covered(Model):
         slides = Nowhere(why="the liner slides on its backing, which this model knows as bonded: ask fem")
         return (*self.model.validity, rim, *((slides,) if self.cup.interface is Interface.SLIDING else ()))
 
-    @property
-    def promise(self) -> Promise | None:
-        return self.model.promise
-
-    @property
-    def parameters(self) -> tuple[Array, ...]:
-        return self.model.parameters
-
-    @property
-    def reach(self) -> str:  # type: ignore[override]
-        return self.model.reach
-
-    @property
-    def differentiable(self) -> bool:  # type: ignore[override]
-        return self.model.differentiable
-
-    @property
-    def smooth_step(self) -> float:  # type: ignore[override]
-        return self.model.smooth_step
-
-    @property
-    def seconds_a_press(self) -> float:  # type: ignore[override]
-        return self.model.seconds_a_press
-
-    @property
-    def planar(self) -> bool:  # type: ignore[override]
-        return self.model.planar
-
-    @property
-    def of_numbers(self) -> bool:  # type: ignore[override]
-        return self.model.of_numbers
-
-    @property
-    def contact_type(self) -> type[Contact]:  # type: ignore[override]
-        return self.model.contact_type
-
     def in_cup(self, cup: Cup) -> Model:
         return self.model.in_cup(cup)
-
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        return self.model._solve(joint, kind, load)
 
 
 _RIM = "the model takes the socket for a whole sphere; within a liner's thickness of it the rim gives way: ask fem"
@@ -344,81 +314,3 @@ def _from_rim(cup: Cup, contact: Contact) -> Array:
     joint = contact.joint
     L, R2 = joint.liner_thickness, joint.socket_radius
     return cup.edge_distance(R2, contact.half_angle) / where(L < R2, L, R2)
-
-
-_WIDE = (radians(89.9), radians(85.0))
-"""Half angles where models end, if their answers do not become infinite before."""
-
-_SHALLOW = 1e-6
-"""Of the clearance: where the curve of a law begins."""
-
-_SMOOTH = 1e-11
-"""Of ln F: what the last terms of a law's curve may amount to."""
-
-
-def checked_load(**loads: Array | None) -> tuple[str, Array]:
-    """The one load that was given, checked, with its name."""
-    kind, given = one_load(**loads)
-    return kind, LOADS[kind].checked(given)
-
-
-def _spread(load: Array, strengths: tuple[Array, ...]) -> Array:
-    """The load in the shape that it and the strengths broadcast to, so that contacts can be told how near they are."""
-    return arrays.broadcast(*arrays.common(load, *strengths))
-
-
-def prepared(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
-    """Whether only plain numbers came in, and joint and load as arrays of one library and dtype.
-
-    A model's own `parameters` count for the library; they stay where they are.
-    """
-    numbers = (*joint.numbers(), load)
-    plain = all(arrays.is_plain(number) for number in (*numbers, *parameters))
-    joint_numbers = arrays.common(*numbers, *parameters)[: len(numbers)]
-    return plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
-
-
-_GRAVER = (
-    Status.BEYOND_EQUATOR,
-    Status.AT_RIM,
-    Status.NOT_ROUND,
-    Status.NOT_CONVERGED,
-    Status.NOT_REACHED,
-    Status.OUTSIDE_DOMAIN,
-)
-"""Where a point has several failures it is told the last of these."""
-
-
-def _finished(
-    model: Model, joint: Joint, kind: str, load: Array, points: Array, answer: Answer, plain: bool
-) -> Contact:
-    """The contact with its status: NaN where there is no answer."""
-    xp = arrays.namespace(load)
-    shape = (load, answer.force, answer.indentation, *joint.numbers())
-    F = arrays.broadcast(load if kind == "force" else answer.force, *shape)
-    d = arrays.broadcast(load if kind == "indentation" else answer.indentation, *shape)
-    found = arrays.isfinite(answer.force) & arrays.isfinite(answer.indentation)
-    failures = {**answer.failures, Status.NOT_REACHED: ~found, Status.OUTSIDE_DOMAIN: ~points}
-    status = xp.zeros_like(xp.astype(F > 0, xp.int8))
-    for code in _GRAVER:
-        if code in failures:
-            status = where(failures[code], xp.asarray(int(code), dtype=xp.int8), status)
-    answered = ~missing(status)
-    F, d = where(answered | (kind == "force"), F, xp.nan), where(answered | (kind == "indentation"), d, xp.nan)
-    if plain:
-        F, d, status = float(F), float(d), Status(int(status))
-    return model.contact_type(model=model, laws=answer.laws, joint=joint, force=F, indentation=d, status=status)
-
-
-def _finished_number(model: Model, joint: Joint, kind: str, load: float, answer: Answer) -> Contact:
-    """`_finished` of Python numbers, inside the domain."""
-    F, d, status = answer.force, answer.indentation, Status.OK
-    failures = {**answer.failures, Status.NOT_REACHED: not (arrays.isfinite(F) and arrays.isfinite(d))}
-    for code in _GRAVER:
-        if failures.get(code):
-            status = code
-    if status.failed:
-        F, d = numpy.nan, numpy.nan
-    if kind != "half_angle":
-        F, d = (load, d) if kind == "force" else (F, load)
-    return model.contact_type(model=model, laws=answer.laws, joint=joint, force=F, indentation=d, status=status)

@@ -4,7 +4,7 @@ Needs numba (`pip install 'ballsocket[fast]'`). Nothing is written twice: numba 
 `ballsocket.arrays` mean for one number (`teaching`), and then compiles the formulas of the models as they stand.
 """
 
-from .law import CompiledLaw
+from .law import CompiledLaw, compiled_law
 from .model import Compiled
 
-__all__ = ["Compiled", "CompiledLaw"]
+__all__ = ["Compiled", "CompiledLaw", "compiled_law"]

@@ -21,6 +21,7 @@ from numba.extending import (
 
 from .. import law as formulas
 from ..law import CurveLaw, Law
+from ..models.closed_form import ClosedLaw
 from ..models.foundation import Springs
 from ..models.kinematics import Kinematics
 from . import foundation as _foundation  # noqa: F401 - teaches the formulas of the springs
@@ -64,23 +65,36 @@ class CompiledLaw:
 
 
 def compiled_law(law: Law) -> CompiledLaw:
-    """The same law, compiled."""
+    """The law of any model, compiled: of a radial foundation its formulas, of all others a curve.
+
+    Parameters
+    ----------
+    law : Law
+        As `model.law(joint)` returns it.
+
+    Raises
+    ------
+    TypeError
+        Another kind of function; a closed form whose loads are not all above 0, which a curve needs: `AdhesiveSocket`.
+    """
     if isinstance(law, Springs):
         return CompiledLaw(function=_springs(law.kinematics), numbers=(law.socket_radius, law.clearance, law.modulus))
-    assert isinstance(law, CurveLaw)
-    ends = law.shallowest, law.deepest, law.first, law.density
-    return CompiledLaw(function=_curve(), numbers=(*ends, law.pieces))
+    curve = law.model.curve(law.joint) if isinstance(law, ClosedLaw) else law
+    if not isinstance(curve, CurveLaw):
+        raise TypeError(f"law must be one that model.law(joint) returned, got {law!r}")
+    ends = curve.shallowest, curve.deepest, curve.first, curve.density
+    return CompiledLaw(function=_curve(), numbers=(*ends, curve.pieces))
 
 
 @cache
 def _springs(motion: Kinematics) -> Any:
-    force, stiffness = taught(motion.force), taught(motion.stiffness)
+    force, stiffness, answered = taught(motion.force), taught(motion.stiffness), taught(formulas.answered)
 
     @njit(error_model="numpy")
     def force_and_tangent(indentation, R2, c, K):  # type: ignore[no-untyped-def]
         if indentation < 0:
             return 0.0, 0.0
-        return force(R2, c, K, indentation), stiffness(R2, c, K, indentation)
+        return answered(force(R2, c, K, indentation), stiffness(R2, c, K, indentation))
 
     return force_and_tangent
 

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy
 
 from .. import arrays
+from ..answer import Answer, checked_load, prepared
 from ..arrays import Array
 from ..contact import Contact
 from ..elastic.tabulated.model import Tabulated
 from ..joint import Joint
-from ..model import Answer, Model, checked_load, prepared
+from ..model import Wrapped
 from ..models.closed_form import Bound
 from ..models.foundation import RadialFoundation
 from ..models.refined import Refined
-from ..sources import Source
-from ..validity import Promise, Range, Status, inside
+from ..validity import Status, inside
 from . import foundation, refined, tabulated
 from .law import CompiledLaw, compiled_law
 
 
 @dataclass(frozen=True, kw_only=True)
-class Compiled(Model):
+class Compiled(Wrapped):
     """A model whose presses of NumPy float64 arrays are compiled: by force, and by indentation where that is solved.
 
     Everything else (half angles, other array libraries, dtypes, plain numbers) is passed on to the model. `law(joint)`
@@ -45,40 +45,11 @@ class Compiled(Model):
     """
 
     model: RadialFoundation | Refined | Tabulated
-    of_numbers: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if not isinstance(self.model, RadialFoundation | Refined | Tabulated):
             kinds = "a RadialFoundation, such as HessForsbach(), Refined() or Tabulated()"
             raise TypeError(f"model must be {kinds}, got {self.model!r}")
-
-    @property
-    def parameters(self) -> tuple[Array, ...]:
-        return self.model.parameters
-
-    @property
-    def name(self) -> str:
-        return self.model.name
-
-    @property
-    def title(self) -> str:
-        return self.model.title
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return self.model.sources
-
-    @property
-    def domain(self) -> tuple[Range, ...]:
-        return self.model.domain
-
-    @property
-    def validity(self) -> tuple[Range, ...]:
-        return self.model.validity
-
-    @property
-    def promise(self) -> Promise | None:
-        return self.model.promise
 
     def press(
         self,
@@ -121,11 +92,10 @@ class Compiled(Model):
                 return refined.solved(joint, kind, load)
             if isinstance(self.model, Tabulated):
                 return tabulated.solved(self.model, joint, kind, load)
-        return self.model._solve(joint, kind, load)
+        return super()._solve(joint, kind, load)
 
-    def law(self, joint: Joint) -> CompiledLaw:
-        """Force and tangent of a joint, bound to it once; see `Model.law`. Compiled programs can call it as well."""
-        return compiled_law(self.model.law(joint))
+    def _law(self, joint: Joint) -> CompiledLaw:
+        return compiled_law(super()._law(joint))
 
 
 def _is_float64(number: Any) -> bool:

@@ -8,10 +8,10 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
+from ..answer import checked_load
 from ..checks import check_text, known_name, nearest, shown
 from ..cup import Cup, Interface, Side
 from ..joint import Joint, Layer, Material, Support
-from ..model import checked_load
 from ..presets import materials
 from ..quantities import CUP, JOINT, LAYER, LOADS, MATERIAL, STRENGTH
 from .toml import parse_toml, read_toml

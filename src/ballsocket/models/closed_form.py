@@ -10,10 +10,11 @@ from typing import Any, ClassVar
 import numpy
 
 from .. import arrays
+from ..answer import Answer
 from ..arrays import Array, where
 from ..joint import Joint
-from ..law import Law
-from ..model import Answer, Model
+from ..law import Law, answered
+from ..model import Model
 from ..validity import Status
 
 
@@ -139,10 +140,11 @@ class ClosedLaw:
         if indentation < 0:
             return 0.0, 0.0
         try:
-            return self.model.force(self.joint, indentation), self.model.stiffness(self.joint, indentation)
+            F, stiffness = self.model.force(self.joint, indentation), self.model.stiffness(self.joint, indentation)
         except ArithmeticError:
             contact = self.model.press(self.joint, indentation=indentation)
-            return contact.force, contact.stiffness
+            F, stiffness = contact.force, contact.stiffness
+        return answered(F, stiffness)
 
 
 def _bound(law: str) -> Any:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..arrays import Array, cos, where
 from ..joint import Joint
+from ..law import Law, answered
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Promise, Range
 from .closed_form import ClosedForm
@@ -98,13 +99,13 @@ class RadialFoundation(ClosedForm):
         inside = (u > 0) & (cos(angle) > 0)
         return where(inside, self.modulus.of(joint) * u, 0.0)
 
-    def _law(self, joint: Joint) -> Springs:
-        return Springs(
-            kinematics=self.kinematics,
-            socket_radius=joint.socket_radius,
-            clearance=joint.clearance,
-            modulus=float(self.modulus.of(joint)),
-        )
+    def _law(self, joint: Joint) -> Law:
+        try:
+            modulus = float(self.modulus.of(joint))
+        except ArithmeticError:
+            return super()._law(joint)
+        R2, c = joint.socket_radius, joint.clearance
+        return Springs(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=modulus)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,8 +120,8 @@ class Springs:
     def __call__(self, indentation: float) -> tuple[float, float]:
         if indentation < 0:
             return 0.0, 0.0
-        R2, c, K = self.socket_radius, self.clearance, self.modulus
-        return self.kinematics.force(R2, c, K, indentation), self.kinematics.stiffness(R2, c, K, indentation)
+        R2, c, K, motion = self.socket_radius, self.clearance, self.modulus, self.kinematics
+        return answered(motion.force(R2, c, K, indentation), motion.stiffness(R2, c, K, indentation))
 
 
 _NAMES = {

@@ -10,10 +10,11 @@ from typing import ClassVar
 import numpy
 
 from .. import arrays
+from ..answer import prepared
 from ..arrays import Array, asinh, atan, broadcast, clip, divisor, increasing_root, log, sqrt, tan, where
 from ..checks import numeric, one_load, require
 from ..joint import Joint
-from ..model import Theory, prepared
+from ..model import Theory
 from ..outcome import Outcome
 from ..sources import Source
 from ..validity import Range, Status

@@ -10,9 +10,10 @@ from typing import ClassVar
 import numpy
 
 from .. import arrays
+from ..answer import Answer
 from ..arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, integral, log, sin, sqrt, where
 from ..joint import Joint
-from ..model import Answer, Model
+from ..model import Model
 from ..sources import Source
 from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
 
