@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import nan
 
 from ..arrays import Array, cos, where
 from ..joint import Joint
@@ -100,12 +101,8 @@ class RadialFoundation(ClosedForm):
         return where(inside, self.modulus.of(joint) * u, 0.0)
 
     def _law(self, joint: Joint) -> Law:
-        try:
-            modulus = float(self.modulus.of(joint))
-        except ArithmeticError:
-            return super()._law(joint)
-        R2, c = joint.socket_radius, joint.clearance
-        return Springs(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=modulus)
+        R2, c, K = joint.socket_radius, joint.clearance, float(self.modulus.of(joint))
+        return Springs(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=K)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +118,10 @@ class Springs:
         if indentation < 0:
             return 0.0, 0.0
         R2, c, K, motion = self.socket_radius, self.clearance, self.modulus, self.kinematics
-        return answered(motion.force(R2, c, K, indentation), motion.stiffness(R2, c, K, indentation))
+        try:
+            return answered(motion.force(R2, c, K, indentation), motion.stiffness(R2, c, K, indentation))
+        except ArithmeticError:  # where Python's numbers raise, others become infinite
+            return nan, nan
 
 
 _NAMES = {

@@ -1,0 +1,97 @@
+"""A law bound once to a joint says what a press says, at every indentation."""
+
+from math import inf, isnan, nan, radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from ..extent import either
+from ..joints import HIP
+
+WIDE = bs.Joint(ball_radius=16.0, clearance=0.5, liner_thickness=3.0, liner=bs.Material(young=700.0, poisson=0.3))
+EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+EACH_JOINT = pytest.mark.parametrize("joint", [HIP, WIDE], ids=["hip", "wide"])
+POINTS = either(quick=60, long=600)
+
+
+def end(model, joint):
+    """The deepest indentation that the law speaks of, or for formulas without an end the socket's radius."""
+    return min(getattr(model.law(joint), "deepest", inf), joint.socket_radius)
+
+
+@EVERY
+@EACH_JOINT
+def test_a_law_says_force_and_stiffness_of_a_press_from_first_touch_to_the_end(model, joint):
+    law = model.law(joint)
+    d = np.append(0.0, np.geomspace(1e-6 * joint.clearance, end(model, joint), POINTS))
+    said = np.array([law(float(depth)) for depth in d])
+    contact = model.press(joint, indentation=d)
+    np.testing.assert_allclose(said[:, 0], contact.force, rtol=1e-9)
+    np.testing.assert_allclose(said[1:, 1], contact.stiffness[1:], rtol=1e-7)
+    assert all(type(number) is float for number in law(0.05))
+
+
+@EVERY
+def test_it_ends_where_presses_end(model):
+    law, deepest = model.law(HIP), end(model, HIP)
+    beyond = model.press(HIP, indentation=deepest * (1 + 1e-5))
+    if model.press(HIP, indentation=deepest).status.failed or beyond.status.failed:
+        assert np.isnan(law(deepest * (1 + 1e-5))).all()
+    else:  # a curve goes no further than the socket's radius, formulas say what a press says
+        assert deepest == HIP.socket_radius
+    for depth in (nan, inf):
+        assert np.isnan(law(depth)).all()
+
+
+@EVERY
+def test_its_tangent_is_the_slope_of_its_force(model):
+    law, deepest = model.law(HIP), end(model, HIP)
+    for d in np.geomspace(1e-4 * HIP.clearance, 0.99 * deepest, 25):
+        force, tangent = law(d)
+        if not isnan(force):
+            slope = (law(d * (1 + 1e-5))[0] - law(d * (1 - 1e-5))[0]) / (2e-5 * d)
+            assert slope == pytest.approx(tangent, rel=2e-7, abs=1e-6)
+
+
+@EVERY
+def test_there_is_no_force_without_contact(model):
+    law = model.law(HIP)
+    assert law(-1e-3) == law(-inf) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("name", ["exact", "tabulated", "refined", "plane-layer"])
+def test_below_a_millionth_of_the_clearance_a_curve_goes_on_as_a_power(name):
+    model = bs.catalogue[name]
+    law, d = model.law(HIP), 1e-6 * HIP.clearance
+    assert law(d / 10)[0] == pytest.approx(law(d)[0] * 0.1 ** (d * law(d)[1] / law(d)[0]), rel=1e-9)
+    assert law(d / 10)[0] == pytest.approx(model.press(HIP, indentation=d / 10).force, rel=5e-3)
+
+
+def test_a_law_of_arrays_is_refused():
+    joint = bs.Joint(ball_radius=16.0, clearance=np.array([0.1, 0.2]), liner_thickness=6.0, liner=bs.UHMWPE)
+    for model, pressed in ((bs.HessForsbach(), joint), (bs.AdhesiveSocket(work_of_adhesion=np.array([0.0])), HIP)):
+        with pytest.raises(TypeError, match="bound to one joint"):
+            model.law(pressed)
+
+
+def test_so_are_a_joint_without_an_answer_and_a_noisy_model():
+    filled = bs.Joint(ball_radius=16.0, clearance=0.0, liner_thickness=6.0, liner=bs.UHMWPE)
+    with pytest.raises(bs.OutsideDomainError, match="c = 0"):
+        bs.Refined().law(filled)
+    with pytest.raises(TypeError, match="ask exact"):
+        bs.FiniteElement().law(HIP)
+
+
+def test_numbers_that_python_refuses_are_no_answer():
+    vast = bs.Joint(ball_radius=1e200, clearance=1e190, liner_thickness=1e200, liner=bs.UHMWPE)
+    for name in ("vessel", "bartel", "hertz", "adhesive"):
+        assert isnan(bs.catalogue[name].press(vast, indentation=0.1).force)
+        assert np.isnan(bs.catalogue[name].law(vast)(0.1)).all()
+
+
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Refined()], ids=lambda model: model.name)
+def test_a_cup_that_a_model_knows_nothing_of_leaves_its_law(model):
+    cup = bs.Cup(arc_of_cover=radians(120.0))
+    assert model.in_cup(cup).law(HIP)(0.05) == model.law(HIP)(0.05)
