@@ -9,7 +9,9 @@ from ..extent import some
 from ..joints import HIP, random_joint
 
 pytest.importorskip("numba")
-from ballsocket.compiled import Compiled
+import numba
+
+from ballsocket.compiled import Compiled, compiled_law
 from ballsocket.compiled.foundation import _angle_polynomial
 from ballsocket.models.kinematics import angle_of
 
@@ -75,3 +77,86 @@ def test_failures_are_the_same_failures():
 def test_angle_polynomial():
     for versine in np.linspace(0.0, 1.0, 4001):
         assert _angle_polynomial(float(versine)) == pytest.approx(angle_of(versine), rel=6e-16, abs=0)
+
+
+def liners(size: int, ball: bs.Material | None = None) -> bs.Joint:
+    """Bonded liners of hips, each its own, some of them beyond what is tabulated."""
+    rng = np.random.default_rng(5)
+    liner = bs.Material(young=rng.uniform(500.0, 1500.0, size), poisson=rng.uniform(0.25, 0.5, size))
+    return bs.Joint(
+        ball_radius=rng.uniform(11.0, 23.0, size),
+        clearance=rng.uniform(0.02, 0.4, size),
+        liner_thickness=rng.uniform(0.8, 12.0, size),
+        liner=liner,
+        ball=ball,
+    )
+
+
+@pytest.mark.parametrize("ball", [None, bs.COCR], ids=["rigid ball", "elastic ball"])
+@pytest.mark.parametrize("model", [bs.Refined(), bs.Tabulated()], ids=lambda model: model.name)
+def test_solved_models_are_the_same_digit_for_digit(model, ball):
+    fast, joint = Compiled(model=model), liners(3_000, ball)
+    force = np.random.default_rng(1).uniform(-1.0, 1.0, 3_000).clip(0.0) * 1e5  # a half of them without load
+    by_force = model.press(joint, force=force)
+    depth = np.where(np.isnan(by_force.indentation), 50.0, by_force.indentation)
+    assert set(np.unique(by_force.status)) >= {bs.Status.OK, bs.Status.NOT_REACHED}
+    for load in ({"force": force}, {"indentation": depth}):
+        one, other = fast.press(joint, **load), model.press(joint, **load)
+        for name in (*NAMES, "pole_pressure", "foundation_modulus", "pressure_integral"):
+            np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-12, err_msg=name)
+        assert one.notes == other.notes
+
+
+@pytest.mark.parametrize("model", [bs.Refined(), bs.Tabulated()], ids=lambda model: model.name)
+def test_solved_models_in_shapes(model):
+    fast, row = Compiled(model=model), np.array([500.0, 3000.0])
+    joint = bs.Joint(ball_radius=np.array([[14.0], [16.0]]), clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+    for pressed, force in ((joint, row), (HIP, row), (joint, 500.0), (HIP, row[:0]), (HIP, np.array(500.0))):
+        one, other = fast.press(pressed, force=force), model.press(pressed, force=force)
+        assert one.indentation.shape == other.indentation.shape
+        np.testing.assert_allclose(one.indentation, other.indentation, rtol=1e-13)
+    assert fast.press(HIP, force=3000.0).indentation == model.press(HIP, force=3000.0).indentation
+
+
+@numba.njit
+def asked(law, depths):  # type: ignore[no-untyped-def]
+    said = np.empty((depths.size, 2))
+    for i in range(depths.size):
+        said[i] = law(depths[i])
+    return said
+
+
+DEPTHS = np.concatenate([[-1.0, 0.0, np.nan, np.inf, 1e3], np.geomspace(1e-9, 10.0, 300)])
+
+
+@pytest.mark.parametrize("model", [*MODELS[:3], bs.Refined(), bs.Tabulated()], ids=lambda model: model.name)
+def test_a_compiled_law_is_the_law_in_python_and_in_compiled_programs(model):
+    law, plain = Compiled(model=model).law(HIP), model.law(HIP)
+    said = np.array([plain(depth) for depth in DEPTHS.tolist()])
+    np.testing.assert_allclose(asked(law, DEPTHS), said, rtol=1e-13)
+    np.testing.assert_array_equal([law(depth) for depth in DEPTHS.tolist()], asked(law, DEPTHS))
+
+
+@pytest.mark.parametrize("name", ["exact", "plane-layer", "hertz", "liu-reconstruction"])
+def test_the_law_of_any_model_compiles(name):
+    plain = bs.catalogue[name].law(HIP)
+    depths = np.geomspace(1e-6, 0.1, 100)
+    np.testing.assert_allclose(asked(compiled_law(plain), depths), [plain(d) for d in depths.tolist()], rtol=1e-7)
+
+
+def test_a_law_that_pulls_or_is_none_does_not():
+    with pytest.raises(TypeError, match="not above 0 N"):
+        compiled_law(bs.AdhesiveSocket().law(HIP))
+    with pytest.raises(TypeError, match="law must be"):
+        compiled_law(lambda depth: (depth, 1.0))
+
+
+def test_a_compiled_model_says_of_itself_what_its_model_says():
+    cup = bs.Cup(arc_of_cover=2.0)
+    for model in (bs.Bartel(), bs.Refined(), bs.Tabulated()):
+        fast = Compiled(model=model)
+        for name in ("name", "title", "sources", "domain", "validity", "promise", "reach", "seconds_a_press", "planar"):
+            assert getattr(fast, name) == getattr(model, name)
+        assert fast.in_cup(cup).press(HIP, force=3000.0).notes == model.in_cup(cup).press(HIP, force=3000.0).notes
+    with pytest.raises(TypeError, match="Refined"):
+        Compiled(model=bs.Exact())

@@ -16,7 +16,7 @@ from ..elastic.tabulated.curves import Curves
 from ..elastic.tabulated.formulas import Curve, Scale, angle_of_force, angle_of_indentation, contact
 from ..elastic.tabulated.model import Tabulated
 from ..joint import Joint
-from .teaching import compiled, flat, pick, taught
+from .teaching import compilable, compiled, flat, pick, taught
 
 
 def solved(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> Answer:
@@ -60,7 +60,7 @@ def _at(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
     return lambda angle, curve, rows: _functions(angle, curve)
 
 
-@taught
+@compilable
 def _functions(angle, curve):  # type: ignore[no-untyped-def]
     """The three functions and their slopes by ln ε, from T_k+1 = 2x T_k - T_k-1 and T_k' = k U_k-1."""
     x = chebyshev.angle_place(angle, curve.ratio)
