@@ -160,3 +160,12 @@ def test_a_compiled_model_says_of_itself_what_its_model_says():
         assert fast.in_cup(cup).press(HIP, force=3000.0).notes == model.in_cup(cup).press(HIP, force=3000.0).notes
     with pytest.raises(TypeError, match="Refined"):
         Compiled(model=bs.Exact())
+
+
+def test_strengths_of_materials_count_in_the_shape_of_a_compiled_press():
+    liner = bs.Material(young=800.0, poisson=0.45, yield_stress=np.array([[15.0], [20.0]]))
+    joint = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=liner)
+    force = np.array([500.0, 1000.0, 2000.0])
+    one, other = (model.press(joint, force=force) for model in (Compiled(model=bs.HessForsbach()), bs.HessForsbach()))
+    assert one.utilisation.shape == one.force.shape == (2, 3)
+    np.testing.assert_allclose(one.utilisation, other.utilisation, rtol=1e-12)

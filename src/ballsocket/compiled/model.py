@@ -8,7 +8,7 @@ from typing import Any
 import numpy
 
 from .. import arrays
-from ..answer import Answer, checked_load, prepared
+from ..answer import Answer, checked_load, prepared, spread
 from ..arrays import Array
 from ..contact import Contact
 from ..elastic.tabulated.model import Tabulated
@@ -60,6 +60,7 @@ class Compiled(Wrapped):
         half_angle: Array | None = None,
     ) -> Contact:
         kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
+        given = spread(given, joint.strengths())
         if kind == "force" and isinstance(self.model, RadialFoundation) and self._in_one_pass(joint, given):
             return self._passed(self.model, joint, given)
         return super().press(joint, force=force, indentation=indentation, half_angle=half_angle)
