@@ -1,8 +1,10 @@
 """One option: `pytest --long` runs every case, and the proofs that take half a minute each."""
 
 import os
+from tempfile import mkdtemp
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the cores are busy with other tests
+os.environ.setdefault("BALLSOCKET_CACHE", mkdtemp(prefix="ballsocket-cache-"))  # not that of who runs them
 
 import pytest
 from hypothesis import settings

@@ -57,6 +57,7 @@ from .presets import (
     materials,
 )
 from .sources import cite
+from .sphere import ClosedShell, RealCup, Sphere, Springs, Worn
 from .studies.run import study
 from .validity import OutsideDomainError, Range, Status
 from .version import __version__ as __version__
@@ -72,6 +73,7 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "Material",
     "Side",
     "Support",
+    "Worn",
     "read_joint",
     # presets
     "joints",
@@ -95,6 +97,10 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "CosineLimit",
     "Exact",
     "FiniteElement",
+    "Sphere",
+    "RealCup",
+    "ClosedShell",
+    "Springs",
     "Hertz",
     "HessForsbach",
     "LiuReconstruction",

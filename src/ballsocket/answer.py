@@ -67,6 +67,7 @@ _GRAVER = (
     Status.NOT_ROUND,
     Status.NOT_CONVERGED,
     Status.NOT_REACHED,
+    Status.DISLOCATED,
     Status.OUTSIDE_DOMAIN,
 )
 """Where a point has several failures it is told the last of these."""

@@ -14,12 +14,16 @@ from .models.liu import LiuReconstruction
 from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
+from .sphere.model import Sphere
 
 reference: Model = Exact()
 """What every other model is measured by."""
 
 judge: Model = FiniteElement()
 """The finite elements: asked by name, not along with the others."""
+
+off_axis: Sphere = Sphere()
+"""Full elasticity for loads in any direction: asked by name, or where a load is tilted."""
 
 _MODELS: tuple[Model, ...] = (
     reference,
@@ -41,5 +45,5 @@ _MODELS: tuple[Model, ...] = (
 catalogue: dict[str, Model] = Named("model", {model.name: model for model in _MODELS})
 """Name -> model: what `--model` and files call them, all of them answering in milliseconds or less."""
 
-theories: dict[str, Theory] = {theory.name: theory for theory in (*_MODELS, judge, PinInHole())}
+theories: dict[str, Theory] = {theory.name: theory for theory in (*_MODELS, judge, off_axis, PinInHole())}
 """Name -> all that is listed and cited: the catalogue, the judge, and the plane relative, which knows no force."""

@@ -5,7 +5,7 @@ Directions are those of the patient's body: x to the right, y to the front, z up
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from math import cos, pi, sin
 
@@ -114,6 +114,21 @@ class Cup:
         """The unit vector along the cup's axis, to the pole of its bore."""
         x, y, z = self.opening
         return -x, -y, -z
+
+    @property
+    def frame(self) -> tuple[Direction, Direction, Direction]:
+        """Unit vectors of the cup's own frame in the body's: x upwards along the rim's plane, y across, z to the dome.
+
+        Turned so that an inclined cup feels a vertical load between x and z: it is tilted towards x.
+        """
+        level = cos(self.inclination)
+        x, z = (level if self.side is Side.RIGHT else -level, 0.0, sin(self.inclination)), self.dome
+        y = (z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0])
+        return x, y, z
+
+    def tilted(self, angle: float) -> Cup:
+        """The same cup turned so that a vertical load comes at this angle (rad, at most π/2) from its axis."""
+        return replace(self, inclination=angle, anteversion=0.0)
 
     def tilt(self, direction: Array) -> Array:
         """The angle γ in rad between a direction and the dome's axis.

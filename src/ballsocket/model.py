@@ -296,14 +296,14 @@ class Covered(Wrapped):
     @property
     def validity(self) -> tuple[Range, ...]:
         rim = Range(quantity=partial(_from_rim, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM)
-        slides = Nowhere(why="the liner slides on its backing, which this model knows as bonded: ask fem")
+        slides = Nowhere(why="the liner slides on its backing, which this model knows as bonded: ask fem or sphere")
         return (*self.model.validity, rim, *((slides,) if self.cup.interface is Interface.SLIDING else ()))
 
     def in_cup(self, cup: Cup) -> Model:
         return self.model.in_cup(cup)
 
 
-_RIM = "the model takes the socket for a whole sphere; within a liner's thickness of it the rim gives way: ask fem"
+_RIM = "the model takes the socket for a whole sphere; near the rim, which gives way, ask fem or sphere"
 
 
 def _from_rim(cup: Cup, contact: Contact) -> Array:

@@ -53,12 +53,14 @@ class Piece:
         return whole
 
 
-Solve = Callable[[Joint, numpy.ndarray], Piece]
-"""From a joint of plain numbers and its loads to their contacts."""
+Solve = Callable[..., Piece]
+"""From a joint of plain numbers and its loads, and what else varies from load to load, to their contacts."""
 
 
-def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve) -> PiecedSolution:
+def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve, *others: Array) -> PiecedSolution:
     """The contacts of all joints that lie in the model's domain; every one is solved with all of its loads at once.
+
+    `others` are arrays that broadcast against joint and load, handed to `solve` after the loads.
 
     Raises
     ------
@@ -67,14 +69,14 @@ def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve) -> Pieced
     """
     joint = joint.without_strengths()
     numbers = [_values(model, number) for number in joint.numbers()]
-    loads = _values(model, load)
-    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, loads)))
-    loads = numpy.broadcast_to(loads, shape).ravel().astype(float)
+    varying = [_values(model, each) for each in (load, *others)]
+    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, *varying)))
+    loads = [numpy.broadcast_to(each, shape).ravel().astype(float) for each in varying]
     pieces = []
     for column, place in _columns(numbers, shape):
         one = joint.with_numbers(column)
         if all(limit.strictly_holds(SimpleNamespace(joint=one)) for limit in model.domain):
-            pieces.append((place, solve(one, loads[place])))
+            pieces.append((place, solve(one, *(each[place] for each in loads))))
     return PiecedSolution(like=load, shape=shape, pieces=tuple(pieces))
 
 
@@ -122,9 +124,9 @@ class PiecedSolution:
     shape: tuple[int, ...]
     pieces: tuple[tuple[numpy.ndarray, Piece], ...]
 
-    def spread(self, quantity: Callable[[Piece], numpy.ndarray]) -> Array:
-        """A quantity of every piece at its place; NaN where there is none."""
-        return self._own(self._flat(lambda place, piece: quantity(piece)))
+    def spread(self, quantity: Callable[[Piece], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
+        """A quantity of every piece at its place, of the shape (*rows, *shape); NaN where there is none."""
+        return self._own(self._flat(lambda place, piece: quantity(piece), prod(rows)), rows)
 
     def located(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray]) -> Array:
         """The same of a quantity that depends on the places of the piece's contacts too."""

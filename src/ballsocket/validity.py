@@ -27,6 +27,7 @@ class Status(IntEnum):
     AT_RIM = 5
     NOT_ROUND = 6
     NO_JOINT = 7
+    DISLOCATED = 8
 
     @property
     def sentence(self) -> str:
@@ -39,7 +40,14 @@ class Status(IntEnum):
 
 
 _FAILED = frozenset(
-    (Status.OUTSIDE_DOMAIN, Status.NOT_REACHED, Status.NOT_CONVERGED, Status.NOT_ROUND, Status.NO_JOINT)
+    (
+        Status.OUTSIDE_DOMAIN,
+        Status.NOT_REACHED,
+        Status.NOT_CONVERGED,
+        Status.NOT_ROUND,
+        Status.NO_JOINT,
+        Status.DISLOCATED,
+    )
 )
 
 
@@ -60,6 +68,7 @@ _SENTENCES = {
     Status.AT_RIM: "the contact fills the socket and reaches its rim",
     Status.NOT_ROUND: "ball and socket do not touch in one round patch around the pole, as the model takes it",
     Status.NO_JOINT: "these numbers make no joint: they leave no liner, or less than no clearance",
+    Status.DISLOCATED: "dislocated: the load pushes the ball out of its bore",
 }
 
 

@@ -11,9 +11,10 @@ import typer
 
 import ballsocket as bs
 
-from ..catalogue import judge, reference
+from ..catalogue import judge, off_axis, reference
 from ..checks import known_name
 from ..compare import Comparison, answered, force_curves
+from ..cup import UP
 from ..io.joint_file import JointFile
 from ..model import Model
 from ..output import press_plot, terminal
@@ -21,6 +22,7 @@ from ..output.save import check_format, save
 from ..validity import Status
 from . import elements
 from .groups import grouped
+from .off_axis import AimWords, aimed, along
 from .root import FAILURE, app
 from .words import AsJson, JointWords, LoadWords, echo_json
 
@@ -37,18 +39,19 @@ class ModelWords:
     @property
     def names(self) -> list[str]:
         """Those that are named, as the catalogue has them."""
-        return [known_name("model", name, (*bs.catalogue, judge.name)) for name in self.model or ()]
+        return [known_name("model", name, (*bs.catalogue, judge.name, off_axis.name)) for name in self.model or ()]
 
     @property
     def judged(self) -> bool:
         """Whether the finite elements are among them."""
         return judge.name in self.names
 
-    def chosen(self) -> dict[str, Model]:
-        """The models by their names, the paper's where none is asked for."""
+    def chosen(self, default: str) -> dict[str, Model]:
+        """The models by their names, the default where none is asked for."""
         if self.every:
             return dict(bs.catalogue)
-        return {name: bs.catalogue.get(name, judge) for name in self.names or [DEFAULT_MODEL]}
+        asked = {judge.name: judge, off_axis.name: off_axis}
+        return {name: asked.get(name) or bs.catalogue[name] for name in self.names or [default]}
 
 
 @app.command()
@@ -61,25 +64,33 @@ def press(
     models: ModelWords,
     as_json: AsJson = False,
     figure: Annotated[Path | None, typer.Option(help="Write a figure: .png, .svg or .pdf")] = None,
-    cup: Annotated[elements.CupWords, "fem"],
+    aim: AimWords,
+    cup: elements.CupWords,
     mesh: Annotated[elements.MeshWords, "fem"],
     meshes: Annotated[int | None, typer.Option(min=1, max=2, help="fem: 1 gives no error bars")] = None,
     files: Annotated[elements.Files, "fem"],
 ) -> None:
     """Press a ball into its socket and see what models make of it, beside the exact answer.
 
-    The finite elements (--model fem) also answer for rims, chamfers and liners that slide.
+    The finite elements (--model fem) also answer for rims, chamfers and liners that slide; sphere for loads that are
+    tilted against the cup's axis (--tilt, --direction).
 
     Exit status: 0 done, 2 misuse, 3 an iteration that did not converge, or no answer from any model.
     """
     if not models.judged:
-        elements.refuse({**vars(cup), **vars(mesh), "meshes": meshes, **vars(files)})
+        elements.refuse({**vars(mesh), "meshes": meshes, **vars(files)})
     files.check()
     if figure is not None:
         check_format(figure)
     file = words.or_named(joint)
     at = load.or_of(file)
-    chosen, remarks, around = models.chosen(), [], cup.on(file.cup)
+    toward, remarks = aim.or_of(file), []
+    around = aimed(cup.on(file.cup), toward)
+    chosen = models.chosen(off_axis.name if toward or around.tilt(UP) > 0 else DEFAULT_MODEL)
+    if models.judged and toward:
+        raise ValueError("fem presses along the cup's own axis; for a tilt or a direction ask --model sphere")
+    if off_axis.name in chosen:
+        chosen[off_axis.name] = along(aim.model(), around, toward)
     if models.judged:
         fem = mesh.model(around, meshes or 2)
         chosen[judge.name] = fem

@@ -12,7 +12,6 @@ from math import inf
 import numpy
 
 from ..arrays import Numbers
-from ..cup import Interface
 from ..joint import Support
 from .condense import Body
 from .elasticity import Elastic
@@ -23,19 +22,28 @@ from .shapes import Resolution, SocketShape, ball_corners
 def socket_body(shape: SocketShape, resolution: Resolution) -> Body:
     """The socket, pressed from the inside."""
     angle, radii = shape.corners(resolution)
-    slides = shape.interface is Interface.SLIDING
-    mesh = block(angle, radii, resolution.order, (1,) if slides and len(radii) > 1 else ())
+    mesh = socket_block(shape, angle, radii, resolution.order)
     outside = mesh.number[:, -1]
     held = _axis_held(mesh)
     if shape.support is Support.FIXED or shape.layers[-1][0] == inf:
         held[2 * outside + 1] = True
-        held[2 * outside] |= not (slides and len(radii) == 1)
+        held[2 * outside] |= not (shape.slides and len(radii) == 1)
     else:
         outermost = mesh.strips[mesh.layer == len(radii) - 1][0]  # a liner that slides in it keeps its own rim free
         held[2 * mesh.number[-1, outermost:]] = True
-    young, poisson = (numpy.array([layer[i] for layer in shape.layers]) for i in (1, 2))
     bore = mesh.number[: int(numpy.searchsorted(mesh.angle, shape.reach + 1e-9)), 0]
-    return Body(elastic=Elastic(block=mesh, young=young, poisson=poisson), held=held, contact=bore)
+    return Body(elastic=socket_elastic(shape, mesh), held=held, contact=bore)
+
+
+def socket_block(shape: SocketShape, angle: Numbers, radii: list[Numbers], order: int) -> Block:
+    """The socket's mesh from the corners of its elements; a liner that slides is parted from what is behind it."""
+    return block(angle, radii, order, (1,) if shape.slides and len(radii) > 1 else ())
+
+
+def socket_elastic(shape: SocketShape, mesh: Block) -> Elastic:
+    """The socket's mesh with the materials of its layers."""
+    young, poisson = (numpy.array([layer[i] for layer in shape.layers]) for i in (1, 2))
+    return Elastic(block=mesh, young=young, poisson=poisson)
 
 
 def ball_body(poisson: float, resolution: Resolution) -> Body:

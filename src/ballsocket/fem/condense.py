@@ -48,7 +48,7 @@ class Body:
         block = self.elastic.block
         grid = numpy.arange(len(block.angle) * (block.place[-1] + 1)).reshape(len(block.angle), -1)
         rank = numpy.empty(grid.size, dtype=int)
-        rank[_dissected(grid, (0, 0), block.order)] = numpy.arange(grid.size)
+        rank[dissected(grid, block.order)] = numpy.arange(grid.size)
         of_node = rank[grid[:, block.place]].ravel()
         free = numpy.unique(self.elastic.unknowns)
         free = free[~self.held[free] & ~numpy.isin(free, self.normals)]
@@ -76,8 +76,11 @@ class Body:
         return whole.reshape(-1, 2)
 
 
-def _dissected(part: Numbers, start: tuple[int, int], order: int) -> Numbers:
-    """The places of a part in nested dissection order; only lines between elements separate what lies beside them."""
+def dissected(part: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Numbers:
+    """The places of a grid in nested dissection order; only lines between elements separate what lies beside them.
+
+    `start` is where the part begins in the whole grid.
+    """
     if part.size <= _LEAF or min(part.shape) <= 2:
         return part.ravel()
     along = 0 if part.shape[0] >= part.shape[1] else 1
@@ -86,4 +89,4 @@ def _dissected(part: Numbers, start: tuple[int, int], order: int) -> Numbers:
     middle += (start[along] + middle) % order  # counted in the whole block
     beyond = (start[0] + middle + 1, start[1]) if along == 0 else (start[0], start[1] + middle + 1)
     first, second = (half if along == 0 else half.T for half in (lines[:middle], lines[middle + 1 :]))
-    return numpy.concatenate([_dissected(first, start, order), _dissected(second, beyond, order), lines[middle]])
+    return numpy.concatenate([dissected(first, order, start), dissected(second, order, beyond), lines[middle]])

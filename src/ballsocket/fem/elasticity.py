@@ -118,16 +118,29 @@ class Elastic:
     def strains(self, chosen: Numbers, points: Numbers) -> Strains:
         """Strains of some elements at points of the unit square (2, points)."""
         where, weights = integration(self.block.order)
-        whole = self._gradients(chosen, where)
-        moments, mass = self._moments(chosen, whole, weights)
-        here = whole if points is where else self._gradients(chosen, points)
-        swelling = self._polynomials(chosen, here.place) @ numpy.linalg.solve(mass, moments)
+        whole = self.gradients(chosen, where)
+        here = whole if points is where else self.gradients(chosen, points)
+        swelling = self.projected(chosen, whole.place, whole.volume * weights, whole.trace, here.place)
         return Strains(place=here.place, strain=here.strain, swelling=swelling, volume=here.volume)
 
-    def _moments(self, chosen: Numbers, whole: Gradients, weights: Numbers) -> tuple[Numbers, Numbers]:
-        Q = self._polynomials(chosen, whole.place)
-        weighted = (Q * (whole.volume * weights)[..., None]).swapaxes(1, 2)
-        return weighted @ whole.trace, weighted @ Q
+    def projected(
+        self, chosen: Numbers, place: Numbers, volume: Numbers, trace: Numbers, there: Numbers | None = None
+    ) -> Numbers:
+        """The polynomials nearest to a change of volume that is known at points with weights, at other points or these.
+
+        Parameters
+        ----------
+        chosen : array of int (elements,)
+        place, there : array (2, elements, points)
+            (ρ, z) of the points with weights, and of those asked for.
+        volume : array (elements, points)
+            The weights.
+        trace : array (elements, points, unknowns)
+        """
+        Q = self._polynomials(chosen, place)
+        weighted = (Q * volume[..., None]).swapaxes(1, 2)
+        asked = Q if there is None else self._polynomials(chosen, there)
+        return asked @ numpy.linalg.solve(weighted @ Q, weighted @ trace)
 
     def _polynomials(self, chosen: Numbers, place: Numbers) -> Numbers:
         """1, or 1, ρ and z about the middle of the element: (elements, points, polynomials)."""
@@ -139,18 +152,14 @@ class Elastic:
         size = abs(corners[:, 2] - corners[:, 0]).max(axis=0)[:, None]
         return numpy.concatenate([one, numpy.moveaxis((place - middle) / size, 0, -1)], axis=-1)
 
-    def _gradients(self, chosen: Numbers, points: Numbers) -> Gradients:
-        shapes, slopes = shape_functions(self.block.order, points)
+    def gradients(self, chosen: Numbers, points: Numbers) -> Gradients:
+        """Strains of some elements by their unknowns, at points of the unit square (2, points)."""
+        shapes, slopes, det = self.cartesian(chosen, points)
         elements = self.block.elements[:, chosen]
-        corners = self.block.nodes[:, elements]
-        place = numpy.einsum("cne,nq->ceq", corners, shapes)
-        J = numpy.einsum("cne,ndq->eqcd", corners, slopes)
-        det = J[..., 0, 0] * J[..., 1, 1] - J[..., 0, 1] * J[..., 1, 0]
-        turned = numpy.stack([J[..., 1, 1], -J[..., 1, 0], -J[..., 0, 1], J[..., 0, 0]], -1).reshape(J.shape)
-        gradients = numpy.einsum("ndq,eqcd->eqcn", slopes, turned / det[..., None, None])
+        place = numpy.einsum("cne,nq->ceq", self.block.nodes[:, elements], shapes)
         strain = numpy.zeros((*det.shape, 4, 2, len(elements)))  # of (ρ, z)
-        strain[..., 0, 0, :] = strain[..., _SHEAR, 1, :] = gradients[..., 0, :]
-        strain[..., 1, 1, :] = strain[..., _SHEAR, 0, :] = gradients[..., 1, :]
+        strain[..., 0, 0, :] = strain[..., _SHEAR, 1, :] = slopes[..., 0, :]
+        strain[..., 1, 1, :] = strain[..., _SHEAR, 0, :] = slopes[..., 1, :]
         strain[..., _HOOP, 0, :] = shapes.T / place[0][..., None]
         phi = self.block.angle[elements // self.block.radius.shape[1]].T[:, None, None]
         across, along = strain[..., 0, :], strain[..., 1, :]
@@ -158,6 +167,14 @@ class Elastic:
             [across * numpy.cos(phi) - along * numpy.sin(phi), across * numpy.sin(phi) + along * numpy.cos(phi)], -1
         )
         return Gradients(place=place, strain=polar.reshape(*polar.shape[:-2], -1), volume=2 * pi * place[0] * abs(det))
+
+    def cartesian(self, chosen: Numbers, points: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+        """Shape functions (nodes, points), their slopes by ρ and z (elements, points, 2, nodes), and Jacobians."""
+        shapes, slopes = shape_functions(self.block.order, points)
+        J = numpy.einsum("cne,ndq->eqcd", self.block.nodes[:, self.block.elements[:, chosen]], slopes)
+        det = J[..., 0, 0] * J[..., 1, 1] - J[..., 0, 1] * J[..., 1, 0]
+        turned = numpy.stack([J[..., 1, 1], -J[..., 1, 0], -J[..., 0, 1], J[..., 0, 0]], -1).reshape(J.shape)
+        return shapes, numpy.einsum("ndq,eqcd->eqcn", slopes, turned / det[..., None, None]), det
 
 
 def shape_functions(order: int, points: Numbers) -> tuple[Numbers, Numbers]:

@@ -22,7 +22,7 @@ from .contact import MeshedContact
 from .spacing import SPACINGS, Adapted, Element, Spacing
 
 
-def _largest_poisson(contact: Any) -> Array:
+def largest_poisson(contact: Any) -> Array:
     """Poisson's ratio of the least compressible body."""
     joint = contact.joint
     others = [layer.material.poisson for layer in joint.backing]
@@ -106,7 +106,7 @@ class FiniteElement(Model):
             why="without clearance every load has the same half angle: take a millionth of the radius",
         ),
         Range(
-            quantity=_largest_poisson,
+            quantity=largest_poisson,
             symbol="ν",
             low=-1.0,
             high=0.49995,

@@ -86,13 +86,24 @@ class SocketShape:
         """The angle at which the bore ends."""
         return self.rim - self.chamfer
 
+    @property
+    def slides(self) -> bool:
+        """Whether the liner slides on what is behind it."""
+        return self.interface is Interface.SLIDING
+
     def corners(self, resolution: Resolution) -> tuple[Numbers, list[Numbers]]:
         """Corners of the elements: their angles, and the radii of each layer."""
-        angle = resolution.angles(self.reach)
-        if self.chamfer:
-            across = graded(self.reach, self.rim, min(resolution.size, self.chamfer / 2), 1.0, inf)
-            angle = joined([angle, across])
-        angle = resolution.cut(angle)
+        angle = resolution.cut(self.to_rim(resolution.angles(self.reach), resolution.size))
+        return angle, self.radii(angle, resolution)
+
+    def to_rim(self, angle: Numbers, size: float) -> Numbers:
+        """Corners along the bore, and on across the chamfer."""
+        if not self.chamfer:
+            return angle
+        return joined([angle, graded(self.reach, self.rim, min(size, self.chamfer / 2), 1.0, inf)])
+
+    def radii(self, angle: Numbers, resolution: Resolution) -> list[Numbers]:
+        """Radii of the corners in each layer, finer towards the bore."""
         first, inner, radii = resolution.size, 1.0, []
         for outer, _, _ in self.layers:
             thickness = min(outer, _FAR) - inner
@@ -100,7 +111,7 @@ class SocketShape:
             layer = graded(inner, inner + thickness, min(first, longest), resolution.growth, longest)
             radii.append(resolution.cut(layer))
             first, inner = (layer[-1] - layer[-2]) * resolution.growth, float(layer[-1])
-        return angle, [self._chamfered(angle, radii[0]), *radii[1:]]
+        return [self._chamfered(angle, radii[0]), *radii[1:]]
 
     def _chamfered(self, angle: Numbers, liner: Numbers) -> Numbers:
         """The liner's radii, which follow the chamfer."""

@@ -64,17 +64,22 @@ def curve(settings: Settings, joint: Joint) -> Curve:
 
 def _check(settings: Settings, joint: Joint) -> None:
     """Raise ValueError for a geometry that cannot be meshed."""
-    bore = socket_shape(joint, settings.cup).reach
     if isinstance(settings.spacing, Uniform):
+        bore = socket_shape(joint, settings.cup).reach
         _check_size(settings.spacing.size, joint, float(joint.socket_radius) * bore)
-    if settings.cup.interface is Interface.SLIDING and not joint.backing:
+    check_cup(settings.cup, joint)
+
+
+def check_cup(cup: Cup, joint: Joint) -> None:
+    """Raise ValueError for a cup that this joint cannot have."""
+    if cup.interface is Interface.SLIDING and not joint.backing:
         ground = joint.support is Support.FIXED and float(joint.liner_thickness) < inf
         if not ground:
             raise ValueError("interface = 'sliding' is not allowed: there is nothing behind the liner to slide on")
-    chamfer, liner = settings.cup.chamfer, float(joint.liner_thickness)
+    chamfer, liner, bore = cup.chamfer, float(joint.liner_thickness), socket_shape(joint, cup).reach
     require("chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer leaves a tenth of the liner, which is {liner:g} mm")
     require("chamfer", chamfer, chamfer == 0 or chamfer > 1e-3 * liner, "a chamfer is 0 or a thousandth of the liner")
-    require("chamfer", chamfer, bore > settings.cup.rim / 2, "a chamfer leaves half of the bore")
+    require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer leaves half of the bore")
 
 
 def _check_size(size: float, joint: Joint, bore: float) -> None:

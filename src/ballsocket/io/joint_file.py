@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from math import degrees, hypot, inf, pi
 from pathlib import Path
 from typing import Any
 
 from ..answer import checked_load
-from ..checks import check_text, known_name, nearest, shown
+from ..checks import check_text, known_name, nearest, require, shown
 from ..cup import Cup, Interface, Side
 from ..joint import Joint, Layer, Material, Support
+from ..kinds import Kind
 from ..presets import materials
 from ..quantities import CUP, JOINT, LAYER, LOADS, MATERIAL, STRENGTH
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
 _CHOICES: dict[str, type[Enum]] = {"interface": Interface, "side": Side}
+_AIM = ("tilt", "direction")
 _TABLES = {
     "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
     "joint": (*JOINT, "support"),
     "liner": ("material", *MATERIAL, *STRENGTH),
     "ball": ("material", *MATERIAL, *STRENGTH),
     "cup": (*CUP, *_CHOICES),
-    "load": tuple(LOADS),
+    "load": (*LOADS, *_AIM),
 }
 KEYS: Mapping[str, Sequence[str]] = {**_TABLES, "backing": (*LAYER, "material", *MATERIAL, *STRENGTH)}
 _HEADS = {"backing": "[[backing]]"}
@@ -33,11 +36,15 @@ _MOST_LAYERS = 20
 
 @dataclass(frozen=True)
 class JointFile:
-    """What a joint file holds: the joint, its load (empty, or one of force, indentation, half_angle), and its cup."""
+    """What a joint file holds: the joint, its load (empty, or one of force, indentation, half_angle), and its cup.
+
+    `aim` says where the load points, as the keyword of `Sphere.press`: empty, or one of tilt and direction.
+    """
 
     joint: Joint
     load: dict[str, float]
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
+    aim: dict[str, Any] = field(default_factory=dict)
 
 
 def read_joint(path: str | Path) -> JointFile:
@@ -92,7 +99,9 @@ def joint_of(table: Mapping[str, Any]) -> JointFile:
         name=table.get("name", ""),
         source=table.get("source", ""),
     )
-    return JointFile(joint, read_load(table.get("load", {})), read_cup(table.get("cup", {})))
+    load = table.get("load", {})
+    pressed = {name: value for name, value in load.items() if name not in _AIM}
+    return JointFile(joint, read_load(pressed), read_cup(table.get("cup", {})), read_aim(load))
 
 
 def varied(file: JointFile, tables: Mapping[str, Any]) -> JointFile:
@@ -119,6 +128,29 @@ def read_load(table: Mapping[str, Any]) -> dict[str, float]:
     load = {name: parse(name, value, LOADS[name].kind) for name, value in table.items()}
     with as_given(table):
         return dict([checked_load(**load)]) if load else {}
+
+
+def read_aim(table: Mapping[str, Any]) -> dict[str, Any]:
+    """At most one of tilt and direction, as the keyword of `Sphere.press`; other names are passed over."""
+    given = {name: table[name] for name in _AIM if name in table}
+    if len(given) > 1:
+        raise ValueError("either a tilt or a direction is needed, got both")
+    if "tilt" in given:
+        tilt = parse("tilt", given["tilt"], Kind.ANGLE)
+        require("tilt", degrees(tilt), 0 <= tilt <= pi, "a tilt is 0 to 180 degrees from the cup's axis")
+        return {"tilt": tilt}
+    return {"direction": _direction(given["direction"])} if given else {}
+
+
+def _direction(value: Any) -> tuple[float, ...]:
+    """Three numbers, as a list or as text with commas between."""
+    parts = value.split(",") if isinstance(value, str) else value
+    if not isinstance(parts, list | tuple) or len(parts) != 3:
+        raise ValueError(f"direction = {shown(value)} must be three numbers: to the right, to the front, upwards")
+    found = tuple(parse("direction", part, Kind.NUMBER) for part in parts)
+    length = hypot(*found)
+    require("length of direction", length, 0 < length < inf, "a direction points somewhere")
+    return found
 
 
 def read_cup(table: Mapping[str, Any]) -> Cup:

@@ -1,0 +1,73 @@
+"""Bore and ball together on the grid: what a pressure does, and which pressure does that."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from threading import Lock
+
+import numpy
+
+from ..arrays import Numbers
+from ..cup import Cup
+from ..elastic.modes import ball_of
+from ..fem.shapes import socket_shape
+from ..joint import Joint
+from .grid import Grid, Local, Turning, grid
+from .rings_of_modes import modal_rings
+from .surfaces import Springs, Surface
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Compliance:
+    """How the bore's surface and the ball's give way to each other.
+
+    Attributes
+    ----------
+    grid : Grid
+    softness, stiffness : Turning or Local
+        From pressures in MPa to how far both surfaces give way in mm, and back.
+    """
+
+    grid: Grid
+    softness: Turning | Local
+    stiffness: Turning | Local
+
+    def displacement(self, pressure: Numbers) -> Numbers:
+        """How far the surfaces give way (mm) under pressures (MPa): both (batch, rings, meridians)."""
+        return self.softness(pressure)
+
+    def pressure(self, displacement: Numbers) -> Numbers:
+        """The pressures (MPa, of either sign) under which they give way so far (mm) all over the bore."""
+        return self.stiffness(displacement)
+
+
+def _made(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
+    cells, ball = grid(socket_shape(joint, cup).reach, width), ball_of(joint)
+    if isinstance(surface, Springs) and ball is None:
+        modulus = float(surface.modulus(joint))
+        return Compliance(grid=cells, softness=Local(scale=1 / modulus), stiffness=Local(scale=modulus))
+    matrices = surface.rings(joint, cup, cells)
+    if ball is not None:
+        matrices = matrices + cells.averaged(modal_rings(ball.compliance, cells))
+    return Compliance(grid=cells, softness=Turning(matrices=matrices), stiffness=Turning(matrices=_inverse(matrices)))
+
+
+def _inverse(matrices: Numbers) -> Numbers:
+    return numpy.ascontiguousarray(numpy.linalg.inv(matrices))
+
+
+_KEPT: OrderedDict[tuple[object, ...], Compliance] = OrderedDict()
+_SIZE, _LOCK = 8, Lock()
+
+
+def compliance(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
+    """The compliance of a joint of plain numbers in rings of this width (rad); the last few are kept."""
+    key = (surface, joint, cup.arc_of_cover, cup.chamfer, cup.interface, width)
+    with _LOCK:
+        if key not in _KEPT:
+            _KEPT[key] = _made(surface, joint, cup, width)
+            if len(_KEPT) > _SIZE:
+                _KEPT.popitem(last=False)
+        _KEPT.move_to_end(key)
+        return _KEPT[key]

@@ -1,0 +1,177 @@
+"""The answer of `Sphere`: a contact that knows where it lies in its cup."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import degrees
+from typing import Any
+
+import numpy
+
+from .. import arrays
+from ..arrays import Array, Numbers
+from ..per_joint import Piece, SolvedContact, joint_at
+from ..strength import share
+from ..validity import Status
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class OffAxisContact(SolvedContact):
+    """A contact anywhere in a cup.
+
+    Vectors have a last axis of 3, in the cup's own frame: from the centre of the bore x leans towards the rim, z points
+    to the dome's pole (`cup.frame` gives them in the body's). `force` is the size of the load, `indentation` how far
+    the ball's centre is displaced beyond the clearance, `half_angle` that of a round contact of the same area;
+    angles count from the load.
+    """
+
+    model: Any
+
+    def _von_mises_of(self, place: Numbers, piece: Piece) -> Numbers:
+        """As of a closed form, from half angle and largest pressure: only the surface is solved."""
+        joint, state = joint_at(self.joint, self.laws.shape, int(place[0])), piece.state
+        estimate = share(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
+        return numpy.asarray(estimate * state.max_pressure)
+
+    @property
+    def von_mises_between(self) -> tuple[Array, Array]:
+        """What `von_mises` lies between, which is quickly told."""
+        return self.von_mises, self.von_mises
+
+    @cached_property
+    def force_vector(self) -> Array:
+        """The load that the ball puts on the cup in N: towards the rim, across, towards the dome."""
+        return self._vector("force_vector")
+
+    @cached_property
+    def displacement(self) -> Array:
+        """Of the ball's centre from the centre of the bore, in mm."""
+        return self._vector("displacement")
+
+    @cached_property
+    def moment(self) -> Array:
+        """Of the contact on the ball about its own centre, without friction, in N mm."""
+        return arrays.namespace(self.force_vector).linalg.cross(self.displacement, self.force_vector)
+
+    @cached_property
+    def stiffness_matrix(self) -> Array:
+        """Change of the load by the displacement in N/mm, (..., 3, 3), symmetric."""
+        rows = self.laws.spread(lambda piece: piece.state.tangent.reshape(9, -1), (9,))
+        rows = arrays.where(self._failed, numpy.nan, rows)
+        return arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3))
+
+    @cached_property
+    def max_pressure_at(self) -> Array:
+        """Unit vector to where the pressure is largest."""
+        return self._vector("max_pressure_at")
+
+    @cached_property
+    def edge_loaded(self) -> Array:
+        """Whether the contact reaches the end of the bore."""
+        loaded = self.laws.spread(lambda piece: piece.state.edge_loaded) == 1
+        return bool(loaded) if self._is_plain else loaded
+
+    @cached_property
+    def edge_margin(self) -> Array:
+        """The angle in rad that belongs to `edge_distance`."""
+        return self._scalar("edge_margin")
+
+    @property
+    def edge_distance(self) -> Array:
+        """The arc in mm from the edge of the contact to the end of the bore (contact patch edge to rim).
+
+        Below 0 the contact is cut off: so much is missing of what it reaches on the side of the dome.
+        """
+        return self.edge_margin * self.joint.socket_radius
+
+    @property
+    def rim_distance(self) -> Array:
+        """The arc in mm from where the load points to the end of the bore (contact patch centre to rim)."""
+        return self._plain((self.model.reach_of(self.joint) - self.tilt) * self.joint.socket_radius)
+
+    @property
+    def tilt(self) -> Array:
+        """The angle in rad from the dome's pole to where the load points."""
+        return self._plain(self.laws.spread(lambda piece: _polar(piece.state.axes.T)))
+
+    @property
+    def outline(self) -> Numbers:
+        """Unit vectors (rays, 3) to the edge of a single contact."""
+        edge: Numbers = self.single_state.patches[0].outline
+        return edge
+
+    def pressure_at(self, direction: Array) -> Array:
+        """Contact pressure in MPa in directions of the cup's frame, of a single contact; 0 outside of it.
+
+        Parameters
+        ----------
+        direction : array (..., 3)
+            Unit vectors.
+        """
+        at: Numbers = self.single_state.patches[0].at(numpy.asarray(direction, dtype=float))
+        return float(at) if at.shape == () else at
+
+    @property
+    def pressure_map(self) -> tuple[Numbers, Numbers, Numbers]:
+        """Of a single contact: polar angles (rings,), azimuths (meridians,) in rad, pressures (rings, meridians)."""
+        patch = self.single_state.patches[0]
+        return patch.grid.polar, patch.grid.azimuth, patch.pressure
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What has no answer or lies outside the validity, and what happens at the rim, in words."""
+        notes = list(super().notes)
+        if self._is_plain and self.status is Status.DISLOCATED:
+            tilt, reach = (degrees(float(each)) for each in (self.tilt, self.model.reach_of(self.joint)))
+            notes.append(f"the load points {tilt:.1f}° from the dome's pole, and the bore ends at {reach:.1f}°")
+        if not self._failed_everywhere:
+            unbounded = self.laws.spread(lambda piece: piece.state.unbounded) == 1
+            notes += self._note(~(arrays.to_numpy(unbounded)), _DIGS)
+            notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _REACHES)
+        return tuple(notes)
+
+    @property
+    def _failed_everywhere(self) -> bool:
+        return bool(arrays.to_numpy(self._failed).all())
+
+    def _scalar(self, name: str) -> Array:
+        return self._answer(lambda: self.laws.spread(lambda piece: getattr(piece.state, name)))
+
+    def _vector(self, name: str) -> Array:
+        """A vector of every contact (..., 3); NaN where there is no answer."""
+        rows = self.laws.spread(lambda piece: getattr(piece.state, name), (3,))
+        rows = arrays.where(self._failed, numpy.nan, rows)
+        return arrays.namespace(rows).moveaxis(rows, 0, -1)
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON: vectors in the cup's frame, `max_pressure_at_deg` as polar angle and azimuth."""
+        at = arrays.to_numpy(self.max_pressure_at)
+        angles = numpy.stack([_polar(numpy.moveaxis(at, -1, 0)), numpy.arctan2(at[..., 1], at[..., 0])], axis=-1)
+        status = arrays.to_numpy(self.status)
+        names = [Status(int(each)).name for each in status.ravel()]
+        return {
+            **super().summary(),
+            "status": names[0] if status.ndim == 0 else names,
+            "force_vector": arrays.to_list(self.force_vector),
+            "displacement": arrays.to_list(self.displacement),
+            "moment": arrays.to_list(self.moment),
+            "max_pressure_at_deg": arrays.to_list(numpy.degrees(angles)),
+            "edge_distance": arrays.to_list(self.edge_distance),
+            "edge_margin_deg": arrays.to_list(self.edge_margin * degrees(1.0)),
+            "rim_distance": arrays.to_list(self.rim_distance),
+            "edge_loaded": self.edge_loaded if self._is_plain else arrays.to_numpy(self.edge_loaded).tolist(),
+            "stiffness_matrix": arrays.to_list(self.stiffness_matrix),
+        }
+
+
+def _polar(direction: Numbers) -> Numbers:
+    """The angle from the dome in rad, of directions (3, ...)."""
+    return numpy.arctan2(numpy.hypot(direction[0], direction[1]), direction[2])
+
+
+_REACHES = "edge loading: the contact reaches the rim"
+_DIGS = (
+    "edge loading: the end of the bore digs in like the edge of a punch, where the pressure is unbounded; "
+    "force and indentation hold"
+)

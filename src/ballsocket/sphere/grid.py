@@ -1,0 +1,152 @@
+"""Cells on the bore: rings about the cup's axis, cut by meridians.
+
+The cup's frame: z points from the centre of the bore to its pole (the dome), θ counts from there, φ from x around z.
+Fields are arrays (..., rings, meridians). A field that goes as cos mφ or sin mφ stays one under everything that is
+symmetric about the axis, so that a compliance is one small matrix for each m.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, pi
+
+import numpy
+import scipy.fft
+
+from ..arrays import Numbers
+from ..fem.mesh import joined
+
+_FINER = numpy.array([0.5, 0.25, 0.25])
+"""Of the last ring, which is cut towards the rim."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Grid:
+    """Cells of pressure, each of one value.
+
+    Attributes
+    ----------
+    edges : array (rings + 1,)
+        Polar angles between the rings in rad, from 0 to where the bore ends.
+    meridians : int
+        Even.
+    """
+
+    edges: Numbers
+    meridians: int
+
+    @property
+    def rings(self) -> int:
+        return len(self.edges) - 1
+
+    @property
+    def degrees(self) -> int:
+        """The largest m."""
+        return self.meridians // 2
+
+    @property
+    def reach(self) -> float:
+        """Where the bore ends, in rad."""
+        return float(self.edges[-1])
+
+    @property
+    def width(self) -> float:
+        """Of the widest ring, in rad."""
+        return float(numpy.diff(self.edges).max())
+
+    @cached_property
+    def azimuth(self) -> Numbers:
+        """φ in the middle of the cells (meridians,)."""
+        return (numpy.arange(self.meridians) + 0.5) * (2 * pi / self.meridians)
+
+    @cached_property
+    def polar(self) -> Numbers:
+        """θ in the middle of the rings (rings,)."""
+        return (self.edges[1:] + self.edges[:-1]) / 2
+
+    @cached_property
+    def ring_areas(self) -> Numbers:
+        """Of whole rings on a sphere of radius 1."""
+        return 4 * pi * numpy.sin(self.polar) * numpy.sin(numpy.diff(self.edges) / 2)
+
+    @cached_property
+    def areas(self) -> Numbers:
+        """Of the cells on a sphere of radius 1: (rings, 1)."""
+        return (self.ring_areas / self.meridians)[:, None]
+
+    @cached_property
+    def normals(self) -> Numbers:
+        """The mean of the outward unit normal over each cell: (3, rings, meridians)."""
+        low, high = self.edges[:-1], self.edges[1:]
+        share = 2 * numpy.sin(self.polar) * numpy.sin((high - low) / 2)
+        along = (numpy.sin(high) ** 2 - numpy.sin(low) ** 2) / 2 / share
+        across = ((high - low) / 2 - numpy.cos(high + low) * numpy.sin(high - low) / 2) / share
+        across = across * numpy.sinc(1 / self.meridians)
+        x, y = (across[:, None] * turn(self.azimuth) for turn in (numpy.cos, numpy.sin))
+        return numpy.stack([x, y, numpy.broadcast_to(along[:, None], x.shape)])
+
+    @cached_property
+    def middles(self) -> Numbers:
+        """Unit vectors to the middles of the cells: (3, rings, meridians)."""
+        return unit_vectors(self.polar[:, None], self.azimuth)
+
+    def averaged(self, rings: Numbers) -> Numbers:
+        """From what rings do to rings, ∫ u dA for each m, to what cells do to cells: the mean u over each.
+
+        The mean over the width of a cell takes its share of cos mφ, from the pressure and from what that does.
+        """
+        share = numpy.sinc(numpy.arange(self.degrees + 1) / self.meridians) ** 2
+        return rings * share[:, None, None] / self.ring_areas[:, None]
+
+    def total(self, one: Numbers, other: Numbers) -> Numbers:
+        """∫ one · other over a sphere of radius 1, of fields (..., rings, meridians)."""
+        return numpy.einsum("...ij,...ij,i->...", one, other, self.areas[:, 0], optimize=False)
+
+
+def unit_vectors(polar: Numbers, azimuth: Numbers) -> Numbers:
+    """Unit vectors (3, ...) at angles in rad."""
+    across = numpy.sin(polar)
+    parts = across * numpy.cos(azimuth), across * numpy.sin(azimuth), numpy.cos(polar) + 0 * azimuth
+    return numpy.stack(parts)
+
+
+def grid(reach: float, width: float) -> Grid:
+    """Rings of about this width up to where the bore ends, the last one cut in three; cells as wide as long at 90°."""
+    rings = max(ceil(reach / width - 1e-9), 2)
+    whole = numpy.linspace(0.0, reach, rings + 1)
+    last = whole[-2] + numpy.append(0.0, numpy.cumsum(_FINER)) * (reach - whole[-2])
+    last[-1] = reach
+    return Grid(edges=joined([whole[:-1], last]), meridians=2 * max(round(pi / width), 4))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Turning:
+    """What does the same to a field however it is turned about the axis: a matrix (rings, rings) for each m.
+
+    Attributes
+    ----------
+    matrices : array (degrees + 1, rings, rings)
+    """
+
+    matrices: Numbers
+
+    def __call__(self, fields: Numbers) -> Numbers:
+        """Of fields (batch, rings, meridians)."""
+        batch, rings, meridians = fields.shape
+        waves = scipy.fft.rfft(fields)
+        columns = numpy.ascontiguousarray(waves.transpose(2, 1, 0))
+        moved = self.matrices @ columns.view(float)
+        back = moved.reshape(len(self.matrices), rings, 2 * batch).view(complex).transpose(2, 1, 0)
+        return scipy.fft.irfft(back, n=meridians)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Local:
+    """What does the same to every cell, whatever the others do: a number for all of them."""
+
+    scale: float
+
+    def __call__(self, fields: Numbers) -> Numbers:
+        """Of fields (batch, rings, meridians)."""
+        return fields * self.scale

@@ -1,0 +1,78 @@
+"""From loads of one kind to balls at rest: displaced, under a force, or as wide as asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import MappingProxyType
+
+import numpy
+
+from ..arrays import Numbers
+from ..models.kinematics import linear_indentation, linear_indentation_of_versine
+from .search import Bed, Rest
+from .states import Edges, States
+
+Loaded = Callable[[Bed, Numbers, Numbers, Edges], States]
+"""From a bed, loads (contacts,), their directions (contacts, 3) in the cup's frame, and what edges are like."""
+
+
+def _displaced(bed: Bed, indentation: Numbers, axes: Numbers, edges: Edges) -> States:
+    rest = bed.at(axes * (bed.separation.clearance + indentation)[:, None])
+    lost = numpy.asarray(~(rest.pressure > 0).any(axis=(1, 2)))
+    return States(bed=bed, rest=rest, axes=axes, edges=edges, dislocated=lost)
+
+
+def _forced(bed: Bed, force: Numbers, axes: Numbers, edges: Edges) -> States:
+    reach = bed.compliance.grid.reach
+    held = _polar(axes) < reach  # without friction a bore pushes back along its normals alone
+    rest = bed.under(axes * force[:, None], _start(bed, force, axes), held)
+    leaves = _polar(rest.displacement) > reach + _SWUNG
+    return States(bed=bed, rest=rest, axes=axes, edges=edges, dislocated=~held | (~rest.found & leaves))
+
+
+_SWUNG = numpy.pi / 3
+"""So far beyond the rim the centre of a ball has swung that no longer comes to rest."""
+
+
+def _start(bed: Bed, force: Numbers, axes: Numbers) -> Numbers:
+    """Displacements along the load, as deep as in springs that are as stiff as the bore under pressure all over."""
+    grid, separation = bed.compliance.grid, bed.separation
+    all_over = bed.compliance.pressure(numpy.ones((1, grid.rings, grid.meridians)))
+    stiffness = float(grid.total(all_over, numpy.ones_like(all_over))[0] / grid.ring_areas.sum())
+    depth = linear_indentation(separation.socket_radius, separation.clearance, stiffness, force)
+    return axes * (separation.clearance + depth + float(separation.depth.max()))[:, None]
+
+
+_ROUNDS = 12
+
+
+def _spread(bed: Bed, half_angle: Numbers, axes: Numbers, edges: Edges) -> States:
+    """Indentations whose contacts have this half angle, by secants of the versine over the indentation."""
+    separation = bed.separation
+    asked = 2 * numpy.sin(half_angle / 2) ** 2
+    depth = linear_indentation_of_versine(separation.socket_radius, separation.clearance, asked)
+    for _ in range(_ROUNDS):
+        states = _displaced(bed, depth, axes, edges)
+        shares = asked / numpy.maximum(2 * numpy.sin(states.half_angle / 2) ** 2, 1e-12)
+        if (abs(shares - 1) < 1e-4).all():
+            break
+        depth = depth * numpy.clip(shares, 0.25, 4.0)
+    missed = (abs(shares - 1) >= 1e-3) & ~states.dislocated
+    return States(
+        bed=bed,
+        rest=Rest(
+            displacement=states.rest.displacement, pressure=states.rest.pressure, found=states.rest.found & ~missed
+        ),
+        axes=axes,
+        edges=edges,
+        dislocated=states.dislocated,
+    )
+
+
+def _polar(direction: Numbers) -> Numbers:
+    return numpy.arctan2(numpy.hypot(direction[:, 0], direction[:, 1]), direction[:, 2])
+
+
+LOADED: MappingProxyType[str, Loaded] = MappingProxyType(
+    {"force": _forced, "indentation": _displaced, "half_angle": _spread}
+)

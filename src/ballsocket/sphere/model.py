@@ -1,0 +1,274 @@
+"""The ball anywhere in a real cup, by full elasticity: tilted loads, edge loading, worn bores."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi, radians
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy
+
+from .. import arrays
+from ..answer import Answer
+from ..arrays import Array, Numbers
+from ..checks import needs, numeric, require, vectors
+from ..contact import Contact
+from ..cup import UP, Cup
+from ..fem.model import largest_poisson
+from ..gaps import CircularGap, LinearGap, check_gap
+from ..joint import Joint
+from ..model import Model
+from ..per_joint import Piece, taken_apart
+from ..sources import Source
+from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
+from .contact import OffAxisContact
+from .surfaces import ClosedShell, RealCup, Springs, Surface
+from .worn import Shape
+
+if TYPE_CHECKING:
+    from .states import Edges
+
+_FINEST, _WIDEST = radians(0.5), radians(6.0)
+_DIRECTION = "x, y, z of a direction"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sphere(Model):
+    """Contact on the sphere: any direction of load, in the cup as it is built.
+
+    Linear elasticity and small displacements without friction, as in `Exact` and `FiniteElement`, but for loads that
+    need not go along the cup's axis. The bore is cut into rings about the cup's axis and each ring by meridians; what
+    rings do to each other is known for every harmonic about the axis, so that a press takes milliseconds.
+
+    Parameters
+    ----------
+    cup : Cup
+        Arc of cover, chamfer, interface, and where it faces. A hemisphere that opens downwards by default.
+    surface : RealCup, ClosedShell or Springs
+        How the bore gives way: as built (default), as a closed shell, or as springs.
+    ring_width : float
+        Of the rings in rad, 0.5° to 6°; 2° by default. At 2° forces are good to about 0.1 %, at 1° to 0.03 %, of
+        contacts that span ten rings and more; `contact.error` says it of each.
+    gap : type
+        `LinearGap` (default) or `CircularGap`.
+    worn : object with a method `depth`, optional
+        What is missing of the bore, in mm, by direction: see `Worn`.
+    direction : array (..., 3), optional
+        Of the load, in the body's frame, of any length; upwards by default. `press` takes it, too.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+    TypeError
+        A cup, surface or gap of another type.
+    ImportError
+        At a press: the finite elements' extra is not installed.
+
+    Examples
+    --------
+    >>> from math import radians
+    >>> import ballsocket as bs
+    >>> cup = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
+    >>> contact = bs.Sphere(cup=cup).press(bs.joints["hip-36"], force=3000.0, direction=(0.26, 0.0, 0.97))
+    >>> bool(contact.edge_loaded)
+    False
+    """
+
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
+    surface: Surface = RealCup()  # noqa: RUF009 (frozen)
+    ring_width: float = radians(2.0)
+    gap: type[LinearGap] | type[CircularGap] = LinearGap
+    worn: Shape | None = None
+    direction: Any = UP
+
+    name: ClassVar[str] = "sphere"
+    title: ClassVar[str] = "full elasticity in rings about the cup's axis, any direction of load"
+    sources: ClassVar[tuple[Source, ...]] = (Source("polonsky1999"),)
+    contact_type: ClassVar[type[Contact]] = OffAxisContact
+    differentiable: ClassVar[bool] = False
+    smooth_step: ClassVar[float] = 3e-3
+    seconds_a_press: ClassVar[float] = 0.03
+    reach: ClassVar[str] = "forces along directions in which the bore holds the ball"
+
+    def __post_init__(self) -> None:
+        for name, kinds in {"cup": (Cup,), "surface": (RealCup, ClosedShell, Springs)}.items():
+            if not isinstance(getattr(self, name), kinds):
+                known = " or ".join(kind.__name__ for kind in kinds)
+                raise TypeError(f"{name} must be {known}, got {getattr(self, name)!r}")
+        check_gap(self.gap)
+        good = _FINEST <= self.ring_width <= _WIDEST
+        require("ring_width", self.ring_width, good, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
+        if self.worn is not None and not hasattr(self.worn, "depth"):
+            raise TypeError(f"worn must have a method depth(directions), got {self.worn!r}")
+        object.__setattr__(self, "direction", _checked_direction(self.direction))
+
+    @property
+    def domain(self) -> tuple[Range, ...]:
+        incompressible = Range(
+            quantity=largest_poisson,
+            symbol="ν",
+            low=-1.0,
+            high=0.49995,
+            why="an incompressible body has no bulk modulus",
+        )
+        thin = Range(quantity="joint.thickness_ratio", high=60.0, why="so thin a liner is not meshed in rings: ask fem")
+        return (incompressible, thin)
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        narrow = Range(
+            quantity=lambda contact: contact.half_angle / self.ring_width,
+            symbol="ε over a ring's width",
+            low=5.0,
+            why="the contact spans few rings: make ring_width smaller, or ask exact where the rim is far",
+        )
+        return (SMALL_STRAIN, narrow, *((CLOSE_FIT,) if self.gap is LinearGap else ()))
+
+    @property
+    def parameters(self) -> tuple[Array, ...]:
+        parts = (self.direction[..., axis] for axis in range(3))
+        return tuple(float(part) if part.ndim == 0 else part for part in parts)
+
+    def in_cup(self, cup: Cup) -> Sphere:
+        return replace(self, cup=cup)
+
+    def press(
+        self,
+        joint: Joint,
+        *,
+        force: Array | None = None,
+        indentation: Array | None = None,
+        half_angle: Array | None = None,
+        direction: Array | None = None,
+        tilt: Array | None = None,
+    ) -> Contact:
+        """Press the ball into the cup by one of three loads, along a direction.
+
+        Parameters
+        ----------
+        joint : Joint
+        force : float or array, optional
+            The size of the load in N. The ball comes to rest where the contact carries it, displaced along another
+            direction where the rim is near.
+        indentation : float or array, optional
+            The ball's centre is displaced by clearance + indentation (mm) along the direction; the load then need not
+            be parallel to it.
+        half_angle : float or array, optional
+            In rad, of a round contact of the same area.
+        direction : array (..., 3), optional
+            In the body's frame, upwards by default; its leading axes broadcast against joint and load.
+        tilt : float or array, optional
+            In place of a direction its angle from the cup's axis in rad, from the dome to the rim.
+
+        Returns
+        -------
+        OffAxisContact
+
+        Raises
+        ------
+        ValueError
+            Not exactly one load; direction and tilt both; a number that is not allowed.
+        """
+        return self.along(direction, tilt)._pressed(joint, force=force, indentation=indentation, half_angle=half_angle)
+
+    def _pressed(self, joint: Joint, **load: Array | None) -> Contact:
+        return super().press(joint, **load)
+
+    def along(self, direction: Array | None = None, tilt: Array | None = None) -> Sphere:
+        """This model with another direction of load; see `press`."""
+        if direction is not None and tilt is not None:
+            raise ValueError("either a direction or a tilt is needed, got both")
+        if tilt is not None:
+            return replace(self, direction=self._tilted(tilt))
+        return self if direction is None else replace(self, direction=direction)
+
+    def _tilted(self, tilt: Array) -> Numbers:
+        angle = arrays.to_numpy(check_tilt(tilt))
+        inside = numpy.stack([numpy.sin(angle), 0.0 * angle, numpy.cos(angle)], axis=-1)
+        return inside @ numpy.array(self.cup.frame)
+
+    def reach_of(self, joint: Joint) -> Array:
+        """Where the bore ends, in rad from the dome's pole."""
+        return self.cup.rim - self.cup.chamfer / joint.socket_radius
+
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        needs("fem", "skfem", "scipy")
+        inside = self.direction @ numpy.array(self.cup.frame).T
+        inside = inside / numpy.linalg.norm(inside, axis=-1, keepdims=True)
+        axes = [inside[..., axis] for axis in range(3)]
+        solution = taken_apart(
+            self, joint, load, lambda one, loads, *along: self._piece(one, kind, loads, along), *axes
+        )
+        return Answer(
+            laws=solution,
+            force=solution.force,
+            indentation=solution.indentation,
+            failures={
+                Status.DISLOCATED: solution.spread(lambda piece: piece.state.lost) == 1,
+                Status.NOT_CONVERGED: solution.spread(lambda piece: piece.state.unsettled) == 1,
+            },
+        )
+
+    def _piece(self, joint: Joint, kind: str, loads: Numbers, along: tuple[Numbers, ...]) -> Piece:
+        """Contacts of one joint of plain numbers."""
+        from .compliance import compliance  # takes its time to import
+        from .gap import Separation
+        from .loads import LOADED
+        from .search import Bed
+
+        touching = loads > 0
+        soft = compliance(self.surface, joint, self.cup, self.ring_width)
+        separation = Separation(
+            grid=soft.grid,
+            clearance=float(joint.clearance),
+            socket_radius=float(joint.socket_radius),
+            depth=self._depth(soft.grid.middles),
+            kind=self.gap,
+        )
+        axes = numpy.stack(along, axis=-1)[touching]
+        state = LOADED[kind](Bed(compliance=soft, separation=separation), loads[touching], axes, self._edges())
+        return Piece(
+            load=loads,
+            touching=touching,
+            state=state,
+            reached=numpy.ones(int(touching.sum()), dtype=bool),
+            error=state.errors(kind),
+        )
+
+    def _depth(self, middles: Numbers) -> Numbers:
+        if self.worn is None:
+            return numpy.zeros(middles.shape[1:])
+        depth = numpy.asarray(self.worn.depth(middles), dtype=float)
+        require("worn depth", depth, numpy.isfinite(depth), "a depth (mm) is finite")
+        return depth
+
+    def _edges(self) -> Edges:
+        """A corner of 90° keeps the pressure finite under a ball that is much stiffer.
+
+        Where the material goes on, at a chamfer or in a closed shell, the corner digs in like the edge of a punch.
+        """
+        from .states import Edges
+
+        corner = isinstance(self.surface, RealCup) and self.cup.chamfer == 0
+        return Edges(power=self.surface.power, bounded=corner or isinstance(self.surface, Springs))
+
+
+def _checked_direction(direction: Any) -> Numbers:
+    found = arrays.to_numpy(vectors("direction", direction, _DIRECTION)).astype(float)
+    length = numpy.linalg.norm(found, axis=-1)
+    require("length of direction", length, (length > 0) & (length < numpy.inf), "a direction points somewhere")
+    return found
+
+
+def check_tilt(tilt: Any) -> Array:
+    """A tilt in rad, if it is one.
+
+    Raises
+    ------
+    ValueError
+        Below 0 or above π; what can only be degrees is named with what it is in radians.
+    """
+    angle = numeric("tilt", tilt)
+    require("tilt", angle, (angle >= 0) & (angle <= pi), "a tilt is 0 to pi radians (45 degrees are 0.7854 radians)")
+    return angle

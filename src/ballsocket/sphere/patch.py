@@ -1,0 +1,180 @@
+"""One contact on the grid: its pressure between the cells, where it is largest, and where it ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+
+import numpy
+from scipy.interpolate import RegularGridInterpolator
+
+from ..arrays import Numbers
+from .grid import Grid, unit_vectors
+
+_RAYS = 90
+_NEAR = 2.2  # widths of a ring: cells that far tell where the largest pressure is
+_LATTICE = 25
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Patch:
+    """The pressure of one contact.
+
+    Attributes
+    ----------
+    grid : Grid
+    pressure : array (rings, meridians)
+        In MPa.
+    axis : array (3,)
+        Unit vector of the load, in the cup's frame.
+    power : int
+        Of the pressure, which falls to the edge as a straight line does.
+    """
+
+    grid: Grid
+    pressure: Numbers
+    axis: Numbers
+    power: int
+
+    @cached_property
+    def _between(self) -> RegularGridInterpolator:
+        return self._linear(self.pressure)
+
+    @cached_property
+    def _powers(self) -> RegularGridInterpolator:
+        return self._linear(self.pressure**self.power)
+
+    def _linear(self, p: Numbers) -> RegularGridInterpolator:
+        """Linear between the middles of the cells, across the pole, and on to where the bore ends."""
+        half = self.grid.meridians // 2
+        beyond = numpy.roll(p[:2][::-1], half, axis=1)
+        last, gone = self.grid.polar[-1], self.grid.polar[-2]
+        share = (self.grid.reach - last) / (last - gone)
+        rim = numpy.maximum(p[-1] + share * (p[-1] - p[-2]), 0.0) * (p[-1] > 0)
+        rows = numpy.vstack([beyond, p, rim])
+        polar = numpy.concatenate([-self.grid.polar[:2][::-1], self.grid.polar, [self.grid.reach]])
+        azimuth = numpy.concatenate(
+            [[self.grid.azimuth[-1] - 2 * pi], self.grid.azimuth, [self.grid.azimuth[0] + 2 * pi]]
+        )
+        columns = numpy.hstack([rows[:, -1:], rows, rows[:, :1]])
+        return RegularGridInterpolator((polar, azimuth), columns, bounds_error=False, fill_value=0.0)
+
+    def at(self, directions: Numbers) -> Numbers:
+        """The pressure in MPa in directions (..., 3) of the cup's frame; 0 outside the contact and the bore."""
+        return self._between(_angles(directions)).reshape(directions.shape[:-1])
+
+    def along(self, angle: Numbers) -> Numbers:
+        """The pressure in MPa at angles from the load, in the plane of load and cup's axis towards the rim."""
+        return self.at(self._ray(angle, 0.0 * angle))
+
+    @cached_property
+    def largest(self) -> tuple[float, Numbers]:
+        """The largest pressure in MPa, and the unit vector to where it is."""
+        row, column = numpy.unravel_index(self.pressure.argmax(), self.pressure.shape)
+        if not self.pressure[row, column] > 0:
+            return 0.0, self.axis
+        middle = self.grid.middles[:, row, column]
+        first, second = _across(middle)
+        reach = _NEAR * self.grid.width
+        near = (numpy.tensordot(middle, self.grid.middles, 1) > numpy.cos(reach)) & (self.pressure > 0)
+        points = self.grid.middles[:, near]
+        fit = _quadratic(first @ points, second @ points, self.pressure[near])
+        places = numpy.linspace(-0.6 * reach, 0.6 * reach, _LATTICE)
+        s, t = (each.ravel() for each in numpy.meshgrid(places, places))
+        there = middle[:, None] + first[:, None] * s + second[:, None] * t
+        there = there / numpy.linalg.norm(there, axis=0)
+        values = _terms(first @ there, second @ there) @ fit
+        values[there[2] < numpy.cos(self.grid.reach)] = 0.0
+        best = int(values.argmax())
+        if values[best] < self.pressure[row, column]:
+            return float(self.pressure[row, column]), middle
+        return float(values[best]), there[:, best]
+
+    @cached_property
+    def outline(self) -> Numbers:
+        """Unit vectors (rays, 3) to the edge of the contact, around the load, where rays from there leave it."""
+        turns = numpy.arange(_RAYS) * (2 * pi / _RAYS)
+        return self._ray(self._edges, turns)
+
+    @cached_property
+    def _edges(self) -> Numbers:
+        """Angles from the load to the edge along each ray."""
+        step = self.grid.width / 2
+        turns = numpy.arange(_RAYS) * (2 * pi / _RAYS)
+        out = numpy.arange(1, int(pi / step))[:, None] * step
+        points = self._ray(out + 0 * turns, turns)
+        values = self._powers(_angles(points))
+        inside = points[..., 2] >= numpy.cos(self.grid.reach)
+        ends = numpy.argmax(~((values > 0) & inside), axis=0)  # the first step outside
+        return numpy.array([self._edge(int(end), out[:, 0], values[:, i], inside[:, i]) for i, end in enumerate(ends)])
+
+    def _edge(self, end: int, out: Numbers, values: Numbers, inside: Numbers) -> float:
+        """Where the power, which falls with the square of the angle, is 0; or where the bore ends."""
+        if not inside[end] and end > 0:
+            return self._to_rim(float(out[end - 1]), float(out[end]), end, values)
+        last = max(end - 3, 0)  # the cells at the edge are only partly under pressure
+        first = max(last - 3, 0)
+        if first == last:
+            return float(out[end] - (out[1] - out[0]) / 2) if end else 0.0
+        one, other = values[first], values[last]
+        if not one > other:
+            return float(out[end])
+        edge = out[first] ** 2 + one * (out[last] ** 2 - out[first] ** 2) / (one - other)
+        return float(min(max(numpy.sqrt(edge), out[last]), out[end] + (out[1] - out[0]) * 2))
+
+    def _to_rim(self, low: float, high: float, end: int, values: Numbers) -> float:
+        """Between the last step inside of the bore and the first outside."""
+        return (low + high) / 2
+
+    def _ray(self, out: Numbers, turns: Numbers) -> Numbers:
+        """Unit vectors at angles from the load, on rays that turn around it from the plane of load and cup's axis."""
+        first, second = _across(self.axis)
+        side = numpy.cos(turns)[..., None] * first + numpy.sin(turns)[..., None] * second
+        return numpy.cos(out)[..., None] * self.axis + numpy.sin(out)[..., None] * side
+
+    @cached_property
+    def half_angle(self) -> float:
+        """Of a round contact of the same area, in rad: ε with 2π (1 - cos ε) the solid angle inside the outline."""
+        return float(numpy.arccos(numpy.clip(numpy.cos(self._edges).mean(), -1.0, 1.0)))
+
+    @cached_property
+    def edge_loaded(self) -> bool:
+        """Whether there is pressure where the bore ends."""
+        return bool((self.pressure[-1] > 0).any())
+
+    @cached_property
+    def edge_margin(self) -> float:
+        """The angle (rad) from the outline to the end of the bore; below 0 what the contact would reach beyond it.
+
+        Beyond, its extent towards the dome stands for the one that the rim cuts off.
+        """
+        if self.edge_loaded:
+            dome = float(self._edges[_RAYS // 2])
+            return min(self.grid.reach - _polar(self.axis) - dome, 0.0)
+        return float(self.grid.reach - numpy.arccos(numpy.clip(self.outline[:, 2], -1, 1)).max())
+
+
+def _angles(directions: Numbers) -> Numbers:
+    """Polar angle and azimuth (..., 2) of directions."""
+    x, y, z = numpy.moveaxis(directions, -1, 0)
+    return numpy.stack([numpy.arctan2(numpy.hypot(x, y), z), numpy.arctan2(y, x) % (2 * pi)], axis=-1)
+
+
+def _polar(direction: Numbers) -> float:
+    return float(numpy.arctan2(numpy.hypot(direction[0], direction[1]), direction[2]))
+
+
+def _across(axis: Numbers) -> tuple[Numbers, Numbers]:
+    """Two unit vectors across an axis: away from the pole in its meridian, and around it."""
+    polar, azimuth = _polar(axis), float(numpy.arctan2(axis[1], axis[0]))
+    around = numpy.array([-numpy.sin(azimuth), numpy.cos(azimuth), 0.0])
+    return unit_vectors(numpy.asarray(polar + pi / 2), numpy.asarray(azimuth)), around
+
+
+def _terms(s: Numbers, t: Numbers) -> Numbers:
+    return numpy.stack([numpy.ones_like(s), s, t, s * s, s * t, t * t], axis=-1)
+
+
+def _quadratic(s: Numbers, t: Numbers, values: Numbers) -> Numbers:
+    return numpy.linalg.lstsq(_terms(s, t), values, rcond=None)[0]

@@ -1,0 +1,187 @@
+"""Balls at rest in one bore side by side, each quantity one number a contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy
+
+from ..arrays import Numbers
+from ..per_joint import QUANTITIES
+from .patch import Patch
+from .search import Bed, Rest
+
+_AREAS = {
+    "force": 0.3,
+    "indentation": 0.2,
+    "max_pressure": 0.3,
+    "pole_pressure": 0.3,
+    "energy": 0.4,
+    "pressure_integral": 0.3,
+}
+_EDGES = {"half_angle": 0.32, "stiffness": 0.6}
+"""Errors that contacts have shown against the exact answer: in squares of a ring over the half angle, and in such.
+
+The first follow from the pressures, the second from which cells touch. A test draws such contacts anew.
+"""
+_SHARPEST = 3e-4  # of all quantities: what the elements of the cup leave
+
+
+@dataclass(frozen=True, kw_only=True)
+class Edges:
+    """How the pressure ends.
+
+    Attributes
+    ----------
+    power : int
+        The power of the pressure that falls to the edge of a contact as a straight line does.
+    bounded : bool
+        Whether the pressure stays finite where a contact reaches the end of the bore.
+    """
+
+    power: int
+    bounded: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class States:
+    """Contacts of one joint.
+
+    Attributes
+    ----------
+    bed : Bed
+    rest : Rest
+    axes : array (contacts, 3)
+        Unit vectors along which the pressure at the pole is read and angles count, in the cup's frame.
+    edges : Edges
+    dislocated : array of bool (contacts,)
+        Whether the bore does not hold the ball.
+    """
+
+    bed: Bed
+    rest: Rest
+    axes: Numbers
+    edges: Edges
+    dislocated: Numbers
+
+    @property
+    def lost(self) -> Numbers:
+        """1 where the ball leaves the bore."""
+        return self.dislocated.astype(float)
+
+    @property
+    def unsettled(self) -> Numbers:
+        """1 where the iteration did not end."""
+        return (~self.rest.found & ~self.dislocated).astype(float)
+
+    @cached_property
+    def patches(self) -> tuple[Patch, ...]:
+        grid = self.bed.compliance.grid
+        pairs = zip(self.rest.pressure, self.axes, strict=True)
+        return tuple(Patch(grid=grid, pressure=p, axis=axis, power=self.edges.power) for p, axis in pairs)
+
+    @cached_property
+    def force_vector(self) -> Numbers:
+        """The load on the cup in N: (3, contacts), in the cup's frame."""
+        return self.bed.force(self.rest.pressure).T
+
+    @property
+    def displacement(self) -> Numbers:
+        """Of the ball's centre from the centre of the bore in mm: (3, contacts)."""
+        return self.rest.displacement.T
+
+    @property
+    def force(self) -> Numbers:
+        """The size of the load in N."""
+        return numpy.linalg.norm(self.force_vector, axis=0)
+
+    @property
+    def indentation(self) -> Numbers:
+        """How far the ball moved on after it could first touch, in mm."""
+        return numpy.linalg.norm(self.displacement, axis=0) - self.bed.separation.clearance
+
+    @cached_property
+    def tangent(self) -> Numbers:
+        """The stiffness in N/mm: (3, 3, contacts)."""
+        stretched = self.bed.stretched(self.rest.displacement, self.rest.pressure, tolerance=1e-6)
+        return numpy.moveaxis(self.bed.tangent(stretched), 0, -1)
+
+    @property
+    def stiffness(self) -> Numbers:
+        """Slope of the load along itself over the displacement's length, in N/mm."""
+        along, way = (each / numpy.linalg.norm(each, axis=0) for each in (self.force_vector, self.displacement))
+        return numpy.einsum("kn,kln,ln->n", along, self.tangent, way)
+
+    @property
+    def energy(self) -> Numbers:
+        """Stored in both bodies, in N mm."""
+        p = self.rest.pressure
+        given = self.bed.compliance.displacement(p)
+        return self.bed.area * self.bed.compliance.grid.total(p, given) / 2
+
+    @property
+    def pressure_integral(self) -> Numbers:
+        """∫ p dA in N."""
+        p = self.rest.pressure
+        return self.bed.area * self.bed.compliance.grid.total(p, numpy.ones_like(p))
+
+    def _each(self, law: str) -> Numbers:
+        return numpy.array([getattr(patch, law) for patch in self.patches])
+
+    @property
+    def half_angle(self) -> Numbers:
+        """Of round contacts of the same area, in rad."""
+        return self._each("half_angle")
+
+    @property
+    def edge_loaded(self) -> Numbers:
+        """1 where there is pressure at the end of the bore."""
+        return self._each("edge_loaded").astype(float)
+
+    @property
+    def edge_margin(self) -> Numbers:
+        """The angle in rad from the contact to the end of the bore."""
+        return self._each("edge_margin")
+
+    @property
+    def unbounded(self) -> Numbers:
+        """1 where the pressure has no largest value, at an edge that digs in."""
+        return self.edge_loaded * (not self.edges.bounded)
+
+    @property
+    def max_pressure(self) -> Numbers:
+        """The largest pressure in MPa, infinite at an edge that digs in."""
+        largest = numpy.array([patch.largest[0] for patch in self.patches])
+        return numpy.where(self.unbounded == 1, numpy.inf, largest)
+
+    @property
+    def max_pressure_at(self) -> Numbers:
+        """Unit vectors to the largest pressures: (3, contacts)."""
+        return numpy.array([patch.largest[1] for patch in self.patches]).reshape(-1, 3).T
+
+    @property
+    def max_pressure_angle(self) -> Numbers:
+        """From the load to the largest pressure, in rad."""
+        across = numpy.linalg.norm(numpy.cross(self.max_pressure_at.T, self.axes), axis=1)
+        return numpy.arctan2(across, (self.max_pressure_at.T * self.axes).sum(axis=1))
+
+    @property
+    def pole_pressure(self) -> Numbers:
+        """Where the axis of the load meets the bore, in MPa."""
+        return numpy.array([float(patch.at(patch.axis)) for patch in self.patches])
+
+    def pressure(self, angle: Numbers) -> Numbers:
+        """p in MPa at angles (anything, contacts) from the load, in its plane with the cup's axis, towards the rim."""
+        columns = [patch.along(angle[:, i]) for i, patch in enumerate(self.patches)]
+        return numpy.stack(columns, axis=-1) if columns else numpy.zeros_like(angle)
+
+    def errors(self, kind: str) -> dict[str, Numbers]:
+        """Relative errors as those of contacts so wide on rings of this width; what was given is exact."""
+        grid = self.bed.compliance.grid
+        area = ((self.rest.pressure > 0) * grid.areas).sum(axis=(1, 2))
+        share = grid.width**2 * numpy.pi / numpy.maximum(area, grid.areas.min())  # of a flat circle of that area
+        errors = {name: _SHARPEST + factor * share for name, factor in _AREAS.items()}
+        errors |= {name: _SHARPEST + factor * numpy.sqrt(share) for name, factor in _EDGES.items()}
+        errors[kind] = 0.0 * share
+        return {name: errors[name] for name in QUANTITIES}

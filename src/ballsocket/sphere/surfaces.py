@@ -1,0 +1,83 @@
+"""What the socket's surface can be made of: springs, a closed shell, or the cup as it is built."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy
+
+from ..arrays import Numbers
+from ..cup import Cup
+from ..elastic.modes import socket_of
+from ..joint import Joint
+from ..models.modulus import Modulus, hess_forsbach
+
+if TYPE_CHECKING:
+    from .grid import Grid
+
+
+class Surface(Protocol):
+    """How the bore gives way."""
+
+    def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+        """The mean displacement of cells by the pressure of cells, for each m, in mm/MPa: (m, rings, rings)."""
+        ...
+
+    @property
+    def power(self) -> int:
+        """The power of the pressure that falls to the edge of a contact as a straight line does."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class RealCup:
+    """The cup as it is built: its rim, arc of cover, chamfer, the layers behind it, by finite elements of its meridian.
+
+    One stiffness for each harmonic about the cup's own axis, whatever direction the load has. What it takes a second
+    to set up is kept on disk, for each R2/L, ν, arc of cover, chamfer and backing; Young's modulus scales it.
+    """
+
+    def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+        from .real_cup import cup_rings
+
+        return grid.averaged(cup_rings(joint, cup, grid))
+
+    @property
+    def power(self) -> int:
+        return 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClosedShell:
+    """A shell that is closed all around, as `Exact` has it: the rim ends the contact and nothing else."""
+
+    def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+        from .rings_of_modes import modal_rings
+
+        return grid.averaged(modal_rings(socket_of(joint).compliance, grid))
+
+    @property
+    def power(self) -> int:
+        return 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Springs:
+    """Radial springs that know nothing of each other: the paper's foundation.
+
+    Parameters
+    ----------
+    modulus : Modulus
+        From a joint to K in MPa/mm; the paper's fit by default.
+    """
+
+    modulus: Modulus = hess_forsbach
+
+    def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+        each = numpy.eye(grid.rings) / float(self.modulus(joint))
+        return numpy.broadcast_to(each, (grid.degrees + 1, *each.shape))
+
+    @property
+    def power(self) -> int:
+        return 1

@@ -1,0 +1,42 @@
+"""What wear, form and fit take off a bore that was a sphere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy
+
+from ..arrays import Numbers
+
+
+class Shape(Protocol):
+    """How much deeper than the sphere a bore is: a function of directions."""
+
+    def depth(self, directions: Numbers) -> Numbers:
+        """In mm, positive where material is missing, at unit vectors (3, ...) in the cup's frame."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Worn:
+    """A bore that is worn, out of round or imperfect, as a function.
+
+    Parameters
+    ----------
+    of : function
+        From unit vectors (3, ...) in the cup's frame (z to the dome's pole, x in the plane in which a tilt counts) to
+        the depth in mm, positive where material is missing.
+
+    Examples
+    --------
+    An ellipse that a press fit squeezes by 30 µm across y:
+
+    >>> squeezed = Worn(of=lambda n: 0.030 * (n[0] ** 2 - n[1] ** 2) / 2)
+    """
+
+    of: Callable[[Numbers], Numbers]
+
+    def depth(self, directions: Numbers) -> Numbers:
+        return numpy.broadcast_to(self.of(directions), directions.shape[1:])

@@ -1,0 +1,91 @@
+"""Tilted loads from the command line and from files."""
+
+import json
+
+import pytest
+
+from ..places import EXAMPLES
+from .command import run
+
+NUMBERS = (
+    "--ball-radius",
+    "17.9",
+    "--clearance",
+    "0.1",
+    "--liner-thickness",
+    "6.75",
+    "--young",
+    "1GPa",
+    "--poisson",
+    "0.4",
+)
+COARSE = ("--ring-width", "4 deg")
+KEYS = {
+    "force",
+    "force_vector",
+    "max_pressure",
+    "max_pressure_at_deg",
+    "edge_distance",
+    "edge_loaded",
+    "status",
+    "valid",
+}
+
+
+def answered(*words):
+    done = run("press", *words, "--json")
+    assert done.returncode == 0, done.stderr
+    return {result["model"]: result for result in json.loads(done.stdout)["results"]}
+
+
+def test_a_tilt_asks_sphere():
+    sphere = answered(*NUMBERS, "--model", "sphere", "--tilt", "45", "--indentation", "0.04")["sphere"]
+    assert set(sphere) >= KEYS
+    assert sphere["status"] == "OK"
+    lateral, across, axial = sphere["force_vector"]
+    assert (lateral, axial) == pytest.approx((2101, 2134), rel=2e-3)
+    assert across == pytest.approx(0, abs=1e-3)
+    assert sphere["max_pressure_at_deg"][0] == pytest.approx(45, abs=0.5)
+    assert not sphere["edge_loaded"]
+    assert "sphere" in answered(*NUMBERS, *COARSE, "--tilt", "45 deg", "--force", "1kN")
+
+
+def test_a_file_says_where_the_load_points_and_the_words_win():
+    path = str(EXAMPLES / "tilted_hip.toml")
+    inside, over = (answered(path, *COARSE, *more)["sphere"] for more in ((), ("--tilt", "75 deg")))
+    assert inside["force"] == over["force"] == 3000
+    assert not inside["edge_loaded"]
+    assert over["edge_loaded"]
+    assert over["edge_distance"] < 0 < inside["edge_distance"]
+
+
+def test_models_that_know_no_rim_are_not_trusted_near_it():
+    results = answered("hip-36", *COARSE, "--force", "3kN", "--tilt", "60", "--model", "sphere", "--model", "refined")
+    assert results["sphere"]["valid"]
+    assert not results["refined"]["valid"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--tilt", "200 deg"), "tilt = 200"),
+        (("--tilt", "steep"), "tilt = 'steep'"),
+        (("--direction", "1,0"), "three numbers"),
+        (("--direction", "0,0,0"), "points somewhere"),
+        (("--tilt", "10", "--direction", "0,0,1"), "both"),
+        (("--tilt", "10", "--model", "fem"), "ask --model sphere"),
+        (("--tilt", "10", "--ring-width", "20 deg"), "0.5 to 6 degrees"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_in_a_sentence(words, said):
+    done = run("press", "hip-36", "--force", "3kN", *words)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_load_out_of_the_bore_says_where_it_ends():
+    done = run("press", "hip-36", "--force", "3kN", "--tilt", "120", *COARSE)
+    assert done.returncode == 3
+    assert "dislocated" in done.stdout
+    assert "120.0°" in done.stdout
