@@ -11,6 +11,7 @@ import ballsocket as bs
 
 from .joints import HIP
 
+PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
 GOOD = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "liner": bs.UHMWPE}
 
 
@@ -282,6 +283,84 @@ def test_compare_prints_a_row_a_model_and_the_reasons_for_the_missing():
         bs.compare(HIP, force=-1.0)
 
 
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (
+            lambda: bs.Exact().press("Hip 28", force=1.0),
+            r"joint must be a Joint, got 'Hip 28'; bs.joints\['hip-28'\] ",
+        ),
+        (lambda: bs.Exact().press(28.0, force=1.0), r"joint must be a Joint, got 28\.0$"),
+        (lambda: bs.PinInHole().press("hip-28", line_load=1.0), "joint must be a Joint, got 'hip-28'"),
+        (lambda: bs.Exact().press(HIP, 3000.0), r"a load needs its name: force=3000\.0 in N"),
+        (lambda: bs.PinInHole().press(HIP, 30.0), "a load needs its name: line_load in N/mm"),
+        (lambda: bs.compare(HIP, 3000.0), r"a load needs its name: force=3000\.0 in N"),
+        (lambda: bs.compare("hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
+        (lambda: bs.compare(HIP, force=1.0, models=["exact"]), r"models must be a mapping .* got \['exact'\]$"),
+        (lambda: bs.compare(HIP, force=1.0, models={"exact": "exact"}), r"models\['exact'\] must be a model"),
+        (
+            lambda: bs.study("exact", HIP, force=1.0),
+            r"model must be a Model, got 'exact'; bs.catalogue\['exact'\] is",
+        ),
+        (lambda: bs.study(bs.Exact(), "hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
+        (lambda: bs.study(bs.Exact(), HIP, 3000.0), r"design must be a Design, .* got 3000\.0; loads have names"),
+    ],
+)
+def test_what_is_something_else_is_told_in_a_sentence(ask, message):
+    with pytest.raises(TypeError, match=message):
+        ask()
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda: bs.joints["hip36"], "joint 'hip36' is not known; did you mean 'hip-36'"),
+        (lambda: bs.materials["UHMPE"], "material 'UHMPE' is not known; did you mean 'uhmwpe'"),
+        (lambda: bs.catalogue["hess"], "model 'hess' is not known; did you mean 'hess-forsbach'"),
+        (lambda: bs.compare(HIP, force=1.0)["herz"], "model 'herz' was not asked; did you mean 'hertz'"),
+    ],
+)
+def test_a_name_that_is_not_known_is_told_with_the_nearest(ask, message):
+    with pytest.raises(KeyError, match=message):
+        ask()
+
+
+def test_presets_travel_between_processes():
+    assert pickle.loads(pickle.dumps(bs.materials)) == bs.materials
+
+
+def test_contacts_are_dictionaries_and_frames():
+    contact = bs.Exact().press(HIP, force=np.array([[1000.0], [3000.0]]))
+    assert contact.to_dict() == contact.summary()
+    frame = contact.to_frame()
+    np.testing.assert_array_equal(frame.max_pressure_MPa, contact.max_pressure.ravel())
+    np.testing.assert_array_equal(frame.half_angle_deg, np.degrees(contact.half_angle).ravel())
+    assert frame.valid.tolist() == [True, True]
+    assert len(PRESSED.to_frame()) == 1
+
+
+def test_a_comparison_is_a_frame():
+    answers = bs.compare(HIP.replace(liner_thickness=np.inf), force=1000.0)
+    frame = answers.to_frame()
+    assert list(frame.index) == [*answers, *answers.missing]
+    assert frame.max_pressure_MPa["hertz"] == answers["hertz"].max_pressure
+    assert np.isnan(frame.max_pressure_MPa["bonded-layer"])
+    assert frame.notes["bonded-layer"] == answers.missing["bonded-layer"]
+    many = bs.compare(HIP, force=[1000.0, 3000.0]).to_frame()
+    assert many.loc[("exact", 1)].force_N == 3000.0
+
+
+def test_contacts_and_comparisons_draw_themselves():
+    (left, right), few = PRESSED.plot().axes, {"exact": bs.Exact(), "hertz": bs.Hertz()}
+    assert left.lines[0].get_ydata()[0] == PRESSED.max_pressure
+    assert right.lines[-1].get_ydata() == pytest.approx([3.0])
+    assert len(bs.compare(HIP, force=1000.0, models=few).plot().axes[0].lines) == 2
+    with pytest.raises(ValueError, match="a plot shows one contact of a model, and here are 2: a study draws many"):
+        bs.Hertz().press(HIP, force=[1.0, 2.0]).plot()
+    with pytest.raises(ValueError, match="there is nothing to draw: no model has an answer"):
+        bs.Exact().press(HIP, force=1e13).plot()
+
+
 def test_a_displacement_has_three_components():
     model = bs.HessForsbach()
     assert model.force_vector(HIP, [0.0, 0.0, 0.12]).shape == (3,)
@@ -345,9 +424,6 @@ def test_ratios_without_load():
     assert contact.conformity == np.inf
     assert contact.foundation_modulus == pytest.approx(bs.hess_forsbach(HIP))
     assert bs.Hertz().press(HIP, force=0.0).foundation_modulus == np.inf
-
-
-PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
 
 
 @pytest.mark.parametrize(

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy
 
 from . import arrays
 from .arrays import Array, where
-from .checks import one_load
+from .checks import one_load, plain_name, shown
 from .contact import Contact, Laws, Pressed
 from .joint import Joint
+from .presets import joints
 from .quantities import LOADS
 from .validity import Status, missing
 
@@ -35,6 +36,15 @@ class Asked(Pressed, Protocol):
 
     @property
     def contact_type(self) -> type[Contact]: ...
+
+
+def check_joint(joint: Any) -> None:
+    """Raise TypeError for what is no joint, the name of a preset among them."""
+    if isinstance(joint, Joint):
+        return
+    preset = isinstance(joint, str) and plain_name(joint) in joints
+    hint = f"; bs.joints[{plain_name(joint)!r}] is one" if preset else ""
+    raise TypeError(f"joint must be a Joint, got {shown(joint)}{hint}")
 
 
 def checked_load(**loads: Array | None) -> tuple[str, Array]:

@@ -109,6 +109,13 @@ def _refusal(name: str, value: Any) -> str:
     return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {what}{hint}"
 
 
+def refuse_unnamed(loads: tuple[Any, ...]) -> None:
+    """Raise TypeError for loads without a name."""
+    if loads:
+        given = shown(loads[0])
+        raise TypeError(f"a load needs its name: force={given} in N, indentation={given} in mm or half_angle={given}")
+
+
 def in_radians(value: float) -> str:
     """What somebody means who gives an angle in degrees."""
     return f"{value:g} degrees are {radians(value):.4g} radians"

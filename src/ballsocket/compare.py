@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
+from importlib import import_module
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from .arrays import Array, to_list, where
 from .catalogue import catalogue, reference
-from .checks import one_load
+from .checks import nearest, needs, one_load, refuse_unnamed, shown
 from .contact import Contact
 from .cup import Cup
 from .describe import COLUMNS, UTILISATION, count, number_text
@@ -22,6 +23,10 @@ from .quantities import HEADLINE
 from .sources import Source
 from .validity import OutsideDomainError
 from .version import __version__
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, repr=False)
@@ -38,6 +43,8 @@ class Comparison(Mapping[str, Contact]):
     def __getitem__(self, name: str) -> Contact:
         if name in self.missing:
             raise KeyError(self.missing[name])
+        if name not in self.contacts:
+            raise KeyError(f"model {shown(name)} was not asked{nearest(name, self.contacts)}")
         return self.contacts[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -88,6 +95,34 @@ class Comparison(Mapping[str, Contact]):
         ]
         return {"version": __version__, "joint": self.joint.summary(), "results": [*answers, *missing]}
 
+    def to_frame(self) -> pandas.DataFrame:
+        """A row a model and point, by the name of the model; columns end in their units, the last has the notes.
+
+        Raises
+        ------
+        ImportError
+            pandas is not installed.
+        """
+        needs("study", "pandas")
+        import pandas
+
+        told = {name: contact.to_frame().assign(notes="; ".join(contact.notes)) for name, contact in self.items()}
+        told |= {name: pandas.DataFrame({"valid": [False], "notes": [why]}) for name, why in self.missing.items()}
+        whole = pandas.concat(told, names=["model"])
+        return whole.droplevel(1) if all(len(each) == 1 for each in told.values()) else whole
+
+    def plot(self) -> Figure:
+        """The pressure over the angle beside the force over the indentation, of all models that have an answer.
+
+        Raises
+        ------
+        ValueError
+            More than one contact a model, or none that has an answer.
+        """
+        # as in `Contact.plot`
+        made: Figure = import_module("ballsocket.output.quick_plot").plot(self.contacts)
+        return made
+
     def __repr__(self) -> str:
         table = [HEADS, *self.rows()]
         widths = [max(len(row[i]) for row in table) for i in range(len(HEADS))]
@@ -121,7 +156,7 @@ HEADS = ("model", *(column.head for column in _SHOWN), "valid")
 
 def compare(
     joint: Joint,
-    *,
+    *unnamed: Any,
     force: Array | None = None,
     indentation: Array | None = None,
     half_angle: Array | None = None,
@@ -149,6 +184,8 @@ def compare(
     ------
     ValueError
         A load that is not allowed.
+    TypeError
+        A load without its name; models that are no mapping.
 
     Examples
     --------
@@ -157,6 +194,12 @@ def compare(
     >>> round(answers["bartel"].max_pressure, 3)
     11.717
     """
+    refuse_unnamed(unnamed)
+    if not (models is None or isinstance(models, Mapping)):
+        raise TypeError(f"models must be a mapping such as {{'exact': bs.Exact()}}, got {shown(models)}")
+    for name, model in ({} if models is None else models).items():
+        if isinstance(model, type) or not hasattr(model, "press"):
+            raise TypeError(f"models[{name!r}] must be a model, such as bs.Exact(), got {shown(model)}")
     kind, load = one_load(force=force, indentation=indentation, half_angle=half_angle)
     keyword: dict[str, Any] = {kind: load}
     contacts, missing = {}, {}

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 from math import cos, inf, pi, sin
 from operator import attrgetter
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy
 
@@ -19,6 +20,9 @@ from .kinds import Unit
 from .outcome import Answerer, Outcome
 from .quantities import QUANTITIES
 from .validity import Range
+
+if TYPE_CHECKING:
+    import pandas
 
 
 class Pressed(Answerer, Protocol):
@@ -283,6 +287,35 @@ class Contact(Outcome):
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON in N, mm, MPa and degrees; arrays become (nested) lists, a missing number None."""
         return describe.summary(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as `summary()`."""
+        return self.summary()
+
+    def to_frame(self) -> pandas.DataFrame:
+        """A row a point; the names of the columns end in their units, "max_pressure_MPa", "half_angle_deg".
+
+        Raises
+        ------
+        ImportError
+            pandas is not installed.
+        """
+        return describe.frame(self)
+
+    def plot(self) -> Any:
+        """The pressure over the angle beside the force over the indentation, of a single contact.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ValueError
+            More than one contact, or one that has no answer.
+        """
+        # pictures are made floors above, where contacts are known: looked up when they are asked for, never imported
+        return import_module("ballsocket.output.quick_plot").plot({self.model.name: self})
 
     def __repr__(self) -> str:
         return describe.text(self)

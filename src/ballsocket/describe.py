@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from . import arrays
 from .arrays import Array
+from .checks import needs
 from .kinds import Unit
 from .quantities import BEARING, CONTACT, Quantity
+
+if TYPE_CHECKING:
+    import pandas
 
 
 @dataclass(frozen=True)
@@ -77,6 +81,15 @@ def summary(contact: Any) -> dict[str, Any]:
     borne = {UTILISATION.name: arrays.to_list(UTILISATION.of(contact))}
     valid = arrays.to_list(contact.valid)
     return {"model": contact.model.name, **numbers, **borne, "valid": valid, "notes": list(contact.notes)}
+
+
+def frame(contact: Any) -> pandas.DataFrame:
+    """A row a point."""
+    needs("study", "pandas")
+    import pandas
+
+    columns = {column.quantity.column: arrays.to_numpy(column.of(contact)).ravel() for column in COLUMNS}
+    return pandas.DataFrame({**columns, "valid": arrays.to_numpy(contact.valid).ravel()})
 
 
 def text(contact: Any) -> str:

@@ -11,9 +11,9 @@ from typing import Any, ClassVar
 import numpy
 
 from . import arrays
-from .answer import Answer, checked_load, finished, finished_number, prepared, spread
+from .answer import Answer, check_joint, checked_load, finished, finished_number, prepared, spread
 from .arrays import Array, where
-from .checks import require, vectors
+from .checks import refuse_unnamed, require, vectors
 from .contact import Contact, Laws
 from .cup import Cup, Interface
 from .joint import Joint
@@ -105,7 +105,7 @@ class Model(Theory):
     def press(
         self,
         joint: Joint,
-        *,
+        *unnamed: Any,
         force: Array | None = None,
         indentation: Array | None = None,
         half_angle: Array | None = None,
@@ -131,7 +131,11 @@ class Model(Theory):
         ------
         ValueError
             Not exactly one load; a load that is not allowed; no point at all inside the model's domain.
+        TypeError
+            What is no joint; a load without its name.
         """
+        refuse_unnamed(unnamed)
+        check_joint(joint)
         kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
         given = spread(given, joint.strengths())
         if self._takes_numbers(joint, given):

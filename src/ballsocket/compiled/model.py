@@ -8,8 +8,9 @@ from typing import Any
 import numpy
 
 from .. import arrays
-from ..answer import Answer, checked_load, prepared, spread
+from ..answer import Answer, check_joint, checked_load, prepared, spread
 from ..arrays import Array
+from ..checks import refuse_unnamed
 from ..contact import Contact
 from ..elastic.tabulated.model import Tabulated
 from ..joint import Joint
@@ -54,11 +55,13 @@ class Compiled(Wrapped):
     def press(
         self,
         joint: Joint,
-        *,
+        *unnamed: Any,
         force: Array | None = None,
         indentation: Array | None = None,
         half_angle: Array | None = None,
     ) -> Contact:
+        refuse_unnamed(unnamed)
+        check_joint(joint)
         kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
         given = spread(given, joint.strengths())
         if kind == "force" and isinstance(self.model, RadialFoundation) and self._in_one_pass(joint, given):

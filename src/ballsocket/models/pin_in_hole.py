@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, inf, pi
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy
 
 from .. import arrays
-from ..answer import prepared
+from ..answer import check_joint, prepared
 from ..arrays import Array, asinh, atan, broadcast, clip, divisor, increasing_root, log, sqrt, tan, where
 from ..checks import numeric, one_load, require
 from ..joint import Joint
@@ -48,7 +48,9 @@ class PinInHole(Theory):
             Range(quantity="joint.thickness_ratio", high=0.1, why=massive),
         )
 
-    def press(self, joint: Joint, *, line_load: Array | None = None, half_angle: Array | None = None) -> LineContact:
+    def press(
+        self, joint: Joint, *unnamed: Any, line_load: Array | None = None, half_angle: Array | None = None
+    ) -> LineContact:
         """Press by exactly one of a line load and a half angle.
 
         Parameters
@@ -69,6 +71,9 @@ class PinInHole(Theory):
         ValueError
             Not exactly one load; a line load that is negative or infinite; a half angle outside 0 to 84.83 degrees.
         """
+        if unnamed:
+            raise TypeError("a load needs its name: line_load in N/mm or half_angle in rad")
+        check_joint(joint)
         kind, given = one_load(line_load=line_load, half_angle=half_angle)
         load = numeric(kind, given)
         if kind == "line_load":

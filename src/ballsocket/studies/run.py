@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..checks import check_names, needs
+from ..answer import check_joint
+from ..catalogue import catalogue
+from ..checks import check_names, needs, shown
 from ..engines.local import Engine, Serial
 from ..joint import Joint
 from ..model import Model
@@ -109,6 +111,7 @@ def study(
     11.27
     """
     needs("study", "xarray", "zarr")
+    _check(model, joint, design)
     task = _task(model, joint, design, axes, tuple(quantities))
     kept = None if store is None else Store(Path(store).absolute())
     if kept is None or not kept.path.exists():
@@ -139,6 +142,16 @@ def read(path: str | Path) -> xarray.Dataset:
         Store(Path(path)).study()
     found = xarray.open_dataset(path, engine="zarr", consolidated=False, chunks=None)
     return arranged(found[[name for name in DTYPES if name in found.data_vars]])
+
+
+def _check(model: Any, joint: Any, design: Any) -> None:
+    """Raise TypeError for what is something else."""
+    if not isinstance(model, Model):
+        hint = f"; bs.catalogue[{model!r}] is one" if isinstance(model, str) and model in catalogue else ""
+        raise TypeError(f"model must be a Model, got {shown(model)}{hint}")
+    check_joint(joint)
+    if not (design is None or isinstance(design, Design)):
+        raise TypeError(f"design must be a Design, from grid, sample or table, got {shown(design)}; loads have names")
 
 
 def _task(model: Model, joint: Joint, design: Design | None, axes: dict[str, Any], quantities: tuple[str, ...]) -> Task:
