@@ -121,6 +121,7 @@ _WRONG = {
     "clearance": -0.1,
     "arc_of_cover": 0.5,
     "anteversion": 2.0,
+    "angle": 4.0,
 }
 
 

@@ -302,8 +302,6 @@ def test_compare_prints_a_row_a_model_and_the_reasons_for_the_missing():
             lambda: bs.study("exact", HIP, force=1.0),
             r"model must be a Model, got 'exact'; bs.catalogue\['exact'\] is",
         ),
-        (lambda: bs.study(bs.Exact(), "hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
-        (lambda: bs.study(bs.Exact(), HIP, 3000.0), r"design must be a Design, .* got 3000\.0; loads have names"),
     ],
 )
 def test_what_is_something_else_is_told_in_a_sentence(ask, message):
@@ -330,6 +328,7 @@ def test_presets_travel_between_processes():
 
 
 def test_contacts_are_dictionaries_and_frames():
+    pytest.importorskip("pandas")
     contact = bs.Exact().press(HIP, force=np.array([[1000.0], [3000.0]]))
     assert contact.to_dict() == contact.summary()
     frame = contact.to_frame()
@@ -340,6 +339,7 @@ def test_contacts_are_dictionaries_and_frames():
 
 
 def test_a_comparison_is_a_frame():
+    pytest.importorskip("pandas")
     answers = bs.compare(HIP.replace(liner_thickness=np.inf), force=1000.0)
     frame = answers.to_frame()
     assert list(frame.index) == [*answers, *answers.missing]
@@ -441,7 +441,6 @@ def test_ratios_without_load():
             lambda: bs.study(bs.Hertz(), HIP, half_angle=[20, 40]),
             "half_angle.* = 20 .*; 20 degrees are 0.3491 rad",
         ),
-        (lambda: bs.studies.Limit(name="half_angle", high=45), "half_angle = 45 .*; 45 degrees are 0.7854 radians$"),
     ],
 )
 def test_an_angle_that_can_only_be_degrees_is_told_in_radians(ask, message):

@@ -201,7 +201,10 @@ class Contact(Outcome):
         TypeError
             What is neither a number nor an array.
         """
-        angle = QUANTITIES["angle"].checked(angle)
+        angle = numeric("angle", angle)
+        QUANTITIES["angle"].checked(
+            arrays.where(angle == angle, angle, 0.0)
+        )  # where there is no edge angles are missing
         if self._is_plain and arrays.is_plain(angle):
             return self._asked(lambda laws: laws.pressure(float(angle)))
         _, angle = arrays.common(self.indentation, angle)

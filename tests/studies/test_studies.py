@@ -98,6 +98,29 @@ def test_diameters_are_axes():
         bs.study(bs.HessForsbach(), HIP, head_diameter=[30.0], ball_radius=[15.0], force=1.0)
 
 
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda: bs.study(bs.Exact(), "hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
+        (lambda: bs.study(bs.Exact(), HIP, 3000.0), r"design must be a Design, .* got 3000\.0; loads have names"),
+    ],
+)
+def test_what_is_something_else_is_told_in_a_sentence(ask, message):
+    with pytest.raises(TypeError, match=message):
+        ask()
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda: bs.studies.Limit(name="half_angle", high=45), "half_angle = 45 .*; 45 degrees are 0.7854 radians$"),
+    ],
+)
+def test_an_angle_that_can_only_be_degrees_is_told_in_radians(ask, message):
+    with pytest.raises(ValueError, match=message):
+        ask()
+
+
 LINERS = [bs.UHMWPE, bs.CROSSLINKED_PE, bs.POM]
 
 
