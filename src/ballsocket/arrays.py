@@ -61,6 +61,7 @@ def _elementwise(name: str, of_number: Callable[[float], float]) -> Callable[[Ar
 
 exp = _elementwise("exp", math.exp)
 log = _elementwise("log", math.log)
+log1p = _elementwise("log1p", math.log1p)
 sin = _elementwise("sin", math.sin)
 cos = _elementwise("cos", math.cos)
 tan = _elementwise("tan", math.tan)

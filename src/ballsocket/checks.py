@@ -65,7 +65,7 @@ def numeric(name: str, value: Any) -> Array:
         return _in_range(name, value)
     if not hasattr(value, "dtype") or isinstance(value, numpy.ma.MaskedArray) or not _is_real(value):
         raise TypeError(_refusal(name, value))
-    return value
+    return common(value)[0]  # integers as floats, before they are added
 
 
 def vectors(name: str, value: Any, axes: str) -> Array:

@@ -187,12 +187,15 @@ class Nowhere(Range):
 
 
 def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
-    """Where all of a model's (or modulus') domain holds for a joint; OutsideDomainError where it does nowhere."""
+    """Where all of a model's (or modulus') domain holds for a joint; OutsideDomainError where it does nowhere.
+
+    Of no joint at all it holds.
+    """
     points: Array = joint.ball_radius == joint.ball_radius
     asked = SimpleNamespace(joint=joint)
     for limit in domain:
         holds = limit.strictly_holds(asked)
-        if truth(false(holds)):
+        if truth(false(holds)) and 0 not in getattr(holds, "shape", ()):
             raise OutsideDomainError(f"{name} has no answer for {limit.value_text(joint)}: {limit.why}")
         points = points & holds
     return points

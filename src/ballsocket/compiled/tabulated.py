@@ -63,7 +63,8 @@ def _at(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
 @compilable
 def _functions(angle, curve):  # type: ignore[no-untyped-def]
     """The three functions and their slopes by ln ε, from T_k+1 = 2x T_k - T_k-1 and T_k' = k U_k-1."""
-    x = chebyshev.angle_place(angle, curve.ratio)
+    root = chebyshev.angle_root(angle, curve.ratio)
+    x = 2 * root - 1
     c, twice = curve.functions, 2 * x
     T, T_next, U, U_next = 1.0, x, 1.0, twice
     share, force, pole = c[0, 0] + c[0, 1] * x, c[1, 0] + c[1, 1] * x, c[2, 0] + c[2, 1] * x
@@ -78,12 +79,12 @@ def _functions(angle, curve):  # type: ignore[no-untyped-def]
         force_slope += c[1, k] * rise
         pole_slope += c[2, k] * rise
         U, U_next = U_next, twice * U_next - U
-    widening = formulas._widening(angle, x, curve.ratio)
+    widening = formulas._widening(angle, root, curve.ratio)
     return (share, widening * share_slope), (force, widening * force_slope), (pole, widening * pole_slope)
 
 
 for _formula in (
-    chebyshev.angle_place,
+    chebyshev.angle_root,
     formulas._widening,
     formulas.opening,
     formulas.contact,

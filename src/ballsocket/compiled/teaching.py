@@ -73,6 +73,11 @@ def _log(x: Any) -> Callable[..., Any]:
     return lambda x: math.log(x)
 
 
+@overload(arrays.log1p, strict=False)
+def _log1p(x: Any) -> Callable[..., Any]:
+    return lambda x: math.log1p(x)
+
+
 @overload(arrays.sin, strict=False)
 def _sin(x: Any) -> Callable[..., Any]:
     return lambda x: math.sin(x)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import radians
+from math import inf, radians
 
 import numpy
 
@@ -43,7 +43,7 @@ class Curve:
         """The contacts that belong to loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         given = load[touching]
-        angle = given if kind == "half_angle" else self._guess(kind, given)
+        angle = given if kind == "half_angle" or self._end == 0 else self._guess(kind, given)
         for points in _GRIDS:
             state, miss = self._solved(kind, given, self._bounded(angle), points)
             reached = (state.half_angle <= LIMIT) & (state.half_angle < self._end) & _sound(state)
@@ -100,7 +100,7 @@ class Curve:
         if self._end == _END:
             return self._first_look
         inside = _ANGLES[self._end > _ANGLES]
-        room = self._end - inside[-1]
+        room = self._end - inside.max(initial=0.0)
         return self._state(numpy.append(inside, self._end - room * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE)
 
     @cached_property
@@ -126,9 +126,10 @@ class Curve:
 
 
 def _sound(state: State) -> Numbers:
-    """Whether there is a contact: not beyond the perfect fit, nor where the ball does not reach."""
-    with numpy.errstate(invalid="ignore"):
-        return (state.indentation > 0) & (state.force > 0) & (state.pole_pressure > 0)
+    """Whether there is a contact: not beyond the perfect fit, where the ball does not reach, or without a number."""
+    with numpy.errstate(invalid="ignore", over="ignore", under="ignore"):
+        work = state.indentation * state.force  # infinite or zero before any of the other quantities
+        return (state.indentation > 0) & (state.pole_pressure > 0) & (work > 0) & (work < inf)
 
 
 def _steepness(kind: str, state: State) -> Numbers:

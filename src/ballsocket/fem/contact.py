@@ -56,9 +56,12 @@ class MeshedContact(SolvedContact):
     def _von_mises_of(self, place: Numbers, piece: Piece) -> Numbers:
         from .section import section
 
-        joint = joint_at(self.joint, self.laws.shape, int(place[0]))
         found = [
-            section(joint, self.model.cup, one).peak_stress.von_mises if one is not None else nan
+            nan
+            if one is None
+            else section(
+                joint_at(self.joint, self.laws.shape, int(place[0])), self.model.cup, one
+            ).peak_stress.von_mises
             for one in piece.state.solved
         ]
         return numpy.array(found, dtype=float)

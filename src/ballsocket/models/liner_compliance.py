@@ -71,23 +71,23 @@ def log_compliance(k: Array, liner: Liner) -> Pair:
     Q = k * k + 0.25
     q = sqrt(Q)
     y = exp((1 - q) * (2 * growth))
-    shrunk, decay = y * shrink * shrink, y * growth / q
+    shrunk, decay = y * y * shrink * shrink, growth / q
     above, rise = _sum(q, Q, y, shrunk, decay, upper)
     below, fall = _sum(q, Q, y, shrunk, decay, lower)
     return log((1 + poisson) * (above / below)), 2 * k * k * (rise / above - fall / below)
 
 
 def _sum(q: Array, Q: Array, y: Array, shrunk: Array, decay: Array, coefficients: tuple[Array, ...]) -> Pair:
-    """N or D over b^2q, and its slope by Q; `shrunk` is y b^-4, `decay` the slope of -y."""
+    """N or D over b^2q, and its slope by Q; `shrunk` is y² b^-4, `decay` the slope of -ln y."""
     e2, e1, e0, o1, o0, r3, r2, r1, r0 = coefficients
     steep, high = e2 * Q, o1 * Q
     even, even_slope = (steep + e1) * Q + e0, 2 * steep + e1
     odd, odd_slope = q * (high + o0), (3 * high + o0) / (2 * q)
-    inner = r3 * Q + r2
-    rest, rest_slope = (inner * Q + r1) * Q + r0, (2 * inner + r3 * Q) * Q + r1
+    inner, yQ = r3 * Q + r2, y * Q  # y first: Q³ is infinite in short waves, where y is long zero
+    rest, rest_slope = inner * yQ * Q + r1 * yQ + r0 * y, (2 * inner + r3 * Q) * yQ + r1 * y
     back = shrunk * (even - odd)
-    slope = even_slope + odd_slope + y * (rest_slope + shrunk * (even_slope - odd_slope)) - decay * (rest + 2 * back)
-    return even + odd + y * (rest + back), slope
+    slope = even_slope + odd_slope + rest_slope + shrunk * (even_slope - odd_slope) - decay * (rest + 2 * back)
+    return even + odd + rest + back, slope
 
 
 def log_compliance_anywhere(k: Array, liner: Liner) -> Pair:

@@ -13,7 +13,7 @@ from zipfile import BadZipFile
 import numpy
 
 from ... import arrays
-from ...arrays import Array, cos, exp, sqrt
+from ...arrays import Array, cos, exp, log1p, sqrt
 from ...arrays import log as ln
 
 LIMIT = radians(85.0)
@@ -49,8 +49,13 @@ def thickness_place(ratio: Array) -> Array:
 
 def angle_place(angle: Array, ratio: Array) -> Array:
     """ε as the root of a logarithm: the root tames ε ln ε at a point contact, the logarithm follows L."""
+    return 2 * angle_root(angle, ratio) - 1
+
+
+def angle_root(angle: Array, ratio: Array) -> Array:
+    """The root itself, from 0 to 1; of an angle as small as the rounding of 1 too."""
     near = NEAR * (1 + ratio)
-    return 2 * sqrt(ln(1 + near * angle) / ln(1 + near * LIMIT)) - 1
+    return sqrt(log1p(near * angle) / log1p(near * LIMIT))
 
 
 def angle_at(place: Array, ratio: Array) -> Array:

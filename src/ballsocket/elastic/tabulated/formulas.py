@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy
 
 from ... import arrays
-from ...arrays import Array, cos, exp, log, sin, where
-from .chebyshev import LIMIT, NEAR, angle_place, polynomials, waves_at
+from ...arrays import Array, cos, exp, log, log1p, sin, where
+from .chebyshev import LIMIT, NEAR, angle_root, polynomials, waves_at
 
 Pair = tuple[Array, Array]
 """A value and its slope."""
@@ -55,8 +55,8 @@ class Scale(NamedTuple):
 
 def at(angle: Array, curve: Curve, rows: tuple[int, ...]) -> tuple[Pair, ...]:
     """The functions in `rows` at ε > 0, and their slopes."""
-    place = angle_place(angle, curve.ratio)
-    widening = _widening(angle, place, curve.ratio)
+    root = angle_root(angle, curve.ratio)
+    place, widening = 2 * root - 1, _widening(angle, root, curve.ratio)
     if type(angle) is float:
         both = (curve.functions @ waves_at(place, curve.functions.shape[1])).tolist()
         return tuple((both[k], widening * both[k + 3]) for k in rows)
@@ -72,10 +72,10 @@ def summed(coefficients: Array, waves: Array) -> Array:
     return numpy.einsum("ij,ij->j", coefficients, waves) if xp is numpy else xp.sum(coefficients * waves, axis=0)
 
 
-def _widening(angle: Array, place: Array, ratio: Array) -> Array:
+def _widening(angle: Array, root: Array, ratio: Array) -> Array:
     """d(place)/d(ln ε)."""
     near = NEAR * (1 + ratio)
-    return 2 * near * angle / ((1 + near * angle) * log(1 + near * LIMIT) * (1 + place))
+    return near * angle / ((1 + near * angle) * log1p(near * LIMIT) * root)
 
 
 def opening(angle: Array, share: Pair) -> Pair:

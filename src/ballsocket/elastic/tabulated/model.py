@@ -86,8 +86,15 @@ class Tabulated(Model):
             laws=solution,
             force=F,
             indentation=d,
-            failures={Status.NOT_CONVERGED: arrays.false(_miss(kind, load, d, F) <= 1e4 * arrays.rounding(load))},
+            failures={
+                Status.NOT_CONVERGED: arrays.false(_miss(kind, load, d, F) <= _rounded(load, d / joint.clearance))
+            },
         )
+
+
+def _rounded(load: Array, depth: Array) -> Array:
+    """What a load may be missed by: near the perfect fit, d/c = `depth` to infinity, half angles hardly tell it."""
+    return arrays.rounding(load) * (1e4 + 1e2 * depth)
 
 
 def _miss(kind: str, load: Array, d: Array, F: Array) -> Array:

@@ -160,6 +160,10 @@ def _in_blocks(file: str, joint: Joint, load: Array, read: Reading) -> tuple[Arr
         return read(curves_of_one(file, joint), load if load > 0 else LITTLE)
     xp, numbers = arrays.namespace(load), joint.numbers()
     shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
+    if not prod(shape):  # the shape of nothing is that of something, cut off
+        one = xp.ones((1,), dtype=load.dtype)
+        some = read(Curves(file, joint.with_numbers([one for _ in numbers])), one)
+        return tuple(xp.reshape(part[..., :0], (*part.shape[:-1], *shape)) for part in some)
     alone = all(prod(part.shape) == 1 for part in numbers)
     shared, which = (None, None) if alone else _shared(file, joint, shape)
     wide = (part if prod(part.shape) == 1 else arrays.broadcast_to(part, shape) for part in numbers)
