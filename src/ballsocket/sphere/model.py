@@ -11,7 +11,7 @@ import numpy
 from .. import arrays
 from ..answer import Answer
 from ..arrays import Array, Numbers
-from ..checks import needs, numeric, require, vectors
+from ..checks import needs, numeric, refuse_unnamed, require, vectors
 from ..contact import Contact
 from ..cup import UP, Cup
 from ..fem.model import largest_poisson
@@ -136,7 +136,7 @@ class Sphere(Model):
     def press(
         self,
         joint: Joint,
-        *,
+        *unnamed: Any,
         force: Array | None = None,
         indentation: Array | None = None,
         half_angle: Array | None = None,
@@ -169,7 +169,10 @@ class Sphere(Model):
         ------
         ValueError
             Not exactly one load; direction and tilt both; a number that is not allowed.
+        TypeError
+            What is no joint; a load without its name.
         """
+        refuse_unnamed(unnamed)
         return self.along(direction, tilt)._pressed(joint, force=force, indentation=indentation, half_angle=half_angle)
 
     def _pressed(self, joint: Joint, **load: Array | None) -> Contact:
