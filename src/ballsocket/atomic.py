@@ -49,7 +49,11 @@ def draft_folder(path: Path) -> Iterator[Path]:
         for old in path.parent.iterdir():
             if old.name.startswith(begin) and old.name.endswith(_DRAFT) and _forsaken(old):
                 rmtree(old, ignore_errors=True)
-    with TemporaryDirectory(prefix=begin, suffix=_DRAFT, dir=path.parent) as folder, _locked(Path(folder)):
+    try:
+        made = TemporaryDirectory(prefix=begin, suffix=_DRAFT, dir=path.parent)
+    except OSError as error:  # of the name that was asked for, not of the draft's
+        raise OSError(error.errno, error.strerror, str(path)) from error
+    with made as folder, _locked(Path(folder)):
         yield Path(folder)
 
 

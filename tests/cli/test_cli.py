@@ -84,6 +84,39 @@ def test_names_of_files_are_shown_as_any_terminal_can(tmp_path):
     (tmp_path / "a\x1b[31m.toml").write_text("joint = 3", encoding="utf-8")
     done = run("press", "a\x1b[31m.toml", folder=tmp_path)
     assert done.stderr == "ballsocket: a\\x1b[31m.toml: joint = 3 must be a table: [joint]\n"
+    (tmp_path / "s.toml").write_text('joint = "hip-28"\nmodel = "hertz"\n[axes]\nforce = [1, 2]', encoding="utf-8")
+    done = run("study", "s.toml", "--out", "a\x1b[31m.csv", folder=tmp_path)
+    assert done.stdout.endswith("\na\\x1b[31m.csv\n")
+
+
+def test_a_refusal_is_one_line_of_bearable_length(tmp_path):
+    """Whatever is repeated in it, and whatever was about to be shown."""
+    done = run("press", "hip-28", "x" * 3000)
+    assert done.returncode == 2
+    assert len(done.stderr) < 700
+    (tmp_path / "s.toml").write_text('joint = "hip-28"\n[axes]\nclearance = 0.1', encoding="utf-8")
+    done = run("study", "s.toml", folder=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("ballsocket: one load is needed")
+    done = run("build-tables", "--out", "no/where.npz", folder=tmp_path)
+    assert done.stderr == "ballsocket: no/where.npz: No such file or directory\n"
+
+
+def test_a_few_samples_say_nothing_beside_their_answer():
+    """Two samples that are one have no interval; that is no warning to a user."""
+    words = (
+        "hip-22",
+        "--force",
+        "3.61e3",
+        "--spread",
+        "clearance=0.005+-0.005",
+        "--count",
+        "2",
+        "--model",
+        "tabulated",
+    )
+    done = run("sensitivity", *words)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_press_a_file():

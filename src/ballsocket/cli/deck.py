@@ -10,7 +10,7 @@ import typer
 from ..output.reference_terminal import print_rival
 from .elements import CupWords, MeshWords, timed
 from .groups import grouped
-from .root import app
+from .root import app, echo_path
 from .words import JointWords, LoadWords
 
 
@@ -39,6 +39,6 @@ def deck(
     from ..fem.export.deck import deck_of
 
     made = deck_of(contact, steps=steps, scale=scale)
-    typer.echo(f"{made.write(out)}: {contact.mesh.elements} elements, {steps} steps")
+    echo_path(made.write(out), f": {contact.mesh.elements} elements, {steps} steps")
     if run:
         print_rival(made.expected, run_ccx(out))

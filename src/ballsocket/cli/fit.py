@@ -17,7 +17,7 @@ from ..io.units import parse
 from ..kinds import Kind
 from ..output.reference_terminal import print_calibration, print_table_3
 from ..paper.table_3 import refit_table_3
-from .root import app
+from .root import app, echo_path
 from .words import AsJson, echo_json, named_joint
 
 _FORMS: dict[str, Form] = {
@@ -72,4 +72,4 @@ def build_tables(
 
     path = builder.SHIPPED if out is None else out
     do = builder.check if check else builder.build
-    typer.echo(f"{path}: {do(path, points=points, workers=workers)}")
+    echo_path(path, f": {do(path, points=points, workers=workers)}")

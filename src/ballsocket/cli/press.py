@@ -23,7 +23,7 @@ from ..validity import Status
 from . import elements
 from .groups import grouped
 from .off_axis import AimWords, aimed, along
-from .root import FAILURE, app
+from .root import FAILURE, app, complain
 from .words import AsJson, JointWords, LoadWords, echo_json
 
 DEFAULT_MODEL = "hess-forsbach"
@@ -119,7 +119,7 @@ def _end(comparison: Comparison, chosen: Iterable[str]) -> None:
     """Leave with a sentence and an exit status where the answer is a failure as a whole."""
     failure = _failure(comparison, chosen)
     if failure:
-        typer.echo(f"ballsocket: {failure}", err=True)
+        complain(failure)
         raise typer.Exit(FAILURE)
 
 

@@ -14,7 +14,7 @@ from ..checks import needs
 from ..engines.local import Processes
 from ..output.report import write_report
 from ..paper.plan import full_plan, quick_plan
-from .root import app
+from .root import app, echo_path
 
 
 @app.command()
@@ -37,4 +37,4 @@ def reproduce(
         results = plan.results(out / "data", lambda name: listen(description=name), engine)
         listen(advance=0, description="drawing")
         report = write_report(results, out, engine)
-    typer.echo(str(report))
+    echo_path(report)

@@ -10,6 +10,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import TextIOWrapper
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -28,6 +29,7 @@ app = typer.Typer(
 UsageError: Any = typer.BadParameter.__base__  # typer brings a click of its own, and does not export this
 DONE, MISUSE, FAILURE = 0, 2, 3
 STOPPED, NOBODY_READS = 130, 141  # as a shell says it of the signals
+_LONGEST = 600  # characters of a message
 _IN_ASCII = {"≤": "<=", "≥": ">=", "°": "o", "µ": "u", "ε": "e", "ν": "v", "φ": "f", "Δ": "D", "²": "2", "ß": "ss"}
 
 
@@ -96,14 +98,30 @@ def _status() -> int:
         message, status = str(error), FAILURE
     except (ArithmeticError, MemoryError) as error:
         message, status = f"these numbers are too large or too small to calculate with ({error})", FAILURE
-    print(f"ballsocket: {_one_line(message)}", file=sys.stderr)
+    complain(message)
     return status
 
 
+def complain(message: str) -> None:
+    """One line on stderr."""
+    print(f"ballsocket: {_one_line(message)}", file=sys.stderr)
+
+
 def _one_line(message: str) -> str:
-    """As any terminal can show it, whatever the names in it are."""
+    """As any terminal can show it, whatever the names in it are, and how long."""
     text = " ".join(message.split())
+    if len(text) > _LONGEST:
+        text = f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 4 :]}"
+    return _printable(text)
+
+
+def _printable(text: str) -> str:
     return "".join(char if char.isprintable() else ascii(char)[1:-1] for char in text)
+
+
+def echo_path(path: Path, more: str = "") -> None:
+    """Tell where something was written, as any terminal can show it."""
+    typer.echo(_printable(f"{path}{more}"))
 
 
 def _flush() -> None:

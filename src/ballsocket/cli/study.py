@@ -23,7 +23,7 @@ from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
 from ..studies.run import Listener
 from ..studies.run import Progress as Reached
-from .root import app
+from .root import app, complain, echo_path
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -60,13 +60,13 @@ def study(
         )
     study_terminal.print_study(found)
     if kept is not None:
-        typer.echo(str(kept))
+        echo_path(kept)
     if out is not None:
         export(found, out)
-        typer.echo(str(out))
+        echo_path(out)
     if draw is not None and figure is not None:
         save(draw(found), figure)
-        typer.echo(str(figure))
+        echo_path(figure)
 
 
 def _drawing(given: StudyFile, path: Path) -> Callable[[Any], Figure]:
@@ -104,12 +104,18 @@ def _shown(store: Path | None) -> Iterator[Listener]:
     try:
         yield listen
     except KeyboardInterrupt:
-        progress.stop()
+        _end(progress)
         if store is not None and last:
             done = f"{last[0].done:.4g} of {last[0].points:.4g} points are kept in {store}"
-            typer.echo(f"ballsocket: stopped; {done}: run it again to go on", err=True)
+            complain(f"stopped; {done}: run it again to go on")
         raise
     finally:
+        _end(progress)
+
+
+def _end(progress: Progress) -> None:
+    """One that never began would leave an empty line."""
+    if progress.live.is_started:
         progress.stop()
 
 

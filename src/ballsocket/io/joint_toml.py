@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import degrees, isinf
+from math import degrees, inf, isinf, nextafter, radians
 from typing import Any
 
 from ..arrays import is_plain
@@ -58,7 +58,15 @@ def cup_table(cup: Cup) -> Tables:
 
 def _bare(name: str, value: float) -> float:
     """As a bare number of the file."""
-    return degrees(value) if QUANTITIES[name].kind is Kind.ANGLE else value
+    return _degrees(value) if QUANTITIES[name].kind is Kind.ANGLE else value
+
+
+def _degrees(value: float) -> float:
+    """Degrees that are read as that angle to the last digit, where there are such; round ones before others."""
+    near = degrees(value)
+    above, below = nextafter(near, inf), nextafter(near, -inf)
+    those = (round(near, 9), near, above, below, nextafter(above, inf), nextafter(below, -inf))
+    return next((each for each in those if radians(each) == value), near)
 
 
 def toml_of(file: JointFile) -> str:

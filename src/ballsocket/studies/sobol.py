@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from warnings import catch_warnings
 
 import numpy
 
@@ -26,8 +27,8 @@ def sobol(
     from scipy.stats import sobol_indices
 
     frozen = [one.frozen for one in distributions]
-    indices = sobol_indices(func=answers, n=count, dists=frozen, rng=numpy.random.default_rng(seed))
-    with _seeded(seed):
+    with _seeded(seed), numpy.errstate(all="ignore"), catch_warnings(action="ignore"):  # too few samples: NaN
+        indices = sobol_indices(func=answers, n=count, dists=frozen, rng=numpy.random.default_rng(seed))
         interval = indices.bootstrap(confidence_level=confidence)
     found: dict[str, Numbers] = {}
     for order in ("first_order", "total_order"):

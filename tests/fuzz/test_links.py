@@ -1,0 +1,41 @@
+"""Whatever a link says, the explorer shows a screen or says in one sentence why not."""
+
+from urllib.parse import parse_qs
+
+import pytest
+from hypothesis import given
+
+pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tomli_w")
+from ballsocket.app.page import Page
+from ballsocket.app.screen import link_of, read_link
+
+from . import links
+from .limits import check_sentence, inputs, within_limits
+
+
+def _read(query):
+    return read_link(parse_qs(query, keep_blank_values=True))
+
+
+@inputs(23)
+@given(query=links.query)
+def test_links(query):
+    """A screen has a link that leads back to it, but for the last digit of an angle."""
+    with within_limits():
+        try:
+            screen = _read(query)
+        except ValueError as error:
+            check_sentence(" ".join(str(error).split()))
+            return
+        again = _read(link_of(screen))
+        assert _read(link_of(again)) == again
+
+
+@inputs(1)
+@given(query=links.query)
+def test_pages(query):
+    with within_limits():
+        page = Page(query)
+        page.leave()
+        assert "This cannot be shown" not in page._trouble.object

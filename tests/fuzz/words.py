@@ -1,0 +1,73 @@
+"""Strategies for single values: numbers, units, names and text as people mean them, mistype them, or attack with."""
+
+import json
+
+from hypothesis import strategies as st
+
+import ballsocket as bs
+from ballsocket.quantities import QUANTITIES
+
+ODD_NUMBERS = (
+    "0", "-0", "-1", "1e-320", "1e-200", "1e-9", "1e9", "1e200", "1e308", "1e999", "-1e999", "nan", "inf", "-inf",
+    "infinity", "1_000", "0x10", "1e", ".", "+", "1,5", "1.5.2", "9" * 400, "1" * 20_000, "٣", "½", "1e-5000",
+)  # fmt: skip
+ODD_UNITS = (
+    "", "mm", "um", "µm", "m", "km", "in", "N", "kN", "GPa", "MPa", "psi", "lbf", "deg", "rad", "°", "mm²", "mm^2",
+    "parsec", "dBm*m", "N**0", "N**9", "N*m/m*m/m*m/m", "degC", "delta_degC", "percent", "mm mm", "/mm", "mm/", "%",
+    "N" * 300, "mm**" * 60, "__class__", "\u2126", "kg*m/s**2",
+)  # fmt: skip
+ODD_TEXT = (
+    "", " ", ".", "..", "/", "\x1b[31m", "\x1b]0;title\x07", "\r", "\x00", "\u202e", "\U0001f600", "%s", "{0}", "[x]",
+    "[bold]", "$\\frac{", "../../etc/passwd", "a" * 5000, "é" * 40, "null", "-", "--", "'", '"', "\\", "\n", "=1+1",
+)  # fmt: skip
+
+odd_text = st.sampled_from(ODD_TEXT) | st.text(max_size=12)
+number = (
+    st.sampled_from(ODD_NUMBERS)
+    | st.floats().map(repr)
+    | st.integers(-(10**30), 10**30).map(str)
+    | st.floats(0.01, 100.0).map(lambda value: f"{value:.4g}")
+)
+quantity = st.builds("{}{}{}".format, number, st.sampled_from(("", " ", "  ")), st.sampled_from(ODD_UNITS))
+
+
+def mistyped(names):
+    """One of some names, whole or with letters lost, doubled or swapped."""
+    return st.one_of(
+        st.sampled_from(tuple(names)),
+        st.builds(_without, st.sampled_from(tuple(names)), st.integers(0, 30)),
+        st.builds(str.upper, st.sampled_from(tuple(names))),
+        odd_text,
+    )
+
+
+def _without(name, place):
+    return name[: place % len(name)] + name[place % len(name) + 1 :]
+
+
+def mostly(usual, odd):
+    """All but one of twelve as they should be: what is wrong everywhere is refused at its first word."""
+    return st.sampled_from(range(12)).flatmap(lambda side: odd if side == 11 else usual)
+
+
+def toml(value):
+    """As TOML writes it: text between quotes, everything else as it is."""
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else str(value)
+
+
+def quoted(strategy):
+    return strategy.map(toml)
+
+
+length = st.floats(0.5, 30.0).map(lambda value: f"{value:.3g}")
+clearance = st.floats(0.005, 1.0).map(lambda value: f"{value:.3g}")
+young = st.floats(10.0, 4e5).map(lambda value: f"{value:.3g}")
+poisson = st.floats(0.0, 0.499).map(lambda value: f"{value:.3g}")
+force = st.floats(1.0, 5000.0).map(lambda value: f"{value:.3g}")
+indentation = st.floats(0.001, 0.3).map(lambda value: f"{value:.3g}")
+half_angle = st.floats(1.0, 88.0).map(lambda value: f"{value:.3g}")
+LOADS = {"force": force, "indentation": indentation, "half_angle": half_angle}
+material = mistyped(bs.materials)
+preset = mistyped(bs.joints)
+model = mistyped((*bs.catalogue, "fem"))
+quantity_name = mistyped(QUANTITIES)
