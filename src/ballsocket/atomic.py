@@ -20,6 +20,12 @@ _SHORT = 40  # characters of a name, so that what is made of it is no longer tha
 _YOUNG = 60.0  # seconds
 
 
+def check_folder(path: Path) -> None:
+    """Raise ValueError where there is no folder to write a file into."""
+    if not path.parent.is_dir():
+        raise ValueError(f"{str(path.parent)!r} is no folder to write {path.name} into")
+
+
 @contextmanager
 def at_once(path: Path) -> Iterator[Path]:
     """A place beside `path` to write to, with its name; what was written there becomes `path` when all went well.

@@ -267,7 +267,20 @@ def test_figure(tmp_path, ending):
         (["press", "", "--force", "1"], "the joint's name is empty"),
         (["press", EXAMPLE, "--model", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
         (["press", EXAMPLE, "--figure", "a.jpg"], "figure 'a.jpg' must end in .png, .svg, .pdf"),
-        (["press", EXAMPLE, "--figure", "/no/such/folder/a.png"], "No such file or directory"),
+        (["press", EXAMPLE, "--figure", "/no/such/folder/a.png"], "'/no/such/folder' is no folder to write a.png into"),
+        (["press", "no/joint.toml"], "'no/joint.toml' is no file: there is no folder 'no'"),
+        (["map", EXAMPLE, "--figure", "no/a.png"], "'no' is no folder to write a.png into"),
+        (["study", EXAMPLE, "--out", "no/a.csv"], "'no' is no folder to write a.csv into"),
+        (["press", EXAMPLE, "--model", "fem", "--vtk", "no/a.vtu"], "'no' is no folder to write a.vtu into"),
+        (["map", EXAMPLE, "--points", "1"], "points = 1 is not allowed: an axis has 2 values or more"),
+        (
+            ["optimise", EXAMPLE, "--vary", "clearance=0..1", "--points", "0"],
+            "points = 0 is not allowed: an axis has 2",
+        ),
+        (
+            ["map", EXAMPLE, "--limit", "area=3"],
+            "'area=3' is not a limit: it needs <= or >=, such as 'outer_radius<=26",
+        ),
         (["press", EXAMPLE, "--liner", "uhmpe"], "liner material 'uhmpe' is not known; did you mean 'uhmwpe'?"),
         (
             ["press", EXAMPLE, "--ball-radius", "9", "--head-diameter", "18"],
@@ -300,6 +313,29 @@ def pressed(*words):
     """The joint that is pressed, and the largest pressures, by JSON."""
     answer = json.loads(run("press", *words, "--force", "3 kN", "--json").stdout)
     return answer["joint"], [result["max_pressure"] for result in answer["results"]]
+
+
+def test_a_file_of_an_editor_that_marks_its_bytes(tmp_path):
+    (tmp_path / "joint.toml").write_bytes(b"\xef\xbb\xbf" + Path(EXAMPLE).read_bytes())
+    assert pressed(str(tmp_path / "joint.toml")) == pressed(EXAMPLE)
+
+
+@pytest.mark.parametrize("command", ["press", "study"])
+def test_an_empty_file_is_told_so(tmp_path, command):
+    (tmp_path / "it.toml").write_text("# nothing yet\n", encoding="utf-8")
+    kind = {"press": "joint", "study": "study"}[command]
+    said = f"ballsocket: it.toml is empty: a {kind} file has tables, such as [joint]\n"
+    assert run(command, str(tmp_path / "it.toml")).stderr == said
+
+
+def test_help_begins_with_what_is_asked_first():
+    text = run("-h").stdout
+    assert text == run("--help").stdout
+    commands = re.findall(r"^  ([a-z-]+) ", text.partition("Commands:")[2], flags=re.MULTILINE)
+    assert commands[0] == "press"
+    assert "build-tables" not in commands
+    assert run("build-tables", "-h").returncode == 0
+    assert "±" in run("sensitivity", "-h").stdout
 
 
 def test_one_model_in_full():

@@ -266,11 +266,13 @@ def test_phrases_of_the_shell():
     assert spread_of("clearance=100+-50 um") == ("clearance", tolerance(0.1, 0.05))
     assert spread_of("liner_poisson=0.38..0.46") == ("liner_poisson", Rectangular(low=0.38, high=0.46))
     assert limit_of("outer_radius <= 2.6 cm") == Limit(name="outer_radius", high=26.0)
+    assert limit_of("outer_radius < 26") == Limit(name="outer_radius", high=26.0)
+    assert limit_of("max_pressure>5 MPa") == Limit(name="max_pressure", low=5.0)
     assert limit_of("half_angle<=60").high == pytest.approx(pi / 3)
     assert limit_of("area<=800 mm²") == limit_of("area<=800 mm2") == limit_of("area<=800") == limit_of("area<=8 cm^2")
     assert limit_of("stiffness>=60 kN/mm") == Limit(name="stiffness", low=60e3)
     assert limit_of("energy<=50 N mm").high == limit_of("energy<=50 mJ").high == 50.0
-    for phrase in ("ball_radius", "ball_radius=11", "outer_radius<26", "ball_radios=11..23"):
+    for phrase in ("ball_radius", "ball_radius=11", "outer_radius=26", "ball_radios=11..23"):
         with pytest.raises(ValueError, match=r"is not a|did you mean|is not known"):
             (limit_of if "<" in phrase else range_of)(phrase)
 

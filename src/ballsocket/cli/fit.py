@@ -60,7 +60,7 @@ def calibrate(
         print_calibration(fit)
 
 
-@app.command()
+@app.command(hidden=True)  # for those who work on the tables
 def build_tables(
     out: Annotated[Path | None, typer.Option(help="Where to; without it the package's own file.")] = None,
     points: Annotated[int, typer.Option(min=1, help="Random contacts that the tables are checked at.")] = 10_000,

@@ -11,6 +11,7 @@ import typer
 
 import ballsocket as bs
 
+from ..checks import require
 from ..cup import Cup
 from ..io.joint_file import JointFile
 from ..joint import Joint
@@ -91,13 +92,14 @@ def design_map(
     words: JointWords,
     x: Annotated[str, typer.Option(help="The axis across, 'ball_radius=11..23 mm'.")] = "ball_radius=11..23 mm",
     y: Annotated[str, typer.Option(help="The axis upwards.")] = "liner_thickness=3..15 mm",
-    points: Annotated[int, typer.Option(help="Values along each axis.")] = 41,
+    points: Annotated[int, typer.Option(help="Values along each axis, 2 or more.")] = 41,
     press: PressWords,
     limit: Limits = None,
     form: FormWords,
 ) -> None:
     """Map peak pressure, contact area and half angle over two numbers of a joint, with limits drawn."""
     form.check()
+    _check_points(points)
     file = words.or_named(joint)
     limits = _limits(limit, file.cup)
     axes = _once([axis_of(x, points), axis_of(y, points)])
@@ -122,11 +124,12 @@ def optimise(
     ] = None,
     press: PressWords,
     limit: Limits = None,
-    points: Annotated[int, typer.Option(help="Values along each range, for a front of two.")] = 41,
+    points: Annotated[int, typer.Option(help="Values along each range, for a front or a map.")] = 41,
     form: FormWords,
 ) -> None:
     """Find the joint with the smallest answer within limits; with two answers, the joints that none beats in both."""
     form.check()
+    _check_points(points)
     file, chosen = words.or_named(joint), minimise or ["max_pressure"]
     limits = _limits(limit, file.cup)
     lists = [choice_of(phrase) for phrase in vary]
@@ -166,7 +169,10 @@ def sensitivity(
     *,
     joint: JointName = None,
     words: JointWords,
-    spread: Annotated[list[str], typer.Option(help="'clearance=0.10+-0.05 mm' or 'liner_poisson=0.38..0.46'; repeat")],
+    spread: Annotated[
+        list[str],
+        typer.Option(help="'clearance=0.10±0.05 mm' (typed +- or ±), or ends, 'liner_poisson=0.38..0.46'; repeat"),
+    ],
     press: PressWords,
     count: Annotated[int, typer.Option(help="Samples, a power of two.")] = 1024,
     form: FormWords,
@@ -186,6 +192,10 @@ def sensitivity(
         lambda: study_terminal.print_sensitivity(found),
     )
     form.draw(lambda: study_plots.sensitivity_figure(found))
+
+
+def _check_points(points: int) -> None:
+    require("points", points, points > 1, "an axis has 2 values or more")
 
 
 def _limits(phrases: list[str] | None, cup: Cup) -> list[Limit]:

@@ -24,13 +24,26 @@ app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 UsageError: Any = typer.BadParameter.__base__  # typer brings a click of its own, and does not export this
 DONE, MISUSE, FAILURE = 0, 2, 3
 STOPPED, NOBODY_READS = 130, 141  # as a shell says it of the signals
 _LONGEST = 600  # characters of a message
-_IN_ASCII = {"≤": "<=", "≥": ">=", "°": "o", "µ": "u", "ε": "e", "ν": "v", "φ": "f", "Δ": "D", "²": "2", "ß": "ss"}
+_IN_ASCII = {
+    "≤": "<=",
+    "≥": ">=",
+    "±": "+-",
+    "°": "o",
+    "µ": "u",
+    "ε": "e",
+    "ν": "v",
+    "φ": "f",
+    "Δ": "D",
+    "²": "2",
+    "ß": "ss",
+}
 
 
 def _version(wanted: bool) -> None:

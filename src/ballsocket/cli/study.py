@@ -43,8 +43,6 @@ def study(
     """Press a joint at every point of a study file, into a store that can be resumed."""
     if out is not None:
         check_suffix(out)
-        if not out.parent.is_dir():
-            raise ValueError(f"{str(out.parent)!r} is no folder to write {out.name} into")
     given = read_study(file)
     draw = None if figure is None else _drawing(given, figure)
     kept = store or given.store

@@ -99,6 +99,8 @@ def named_joint(name: str) -> JointFile:
         return read_joint(path)
     if plain_name(name) in joints:
         return JointFile(joints[plain_name(name)], {})
+    if not path.parent.is_dir():
+        raise ValueError(f"{name!r} is no file: there is no folder {str(path.parent)!r}")
     raise ValueError(f"{name!r} is neither a file nor a preset{nearest(name, joints)}")
 
 

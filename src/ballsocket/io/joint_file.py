@@ -178,8 +178,9 @@ def _joint(table: Mapping[str, Any], **words: Any) -> Joint:
 
 
 def _one_of(name: str, chosen: Any, kind: type[Enum]) -> Any:
-    """`chosen`, if one of the kind has that value."""
+    """`chosen`, if one of the kind has that value, in any spelling of capitals."""
     known = [one.value for one in kind]
+    chosen = chosen.lower() if isinstance(chosen, str) else chosen
     if chosen not in known:
         raise ValueError(f"{name} = {shown(chosen)} is not allowed: {' or '.join(map(repr, known))}")
     return chosen

@@ -66,16 +66,19 @@ def _content(raw: bytes, title: str, kind: str) -> Mapping[str, Any]:
     if len(raw) > MOST:
         raise ValueError(f"{title} is larger than {MOST} bytes; a {kind} file is a few lines")
     try:
-        text = raw.decode("utf-8")
+        text = raw.decode("utf-8-sig")  # as editors on Windows write it
         if _LONG_KEY.search(text):
             raise ValueError("a name of more than 16 parts with dots between them")
-        return tomllib.loads(text, parse_float=_number)
+        found = tomllib.loads(text, parse_float=_number)
     except UnicodeDecodeError as error:
         raise ValueError(f"{title} is not text in UTF-8: {error.reason} at byte {error.start}") from error
     except RecursionError as error:
         raise ValueError(f"{title} is no {kind} file: its brackets are nested too deeply") from error
     except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
         raise ValueError(f"{title} is not TOML: {error}") from error
+    if not found:
+        raise ValueError(f"{title} is empty: a {kind} file has tables, such as [joint]")
+    return found
 
 
 def _number(text: str) -> float:

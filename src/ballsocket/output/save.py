@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..atomic import at_once
+from ..atomic import at_once, check_folder
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,9 +15,10 @@ FORMATS = ("png", "svg", "pdf")
 
 
 def check_format(path: Path) -> None:
-    """Raise ValueError unless `path` ends in .png, .svg or .pdf."""
+    """Raise ValueError unless `path` ends in .png, .svg or .pdf, in a folder that is there."""
     if path.suffix.lower().lstrip(".") not in FORMATS:
         raise ValueError(f"figure {str(path)!r} must end in {', '.join('.' + name for name in FORMATS)}")
+    check_folder(path)
 
 
 def save(figure: Figure, path: str | Path) -> None:
@@ -26,7 +27,7 @@ def save(figure: Figure, path: str | Path) -> None:
     Raises
     ------
     ValueError
-        Another ending.
+        Another ending, or a folder that is not there.
     OSError
         A path that cannot be written to.
     """

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ..atomic import at_once
+from ..atomic import at_once, check_folder
 from ..checks import needs
 from ..quantities import QUANTITIES
 from .pieces import blocks_of, dims_of, pieces
@@ -20,9 +20,10 @@ SUFFIXES = (".nc", ".csv")
 
 
 def check_suffix(path: Path) -> None:
-    """Raise ValueError unless `path` ends like a format that is written."""
+    """Raise ValueError unless `path` ends like a format that is written, in a folder that is there."""
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{str(path)!r} must end in {' or '.join(SUFFIXES)}")
+    check_folder(path)
 
 
 def export(study: xarray.Dataset, path: str | Path) -> None:

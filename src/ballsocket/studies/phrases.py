@@ -79,20 +79,22 @@ def spread_of(phrase: str) -> tuple[str, Distribution]:
 
 
 def limit_of(phrase: str) -> Limit:
-    """A limit, from "outer_radius<=26 mm" or "edge_distance>=5 mm".
+    """A limit, from "outer_radius<=26 mm" or "edge_distance>=5 mm"; < is taken as <=, since ends count.
 
     Raises
     ------
     ValueError
         Another form, or a name that is not known.
     """
-    found = _matched(r"\s*(\w+)\s*(<=|>=|≤|≥)\s*(.+?)\s*", phrase)
+    found = _matched(r"\s*(\w+)\s*(<=|>=|≤|≥|<|>|==?)\s*(.+?)\s*", phrase)
     if found is None:
         raise ValueError(f"{shown(phrase)} is not a limit, such as 'outer_radius<=26 mm'")
     name, sign, end = found.groups()
+    if "=" in (sign, sign[:1]):
+        raise ValueError(f"{shown(phrase)} is not a limit: it needs <= or >=, such as 'outer_radius<=26 mm'")
     check_names([name], LIMITED, "among what can be limited")
     value = parse(name, end, QUANTITIES[name].kind)
-    return Limit(name=name, high=value) if sign in ("<=", "≤") else Limit(name=name, low=value)
+    return Limit(name=name, high=value) if sign[0] in "<≤" else Limit(name=name, low=value)
 
 
 def _matched(form: str, phrase: str) -> re.Match[str] | None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy
 
-from ...atomic import at_once
+from ...atomic import at_once, check_folder
 from ...checks import needs
 from ..section import Section
 
@@ -15,9 +15,10 @@ SUFFIXES = (".vtu", ".vtk")
 
 
 def check_suffix(path: Path) -> None:
-    """Raise ValueError unless `path` ends like a format that is written."""
+    """Raise ValueError unless `path` ends like a format that is written, in a folder that is there."""
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{str(path)!r} must end in {', '.join(SUFFIXES)}")
+    check_folder(path)
 
 
 def write_vtk(section: Section, path: Path) -> None:
