@@ -30,6 +30,7 @@ from ballsocket.quantities import (
     CUP,
     DERIVED,
     FIELD,
+    FIT,
     JOINT,
     LAYER,
     LOADS,
@@ -59,7 +60,9 @@ def _numbers(thing):
 
 def test_every_quantity_of_contact_joint_and_cup_is_an_attribute_and_no_other_number_is_one():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
-    assert _numbers(contact) | _numbers(HIP) == {*CONTACT, *BEARING, *DERIVED, *JOINT, "shell"} - {"edge_distance"}
+    assert _numbers(contact) | _numbers(HIP) == {*CONTACT, *BEARING, *DERIVED, *JOINT, *FIT, "shell"} - {
+        "edge_distance"
+    }
     assert _numbers(replace(HIP.liner, **dict.fromkeys(STRENGTH, 1.0))) == {*MATERIAL, *STRENGTH}
     assert _numbers(bs.Layer(thickness=3.0, material=bs.TITANIUM)) == set(LAYER)
     assert _numbers(bs.Cup()) - {"rim"} == set(CUP)
@@ -95,7 +98,7 @@ def test_tables_studies_and_json_speak_of_the_same_objects():
 
 def test_nothing_is_named_or_written_twice():
     assert len(QUANTITIES) == sum(
-        map(len, (CONTACT, BEARING, JOINT, MATERIAL, STRENGTH, PARTS, LAYER, CUP, FIELD, DERIVED))
+        map(len, (CONTACT, BEARING, JOINT, FIT, MATERIAL, STRENGTH, PARTS, LAYER, CUP, FIELD, DERIVED))
     )
     shared = {each.symbol for each in (*MATERIAL.values(), *PARTS.values())}
     symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]

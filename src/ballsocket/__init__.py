@@ -57,7 +57,7 @@ from .presets import (
     materials,
 )
 from .sources import cite
-from .sphere import ClosedShell, RealCup, Sphere, Springs, Worn
+from .sphere import ClosedShell, DepthTable, Pinched, Preload, RealCup, Sphere, Springs, Worn, read_scan
 from .studies.run import study
 from .validity import OutsideDomainError, Range, Status
 from .version import __version__ as __version__
@@ -74,6 +74,9 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "Side",
     "Support",
     "Worn",
+    "Pinched",
+    "DepthTable",
+    "read_scan",
     "read_joint",
     # presets
     "joints",
@@ -99,6 +102,7 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "FiniteElement",
     "Sphere",
     "RealCup",
+    "Preload",
     "ClosedShell",
     "Springs",
     "Hertz",

@@ -10,12 +10,21 @@ from typing import TypedDict
 
 from .arrays import Array, is_plain
 from .checks import check_names, require
-from .quantities import JOINT
+from .quantities import FIT, JOINT
 
 DIAMETERS = MappingProxyType(
     {"head_diameter": "ball_radius", "diametral_clearance": "clearance", "outer_diameter": "outer_radius"}
 )
 """What is twice another length of a joint."""
+
+LENGTHS = MappingProxyType({**JOINT, **FIT})
+"""Every length that a joint can be stated by."""
+
+_SAME = MappingProxyType({**DIAMETERS, "interference": "clearance"})
+"""What says the same as another length."""
+
+_TIGHTEST = 0.1
+"""Of the ball's radius: an interference that is no larger."""
 
 OWN = ("ball_radius", "clearance", "liner_thickness")
 """What a joint holds; every other length follows."""
@@ -32,6 +41,7 @@ class Lengths(TypedDict, total=False):
     socket_radius: Array
     clearance: Array
     diametral_clearance: Array
+    interference: Array
     liner_thickness: Array
     outer_radius: Array
     outer_diameter: Array
@@ -70,6 +80,11 @@ class Dimensions:
         return 2 * self.clearance
 
     @property
+    def interference(self) -> Array:
+        """-c in mm, above 0 in a preloaded joint."""
+        return -self.clearance
+
+    @property
     def outer_diameter(self) -> Array:
         """Twice the outer radius in mm."""
         return 2 * self.outer_radius
@@ -94,8 +109,8 @@ def made_of(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Ar
     TypeError
         What is neither a number nor an array.
     """
-    check_names(given, JOINT, "among the lengths of a joint")
-    numbers = {name: JOINT[name].checked(value) for name, value in given.items()}
+    check_names(given, LENGTHS, "among the lengths of a joint")
+    numbers = {name: LENGTHS[name].checked(value) for name, value in given.items()}
     check_once(numbers)
     if not standing:
         _check_enough(numbers)
@@ -103,7 +118,11 @@ def made_of(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Ar
     for name in ("outer_radius", "outer_diameter"):
         if name in numbers:
             require(name, numbers[name], made["liner_thickness"] > 0, "it leaves no liner between socket and backing")
-    return {name: JOINT[name].checked(value) for name, value in made.items()}
+    if "interference" in numbers:
+        tight = numbers["interference"] <= _TIGHTEST * made["ball_radius"]
+        require("interference", numbers["interference"], tight, "it is at most a tenth of the ball's radius")
+    loose = not {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers)
+    return {name: JOINT[name].checked(made[name]) if name != "clearance" or loose else made[name] for name in OWN}
 
 
 def resolved(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Array) -> dict[str, Array]:
@@ -113,6 +132,8 @@ def resolved(given: Mapping[str, Array], standing: Mapping[str, Array], shell: A
     clearance. An outer radius takes the place of the liner's thickness.
     """
     radii = {DIAMETERS.get(name, name): value / 2 if name in DIAMETERS else value for name, value in given.items()}
+    if "interference" in radii:
+        radii["clearance"] = -radii.pop("interference")
     known = {**standing, **radii}
     if "socket_radius" in radii:
         if "clearance" in radii:
@@ -127,10 +148,10 @@ def resolved(given: Mapping[str, Array], standing: Mapping[str, Array], shell: A
 
 def check_once(names: Iterable[str]) -> None:
     """Raise ValueError for lengths that say the same in two ways."""
-    said = {DIAMETERS.get(name, name): name for name in names}
+    said = {_SAME.get(name, name): name for name in names}
     for name in names:
-        if said[DIAMETERS.get(name, name)] != name:
-            other = said[DIAMETERS.get(name, name)]
+        if said[_SAME.get(name, name)] != name:
+            other = said[_SAME.get(name, name)]
             raise ValueError(f"{name} and {other} are one too many: either fixes the other")
     across = [said[name] for name in _ACROSS if name in said]
     if len(across) == len(_ACROSS):
@@ -140,7 +161,7 @@ def check_once(names: Iterable[str]) -> None:
 
 
 def _check_enough(names: Iterable[str]) -> None:
-    said = {DIAMETERS.get(name, name): name for name in names}
+    said = {_SAME.get(name, name): name for name in names}
     if not ("liner_thickness" in said or "outer_radius" in said):
         raise ValueError("liner_thickness is missing, or outer_radius; liner_thickness = inf is a massive socket")
     across = [said[name] for name in _ACROSS if name in said]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from enum import Enum
 from functools import reduce
 from itertools import chain
@@ -12,8 +12,8 @@ from typing import Any, Unpack
 
 from .arrays import Array, is_plain, to_list, where
 from .checks import check_names, require
-from .dimensions import OWN, Dimensions, Lengths, made_of
-from .quantities import JOINT, LAYER, MATERIAL, STRENGTH
+from .dimensions import LENGTHS, OWN, Dimensions, Lengths, made_of
+from .quantities import LAYER, MATERIAL, STRENGTH
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -315,13 +315,16 @@ class Joint(Dimensions):
         R1 16 mm, clearance 0.1 mm, liner 5 mm
         """
         known = [each.name for each in fields(self) if each.name not in OWN]
-        check_names(changes, (*JOINT, *known), "in a joint")
-        lengths = {name: value for name, value in changes.items() if name in JOINT}
-        others = {name: value for name, value in changes.items() if name not in JOINT}
+        check_names(changes, (*LENGTHS, *known), "in a joint")
+        lengths = {name: value for name, value in changes.items() if name in LENGTHS}
+        others = {name: value for name, value in changes.items() if name not in LENGTHS}
         standing = {name: getattr(self, name) for name in OWN}
         made = made_of(lengths, standing, _shell(_checked_backing(others.get("backing", self.backing))))
+        if is_plain(made["clearance"]) and made["clearance"] < 0:
+            made["interference"] = -made.pop("clearance")
         called = {"name": f"{self.name.removesuffix(_VARIED)}{_VARIED}", "source": ""} if changes and self.name else {}
-        return replace(self, **made, **called | others)
+        kept: dict[str, Any] = {name: getattr(self, name) for name in known}
+        return Joint(**kept | called | others, **made)
 
     def with_floats(self) -> Joint:
         """The same joint of Python numbers with all of them floats."""

@@ -19,7 +19,7 @@ from .cup import Cup, Interface
 from .joint import Joint
 from .law import CurveLaw, Law, curve_law
 from .sources import Source
-from .validity import Nowhere, Promise, Range, inside
+from .validity import LOOSE, Nowhere, Promise, Range, inside
 
 
 class Theory(ABC):
@@ -73,6 +73,8 @@ class Model(Theory):
         Open ranges outside of which there is no formula.
     planar : bool
         Whether the contact is a flat circle, whose pressure has one direction; otherwise it acts along the radius.
+    fits : tuple of Range
+        As the domain, of how ball and socket fit: without interference, except where a model knows better.
     parameters : tuple of array
         Numbers of the model's own that may be arrays and broadcast against joint and load.
     differentiable : bool
@@ -88,6 +90,7 @@ class Model(Theory):
     """
 
     planar: ClassVar[bool] = False
+    fits: ClassVar[tuple[Range, ...]] = (LOOSE,)
     differentiable: ClassVar[bool] = True
     smooth_step: ClassVar[float] = 1e-4
     seconds_a_press: ClassVar[float] = 4e-7
@@ -144,7 +147,7 @@ class Model(Theory):
             except ArithmeticError:
                 pass  # where Python's numbers raise, NumPy's become infinite or NaN
         plain, whole, load = prepared(joint, given, *self.parameters)
-        points = inside(self.domain, whole, self.name)
+        points = inside((*self.fits, *self.domain), whole, self.name)
         with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
             answer = self._solve(whole, kind, load)
             return finished(self, joint if plain else whole, kind, load, points, answer, plain)
@@ -157,7 +160,7 @@ class Model(Theory):
     def _press_numbers(self, joint: Joint, kind: str, load: float) -> Contact:
         """`press` with nothing but Python numbers."""
         whole = joint.with_floats()
-        inside(self.domain, whole, self.name)
+        inside((*self.fits, *self.domain), whole, self.name)
         return finished_number(self, joint, kind, load, self._solve(whole, kind, load))
 
     def careful_laws(self, joint: Joint, indentation: float) -> Laws:
@@ -200,7 +203,7 @@ class Model(Theory):
         if not all(map(arrays.is_plain, (*joint.numbers(), *self.parameters))):
             raise TypeError("a law is bound to one joint: its numbers, and those of the model, must be plain")
         whole = joint.with_floats()
-        inside(self.domain, whole, self.name)
+        inside((*self.fits, *self.domain), whole, self.name)
         return self._law(whole)
 
     def _law(self, joint: Joint) -> Law:

@@ -223,7 +223,7 @@ JOINT = _table(
     Quantity("clearance", "c", "radial clearance", Kind.LENGTH,
              "R2 - R1, half of the diametral clearance that implant papers usually quote. The paper writes ΔR.",
              allows=_not_negative,
-             allowed="a radial clearance (mm) is 0 or more and finite; negative is a preloaded joint, another problem"),
+             allowed="a radial clearance (mm) is 0 or more and finite; negative is a preloaded joint: an interference"),
     Quantity("diametral_clearance", "2 c", "diametral clearance", Kind.LENGTH,
              "Twice the radial clearance, the difference of the diameters.", allows=_not_negative,
              allowed="a diametral clearance (mm) is 0 or more and finite; negative is a preloaded joint"),
@@ -237,6 +237,13 @@ JOINT = _table(
              allowed="a diameter (mm) is above 0 and finite"),
 )
 """The dimensions of a joint."""
+
+FIT = _table(
+    Quantity("interference", "-c", "interference", Kind.LENGTH,
+             "Of a preloaded joint, R1 - R2: how much larger the ball is than its socket, in place of a clearance.",
+             allows=_positive, allowed="an interference (mm) is above 0 and finite"),
+)
+"""What takes the place of a clearance where ball and socket press on each other at rest."""
 
 MATERIAL = _table(
     Quantity("young", "E", "Young's modulus", Kind.MODULUS, "Stress per strain of a bar that is pulled.",
@@ -309,6 +316,6 @@ HEADLINE = ("force", "indentation", "half_angle", "max_pressure", "area", "stiff
 """What a table of a contact shows that has no room for all."""
 
 QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
-    {**CONTACT, **BEARING, **JOINT, **MATERIAL, **STRENGTH, **PARTS, **LAYER, **CUP, **FIELD, **DERIVED}
+    {**CONTACT, **BEARING, **JOINT, **FIT, **MATERIAL, **STRENGTH, **PARTS, **LAYER, **CUP, **FIELD, **DERIVED}
 )
 """All of them by their names."""

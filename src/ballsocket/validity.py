@@ -201,6 +201,11 @@ def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     return points
 
 
+LOOSE = Range(
+    quantity="joint.clearance",
+    low=-5e-324,  # 0 is inside
+    why="a preloaded joint (interference) presses at rest: ask sphere",
+)
 CLOSE_FIT = Range(
     quantity="joint.clearance_ratio",
     high=0.02,

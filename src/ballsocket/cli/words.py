@@ -10,9 +10,9 @@ from typing import Annotated, Any
 import typer
 
 from ..checks import nearest, plain_name
+from ..dimensions import LENGTHS
 from ..io.joint_file import JointFile, joint_of, read_joint, read_load, varied
 from ..presets import joints
-from ..quantities import JOINT
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")]
 
@@ -25,6 +25,7 @@ class JointWords:
     head_diameter: Annotated[str | None, typer.Option(help="2 R1, '32 mm', in place of --ball-radius")] = None
     clearance: Annotated[str | None, typer.Option(help="Radial clearance, '0.1 mm'")] = None
     diametral_clearance: Annotated[str | None, typer.Option(help="Twice that, in place of --clearance")] = None
+    interference: Annotated[str | None, typer.Option(help="Of a preloaded joint, R1 - R2; asks sphere")] = None
     liner_thickness: Annotated[str | None, typer.Option(help="L, '6 mm'; inf is a massive socket")] = None
     outer_radius: Annotated[
         str | None, typer.Option(help="Of the liner, or its shell, in place of --liner-thickness")
@@ -43,7 +44,7 @@ class JointWords:
 
     def tables(self) -> dict[str, dict[str, str]]:
         """The tables of a joint file that the words make up."""
-        lengths = {name: getattr(self, name) for name in JOINT if hasattr(self, name)}
+        lengths = {name: getattr(self, name) for name in LENGTHS if hasattr(self, name)}
         liner = {"material": self.liner, "young": self.young, "poisson": self.poisson}
         ball = {"material": self.ball, "young": self.ball_young, "poisson": self.ball_poisson}
         tables = {"joint": given(lengths), "liner": given(liner), "ball": given(ball)}

@@ -74,7 +74,7 @@ class Compiled(Wrapped):
 
     def _passed(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:
         _, whole, load = prepared(joint, force)
-        points = inside(self.domain, whole, self.name)
+        points = inside((*self.model.fits, *self.domain), whole, self.name)
         d, p0, angle, status = foundation.passed(model, whole, load)
         if self.domain:
             status = numpy.where(points, status, numpy.int8(Status.OUTSIDE_DOMAIN))

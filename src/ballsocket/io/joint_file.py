@@ -12,10 +12,11 @@ from typing import Any
 from ..answer import checked_load
 from ..checks import check_text, known_name, nearest, require, shown
 from ..cup import Cup, Interface, Side
+from ..dimensions import LENGTHS
 from ..joint import Joint, Layer, Material, Support
 from ..kinds import Kind
 from ..presets import materials
-from ..quantities import CUP, JOINT, LAYER, LOADS, MATERIAL, STRENGTH
+from ..quantities import CUP, LAYER, LOADS, MATERIAL, STRENGTH
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
@@ -23,7 +24,7 @@ _CHOICES: dict[str, type[Enum]] = {"interface": Interface, "side": Side}
 _AIM = ("tilt", "direction")
 _TABLES = {
     "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
-    "joint": (*JOINT, "support"),
+    "joint": (*LENGTHS, "support"),
     "liner": ("material", *MATERIAL, *STRENGTH),
     "ball": ("material", *MATERIAL, *STRENGTH),
     "cup": (*CUP, *_CHOICES),
@@ -113,7 +114,7 @@ def varied(file: JointFile, tables: Mapping[str, Any]) -> JointFile:
         As of `read_joint`; numbers of a ball that is rigid, without a material.
     """
     lengths, joint = tables.get("joint", {}), file.joint
-    changes: dict[str, Any] = {name: parse(name, value, JOINT[name].kind) for name, value in lengths.items()}
+    changes: dict[str, Any] = {name: parse(name, value, LENGTHS[name].kind) for name, value in lengths.items()}
     for part in ("liner", "ball"):
         if part in tables:
             changes[part] = _material(part, tables[part], getattr(joint, part))
@@ -171,7 +172,7 @@ def check_keys(part: Mapping[str, Any], name: str, where: str, tables: Mapping[s
 
 
 def _joint(table: Mapping[str, Any], **words: Any) -> Joint:
-    lengths: Any = {name: parse(name, value, JOINT[name].kind) for name, value in table.items() if name in JOINT}
+    lengths: Any = {name: parse(name, value, LENGTHS[name].kind) for name, value in table.items() if name in LENGTHS}
     support = Support(_one_of("support", table.get("support", Support.FIXED.value), Support))
     with as_given(table):
         return Joint(**lengths, support=support, **words)

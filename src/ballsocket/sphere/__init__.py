@@ -1,7 +1,20 @@
 """Contact on the sphere: the ball anywhere in a socket, in rings and meridians about the socket's own axis."""
 
+from .forms import DepthTable, Pinched, Scan, read_scan
 from .model import Sphere
+from .preload import Preload
 from .surfaces import ClosedShell, RealCup, Springs
 from .worn import Worn
 
-__all__ = ["ClosedShell", "RealCup", "Sphere", "Springs", "Worn"]
+__all__ = [
+    "ClosedShell",
+    "DepthTable",
+    "Pinched",
+    "Preload",
+    "RealCup",
+    "Scan",
+    "Sphere",
+    "Springs",
+    "Worn",
+    "read_scan",
+]

@@ -43,9 +43,11 @@ class Separation:
         along = numpy.einsum("bk,kij->bij", displacement, self.grid.normals)
         if self.kind is LinearGap:
             return along - self.clearance - self.depth
-        ball, root = self._chord(displacement, along)
+        ball, square = self._chord(displacement, along)
+        root = numpy.sqrt(numpy.maximum(square, 0.0))
         # e·n + sqrt(R1² - |e|² + (e·n)²) - R2, without cancellation
-        return along - self.clearance - self.depth - (ball * ball - root * root) / (ball + root)
+        overlap = along - self.clearance - self.depth - (ball * ball - square) / (ball + root)
+        return numpy.where(square > 0, overlap, -self.socket_radius)  # a ray that passes by the ball
 
     def slope(self, displacement: Numbers) -> Numbers:
         """The overlap's slope by the displacement: (batch or 1, 3, rings, meridians)."""
@@ -53,10 +55,11 @@ class Separation:
         if self.kind is LinearGap:
             return normals
         along = numpy.einsum("bk,kij->bij", displacement, self.grid.normals)
-        _, root = self._chord(displacement, along)
+        ball, square = self._chord(displacement, along)
+        root = numpy.sqrt(numpy.maximum(square, (1e-6 * ball) ** 2))
         return normals + (along[:, None] * normals - displacement[:, :, None, None]) / root[:, None]
 
     def _chord(self, displacement: Numbers, along: Numbers) -> tuple[float, Numbers]:
+        """The ball's radius, and the square of half the chord that it cuts off each ray."""
         ball = self.socket_radius - self.clearance
-        square = (displacement * displacement).sum(axis=1)[:, None, None]
-        return ball, numpy.sqrt(numpy.maximum(ball * ball - square + along * along, (1e-3 * ball) ** 2))
+        return ball, ball * ball - (displacement * displacement).sum(axis=1)[:, None, None] + along * along

@@ -24,23 +24,26 @@ def _displaced(bed: Bed, indentation: Numbers, axes: Numbers, edges: Edges) -> S
 
 def _forced(bed: Bed, force: Numbers, axes: Numbers, edges: Edges) -> States:
     reach = bed.compliance.grid.reach
-    held = _polar(axes) < reach  # without friction a bore pushes back along its normals alone
+    held = (_polar(axes) < reach) | (reach > numpy.pi / 2)
     rest = bed.under(axes * force[:, None], _start(bed, force, axes), held)
     leaves = _polar(rest.displacement) > reach + _SWUNG
     return States(bed=bed, rest=rest, axes=axes, edges=edges, dislocated=~held | (~rest.found & leaves))
 
 
 _SWUNG = numpy.pi / 3
-"""So far beyond the rim the centre of a ball has swung that no longer comes to rest."""
+"""So far beyond the rim the centre of a ball has swung that no longer comes to rest.
+
+Without friction a bore pushes back along its normals alone: one that ends before its equator holds no load beyond its
+end, one that ends behind it holds any.
+"""
 
 
 def _start(bed: Bed, force: Numbers, axes: Numbers) -> Numbers:
     """Displacements along the load, as deep as in springs that are as stiff as the bore under pressure all over."""
-    grid, separation = bed.compliance.grid, bed.separation
-    all_over = bed.compliance.pressure(numpy.ones((1, grid.rings, grid.meridians)))
-    stiffness = float(grid.total(all_over, numpy.ones_like(all_over))[0] / grid.ring_areas.sum())
-    depth = linear_indentation(separation.socket_radius, separation.clearance, stiffness, force)
-    return axes * (separation.clearance + depth + float(separation.depth.max()))[:, None]
+    separation = bed.separation
+    clearance = max(separation.clearance, 0.0)
+    depth = linear_indentation(separation.socket_radius, clearance, bed.stiffness, force)
+    return axes * (clearance + depth + float(separation.depth.max()))[:, None]
 
 
 _ROUNDS = 12

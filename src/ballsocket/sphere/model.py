@@ -11,7 +11,7 @@ import numpy
 from .. import arrays
 from ..answer import Answer
 from ..arrays import Array, Numbers
-from ..checks import needs, numeric, refuse_unnamed, require, vectors
+from ..checks import needs, numeric, one_load, refuse_unnamed, require, vectors
 from ..contact import Contact
 from ..cup import UP, Cup
 from ..fem.model import largest_poisson
@@ -89,6 +89,7 @@ class Sphere(Model):
     differentiable: ClassVar[bool] = False
     smooth_step: ClassVar[float] = 3e-3
     seconds_a_press: ClassVar[float] = 0.03
+    fits: ClassVar[tuple[Range, ...]] = ()
     reach: ClassVar[str] = "forces along directions in which the bore holds the ball"
 
     def __post_init__(self) -> None:
@@ -140,6 +141,7 @@ class Sphere(Model):
         force: Array | None = None,
         indentation: Array | None = None,
         half_angle: Array | None = None,
+        displacement: Array | None = None,
         direction: Array | None = None,
         tilt: Array | None = None,
     ) -> Contact:
@@ -156,6 +158,9 @@ class Sphere(Model):
             be parallel to it.
         half_angle : float or array, optional
             In rad, of a round contact of the same area.
+        displacement : array (..., 3), optional
+            Where the ball's centre sits, in mm from the centre of the bore, in the body's frame: in place of an
+            indentation and a direction.
         direction : array (..., 3), optional
             In the body's frame, upwards by default; its leading axes broadcast against joint and load.
         tilt : float or array, optional
@@ -173,7 +178,22 @@ class Sphere(Model):
             What is no joint; a load without its name.
         """
         refuse_unnamed(unnamed)
-        return self.along(direction, tilt)._pressed(joint, force=force, indentation=indentation, half_angle=half_angle)
+        load = {"force": force, "indentation": indentation, "half_angle": half_angle}
+        if displacement is None:
+            return self.along(direction, tilt)._pressed(joint, **load)
+        one_load(**load, displacement=displacement)
+        if direction is not None or tilt is not None:
+            raise ValueError("a displacement has a direction of its own: neither direction nor tilt goes with it")
+        return self._displaced(joint, displacement)
+
+    def _displaced(self, joint: Joint, displacement: Array) -> Contact:
+        """A displacement as how far it goes and where to; within the clearance nothing touches."""
+        place = arrays.to_numpy(vectors("displacement", displacement, "x, y, z (mm)")).astype(float)
+        require("displacement", place, numpy.isfinite(place), "a displacement (mm) is finite")
+        length = numpy.linalg.norm(place, axis=-1)
+        way = numpy.where(length[..., None] > 0, place, numpy.array(self.cup.dome))
+        depth = numpy.maximum(length - arrays.to_numpy(joint.clearance), 0.0)
+        return replace(self, direction=way)._pressed(joint, indentation=float(depth) if depth.ndim == 0 else depth)
 
     def _pressed(self, joint: Joint, **load: Array | None) -> Contact:
         return super().press(joint, **load)
@@ -220,7 +240,7 @@ class Sphere(Model):
         from .loads import LOADED
         from .search import Bed
 
-        touching = loads > 0
+        touching = loads > (0 if joint.clearance >= 0 else -1)  # a preloaded joint touches without a load
         soft = compliance(self.surface, joint, self.cup, self.ring_width)
         separation = Separation(
             grid=soft.grid,

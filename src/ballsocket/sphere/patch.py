@@ -135,7 +135,13 @@ class Patch:
 
     @cached_property
     def half_angle(self) -> float:
-        """Of a round contact of the same area, in rad: ε with 2π (1 - cos ε) the solid angle inside the outline."""
+        """Of a round contact of the same area, in rad: ε with 2π (1 - cos ε) the solid angle inside the outline.
+
+        A contact that the load does not point into, a ring around a preloaded ball, has the area of its cells.
+        """
+        if self.at(self.axis) == 0:
+            solid = float(((self.pressure > 0) * self.grid.areas).sum())
+            return float(numpy.arccos(numpy.clip(1 - solid / (2 * pi), -1.0, 1.0)))
         return float(numpy.arccos(numpy.clip(numpy.cos(self._edges).mean(), -1.0, 1.0)))
 
     @cached_property
