@@ -200,12 +200,14 @@ def test_an_edge_that_digs_in_has_no_largest_pressure():
 
 
 def test_a_load_out_of_the_bore_dislocates():
-    for load in ({"force": 1000.0}, {"indentation": 0.01}):
-        contact = bs.Sphere().press(RIGID, tilt=radians(170.0), **load)
+    for load in ({"force": 1000.0}, {"indentation": 12.0}):
+        contact = bs.Sphere().press(RIGID, tilt=pi, **load)
         assert contact.status is bs.Status.DISLOCATED
         assert not contact.valid
         assert np.isnan(contact.max_pressure)
-        assert any("170.0°" in note for note in contact.notes)
+        assert any("180.0°" in note for note in contact.notes)
+    apart = bs.Sphere().press(RIGID, tilt=pi, indentation=0.5)
+    assert (apart.force, apart.max_pressure, apart.area) == (0, 0, 0)
 
 
 # --- surfaces that are not round ---

@@ -18,7 +18,9 @@ Loaded = Callable[[Bed, Numbers, Numbers, Edges], States]
 
 def _displaced(bed: Bed, indentation: Numbers, axes: Numbers, edges: Edges) -> States:
     rest = bed.at(axes * (bed.separation.clearance + indentation)[:, None])
-    lost = numpy.asarray(~(rest.pressure > 0).any(axis=(1, 2)))
+    apart = ~(rest.pressure > 0).any(axis=(1, 2))
+    far = bed.separation.clearance + indentation > _OUT * bed.separation.socket_radius
+    lost = numpy.asarray(apart & far)
     return States(bed=bed, rest=rest, axes=axes, edges=edges, dislocated=lost)
 
 
@@ -29,6 +31,9 @@ def _forced(bed: Bed, force: Numbers, axes: Numbers, edges: Edges) -> States:
     leaves = _polar(rest.displacement) > reach + _SWUNG
     return States(bed=bed, rest=rest, axes=axes, edges=edges, dislocated=~held | (~rest.found & leaves))
 
+
+_OUT = 0.5
+"""Of the bore's radius: a ball that touches nothing and is displaced further has left its bore."""
 
 _SWUNG = numpy.pi / 3
 """So far beyond the rim the centre of a ball has swung that no longer comes to rest.
