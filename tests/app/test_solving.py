@@ -19,8 +19,9 @@ from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 from ballsocket.app import running, serve, solving
 from ballsocket.app.page import Page
 from ballsocket.app.pressing import pressed
-from ballsocket.app.solving import THIN, heavy
+from ballsocket.app.solving import heavy
 from ballsocket.app.views.press import Press
+from ballsocket.compare import THIN
 from ballsocket.elastic.exact import Exact
 from ballsocket.models.plane_layer import PlaneLayer
 

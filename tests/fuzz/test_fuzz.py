@@ -20,7 +20,7 @@ from .limits import check_run, check_sentence, inputs, within_limits
 
 CLOSED = (["--model", "hess-forsbach"], ["--model", "hertz", "--json"], ["--model", "tabulated", "--json"])
 STORED = ([], [], [], [], ["--store", "store"])
-MODELS = (*CLOSED, *CLOSED, *CLOSED, [], ["--all"])
+MODELS = (*CLOSED * 6, [], ["--all"])
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -47,7 +47,7 @@ def fresh(tmp_path):
     return folder
 
 
-@inputs(18)
+@inputs(14)
 @given(raw=joint_files.raw, model=st.sampled_from(MODELS))
 def test_joint_files(fresh, raw, model):
     with fresh() as folder:
@@ -56,7 +56,7 @@ def test_joint_files(fresh, raw, model):
             check_run(run("press", "joint.toml", *model, folder=folder))
 
 
-@inputs(22)
+@inputs(20)
 @given(line=flags.line)
 def test_command_lines(fresh, line):
     with fresh() as folder, within_limits():
@@ -84,7 +84,7 @@ def test_tables_of_numbers(fresh, csv, store):
             check_run(run("study", "study.toml", *store, folder=folder))
 
 
-@inputs(20)
+@inputs(24)
 @given(raw=joint_files.raw)
 def test_uploads(raw):
     """What a browser hands in is a joint, or refused; written down, it is read as the same."""

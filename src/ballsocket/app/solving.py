@@ -6,13 +6,12 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
-from math import radians
 from typing import Any
 
-import numpy
 import panel as pn
 
 from ..catalogue import catalogue
+from ..compare import short_curve, takes_long
 from ..cup import Cup
 from ..io.joint_file import JointFile
 from ..joint import Joint
@@ -23,13 +22,8 @@ from .written import WrittenContact, written
 LONGEST = 20.0
 """Seconds that the presses of one joint may take."""
 
-THIN = 12.0
-"""R2/L from which a model that solves for its answer takes too long for the server itself."""
-
-_SLOW = 1e-3  # s a press
 _KEPT = 256
 _EVERY = 150  # ms between two questions for news; a slider that moves asks for others before the first
-_POINTS, _WIDEST = numpy.linspace(0.0, 1.0, 12), radians(84.9)
 
 Key = tuple[Joint, Cup, tuple[tuple[str, float], ...], str]
 
@@ -40,7 +34,7 @@ Solved = WrittenContact | str
 
 def heavy(joint: Joint, name: str) -> bool:
     """Whether a press of a model may take longer than others are to wait."""
-    return catalogue[name].seconds_a_press > _SLOW and float(joint.thickness_ratio) > THIN
+    return takes_long(catalogue[name], joint)
 
 
 _solved: OrderedDict[Key, tuple[Solved, bool]] = OrderedDict()
@@ -77,7 +71,7 @@ def solve(file: JointFile, names: Sequence[str], told: Told) -> None:
             contacts[name] = found
         told((name, found, name not in contacts))
     for name, contact in contacts.items():
-        told((name, replace(contact, curve=_curve(contact)), True))
+        told((name, replace(contact, curve=written(short_curve(contact, catalogue[name]))), True))
 
 
 def _contact(file: JointFile, name: str) -> Solved:
@@ -85,12 +79,6 @@ def _contact(file: JointFile, name: str) -> Solved:
         return written(catalogue[name].in_cup(file.cup).press(file.joint, **file.load))
     except OutsideDomainError as error:
         return str(error)
-
-
-def _curve(contact: WrittenContact) -> WrittenContact:
-    """From first touch to a little beyond a contact."""
-    widest = min(1.15 * float(contact.half_angle), _WIDEST)
-    return written(catalogue[contact.model.name].press(contact.joint, half_angle=widest * _POINTS))
 
 
 class Errand:
