@@ -106,3 +106,39 @@ def test_integers_of_any_kind_are_numbers():
     twin = bs.Joint(ball_radius=250.0, clearance=10.0, liner_thickness=100.0, liner=bs.Material(young=100, poisson=0.3))
     force = bs.HessForsbach().press(small, indentation=np.uint8(200)).force
     assert force == pytest.approx(bs.HessForsbach().press(twin, indentation=200.0).force, rel=1e-12)
+
+
+BASE = {"ball_radius": 14.0, "clearance": 0.1, "liner": bs.UHMWPE, "ball": bs.COCR}
+SHELL, CEMENT = bs.Layer(thickness=3.0, material=bs.TITANIUM), bs.Layer(thickness=3.0, material=bs.BONE_CEMENT)
+BONE = bs.Layer(thickness=np.inf, material=bs.CANCELLOUS_BONE)
+ENDLESS = {
+    "bone": bs.Joint(**BASE, liner_thickness=5.0, backing=(SHELL, CEMENT, BONE)),
+    "massive": bs.Joint(**BASE, liner_thickness=np.inf),
+    "pivot": bs.joints["tilting-pad-pivot"],
+}
+MODELS = (bs.Exact(), bs.FiniteElement(meshes=1))
+
+
+@pytest.mark.parametrize("joint", ENDLESS.values(), ids=ENDLESS)
+def test_two_bodies_that_differ_say_which_they_are(joint):
+    exact, fem = (model.press(joint, force=3000.0) for model in MODELS)
+    assert fem.indentation > 1.05 * exact.indentation
+    assert fem.max_pressure == pytest.approx(exact.max_pressure, rel=0.04)
+    for contact, body in ((exact, "is a whole space around a closed sphere;"), (fem, "is cut off at the plane of")):
+        assert contact.valid
+        assert any(body in note and "d differs by more than 2 %" in note for note in contact.notes)
+
+
+def test_a_ball_as_soft_as_its_liner_is_said_to_be_a_whole_or_half_a_one():
+    joint = bs.Joint(**{**BASE, "ball": bs.UHMWPE}, liner_thickness=5.0)
+    exact, fem = (model.press(joint, force=1000.0) for model in MODELS)
+    assert fem.indentation > 1.1 * exact.indentation
+    assert any("the ball is a whole one;" in note for note in exact.notes)
+    assert any("the ball is half a one on its equator;" in note for note in fem.notes)
+
+
+@pytest.mark.parametrize("backing", [(), (SHELL,), (CEMENT, bs.Layer(thickness=np.inf, material=bs.CORTICAL_BONE))])
+def test_bodies_that_agree_say_nothing(backing):
+    exact, fem = (model.press(bs.Joint(**BASE, liner_thickness=5.0, backing=backing), force=2500.0) for model in MODELS)
+    assert fem.indentation == pytest.approx(exact.indentation, rel=0.02)
+    assert exact.notes == fem.notes == ()

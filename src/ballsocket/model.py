@@ -19,7 +19,7 @@ from .cup import Cup, Interface
 from .joint import Joint
 from .law import CurveLaw, Law, curve_law
 from .sources import Source
-from .validity import LOOSE, Nowhere, Promise, Range, inside
+from .validity import LOOSE, Nowhere, Promise, Range, Remark, inside
 
 
 class Theory(ABC):
@@ -35,6 +35,8 @@ class Theory(ABC):
         Closed ranges inside which the answer can be trusted.
     promise : Promise or None
         How close to the elastic answer it is there, as measured; None where there is nothing to measure it by.
+    remarks : tuple of Remark
+        Where something is to be said of an answer that can be trusted.
     reach : str
         What loads have an answer, in words for those that have none; empty where there is nothing to say.
     """
@@ -60,6 +62,10 @@ class Theory(ABC):
     @property
     def promise(self) -> Promise | None:
         return None
+
+    @property
+    def remarks(self) -> tuple[Remark, ...]:
+        return ()
 
 
 class Model(Theory):

@@ -24,6 +24,8 @@ class Answerer(Protocol):
     @property
     def validity(self) -> tuple[Range, ...]: ...
     @property
+    def remarks(self) -> tuple[Range, ...]: ...
+    @property
     def reach(self) -> str: ...
 
 
@@ -56,12 +58,12 @@ class Outcome(ABC):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What has no answer, and what lies outside the model's validity, in words; empty where all is well."""
+        """What has no answer, what is outside the model's validity, and its remarks; empty where all is well."""
         notes = []
         for status in list(Status)[1:]:
             more = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
             notes += self._note(self.status != int(status), status.sentence + more)
-        for limit in self.model.validity:
+        for limit in (*self.model.validity, *self.model.remarks):
             notes += self._note(limit.holds(self) | self._failed, limit.sentence)
         return tuple(notes)
 

@@ -489,7 +489,9 @@ def test_press_by_finite_elements_shows_mesh_time_and_error_bars():
     assert done.stderr == ""
     assert re.search(r"^fem +3000 +40\.07 +42\.4", done.stdout, flags=re.MULTILINE)
     assert re.search(
-        r"^fem: \d+ elements, [\d.]+ mm at the contact, [\d.]+ s; d ±.* %, ε ±.* %, pmax ±", done.stdout, re.M
+        r"^fem: \d+ elements, [\d.]+ mm at the contact, [\d.]+ s; error of the mesh: d ±.* %, ε ±.* %, pmax ±",
+        done.stdout,
+        re.M,
     )
     answer = json.loads(run("press", EXAMPLE, "--model", "fem", "--meshes", "1", "--json").stdout)["results"][0]
     assert answer["model"] == "fem"

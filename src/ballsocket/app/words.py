@@ -67,7 +67,8 @@ def _cell(each: Column, contact: Contact, errors: Mapping[str, Any]) -> str:
 def trust(contact: Contact) -> str:
     """Whether the model trusts itself here, and if not why, in words and not by colour alone."""
     if bool(contact.valid):
-        return "<p class='trust yes'>✓ inside the range in which this model can be trusted</p>"
+        sentence = "✓ inside the range in which this model can be trusted"
+        return f"<p class='trust yes'>{sentence}</p>{notes_list(contact.notes) if contact.notes else ''}"
     sentence = "✗ outside the range in which this model can be trusted"
     return f"<p class='trust no'>{sentence}</p>{notes_list(contact.notes)}"
 

@@ -115,7 +115,7 @@ def timed(model: FiniteElement, joint: Any, load: Mapping[str, float]) -> tuple[
 
 
 def remark(contact: MeshedContact, seconds: float) -> str:
-    """Mesh, time and error bars in a line."""
+    """Mesh, time and the errors of the mesh in a line."""
     if contact.status.failed or contact.indentation == 0:
         return f"fem: {seconds:.2f} s"
     size = contact.mesh
@@ -126,4 +126,4 @@ def remark(contact: MeshedContact, seconds: float) -> str:
         for name, error in contact.error.items()
         if name in told and error > 1e-9
     )
-    return f"{mesh}; {bars}" if bars else f"{mesh}; errors not estimated"
+    return f"{mesh}; error of the mesh: {bars}" if bars else f"{mesh}; error of the mesh not estimated"

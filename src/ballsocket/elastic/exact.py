@@ -17,7 +17,7 @@ from ..joint import Joint, Support
 from ..model import Model
 from ..per_joint import taken_apart
 from ..sources import Source
-from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
+from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, bodies
 from .contact import ElasticContact
 from .curve import Curve
 from .kernel import Kernel
@@ -104,6 +104,7 @@ class Exact(Model):
     def validity(self) -> tuple[Range, ...]:
         return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
 
+    remarks: ClassVar[tuple[Remark, ...]] = bodies("a whole space around a closed sphere", "a whole one")
     reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:

@@ -17,7 +17,7 @@ from ..law import Law
 from ..model import Model
 from ..per_joint import taken_apart
 from ..sources import Source
-from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
+from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, bodies
 from .contact import MeshedContact
 from .spacing import SPACINGS, Adapted, Element, Spacing
 
@@ -113,6 +113,9 @@ class FiniteElement(Model):
             why="an incompressible body has no bulk modulus: 0.4999 is solved",
         ),
         Range(quantity="joint.thickness_ratio", high=200.0, why="so thin a liner is not meshed"),
+    )
+    remarks: ClassVar[tuple[Remark, ...]] = bodies(
+        "cut off at the plane of the socket's rim", "half a one on its equator"
     )
     reach: ClassVar[str] = (
         "half angles up to half the arc of cover, at most 88°, less where the ball fills its socket before or "

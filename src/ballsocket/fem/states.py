@@ -82,7 +82,7 @@ _LEAST = {
     "half_angle": 0.7,
     "max_pressure": 0.2,
     "pole_pressure": 0.2,
-    "stiffness": 0.4,
+    "stiffness": 1.0,
     "energy": 0.07,
     "pressure_integral": 0.02,
 }

@@ -144,7 +144,7 @@ class Judge:
         if self._found is None:
             raise ValueError("nothing has run yet: run the finite elements first")
         _, judged = self._found
-        heads = ["quantity", "finite elements", "their error", "exact"]
+        heads = ["quantity", "finite elements", "error of the mesh", "exact"]
         rows = [
             [name, judged.numbers[name], judged.error.get(quantity.name, ""), (judged.exact or {}).get(name, "")]
             for name, quantity in ((each.key, each) for each in CONTACT.values())
@@ -179,7 +179,7 @@ def _numbers(judged: Judged, screen: Screen) -> str:
             exact = judged.exact[each.name] * turn
             row += [number_text(exact), percent(float(relative(value, exact)), "+")]
         rows.append(row)
-    heads = ["", "finite elements", "their error", "exact, a whole shell", "difference"]
+    heads = ["", "finite elements", "error of the mesh", "exact, a whole shell", "difference"]
     return (
         f"{table(heads, rows)}<p class='quiet'>{judged.elements} elements, {judged.seconds:.2g} s."
         f"</p>{notes_list(judged.notes)}"
