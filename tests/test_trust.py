@@ -124,6 +124,8 @@ def test_two_bodies_that_differ_say_which_they_are(joint):
     exact, fem = (model.press(joint, force=3000.0) for model in MODELS)
     assert fem.indentation > 1.05 * exact.indentation
     assert fem.max_pressure == pytest.approx(exact.max_pressure, rel=0.04)
+    covered = bs.Exact().in_cup(bs.Cup(arc_of_cover=3.0)).press(joint, force=3000.0)
+    assert set(exact.notes) <= set(covered.notes)
     for contact, body in ((exact, "is a whole space around a closed sphere;"), (fem, "is cut off at the plane of")):
         assert contact.valid
         assert any(body in note and "d differs by more than 2 %" in note for note in contact.notes)

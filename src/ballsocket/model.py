@@ -277,6 +277,7 @@ class Wrapped(Model):
     domain = _passed_on("domain")
     validity = _passed_on("validity")
     promise = _passed_on("promise")
+    remarks = _passed_on("remarks")
     reach = _passed_on("reach")
     parameters = _passed_on("parameters")
     planar = _passed_on("planar")
