@@ -96,7 +96,7 @@ def _quantity(name: str, text: str, kind: str) -> float:
         raise ValueError(_refusal(name, text, kind))
     number, unit = found.groups()
     try:
-        return float(_registry().Quantity(float(number), _plain(unit)).to(_plain(Kind(kind).typed)).magnitude)
+        return float(registry().Quantity(float(number), _plain(unit)).to(_plain(Kind(kind).typed)).magnitude)
     except Exception as error:  # whatever pint makes of units that nobody meant: it has no list of them
         raise ValueError(_refusal(name, text, kind)) from error
 
@@ -107,7 +107,8 @@ def _plain(unit: str) -> str:
 
 
 @cache
-def _registry() -> Any:
+def registry() -> Any:
+    """Where pint keeps its units; made once, which takes a while."""
     import pint
 
     return pint.UnitRegistry()

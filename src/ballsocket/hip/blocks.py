@@ -1,0 +1,173 @@
+"""Millions of cycles in blocks: what is worn away changes the contact, as often as an error estimate asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy
+
+from ..arrays import Numbers
+from .chebyshev import Step, longest, stages_of, step
+from .history import Report
+from .laws import Pass
+from .sliding import Sliding
+from .springs import SpringBed
+
+if TYPE_CHECKING:
+    from .use import InUse
+
+_FIRST = 1e-2  # of the time in which what wears fastest would be worn in
+_SAFE, _LEAST, _MOST = 0.8, 0.2, 4.0
+_NUDGE = 1e-6  # of the largest pressure, for the slope of a law
+_SURE = 1.1
+_MARGIN = 0.3  # of the largest overlap: so far from contact cells are still looked at
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Near:
+    """The cells that are in reach of the contacts, and what slides over them."""
+
+    cells: Numbers
+    bed: SpringBed
+    sliding: Sliding
+
+
+@dataclass(kw_only=True, eq=False)
+class Run:
+    """A run under way.
+
+    Attributes
+    ----------
+    use : InUse
+    cycles : float
+        Done so far.
+    depth : array (cells,)
+        Worn away, in mm.
+    work : float
+        ∫∫ p |v| dA dt so far, in N mm.
+    length : float
+        Of the next block, in cycles.
+    steps : int
+        Blocks done.
+    settled : bool
+        Whether every contact has balanced its load.
+    """
+
+    use: InUse
+    cycles: float = 0.0
+    depth: Numbers = field(default_factory=lambda: numpy.zeros(0))
+    work: float = 0.0
+    length: float = inf
+    steps: int = 0
+    settled: bool = True
+
+    def __post_init__(self) -> None:
+        self.depth = numpy.zeros(len(self.use.bed.areas))
+        self._lost = 0.0
+        self._displacement = self.use.unworn.displacement
+        self._look()
+        if self._fastest > 0:
+            self.length = _FIRST / self._fastest
+
+    @property
+    def volume(self) -> float:
+        """Worn away, in mm³."""
+        return float(self.depth @ self.use.bed.areas)
+
+    @property
+    def missed(self) -> float:
+        """What the blocks missed of the volume, relative to it."""
+        return self._lost / self.volume if self.volume > 0 else 0.0
+
+    def _look(self) -> None:
+        """Which cells are in reach, and what a cycle adds to them."""
+        bed = self.use.bed
+        cells = numpy.flatnonzero(bed.near(self._displacement, self.depth, _MARGIN))
+        self._near = _Near(cells=cells, bed=bed.part(cells), sliding=self.use.sliding.part(cells))
+        self._slope = self._rate(self._values)
+
+    @property
+    def _values(self) -> Numbers:
+        """Depths of the cells in reach, and the work."""
+        return numpy.append(self.depth[self._near.cells], self.work)
+
+    def _rate(self, values: Numbers) -> Numbers:
+        """What a cycle adds to the values."""
+        near = self._near
+        rest = near.bed.rest(self.use.loads, values[:-1], self._displacement)
+        self._displacement = rest.displacement
+        self.settled = self.settled and rest.settled
+        self._pass = Pass(pressure=rest.pressure, sliding=near.sliding)
+        return numpy.append(self.use.wear.depth(self._pass), float(self._pass.work @ near.bed.areas))
+
+    @property
+    def _fastest(self) -> float:
+        """How fast a wave of the worn depth can decay, per cycle: what a law adds for a pressure, times a stiffness."""
+        done = self._pass
+        nudge = _NUDGE * float(done.pressure.max(initial=0.0))
+        if not nudge > 0:
+            return 0.0
+        more = Pass(pressure=done.pressure + nudge * (done.pressure > 0), sliding=done.sliding)
+        steepest = (self.use.wear.depth(more) - self.use.wear.depth(done)).max() / nudge
+        return _SURE * float(steepest) * self.use.bed.stiffest
+
+    def until(self, count: float, listen: Callable[[float], None]) -> Report:
+        """Go on until so many cycles are done, and look."""
+        while self.cycles < count:
+            self._advance(count)
+            listen(self.cycles)
+        return self._report()
+
+    def _advance(self, count: float) -> None:
+        """A block, as long as its error allows, and no further than asked for."""
+        fastest, left = self._fastest, count - self.cycles
+        while True:
+            length = _shared(min(self.length, longest(fastest)), left)
+            taken = step(self._rate, self._values, self._slope, length, stages_of(length, fastest))
+            error = self._error(taken, fastest)
+            self.length = length * min(max(_SAFE * max(error, 1e-12) ** (-1 / 3), _LEAST), _MOST)
+            if error <= 1:
+                break
+        self._lost += abs(float(taken.error[:-1] @ self._near.bed.areas))
+        self.depth = self.depth.copy()
+        self.depth[self._near.cells], self.work = taken.values[:-1], float(taken.values[-1])
+        self.steps, self._slope = self.steps + 1, taken.rate
+        self.cycles = count if length == left else self.cycles + length
+        if self._spreads:
+            self._look()
+
+    def _error(self, taken: Step, fastest: float) -> float:
+        """What a block missed in the mean square of the cells, over what it may."""
+        begun = _FIRST * float(self._slope[:-1].max(initial=0.0)) / fastest if fastest > 0 else 0.0
+        allowed = self.use.tolerance * max(float(taken.values[:-1].max(initial=0.0)), begun)
+        missed = taken.error[:-1]
+        return float(numpy.sqrt(missed @ missed / max(len(missed), 1))) / allowed if allowed > 0 else 0.0
+
+    @property
+    def _spreads(self) -> bool:
+        """Whether the contact comes near to cells that are not looked at."""
+        close = self.use.bed.near(self._displacement, self.depth, _MARGIN / 2)
+        close[self._near.cells] = False
+        return bool(close.any())
+
+    def _report(self) -> Report:
+        use = self.use
+        rest = use.rest(self.depth, self._displacement)
+        return Report(
+            cycles=self.cycles,
+            wear=self.depth.reshape(use.grid.rings, -1),
+            volume=self.volume,
+            depth=float(self.depth.max()),
+            work=self.work,
+            displacement=(rest.displacement - use.unworn.displacement)[use.largest].sum(axis=0),
+            max_pressure=float(rest.pressure.max(initial=0.0)),
+            settled=self.settled and rest.settled,
+        )
+
+
+def _shared(length: float, left: float) -> float:
+    """A block no longer than what is left, which two share rather than a long and a short one."""
+    return left if length >= left else min(length, left / 2)

@@ -1,0 +1,101 @@
+"""Wear coefficients as people write them: a number with its unit, refused where that is another one."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from ..checks import require, shown
+from ..io.units import LONGEST, registry
+
+_TEXT = re.compile(r"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*)?", re.ASCII)
+_POWER = re.compile(r"(?<=[A-Za-z])([2-9])")
+_PLAIN = str.maketrans({"³": "3", "²": "2", "·": "*", "×": "*", "μ": "u", "µ": "u"})
+_ALLOWED = re.compile(r"[A-Za-z0-9 */^().-]{1,40}")
+_WORK = re.compile(r"(?<!\()\bN[ *]*(m|mm)\b")
+"""A force times a length behind a stroke, which people write without brackets."""
+
+WEAR_FACTOR = "mm^3/(N m)"
+_METRES = ("mm**3/(N*m)", "m**3/(N*m)")
+"""Units of a wear factor for metres of sliding, of which there is nothing to mistake."""
+
+
+def wear_factor(name: str, value: Any) -> float:
+    """A wear factor k in mm³/(N m): bare, or text as "1.066e-6 mm^3/(N m)".
+
+    Raises
+    ------
+    ValueError
+        Text that is none; a unit of another dimension; one for other lengths of sliding, with the factor between.
+
+    Examples
+    --------
+    >>> wear_factor("coefficient", "1.066e-6 mm³/(N·m)")
+    1.066e-06
+    >>> wear_factor("coefficient", "1.066e-9 mm^3/(N mm)")
+    Traceback (most recent call last):
+    ValueError: coefficient = '1.066e-9 mm^3/(N mm)' is for mm of sliding: 1 mm^3/(N mm) is 1000 mm^3/(N m), \
+so that this is 1.066e-06 mm^3/(N m); write it so
+    """
+    number, unit = _parts(name, value, WEAR_FACTOR)
+    if unit:
+        number *= _factor(name, value, number, unit)
+    require(name, number, 0 <= number < float("inf"), f"a wear coefficient is at least 0 {WEAR_FACTOR}, and finite")
+    return number
+
+
+def share_of_slide(name: str, value: Any) -> float:
+    """The coefficient of the area law, mm of depth per mm of sliding: bare, or text as "1e-6 mm/m".
+
+    Raises
+    ------
+    ValueError
+        Text that is none; a unit of another dimension.
+    """
+    number, unit = _parts(name, value, "mm/m")
+    if unit:
+        number *= _converted(name, value, unit, "1", "mm/mm, a depth over a length of sliding")
+    require(name, number, 0 <= number < float("inf"), "a wear coefficient is at least 0, and finite")
+    return number
+
+
+def _parts(name: str, value: Any, example: str) -> tuple[float, str]:
+    """The number and the unit, in pint's words."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value), ""
+    found = _TEXT.fullmatch(value.strip()) if isinstance(value, str) and len(value) <= LONGEST else None
+    if found is None:
+        raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'")
+    unit = _POWER.sub(r"**\1", (found[2] or "").translate(_PLAIN).replace("^", "**"))
+    unit = _WORK.sub(r"(N*\1)", unit)
+    if unit and not _ALLOWED.fullmatch(unit):
+        raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'")
+    return float(found[1]), re.sub(r"(?<=[A-Za-z0-9)])\s+(?=[A-Za-z(])", "*", unit)
+
+
+def _factor(name: str, value: Any, number: float, unit: str) -> float:
+    """From a unit to mm³/(N m)."""
+    factor = _converted(name, value, unit, _METRES[0], f"{WEAR_FACTOR}, a volume over a force and a length of sliding")
+    units = registry()
+    if not any(units.Unit(unit) == units.Unit(good) and _same(unit, good) for good in _METRES):
+        written = unit.replace("**", "^").replace("N*m", "N m")
+        slid = "for mm of sliding" if abs(factor / 1000 - 1) < 1e-9 else "for another length of sliding"
+        raise ValueError(
+            f"{name} = {shown(value)} is {slid}: 1 {written} is {factor:.6g} {WEAR_FACTOR}, "
+            f"so that this is {number * factor:.6g} {WEAR_FACTOR}; write it so"
+        )
+    return factor
+
+
+def _same(one: str, other: str) -> bool:
+    units = registry()
+    return bool(dict(units.Unit(one)._units) == dict(units.Unit(other)._units))
+
+
+def _converted(name: str, value: Any, unit: str, into: str, wanted: str) -> float:
+    units = registry()
+    try:
+        given = units.Quantity(1.0, unit)
+        return float(given.to(into if into != "1" else "dimensionless").magnitude)
+    except Exception as error:  # whatever pint makes of units that nobody meant
+        raise ValueError(f"{name} = {shown(value)} has not the dimension of {wanted}") from error

@@ -1,0 +1,202 @@
+"""A file about a hip in use: TOML with units in; joint, cup, cycle and law out. Strict, as joint files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from math import degrees, pi
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from ..catalogue import catalogue
+from ..checks import check_names, check_text, known_name, nearest, plain_name, require, shown
+from ..cup import Cup
+from ..io.joint_file import KEYS, JointFile, check_keys, joint_of, read_joint
+from ..io.toml import read_toml
+from ..io.units import parse
+from ..kinds import Kind
+from ..models.foundation import RadialFoundation
+from ..presets import joints
+from ..sphere.surfaces import Springs
+from .coefficients import share_of_slide, wear_factor
+from .cycle_file import read_cycle
+from .gait import CYCLES, INSTANTS, Cycle, constant_load, named_cycle, order_of, rocking
+from .laws import Archard, AreaLaw, CrossShear, Law
+from .use import InUse, check_cycles
+
+_DESCRIBED = ("joint", "liner", "ball", "backing", "cup")
+_TABLES: Mapping[str, tuple[str, ...]] = {
+    "": ("name", "source", *_DESCRIBED, "cycle", "wear", "cycles", "report_at"),
+    "cup": (*KEYS["cup"], "tilt"),
+    "cycle": ("name", "file", "instants", "rotation_order", "body_weight", "force", "amplitude"),
+    "wear": ("law", "coefficient", "circular", "exponent", "reference", "contact", "model", "ring_width"),
+}
+_KEYS = {**{name: KEYS[name] for name in _DESCRIBED}, **_TABLES}
+_MILLION = 1e6
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HipFile:
+    """What a file about a hip in use says: the hip, how many cycles it goes through, and when it is looked at."""
+
+    use: InUse
+    cycles: float
+    report_at: tuple[float, ...]
+
+
+def read_hip(path: str | Path) -> HipFile:
+    """Read a file about a hip in use.
+
+    Tables: `joint`, `liner`, `ball`, `backing` and `cup` as in joint files (`joint` may be the name of a preset or of
+    a joint file); in `cup` a `tilt` from the load may take the place of inclination and anteversion. `cycle` has a
+    `name` ("iso-14242-1", "iso-14242-1-key-points", "flexion", "biaxial-rocking", "constant-load"; the last two with
+    `force` and `amplitude`) or a `file` (a table of text), `instants`, `rotation_order`, `body_weight`. `wear` has a
+    `law` ("archard", "area", "cross-shear"), its `coefficient` in mm³/(N m), `contact` ("springs"), the `model`
+    whose springs they are, `ring_width`. At the top: `cycles`, `report_at` (a list).
+
+    Raises
+    ------
+    ValueError
+        One sentence: what is wrong, and the nearest thing that is right.
+    OSError
+        A file cannot be read.
+    """
+    path = Path(path)
+    return read_toml(path, "hip", lambda content: _hip(content, path.parent))
+
+
+def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
+    check_keys(content, "", "at the top", _KEYS)
+    for name in ("cup", "cycle", "wear"):
+        check_keys(_table(content, name), name, f"in [{name}]", _KEYS)
+    given = _joint(content, folder)
+    cycle, wear = _cycle(_table(content, "cycle"), folder), _table(content, "wear")
+    use = InUse(
+        joint=given.joint,
+        cup=given.cup,
+        cycle=cycle,
+        wear=_law(wear),
+        surface=_surface(wear),
+        **({"ring_width": parse("ring_width", wear["ring_width"], Kind.ANGLE)} if "ring_width" in wear else {}),
+    )
+    cycles = _count("cycles", content.get("cycles", 5 * _MILLION))
+    looks = content.get("report_at", [share * cycles / 10 for share in range(1, 11)])
+    if not isinstance(looks, list):
+        raise ValueError(f"report_at = {shown(looks)} must be a list of numbers of cycles")
+    at = tuple(_count("report_at", look) for look in looks)
+    check_cycles(cycles, at)
+    return HipFile(use=use, cycles=cycles, report_at=at)
+
+
+def _count(name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"{name} = {shown(value)} must be a number of cycles, such as 5e6")
+    return float(value)
+
+
+def _table(content: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    part = content.get(name, {})
+    if not isinstance(part, Mapping):
+        raise ValueError(f"{name} = {shown(part)} must be a table: [{name}]")
+    return part
+
+
+def _joint(content: Mapping[str, Any], folder: Path) -> JointFile:
+    """Joint and cup, a tilt in place of where the cup faces."""
+    given, around = content.get("joint"), dict(_table(content, "cup"))
+    if given is None:
+        raise ValueError("a joint is needed: a table [joint], a joint file, or a preset's name")
+    tilt = around.pop("tilt", None)
+    parts = {name: content[name] for name in _DESCRIBED if name in content}
+    if isinstance(given, Mapping):
+        file = joint_of({**parts, **({"cup": around} if around else {"cup": {}})})
+    else:
+        file = _named(check_text("joint", given), folder)
+        if around:
+            file = replace(file, cup=joint_of({"joint": _PLAIN, "liner": _LINER, "cup": around}).cup)
+    return file if tilt is None else replace(file, cup=_tilted(file.cup, tilt, around))
+
+
+_PLAIN: Mapping[str, Any] = MappingProxyType({"ball_radius": 1.0, "clearance": 0.1, "liner_thickness": 1.0})
+_LINER: Mapping[str, Any] = MappingProxyType({"young": 1.0, "poisson": 0.4})
+
+
+def _tilted(cup: Cup, tilt: Any, given: Mapping[str, Any]) -> Cup:
+    for name in ("inclination", "anteversion"):
+        if name in given:
+            raise ValueError(f"tilt and {name} are one too many: either says where the cup faces")
+    angle = parse("tilt", tilt, Kind.ANGLE)
+    require("tilt", degrees(angle), 0 <= angle <= pi / 2, "a cup's tilt from the load is 0 to 90 degrees")
+    return cup.tilted(angle)
+
+
+def _named(name: str, folder: Path) -> JointFile:
+    if plain_name(name) in joints:
+        return JointFile(joints[plain_name(name)], {})
+    if not (folder / name).is_file():
+        raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
+    return read_joint(folder / name)
+
+
+_AMPLE: Mapping[str, tuple[Callable[..., Cycle], str]] = MappingProxyType(
+    {"biaxial-rocking": (rocking, "peak"), "constant-load": (constant_load, "force")}
+)
+
+
+def _cycle(table: Mapping[str, Any], folder: Path) -> Cycle:
+    if ("name" in table) == ("file" in table):
+        raise ValueError(f"[cycle] needs a name or a file, and not both; names: {', '.join(CYCLES)}")
+    instants = table.get("instants", INSTANTS)
+    order = order_of(table.get("rotation_order", "flexion, adduction, rotation"))
+    if "file" in table:
+        check_names(table, ("file", "instants", "rotation_order", "body_weight"), "beside a file in [cycle]")
+        weight = parse("body_weight", table["body_weight"], Kind.FORCE) if "body_weight" in table else None
+        return read_cycle(folder / check_text("file", table["file"]), instants, order, weight)
+    name = known_name("cycle", table["name"], CYCLES)
+    if name not in _AMPLE:
+        check_names(table, ("name", "instants", "rotation_order"), f"beside the name {name!r} in [cycle]")
+        return named_cycle(name, instants, order)
+    make, force = _AMPLE[name]
+    words = {force: parse("force", table["force"], Kind.FORCE)} if "force" in table else {}
+    words |= {"amplitude": parse("amplitude", table["amplitude"], Kind.ANGLE)} if "amplitude" in table else {}
+    return make(instants, order, **words)
+
+
+_LAWS = ("archard", "area", "cross-shear")
+_OF_CROSS_SHEAR = ("circular", "exponent", "reference")
+
+
+def _law(table: Mapping[str, Any]) -> Law:
+    name = known_name("law", table.get("law", "archard"), _LAWS)
+    if "coefficient" not in table:
+        raise ValueError("[wear] needs a coefficient, such as '1.066e-6 mm^3/(N m)'")
+    if name != "cross-shear":
+        for each in _OF_CROSS_SHEAR:
+            if each in table:
+                raise ValueError(f"{each} belongs to the law 'cross-shear', and the law is {name!r}")
+    if name == "area":
+        return AreaLaw(coefficient=share_of_slide("coefficient", table["coefficient"]))
+    straight = wear_factor("coefficient", table["coefficient"])
+    if name == "archard":
+        return Archard(coefficient=straight)
+    if "circular" not in table:
+        raise ValueError("the law 'cross-shear' needs circular, its coefficient on a circle, beside that on a line")
+    return CrossShear(
+        straight=straight,
+        circular=wear_factor("circular", table["circular"]),
+        exponent=parse("exponent", table.get("exponent", 0.0), Kind.NUMBER),
+        reference=parse("reference", table.get("reference", 1.0), Kind.MODULUS),
+    )
+
+
+_CONTACTS = ("springs",)
+
+
+def _surface(table: Mapping[str, Any]) -> Springs:
+    known_name("contact", table.get("contact", "springs"), _CONTACTS)
+    model = catalogue[known_name("model", table.get("model", "hess-forsbach"), catalogue)]
+    if not isinstance(model, RadialFoundation):
+        names = ", ".join(name for name, each in catalogue.items() if isinstance(each, RadialFoundation))
+        raise ValueError(f"the model {model.name!r} has no radial springs; those that have: {names}")
+    return Springs(modulus=model.modulus)

@@ -1,0 +1,144 @@
+"""A socket of radial springs under a whole cycle of loads at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy
+
+from ..arrays import Numbers
+from ..models.kinematics import linear_indentation
+from ..sphere.grid import Grid
+
+_ROUNDS = 60
+TOLERANCE = 1e-8
+"""Of the load, where the balance is good."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rest:
+    """Balls at rest, one for each load.
+
+    Attributes
+    ----------
+    displacement : array (loads, 3)
+        Of the ball's centre in mm, in the cup's frame.
+    pressure : array (loads, cells)
+        In MPa.
+    settled : bool
+        Whether every load is balanced.
+    """
+
+    displacement: Numbers
+    pressure: Numbers
+    settled: bool
+
+
+def spring_bed(grid: Grid, modulus: float, clearance: float, socket_radius: float) -> SpringBed:
+    """A bore of springs in the cells of a grid; see `SpringBed`."""
+    return SpringBed(
+        directions=numpy.ascontiguousarray(grid.middles.reshape(3, -1)),
+        normals=numpy.ascontiguousarray(grid.normals.reshape(3, -1)),
+        areas=numpy.repeat(grid.areas[:, 0], grid.meridians) * socket_radius**2,
+        modulus=modulus,
+        clearance=clearance,
+        socket_radius=socket_radius,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpringBed:
+    """A bore of springs that know nothing of each other, p = K max(u, 0), u = e·n - c - h.
+
+    Attributes
+    ----------
+    directions, normals : array (3, cells)
+        Unit vectors to the middles of the cells, and the means of the outward normal over them, in the cup's frame.
+    areas : array (cells,)
+        In mm².
+    modulus : float
+        K in MPa/mm.
+    clearance, socket_radius : float
+        In mm.
+    """
+
+    directions: Numbers
+    normals: Numbers
+    areas: Numbers
+    modulus: float
+    clearance: float
+    socket_radius: float
+
+    def part(self, cells: Numbers) -> SpringBed:
+        """Some of the cells alone."""
+        return replace(
+            self, directions=self.directions[:, cells], normals=self.normals[:, cells], areas=self.areas[cells]
+        )
+
+    def near(self, displacement: Numbers, depth: Numbers, margin: float) -> Numbers:
+        """The cells that any of the displaced balls touches, or would if their overlap were larger by a share."""
+        overlap = (displacement @ self.normals).max(axis=0, initial=0.0) - self.clearance - depth
+        found: Numbers = overlap > -margin * float(overlap.max())
+        return found
+
+    @property
+    def stiffest(self) -> float:
+        """The largest change of a pressure by the depth of a wave, in MPa/mm."""
+        return self.modulus
+
+    @cached_property
+    def _outward(self) -> Numbers:
+        """From pressures to forces in N: (cells, 3)."""
+        return (self.normals * self.areas).T.copy()
+
+    @cached_property
+    def _products(self) -> Numbers:
+        """n nᵀ dA of the cells: (cells, 9)."""
+        n = self.normals
+        return (n[:, None] * n[None] * self.areas).reshape(9, -1).T.copy()
+
+    def start(self, loads: Numbers, depth: Numbers) -> Numbers:
+        """Displacements (loads, 3) in mm to begin with: those of a whole sphere, as deep again as the bore is worn."""
+        size = numpy.linalg.norm(loads, axis=1)
+        deep = linear_indentation(self.socket_radius, self.clearance, self.modulus, size)
+        along = loads / numpy.where(size > 0, size, 1.0)[:, None]
+        return along * (self.clearance + deep + float(depth.max()))[:, None]
+
+    def rest(self, loads: Numbers, depth: Numbers, start: Numbers | None = None) -> Rest:
+        """Where balls come to rest under loads.
+
+        Parameters
+        ----------
+        loads : array (loads, 3)
+            In N, in the cup's frame, none of them zero.
+        depth : array (cells,)
+            Of the worn bore below the sphere in mm.
+        start : array (loads, 3), optional
+            Displacements to begin with.
+        """
+        e = self.start(loads, depth) if start is None else start
+        allowed = TOLERANCE * numpy.linalg.norm(loads, axis=1)
+        lost = numpy.inf
+        for _ in range(_ROUNDS):
+            overlap = e @ self.normals
+            overlap -= self.clearance + depth
+            touching = (overlap > 0).astype(float)
+            pressure = numpy.maximum(overlap, 0.0, out=overlap)
+            pressure *= self.modulus
+            missing = loads - pressure @ self._outward
+            lost = float((numpy.linalg.norm(missing, axis=1) / allowed).max(initial=0.0))
+            if lost <= 1:
+                break
+            e = e + self._step(touching, missing, loads)
+        return Rest(displacement=e, pressure=pressure, settled=lost <= 1)
+
+    def _step(self, touching: Numbers, missing: Numbers, loads: Numbers) -> Numbers:
+        """Newton's step; a ball that has lost its bore moves on along its load."""
+        tangent = self.modulus * (touching @ self._products).reshape(-1, 3, 3)
+        trace = numpy.trace(tangent, axis1=1, axis2=2)
+        apart = trace <= 0
+        solid = numpy.where(apart, 1.0, 1e-12 * trace)
+        step = numpy.linalg.solve(tangent + solid[:, None, None] * numpy.eye(3), missing[:, :, None])[:, :, 0]
+        along = loads / numpy.linalg.norm(loads, axis=1)[:, None]
+        return numpy.where(apart[:, None], (self.clearance + 1e-3 * self.socket_radius) * along, step)

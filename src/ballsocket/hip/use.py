@@ -1,0 +1,253 @@
+"""A hip in use: a joint, how its cup stands, what it goes through, and how that wears it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import degrees, inf, radians
+
+import numpy
+
+from ..arrays import Numbers, is_plain
+from ..checks import require
+from ..cup import Cup
+from ..fem.shapes import socket_shape
+from ..joint import Joint
+from ..sphere.grid import Grid, grid
+from ..sphere.surfaces import Springs
+from .blocks import Run
+from .gait import Cycle
+from .history import Error, First, History
+from .laws import Law, Pass
+from .sliding import Sliding, slide
+from .springs import Rest, SpringBed, spring_bed
+
+_LIFTED = 1e-6
+"""Of the largest force: below, the ball is taken to be lifted off."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class InUse:
+    """A hip in use.
+
+    Parameters
+    ----------
+    joint : Joint
+        Of plain numbers.
+    cycle : Cycle
+        In the body's frame, as the cup's orientation is.
+    wear : Law
+        `Archard`, `AreaLaw`, `CrossShear` or `OwnLaw`.
+    cup : Cup
+        Arc of cover and where it faces; where the cycle's standard says a tilt, that of a cup that faces down.
+    surface : Springs
+        How the bore gives way; the paper's springs by default.
+    ring_width : float
+        Of the rings of the wear map in rad, 3° by default.
+    tolerance : float
+        Of a block, over the largest depth so far. Default 4e-3.
+
+    Raises
+    ------
+    ValueError
+        A load that pushes the ball over the rim, with its instant; a number that is not allowed.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.hip import Archard, InUse, iso_14242_1
+    >>> joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
+    >>> use = InUse(joint=joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6))
+    >>> round(use.first.volume, 1)
+    30.1
+    """
+
+    joint: Joint
+    cycle: Cycle
+    wear: Law
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
+    surface: Springs = Springs()  # noqa: RUF009 (frozen)
+    ring_width: float = radians(3.0)
+    tolerance: float = 4e-3
+
+    def __post_init__(self) -> None:
+        if not all(map(is_plain, self.joint.numbers())):
+            raise ValueError("a hip in use is one joint, and this one has arrays of numbers")
+        require("ring_width", self.ring_width, radians(0.5) <= self.ring_width <= radians(10.0), "0.5 to 10 degrees")
+        require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
+        self._check_held()
+
+    def _check_held(self) -> None:
+        forces = self.cycle.forces[self.loaded]
+        if not len(forces):
+            return
+        tilt, reach = numpy.asarray(self.placed.tilt(forces)), self.reach
+        if (tilt >= reach).any():
+            out = int((tilt >= reach).argmax())
+            when = 100 * self.cycle.phases[self.loaded][out]
+            raise ValueError(
+                f"dislocated at {when:.1f} % of the cycle: the load of {numpy.linalg.norm(forces[out]):.0f} N points "
+                f"{degrees(tilt[out]):.1f}° from the dome's pole, and the bore ends at {degrees(reach):.1f}°"
+            )
+
+    @cached_property
+    def placed(self) -> Cup:
+        """The cup as the cycle finds it: where it faces straight down and a standard has a tilt, it has that tilt."""
+        upright = self.cup.inclination == 0 and self.cup.anteversion == 0
+        tilt = self.cycle.cup_tilt
+        return self.cup.tilted(tilt) if upright and tilt is not None else self.cup
+
+    @property
+    def reach(self) -> float:
+        """Where the bore ends, in rad from the dome's pole."""
+        return float(self.cup.rim - self.cup.chamfer / self.joint.socket_radius)
+
+    @cached_property
+    def loaded(self) -> Numbers:
+        """The instants in which the ball is pressed into the bore."""
+        sizes = self.cycle.sizes
+        return numpy.flatnonzero(sizes > _LIFTED * max(float(sizes.max()), 1e-300))
+
+    @cached_property
+    def loads(self) -> Numbers:
+        """The forces of those instants in the cup's frame: (loaded, 3)."""
+        return numpy.ascontiguousarray(self.cycle.forces[self.loaded] @ numpy.array(self.placed.frame).T)
+
+    @property
+    def largest(self) -> Numbers:
+        """Which of the loads is the largest: one number, or none where there are no loads."""
+        sizes = numpy.linalg.norm(self.loads, axis=1)
+        return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
+
+    @cached_property
+    def turns(self) -> Numbers:
+        """How the ball turns in those instants, in the cup's frame: (loaded, 3)."""
+        return numpy.ascontiguousarray(self.cycle.turns[self.loaded] @ numpy.array(self.placed.frame).T)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be said of the cycle, the cup and the law."""
+        placed = () if self.placed == self.cup else (_PLACED.format(degrees(self.cycle.cup_tilt or 0.0)),)
+        lifted = () if len(self.loaded) == self.cycle.instants else (_LIFTS,)
+        return (*self.cycle.notes, *placed, *lifted, *self.wear.notes)
+
+    @cached_property
+    def grid(self) -> Grid:
+        """The cells of the bore."""
+        return grid(socket_shape(self.joint, self.cup).reach, self.ring_width)
+
+    @cached_property
+    def bed(self) -> SpringBed:
+        joint = self.joint
+        return spring_bed(
+            self.grid,
+            modulus=float(self.surface.modulus(joint)),
+            clearance=float(joint.clearance),
+            socket_radius=float(joint.socket_radius),
+        )
+
+    @cached_property
+    def sliding(self) -> Sliding:
+        return Sliding(radius=float(self.joint.ball_radius), turns=self.turns, directions=self.bed.directions)
+
+    def rest(self, depth: Numbers | float = 0.0, start: Numbers | None = None) -> Rest:
+        """The contacts of a cycle on a bore that is worn by a depth in mm (cells,)."""
+        return self.bed.rest(self.loads, numpy.broadcast_to(depth, self.bed.areas.shape), start)
+
+    def passed(self, rest: Rest) -> Pass:
+        """What the points of the socket go through under these contacts."""
+        return Pass(pressure=rest.pressure, sliding=self.sliding)
+
+    @cached_property
+    def unworn(self) -> Rest:
+        """The contacts of the first cycle."""
+        return self.rest()
+
+    @property
+    def slide(self) -> float:
+        """How far the ball slides past the loads' line in a cycle, in mm."""
+        sizes = self.cycle.sizes[:, None]
+        along = numpy.divide(self.cycle.forces, sizes, out=numpy.zeros_like(self.cycle.forces), where=sizes > 0)
+        return slide(float(self.joint.ball_radius), self.cycle.turns, _held(along, self.loaded))
+
+    @cached_property
+    def first(self) -> First:
+        """The first cycle, on a bore that is not worn, a million times over."""
+        done, areas = self.passed(self.unworn), self.bed.areas
+        depth, work = self.wear.depth(done), done.work * areas
+        whole = float(work.sum())
+        return First(
+            slide=self.slide,
+            work=whole / 1e3,
+            cross_shear=float(done.cross_shear @ work) / whole if whole > 0 else 0.0,
+            volume=1e6 * float(depth @ areas),
+            depth=1e6 * float(depth.max(initial=0.0)),
+            max_pressure=float(done.pressure.max(initial=0.0)),
+            max_force=self.cycle.largest_force,
+        )
+
+    def after(
+        self,
+        cycles: float,
+        report_at: Sequence[float] = (),
+        listen: Callable[[float], None] = lambda done: None,
+    ) -> History:
+        """The hip after so many cycles.
+
+        Parameters
+        ----------
+        cycles : float
+        report_at : sequence of float
+            Cycles at which to look; the end is always looked at.
+        listen : function
+            Called with the number of cycles done after each block.
+
+        Raises
+        ------
+        ValueError
+            Numbers of cycles that are not allowed.
+        """
+        counts = check_cycles(cycles, report_at)
+        run = Run(use=self)
+        reports = tuple(run.until(count, listen) for count in counts)
+        return History(use=self, reports=reports, error=self.error(run.missed), steps=run.steps)
+
+    def error(self, blocks: float) -> Error:
+        """What the volume may be off by: blocks as they estimate it, rings and instants by halving them once."""
+        finer = replace(
+            self, ring_width=self.ring_width / 2, cycle=replace(self.cycle, instants=2 * self.cycle.instants)
+        )
+        mine, other = self.first, finer.first
+        rates = (
+            abs(getattr(mine, name) / getattr(other, name) - 1) if getattr(other, name) else 0.0 for name in _RATES
+        )
+        volume, depth = rates
+        return Error(blocks=blocks, volume=blocks + volume, depth=blocks + depth)
+
+
+_RATES = ("volume", "depth")
+_PLACED = "the cup is tilted by {:g}° from the load, as the cycle's standard has it"
+_LIFTS = "the ball lifts off in a part of the cycle; nothing is pressed or worn there"
+
+
+def _held(along: Numbers, loaded: Numbers) -> Numbers:
+    """Directions of the loads; where there is none, the last one that was."""
+    if not len(loaded):
+        return along
+    last = numpy.searchsorted(loaded, numpy.arange(len(along)), side="right") - 1
+    return along[loaded[last]]
+
+
+def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
+    """Numbers of cycles in order, the last one at the end.
+
+    Raises
+    ------
+    ValueError
+        Not positive and finite, or a look beyond the end.
+    """
+    require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
+    for count in report_at:
+        require("report_at", count, 0 <= count <= cycles, f"it lies between 0 and the {cycles:g} cycles of the run")
+    return sorted({float(count) for count in (*report_at, cycles)})

@@ -1,0 +1,45 @@
+"""A hip in use in a terminal."""
+
+from __future__ import annotations
+
+from rich.table import Table
+
+from ..hip.history import History
+from .terminal import console, print_folded
+
+_HEADS = {
+    "cycles": "million",
+    "volume": "mm³",
+    "depth": "mm",
+    "penetration": "mm",
+    "pmax": "MPa",
+}
+
+
+def print_hip(history: History) -> None:
+    """The first cycle in a line, what is seen later on in a table, how sure it is, and remarks."""
+    terminal, use, first = console(), history.use, history.use.first
+    print_folded(terminal, str(use.joint), "bold")
+    print_folded(
+        terminal,
+        f"{use.cycle.name}: slide {first.slide:.4g} mm a cycle, pressure times slide {first.work:.4g} N m, "
+        f"cross-shear {first.cross_shear:.3g}, up to {first.max_force:.4g} N and {first.max_pressure:.4g} MPa",
+        "",
+    )
+    print_folded(terminal, f"unworn: {first.volume:.4g} mm³ and {first.depth:.4g} mm a million cycles", "")
+    terminal.print(_table(history))
+    off = f"volume within {100 * history.error.volume:.2g} % of the same model in the finest steps"
+    print_folded(terminal, f"{off}, in {history.steps} blocks", "dim")
+    for note in history.notes:
+        print_folded(terminal, note, "dim")
+
+
+def _table(history: History) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for head in _HEADS:
+        table.add_column(head, justify="right", no_wrap=True)
+    table.add_row(*_HEADS.values(), style="dim")
+    for each in history.reports:
+        numbers = (each.volume, each.depth, each.penetration, each.max_pressure)
+        table.add_row(f"{each.cycles / 1e6:g}", *(f"{number:.4g}" for number in numbers))
+    return table

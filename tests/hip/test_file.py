@@ -1,0 +1,150 @@
+"""The file and the command: what they say, and what they refuse."""
+
+import json
+
+import pytest
+
+from ballsocket.hip.coefficients import share_of_slide, wear_factor
+from ballsocket.hip.file import read_hip
+
+from ..cli.command import run
+from ..places import EXAMPLES
+from .test_gait import written
+
+TEXT = (EXAMPLES / "hip_in_use.toml").read_text(encoding="utf-8")
+
+
+def told(path, *changes, text=TEXT):
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    file = path / "hip.toml"
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def test_the_command_answers_in_json():
+    done = run("hip", str(EXAMPLES / "hip_in_use.toml"), "--json")
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout)
+    assert answer["cycle"]["slide_mm"] == pytest.approx(22.31, rel=3e-3)
+    assert answer["cycle"]["pressure_slide_integral_Nm"] == pytest.approx(30.09, rel=3e-3)
+    assert answer["cycle"]["cross_shear_mean"] == pytest.approx(0.107, abs=1e-3)
+    assert answer["cycle"]["peaks"]["force_N"] == pytest.approx(3000.0, rel=1e-6)
+    assert answer["initial"]["wear_mm3_per_Mc"] == pytest.approx(32.1, rel=5e-3)
+    assert answer["initial"]["depth_mm_per_Mc"] == pytest.approx(0.192, rel=5e-3)
+    seen = {report["cycles"]: report for report in answer["history"]}
+    assert list(seen) == [1e6, 2e6, 5e6]
+    assert seen[5e6]["volume"] == pytest.approx(181.6, rel=1e-2)
+    assert seen[5e6]["depth"] == pytest.approx(0.392, rel=2e-2)
+    assert set(seen[1e6]) >= {"volume", "depth", "penetration", "max_pressure", "creep_depth"}
+    assert 0 < answer["error"]["volume"] < 5e-3
+    assert isinstance(answer["notes"], list)
+
+
+def test_the_command_tells_it_in_a_table(tmp_path):
+    done = run("hip", str(told(tmp_path, ("5e6\n", "1e6\n"), ("[1e6, 2e6, 5e6]", "[1e6]"))))
+    assert done.returncode == 0
+    assert "33.7" in done.stdout
+    assert "cross-shear 0.107" in done.stdout
+
+
+def test_a_cycle_of_ones_own_beside_the_file(tmp_path):
+    written(tmp_path / "walk.csv")
+    given = read_hip(told(tmp_path, ('name = "iso-14242-1"', 'file = "walk.csv"')))
+    assert given.use.first.volume == pytest.approx(32.1, rel=5e-3)
+
+
+def test_where_the_cup_faces(tmp_path):
+    tilted = read_hip(told(tmp_path)).use
+    inclined = read_hip(told(tmp_path, ('tilt = "30 deg"', 'inclination = "30 deg"'))).use
+    assert tilted.placed == inclined.placed
+    with pytest.raises(ValueError, match="tilt and inclination are one too many"):
+        read_hip(told(tmp_path, ('tilt = "30 deg"', 'tilt = "30 deg"\ninclination = "30 deg"')))
+
+
+def test_springs_of_another_model(tmp_path):
+    given = read_hip(told(tmp_path, ('contact = "springs"', 'contact = "springs"\nmodel = "vessel"')))
+    assert given.use.first.max_pressure > 1.01 * read_hip(told(tmp_path)).use.first.max_pressure
+    with pytest.raises(ValueError, match="the model 'hertz' has no radial springs; those that have: hess-forsbach"):
+        read_hip(told(tmp_path, ('contact = "springs"', 'model = "hertz"')))
+
+
+def test_a_preset_in_place_of_a_joint(tmp_path):
+    head, tail = TEXT.split("[joint]")[0], TEXT[TEXT.index("[cup]") :]
+    given = read_hip(told(tmp_path, text=f'{head}joint = "hip-28"\n{tail}'))
+    assert given.use.joint.ball_radius == 14.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "refused"),
+    [
+        ("mm^3/(N m)", "mm^3/(N mm)", r"1 mm\^3/\(N mm\) is 1000 mm\^3/\(N m\), so that this is 0.001066 mm"),
+        ("mm^3/(N m)", "mm^3/N", r"has not the dimension of mm\^3/\(N m\)"),
+        ('coefficient = "1.066e-6 mm^3/(N m)" #', "#", r"\[wear\] needs a coefficient"),
+        ('law = "archard"', 'law = "archart"', "law 'archart' is not known; did you mean 'archard'"),
+        ('law = "archard"', 'law = "area"', "has not the dimension of mm/mm, a depth over a length of sliding"),
+        ('law = "archard"', 'law = "cross-shear"', "the law 'cross-shear' needs circular"),
+        ('law = "archard"', 'law = "archard"\nexponent = 1', "exponent belongs to the law 'cross-shear'"),
+        ('contact = "springs"', 'contact = "spring"', "contact 'spring' is not known; did you mean 'springs'"),
+        ('name = "iso-14242-1"', 'name = "iso-14242"', "cycle 'iso-14242' is not known"),
+        ('name = "iso-14242-1"', 'name = "iso-14242-1"\nfile = "x.csv"', "needs a name or a file, and not both"),
+        ("instants = 100", "instants = 3", "instants = 3 is not allowed"),
+        (
+            "instants = 100",
+            'instants = 100\nforce = "2 kN"',
+            "'force' beside the name 'iso-14242-1' in .cycle. is not known",
+        ),
+        ("flexion, adduction", "flexion, flexion", "rotation_order = 'flexion, flexion, rotation' is not allowed"),
+        (
+            'tilt = "30 deg"',
+            'tilt = "95 deg"',
+            "tilt = 95 is not allowed: a cup's tilt from the load is 0 to 90",
+        ),
+        ('tilt = "30 deg"', 'tilt = "30 deg"\narc = 3', "'arc' in .cup. is not known; did you mean 'arc_of_cover'"),
+        ("180 deg", "55 deg", r"dislocated at 0\.5 % of the cycle: .*30\.0° from the dome's pole.* ends at 27\.5°"),
+        ("cycles = 5e6", "cycles = 1e6", "report_at = 2e.06 is not allowed: it lies between 0 and"),
+        ("cycles = 5e6", 'cycles = "many"', "cycles = 'many' must be a number of cycles"),
+        ("report_at = [1e6, 2e6, 5e6]", "report_at = 1e6", "report_at = 1000000.0 must be a list"),
+        ("[wear]", "[waer]", "'waer' at the top is not known; did you mean 'wear'"),
+        ("clearance = ", "clearence = ", "'clearence' in .joint. is not known; did you mean 'clearance'"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(tmp_path, old, new, refused):
+    file = told(tmp_path, (old, new))
+    with pytest.raises(ValueError, match=f"hip.toml: .*{refused}"):
+        read_hip(file)
+    done = run("hip", str(file))
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "text", ["1e-6 mm^3/(N m)", "1e-6 mm³/(N·m)", "1e-6 mm3/Nm", "1e-6 mm^3/N/m", "1e-15 m^3/(N m)", "1e-6", 1e-6]
+)
+def test_ways_to_write_a_wear_factor(text):
+    assert wear_factor("coefficient", text) == pytest.approx(1e-6, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "refused"),
+    [
+        ("1e-9 mm3/Nmm", r"is for mm of sliding: .* is 1000 mm\^3/\(N m\), so that this is 1e-06"),
+        ("1e-9 mm^2/N", r"1 mm\^2/N is 1000 mm\^3/\(N m\)"),
+        ("1e-9 mm^3/(kN m)", r"for another length of sliding|is 0.001 mm\^3/\(N m\)"),
+        ("1 kg", "has not the dimension"),
+        ("1e-6 __import__", "is not a coefficient, such as"),
+        ("much", "is not a coefficient, such as"),
+        (True, "is not a coefficient, such as"),
+        ("-1e-6 mm^3/(N m)", "coefficient = -1e-06 is not allowed"),
+        (float("nan"), "coefficient = nan is not allowed"),
+    ],
+)
+def test_wear_factors_that_are_none(text, refused):
+    with pytest.raises(ValueError, match=refused):
+        wear_factor("coefficient", text)
+
+
+def test_ways_to_write_the_coefficient_of_the_area_law():
+    for text in ("1e-6 mm/m", "1e-6 mm^3/(mm^2 m)", "1e-9", 1e-9):
+        assert share_of_slide("coefficient", text) == pytest.approx(1e-9, rel=1e-12)

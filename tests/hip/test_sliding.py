@@ -1,0 +1,67 @@
+"""Cross-shear of tracks whose value is known, and tracks themselves."""
+
+from math import pi, radians
+
+import numpy as np
+import pytest
+
+from ballsocket.hip import flexion, iso_14242_1
+from ballsocket.hip.sliding import Sliding, cross_shear_of, tangents, tracks
+
+POLE = np.array([[0.0], [0.0], [1.0]])
+
+
+def turned(angle):
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def test_a_straight_track_has_none_and_a_circle_has_one_half():
+    there = np.linspace(0.0, 3.0, 7)[:, None] * [1.0, 0.0] @ turned(0.3)
+    assert cross_shear_of(np.diff(np.vstack([there, there[::-1]]), axis=0)) == pytest.approx(0.0, abs=1e-15)
+    around = 2 * pi * np.arange(49) / 48
+    assert cross_shear_of(np.diff(np.column_stack([np.cos(around), np.sin(around)]), axis=0)) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(("a", "b"), [(1.0, 1.0), (3.0, 1.0), (20.0, 0.5)])
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_a_rectangle_has_the_share_of_its_shorter_side(a, b, angle):
+    sides = np.array([[a, 0.0], [0.0, b], [-a, 0.0], [0.0, -b]]) @ turned(angle)
+    assert cross_shear_of(sides) == pytest.approx(b / (a + b), rel=1e-12)
+
+
+def test_under_pressure_a_side_counts_for_more():
+    sides = np.array([[3.0, 0.0], [0.0, 1.0], [-3.0, 0.0], [0.0, -1.0]])
+    assert cross_shear_of(sides, np.array([1.0, 3.0, 1.0, 3.0])) == pytest.approx(0.5)
+
+
+def test_what_slides_over_the_socket_has_the_cross_shear_of_its_track():
+    cycle, radius = iso_14242_1(200), 14.0
+    sliding = Sliding(radius=radius, turns=cycle.turns, directions=POLE)
+    steps = radius * np.cross(cycle.turns, POLE[:, 0])
+    assert sliding.steps[:, 0] == pytest.approx(np.linalg.norm(steps, axis=1), rel=1e-9)
+    pressure = cycle.sizes[:, None] / 1000
+    assert sliding.cross_shear(pressure)[0] == pytest.approx(cross_shear_of(steps[:, :2], pressure[:, 0]), rel=1e-9)
+
+
+def test_flexion_alone_has_no_cross_shear_anywhere():
+    rng = np.random.default_rng(1)
+    directions = rng.normal(size=(3, 40))
+    directions /= np.linalg.norm(directions, axis=0)
+    cycle = flexion()
+    sliding = Sliding(radius=14.0, turns=cycle.turns, directions=directions)
+    assert sliding.cross_shear(np.ones((cycle.instants, 40))) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_tangents_are_across_each_other():
+    rng = np.random.default_rng(2)
+    n = rng.normal(size=(3, 30))
+    n /= np.linalg.norm(n, axis=0)
+    frame = np.stack([*tangents(n), n])
+    assert np.einsum("ikp,jkp->pij", frame, frame) == pytest.approx(np.broadcast_to(np.eye(3), (30, 3, 3)), abs=1e-14)
+
+
+def test_the_track_of_a_point_is_as_long_as_it_slides():
+    cycle, point = flexion(1000), np.array([[0.0], [np.sin(0.4)], [np.cos(0.4)]])
+    track = tracks(cycle.rotations, point, radius=14.0)[0]
+    assert np.linalg.norm(np.diff(track, axis=0), axis=1).sum() == pytest.approx(2 * radians(43.0) * 14.0, rel=1e-4)
+    assert np.linalg.norm(track, axis=1) == pytest.approx(14.0)
