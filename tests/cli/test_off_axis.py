@@ -89,3 +89,45 @@ def test_a_load_out_of_the_bore_says_where_it_ends():
     assert done.returncode == 3
     assert "dislocated" in done.stdout
     assert "120.0°" in done.stdout
+
+
+def test_the_terminal_says_where_the_contact_lies():
+    path = str(EXAMPLES / "tilted_hip.toml")
+    inside, over, dug = (
+        run("press", path, *COARSE, *words, columns=200).stdout
+        for words in ((), ("--tilt", "75"), ("--tilt", "75", "--chamfer", "1 mm"))
+    )
+    assert "sphere: load 36.5° from the cup's axis, contact 1.1 mm from the rim, largest pressure 37" in inside
+    assert "° from the axis; rings of 4°, " in inside
+    assert " s; d ±0.2 %, ε ±3 %, pmax ±0.2 %" in inside
+    assert "mm at the rim, largest pressure 8" in over
+    assert "mm at the rim, pressure unbounded there; rings of 4°" in dug
+
+
+def test_figures_and_files_of_a_tilted_load(tmp_path):
+    import meshio
+
+    cup, vtk, both = (tmp_path / name for name in ("cup.svg", "cup.vtu", "both.svg"))
+    done = run("press", "hip-36", "--force", "3kN", "--tilt", "45", *COARSE, "--figure", str(cup), "--vtk", str(vtk))
+    assert done.returncode == 0
+    assert "the cup seen from its opening" in cup.read_text("utf-8")
+    assert "pressure" in meshio.read(vtk).cell_data
+    models = ("--model", "refined", "--model", "sphere")  # where sphere does not lead, curves are compared
+    run("press", "hip-36", "--force", "3kN", *COARSE, *models, "--figure", str(both))
+    assert "normal force" in both.read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--vtk", "a.vtu"), "--vtk is for the finite elements: add --model fem, or sphere"),
+        (("--section", "a.png"), "--section is for the finite elements"),
+        (("--view", "a.png"), "--view is for contacts off the axis: add --model sphere"),
+        (("--view", "a.svg", "--tilt", "20"), "must end in .png"),
+    ],
+)
+def test_files_that_nobody_fills_are_refused(words, said, tmp_path):
+    done = run("press", "hip-36", "--force", "3kN", *words, folder=tmp_path)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert not list(tmp_path.iterdir())

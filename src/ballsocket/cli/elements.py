@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from time import perf_counter
 from typing import Annotated, Any
 
@@ -13,7 +12,6 @@ from rich.console import Console
 
 from ..catalogue import judge
 from ..checks import known_name, require
-from ..contact import Contact
 from ..cup import Cup
 from ..describe import COLUMNS
 from ..fem.contact import MeshedContact
@@ -23,8 +21,7 @@ from ..fem.spacing import Adapted, Element, Spacing, Uniform
 from ..io.joint_file import read_cup
 from ..io.units import parse
 from ..kinds import Kind
-from ..output import section_plot
-from ..output.save import check_format, save
+from ..per_joint import SolvedContact
 from ..quantities import CONTACT, LOADS
 from .words import given
 
@@ -67,36 +64,6 @@ class MeshWords:
         return Element.BIQUADRATIC if self.element is None else known[known_name("element", self.element, known)]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Files:
-    """Files that are asked for: a figure of the section, and its fields for ParaView."""
-
-    section: Annotated[Path | None, typer.Option(help="Write mesh, stresses and pressure as a figure")] = None
-    vtk: Annotated[Path | None, typer.Option(help="Write meshes and fields, .vtu or .vtk")] = None
-
-    def check(self) -> None:
-        """Raise ValueError for an ending that is not written."""
-        if self.section is not None:
-            check_format(self.section)
-        if self.vtk is not None:
-            from ..fem.export.vtk import check_suffix
-
-            check_suffix(self.vtk)
-
-    def write(self, contact: Contact, exact: Contact | None) -> None:
-        """Write what was asked for."""
-        if not isinstance(contact, MeshedContact) or contact.status.failed or contact.indentation == 0:
-            if self.section is not None or self.vtk is not None:
-                Console(stderr=True).print("ballsocket: without a contact there is nothing to draw or write")
-            return
-        if self.section is not None:
-            save(section_plot.section_figure(contact, exact), self.section)
-        if self.vtk is not None:
-            from ..fem.export.vtk import write_vtk
-
-            write_vtk(contact.section, self.vtk)
-
-
 def refuse(words: Mapping[str, Any]) -> None:
     """Raise ValueError for words that only the finite elements understand, where these are not asked."""
     for name, word in words.items():
@@ -120,10 +87,15 @@ def remark(contact: MeshedContact, seconds: float) -> str:
         return f"fem: {seconds:.2f} s"
     size = contact.mesh
     mesh = f"fem: {size.elements} elements, {size.element_size:.3g} mm at the contact, {seconds:.2f} s"
+    bars = error_bars(contact)
+    return f"{mesh}; error of the mesh: {bars}" if bars else f"{mesh}; error of the mesh not estimated"
+
+
+def error_bars(contact: SolvedContact) -> str:
+    """The estimated errors of what the load leaves open and of the largest pressure, in a line."""
     told = (*LOADS, "max_pressure")
-    bars = ", ".join(
+    return ", ".join(
         f"{CONTACT[name].symbol} ±{100 * error:.1g} %"
         for name, error in contact.error.items()
         if name in told and error > 1e-9
     )
-    return f"{mesh}; error of the mesh: {bars}" if bars else f"{mesh}; error of the mesh not estimated"

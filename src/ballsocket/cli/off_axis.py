@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import pi
+from math import atan2, degrees, hypot, isfinite, pi
+from time import perf_counter
 from typing import Annotated, Any
 
 import typer
 
+from ..catalogue import off_axis
+from ..contact import Contact
 from ..cup import Cup
 from ..io.joint_file import JointFile, read_aim
 from ..io.units import parse
+from ..joint import Joint
 from ..kinds import Kind
+from ..sphere.contact import OffAxisContact
 from ..sphere.model import Sphere
+from .elements import error_bars
 from .words import given
 
 
@@ -47,6 +53,51 @@ def aimed(cup: Cup, aim: Mapping[str, Any]) -> Cup:
     return cup.tilted(min(aim["tilt"], pi / 2)) if "tilt" in aim else cup
 
 
+@dataclass
+class Watched:
+    """A model, with the seconds that its last press took."""
+
+    model: Any
+    seconds: float = 0.0
+
+    def in_cup(self, cup: Cup) -> Watched:
+        """Itself, in that cup."""
+        self.model = self.model.in_cup(cup)
+        return self
+
+    def press(self, joint: Joint, **load: Any) -> Contact:
+        """What the model answers."""
+        start = perf_counter()
+        contact: Contact = self.model.press(joint, **load)
+        self.seconds = perf_counter() - start
+        return contact
+
+
 def along(sphere: Sphere, cup: Cup, aim: Mapping[str, Any]) -> Sphere:
     """The model in that cup, under a load of that aim."""
     return replace(sphere, cup=cup).along(**aim)
+
+
+def remark(contact: Any, seconds: float) -> str:
+    """Where the contact lies in its cup, rings, time and error bars in a line."""
+    took = f"rings of {degrees(contact.model.ring_width):.3g}°, {seconds:.2f} s"
+    if contact.status.failed or contact.indentation == 0:
+        return f"{off_axis.name}: {took}"
+    where = f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim(contact)}, {_largest(contact)}"
+    return "; ".join(filter(None, (f"{off_axis.name}: {where}", took, error_bars(contact))))
+
+
+def _rim(contact: OffAxisContact) -> str:
+    distance = contact.edge_distance
+    return (
+        f"contact cut off by {-distance:.1f} mm at the rim"
+        if contact.edge_loaded
+        else f"contact {distance:.1f} mm from the rim"
+    )
+
+
+def _largest(contact: OffAxisContact) -> str:
+    if not isfinite(contact.max_pressure):
+        return "pressure unbounded there"
+    x, y, z = contact.max_pressure_at
+    return f"largest pressure {degrees(atan2(hypot(x, y), z)):.3g}° from the axis"

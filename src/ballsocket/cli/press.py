@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -13,16 +12,16 @@ import ballsocket as bs
 
 from ..catalogue import judge, off_axis, reference
 from ..checks import known_name
-from ..compare import Comparison, answered, force_curves
+from ..compare import Comparison, answered
 from ..cup import UP
 from ..io.joint_file import JointFile
 from ..model import Model
-from ..output import press_plot, terminal
-from ..output.save import check_format, save
+from ..output import terminal
 from ..validity import Status
 from . import elements
+from .files import Files
 from .groups import grouped
-from .off_axis import AimWords, aimed, along
+from .off_axis import AimWords, Watched, aimed, along, remark
 from .root import FAILURE, app, complain
 from .words import AsJson, JointWords, LoadWords, echo_json
 
@@ -63,12 +62,11 @@ def press(
     load: LoadWords,
     models: ModelWords,
     as_json: AsJson = False,
-    figure: Annotated[Path | None, typer.Option(help="Write a figure: .png, .svg or .pdf")] = None,
+    files: Files,
     aim: AimWords,
     cup: elements.CupWords,
     mesh: Annotated[elements.MeshWords, "fem"],
     meshes: Annotated[int | None, typer.Option(min=1, max=2, help="fem: 1 gives no error bars")] = None,
-    files: Annotated[elements.Files, "fem"],
 ) -> None:
     """Press a ball into its socket and see what models make of it, beside the exact answer.
 
@@ -78,10 +76,8 @@ def press(
     Exit status: 0 done, 2 misuse, 3 an iteration that did not converge, or no answer from any model.
     """
     if not models.judged:
-        elements.refuse({**vars(mesh), "meshes": meshes, **vars(files)})
+        elements.refuse({**vars(mesh), "meshes": meshes})
     files.check()
-    if figure is not None:
-        check_format(figure)
     file = words.or_named(joint)
     at = load.or_of(file)
     toward, remarks = aim.or_of(file), []
@@ -89,17 +85,18 @@ def press(
     chosen = models.chosen(off_axis.name if toward or around.tilt(UP) > 0 else DEFAULT_MODEL)
     if models.judged and toward:
         raise ValueError("fem presses along the cup's own axis; for a tilt or a direction ask --model sphere")
+    files.check_models(chosen)
     if off_axis.name in chosen:
-        chosen[off_axis.name] = along(aim.model(), around, toward)
+        watched: Any = Watched(along(aim.model(), around, toward))
+        chosen[off_axis.name] = watched
     if models.judged:
         fem = mesh.model(around, meshes or 2)
         chosen[judge.name] = fem
         remarks.append(elements.remark(*elements.timed(fem, file.joint, at)))
     comparison = _compared(replace(file, cup=around), at, chosen)
-    if figure is not None:
-        _draw(comparison, {**bs.catalogue, **chosen}, figure)
-    if judge.name in comparison:
-        files.write(comparison[judge.name], answered(comparison).get(reference.name))
+    if off_axis.name in comparison:
+        remarks.append(remark(comparison[off_axis.name], watched.seconds))
+    files.write(comparison, next(iter(chosen)))
     if as_json:
         echo_json(comparison.summary())
     else:
@@ -129,12 +126,3 @@ def _failure(comparison: Comparison, chosen: Iterable[str]) -> str:
     if unsettled:
         return f"no convergence of {', '.join(unsettled)} (see the notes)"
     return "" if set(answered(comparison)) & set(chosen) else f"no answer from {', '.join(chosen)} (see the notes)"
-
-
-def _draw(comparison: Comparison, models: Mapping[str, Model], path: Path) -> None:
-    """Draw what has an answer; without any there is no figure."""
-    shown = answered(comparison)
-    if not shown:
-        return
-    curves = force_curves(shown, {name: models[name] for name in shown})
-    save(press_plot.press_figure(shown, curves), path)

@@ -48,7 +48,7 @@ _MODELS = {  # relatives share a colour, and differ by their dashes
     "exact": Line(INK),
     "tabulated": Line(GREY, _SHORT),
     "fem": Line(PINK, _EVEN),
-    "sphere": Line(BLUE),
+    "sphere": Line(BLUE, _LONG),
     "refined": Line(ORANGE, _DOTS),
     "hess-forsbach": Line(VERMILLION, _LONG),
     "adhesive": Line(VERMILLION, _DOTS),
