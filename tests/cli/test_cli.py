@@ -515,7 +515,7 @@ def test_press_by_finite_elements_with_a_cup_of_its_own(tmp_path):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--arc-of-cover", "120 deg"), "--arc-of-cover is for the finite elements: add --model fem"),
+        (("--element-size", "1 mm"), "--element-size is for the finite elements: add --model fem"),
         (("--vtk", "a.vtu"), "--vtk is for the finite elements: add --model fem"),
         (("--model", "fem", "--arc-of-cover", "2 mm"), "arc_of_cover = '2 mm' is not an angle, such as '40 deg'"),
         (

@@ -84,7 +84,7 @@ def remark(contact: Any, seconds: float) -> str:
     if contact.status.failed or contact.indentation == 0:
         return f"{off_axis.name}: {took}"
     where = f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim(contact)}, {_largest(contact)}"
-    return "; ".join(filter(None, (f"{off_axis.name}: {where}", took, error_bars(contact))))
+    return f"{off_axis.name}: {where}; {took}; error of the rings: {error_bars(contact)}"
 
 
 def _rim(contact: OffAxisContact) -> str:
