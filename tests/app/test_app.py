@@ -227,7 +227,9 @@ def test_what_is_seen_can_be_saved(user):
     assert b"<svg" in user.saved("SVG")
     rows = list(csv.DictReader(io.StringIO(user.saved("CSV").decode())))
     exact = next(row for row in rows if row["model"] == "exact")
-    assert float(exact["max_pressure_MPa"]) == pytest.approx(bs.Exact().press(joint, force=2500.0).max_pressure, rel=1e-9)
+    assert float(exact["max_pressure_MPa"]) == pytest.approx(
+        bs.Exact().press(joint, force=2500.0).max_pressure, rel=1e-9
+    )
     report = user.saved("HTML").decode()
     assert "data:image/png;base64" in report
     assert "src='http" not in report
