@@ -52,12 +52,17 @@ class MeshWords:
         """Finite elements of a cup, on so many meshes."""
         return FiniteElement(cup=cup, spacing=self._spacing(), element=self._element(), meshes=meshes)
 
-    def _spacing(self) -> Spacing:
+    @property
+    def size(self) -> float | None:
+        """The size of the elements in mm, where it was given."""
         if self.element_size is None:
-            return Adapted()
+            return None
         length = parse("element_size", self.element_size, Kind.LENGTH)
         require("element_size", length, length > 0, "an element's size (mm) is above 0")
-        return Uniform(size=length)
+        return length
+
+    def _spacing(self) -> Spacing:
+        return Adapted() if self.size is None else Uniform(size=self.size)
 
     def _element(self) -> Element:
         known = {element.name.lower(): element for element in Element}

@@ -87,3 +87,11 @@ def _rival_heads() -> Iterator[tuple[str, str]]:
     for name, apart in (("force", "%"), ("pole_pressure", "%"), ("half_angle", "°")):
         symbol, unit = CONTACT[name].symbol, CONTACT[name].written.text
         yield from ((symbol, unit), (f"{symbol} ccx", unit), (f"Δ{symbol}", apart))
+
+
+def print_tilted_rival(ours: Sequence[float], rival: Sequence[float]) -> None:
+    """Forces of a tilted contact beside those of CalculiX."""
+    terminal, size = console(), float(numpy.linalg.norm(rival))
+    for name, mine, its in zip(("towards the rim", "across", "towards the dome"), ours, rival, strict=True):
+        off = 100 * (mine - its) / size
+        terminal.print(f"  {name:<18} {mine:>12.6g} N, ccx {its:>12.6g} N, {off:+.2f} % of the load")
