@@ -110,23 +110,11 @@ class AdhesiveSocket(ClosedForm):
     def _factor(self, joint: Joint) -> Array:
         return 2 * pi * joint.socket_radius**2 * self.modulus.of(joint)
 
-    def _edge(self, joint: Joint, indentation: Array) -> tuple[Array, Array]:
-        """k = cos ε, 0 where the hemisphere sticks, and m = 1 - k."""
-        c, stretch = joint.clearance, self.critical_stretch(joint)
-        e = divisor(c + indentation)
-        return clip((c - stretch) / e, 0.0, 1.0), clip((indentation + stretch) / e, 0.0, 1.0)
-
     def force(self, joint: Joint, indentation: Array) -> Array:
-        # F = 2π R2² K [e (1 - k³)/3 - c (1 - k²)/2], with m = 1 - k taken out
-        k, m = self._edge(joint, indentation)
-        e = joint.clearance + indentation
-        return self._factor(joint) * m * (indentation * (1 + k) / 2 - e * m * (1 + 2 * k) / 6)
+        return self._factor(joint) * _force(indentation, joint.clearance, self.critical_stretch(joint))
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        # the edge moves: dF/de + dF/dk dk/de
-        k, m = self._edge(joint, indentation)
-        e = divisor(joint.clearance + indentation)
-        return self._factor(joint) * (m * (1 + k + k * k) / 3 - k * k * self.critical_stretch(joint) / e)
+        return self._factor(joint) * _stiffness(indentation, joint.clearance, self.critical_stretch(joint))
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
         # springs less surfaces, from d = 0 on
@@ -140,15 +128,16 @@ class AdhesiveSocket(ClosedForm):
         # a contact that is small against the clearance has F = π R2² K (d² - u_c²)/c, from which it starts
         R2, c, K = joint.socket_radius, joint.clearance, self.modulus.of(joint)
         low, stretch = linear_indentation(R2, c, K, force), self.critical_stretch(joint)
-        high = 3 * force / self._factor(joint) + c / 2
+        share = force / self._factor(joint)
+        high = 3 * share + c / 2
         high = where(high > low, high, low)
         start = sqrt(low * low + stretch * stretch)
         ends = low, high, where(start < high, start, high)
         low, high, start = (broadcast(end, *ends) for end in ends)
-        return increasing_root(lambda d: (self.force(joint, d), self.stiffness(joint, d)), force, low, high, start)
+        return increasing_root(_force_and_stiffness, share, low, high, start, given=(c, stretch))
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        return angle_of(self._edge(joint, indentation)[1])
+        return angle_of(_edge(indentation, joint.clearance, self.critical_stretch(joint))[1])
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         versine = versine_of(half_angle)
@@ -165,4 +154,27 @@ class AdhesiveSocket(ClosedForm):
         """Negative (tension) towards the edge."""
         versine = versine_of(angle)
         u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
-        return where(versine <= self._edge(joint, indentation)[1], self.modulus.of(joint) * u, 0.0)
+        _, edge = _edge(indentation, joint.clearance, self.critical_stretch(joint))
+        return where(versine <= edge, self.modulus.of(joint) * u, 0.0)
+
+
+def _edge(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
+    """k = cos ε, 0 where the hemisphere sticks, and m = 1 - k."""
+    e = divisor(c + d)
+    return clip((c - stretch) / e, 0.0, 1.0), clip((d + stretch) / e, 0.0, 1.0)
+
+
+def _force(d: Array, c: Array, stretch: Array) -> Array:
+    # F/(2π R2² K) = e (1 - k³)/3 - c (1 - k²)/2, with m = 1 - k taken out
+    k, m = _edge(d, c, stretch)
+    return m * (d * (1 + k) / 2 - (c + d) * m * (1 + 2 * k) / 6)
+
+
+def _stiffness(d: Array, c: Array, stretch: Array) -> Array:
+    # the edge moves: dF/de + dF/dk dk/de
+    k, m = _edge(d, c, stretch)
+    return m * (1 + k + k * k) / 3 - k * k * stretch / divisor(c + d)
+
+
+def _force_and_stiffness(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
+    return _force(d, c, stretch), _stiffness(d, c, stretch)
