@@ -13,6 +13,10 @@ from . import report
 BENCHMARKS = {
     "inverse": ("inverse", "ten million inverse solves of the paper's model: compiled, NumPy, JAX, SciPy"),
     "opensim": ("opensim_rival", "one force evaluation against OpenSim's ElasticFoundationForce"),
+    "one-question": (
+        "one_question",
+        "a press, a law, the formula, and OpenSim, one at a time; a joint each",
+    ),
     "plane-layer": ("plane_layer", "one case of the numerical plane layer, alone and in a batch"),
     "random-joints": ("random_joints", "a hundred thousand random joints through the exact solver, one by one"),
     "exact": ("exact", "the exact answer: a first load, further loads, a curve, a sweep; and CalculiX"),

@@ -9,11 +9,8 @@ files included, as its user waits for it; making the input is not counted. Ours 
 
 from __future__ import annotations
 
-import os
 import shutil
-from collections.abc import Callable
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -25,7 +22,7 @@ from ballsocket.elastic.exact import _curve
 
 from .calculix_rival import Calculix, Mesh, Steps
 from .report import Report, Rows
-from .timing import Spread, Work, interleaved, one_core
+from .timing import Spread, Work, apart, interleaved, one_core
 
 LINER = bs.Material(young=1000.0, poisson=0.4)
 RIGID = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LINER)
@@ -69,24 +66,10 @@ CASES = (
 
 def measure() -> Report:
     """In processes of their own, whose linear algebra has one thread: that can only be said before NumPy starts."""
-    report = _apart(_measured, OPENBLAS_NUM_THREADS="1")
-    trimmed = _apart(_trimmed, OPENBLAS_NUM_THREADS="1", MALLOC_TRIM_THRESHOLD_=str(TRIM))
+    report = apart(_measured, OPENBLAS_NUM_THREADS="1")
+    trimmed = apart(_trimmed, OPENBLAS_NUM_THREADS="1", MALLOC_TRIM_THRESHOLD_=str(TRIM))
     report.tables.insert(1, trimmed)
     return report
-
-
-def _apart(work: Callable[[], Any], **environment: str) -> Any:
-    """What the work answers in a fresh process with that environment."""
-    before = {name: os.environ.get(name) for name in environment}
-    os.environ.update(environment)
-    try:
-        with get_context("spawn").Pool(1) as pool:
-            return pool.apply(work)
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name)
-            if value is not None:
-                os.environ[name] = value
 
 
 def _measured() -> Report:

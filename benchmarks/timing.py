@@ -8,7 +8,9 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import get_context
 from statistics import median
+from typing import Any
 
 Work = Callable[[], object]
 
@@ -48,26 +50,30 @@ def short(value: float) -> str:
 Spreads = dict[str, Spread]
 
 
-def interleaved(repeats: int, work: dict[str, Work]) -> tuple[Spreads, Spreads]:
+Clock = Callable[[], float]
+
+
+def interleaved(repeats: int, work: dict[str, Work], clock: Clock = time.perf_counter) -> tuple[Spreads, Spreads]:
     """Seconds that each piece of work takes, in `repeats` rounds in which all take turns; one more is not counted.
 
     A turn is two calls, kept apart: the first finds the caches and the free memory as the others left them, the
-    second as its like did. The second is what a program that keeps calling sees.
+    second as its like did. The second is what a program that keeps calling sees. Where the work neither waits nor has
+    more than one thread the clock may be `time.process_time`, which other programs on the machine hardly disturb.
     """
     first: dict[str, list[float]] = {name: [] for name in work}
     again: dict[str, list[float]] = {name: [] for name in work}
     for _ in range(1 + repeats):
         for name, each in work.items():
             gc.collect()
-            first[name].append(_seconds(each))
-            again[name].append(_seconds(each))
+            first[name].append(_seconds(each, clock))
+            again[name].append(_seconds(each, clock))
     return _counted(first), _counted(again)
 
 
-def _seconds(work: Work) -> float:
-    start = time.perf_counter()
+def _seconds(work: Work, clock: Clock = time.perf_counter) -> float:
+    start = clock()
     work()
-    return time.perf_counter() - start
+    return clock() - start
 
 
 def _counted(seconds: dict[str, list[float]]) -> Spreads:
@@ -86,3 +92,17 @@ def one_core() -> Iterator[bool]:
         yield True
     finally:
         os.sched_setaffinity(0, before)
+
+
+def apart(work: Callable[[], Any], **environment: str) -> Any:
+    """What the work answers in a fresh process with that environment."""
+    before = {name: os.environ.get(name) for name in environment}
+    os.environ.update(environment)
+    try:
+        with get_context("spawn").Pool(1) as pool:
+            return pool.apply(work)
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name)
+            if value is not None:
+                os.environ[name] = value

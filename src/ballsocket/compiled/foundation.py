@@ -18,7 +18,7 @@ from ..models.kinematics import Kinematics
 from ..models.modulus import Formula
 from ..models.table_3 import eq_18
 from ..validity import Status
-from .teaching import compilable, compiled, cut, flat, pick
+from .teaching import compilable, compiled, flat, pick
 
 
 def passed(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
@@ -33,50 +33,27 @@ def passed(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple[Numbe
     return d, p0, angle, codes.reshape(shape)
 
 
-_BLOCK = 1024
-"""Points that go through one formula after the other: short loops are computed a third faster than a long one."""
-
-
 @cache
 def kernel(formula: Formula, motion: Kinematics) -> Any:
     """The compiled pass of one kind of model, for whichever mix of numbers and arrays it is called with."""
-    modulus, versine = compilable(formula), compilable(motion.versine)
-    indentation, force_law = compilable(motion.indentation), compilable(motion.force)
+    modulus = compilable(formula)
+    indentation = compilable(motion.indentation)
+    force_law = compilable(motion.force)
+    versine = compilable(motion.versine)
     converged, failed = numpy.int8(Status.OK), numpy.int8(Status.NOT_REACHED)
 
-    @compiled
-    def moduli(R1, c, L, E, nu, constants, K):  # type: ignore[no-untyped-def]
-        for i in range(K.size):
-            K[i] = modulus(pick(R1, i) + pick(c, i), pick(L, i), pick(E, i), pick(nu, i), *constants)
-
-    @compiled
-    def indentations(R1, c, K, F, d):  # type: ignore[no-untyped-def]
-        for i in range(d.size):
-            d[i] = indentation(pick(R1, i) + pick(c, i), pick(c, i), K[i], pick(F, i))
-
-    @compiled
-    def checked(R1, c, K, F, d, p0, status):  # type: ignore[no-untyped-def]
-        for i in range(d.size):
-            load, found = pick(F, i), d[i]
-            good = abs(force_law(pick(R1, i) + pick(c, i), pick(c, i), K[i], found) - load) <= 1e-12 * load
-            d[i] = found if good else math.nan
-            p0[i] = K[i] * d[i]
+    def run(R1, c, L, E, nu, F, d_out, p0_out, angle_out, status, *constants):  # type: ignore[no-untyped-def]
+        for i in range(d_out.size):
+            clearance, load = pick(c, i), pick(F, i)
+            R2 = pick(R1, i) + clearance
+            K = modulus(R2, pick(L, i), pick(E, i), pick(nu, i), *constants)
+            d = indentation(R2, clearance, K, load)
+            good = abs(force_law(R2, clearance, K, d) - load) <= 1e-12 * load
+            d = d if good else math.nan
+            d_out[i] = d
+            p0_out[i] = K * d
+            angle_out[i] = kinematics.angle_of(versine(R2, clearance, d))
             status[i] = converged if good else failed
-
-    @compiled
-    def angles(R1, c, d, angle):  # type: ignore[no-untyped-def]
-        for i in range(d.size):
-            angle[i] = kinematics.angle_of(versine(pick(R1, i) + pick(c, i), pick(c, i), d[i]))
-
-    def run(R1, c, L, E, nu, F, d, p0, angle, status, *constants):  # type: ignore[no-untyped-def]
-        for first in range(0, d.size, _BLOCK):
-            here = slice(first, first + _BLOCK)
-            K = numpy.empty(d[here].size)
-            radius, gap, load = cut(R1, here), cut(c, here), cut(F, here)
-            moduli(radius, gap, cut(L, here), cut(E, here), cut(nu, here), constants, K)
-            indentations(radius, gap, K, load, d[here])
-            checked(radius, gap, K, load, d[here], p0[here], status[here])
-            angles(radius, gap, d[here], angle[here])
 
     return compiled(run)
 

@@ -46,18 +46,6 @@ def _pick(part: Any, i: Any) -> Callable[..., Any]:
     return lambda part, i: part
 
 
-def cut(part: Any, here: slice) -> Any:
-    """A piece of an array; a number is the same everywhere."""
-    return part[here] if isinstance(part, numpy.ndarray) else part
-
-
-@overload(cut, strict=False, jit_options={"forceinline": True})
-def _cut(part: Any, here: Any) -> Callable[..., Any]:
-    if isinstance(part, types.Array):
-        return lambda part, here: part[here]
-    return lambda part, here: part
-
-
 @overload(arrays.sqrt, strict=False)
 def _sqrt(x: Any) -> Callable[..., Any]:
     return lambda x: math.sqrt(x)
