@@ -31,8 +31,8 @@ NOTES = (
     "Limits are in processor time, which other work on the machine hardly disturbs. Where the kernel takes as long on "
     "arrays that stay in cache, its time is arithmetic and not memory: for eight solves at once 7 divisions, 2 roots "
     "and some 130 other operations on vectors of eight, most of which wait for the one before. Cut into a loop for "
-    "each formula over blocks of 1024 solves, the arithmetic took 4.3 in place of 6.0 ns in cache, but no longer ran while "
-    "memory was waited for: 6.6 in place of 6.4 ns in all.",
+    "each formula over blocks of 1024 solves, the arithmetic took 4.3 in place of 6.0 ns in cache, but no longer ran "
+    "while memory was waited for: 6.6 in place of 6.4 ns in all.",
     "Kernel, sums and copy write into arrays that were used before. `press` checks its input and takes new memory for "
     "its answer, whose pages the system hands out inside the pass: dearest in a first call, where a virtual machine "
     "has given its free memory back meanwhile.",

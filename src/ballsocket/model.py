@@ -274,6 +274,7 @@ class Wrapped(Model):
     name = _passed_on("name")
     title = _passed_on("title")
     sources = _passed_on("sources")
+    fits = _passed_on("fits")
     domain = _passed_on("domain")
     validity = _passed_on("validity")
     promise = _passed_on("promise")

@@ -70,6 +70,9 @@ def test_failures_are_the_same_failures():
         ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1e3, poisson=poisson)
     )
     assert_same(fast.press(joint, force=force[:1]), model.press(joint, force=force[:1]))
+    tight = bs.Joint(ball_radius=16.0, interference=0.01, liner_thickness=6.0, liner=bs.UHMWPE)
+    with pytest.raises(bs.OutsideDomainError, match="preloaded"):
+        fast.press(tight, force=force)
     with pytest.raises(ValueError, match="force = -1|force.0. = -1"):
         fast.press(HIP, force=np.array([-1.0]))
 
@@ -151,11 +154,15 @@ def test_a_law_that_pulls_or_is_none_does_not():
         compiled_law(lambda depth: (depth, 1.0))
 
 
+SAID = [name for name in dir(bs.Model) if not name.startswith("_") and not callable(getattr(bs.Model, name))]
+"""What a model says of itself: its data, and no verbs."""
+
+
 def test_a_compiled_model_says_of_itself_what_its_model_says():
     cup = bs.Cup(arc_of_cover=2.0)
     for model in (bs.Bartel(), bs.Refined(), bs.Tabulated()):
         fast = Compiled(model=model)
-        for name in ("name", "title", "sources", "domain", "validity", "promise", "reach", "seconds_a_press", "planar"):
+        for name in SAID:
             assert getattr(fast, name) == getattr(model, name)
         assert fast.in_cup(cup).press(HIP, force=3000.0).notes == model.in_cup(cup).press(HIP, force=3000.0).notes
     with pytest.raises(TypeError, match="Refined"):

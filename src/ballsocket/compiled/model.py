@@ -74,9 +74,9 @@ class Compiled(Wrapped):
 
     def _passed(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:
         _, whole, load = prepared(joint, force)
-        points = inside((*self.model.fits, *self.domain), whole, self.name)
+        points = inside((*self.fits, *self.domain), whole, self.name)
         d, p0, angle, status = foundation.passed(model, whole, load)
-        if self.domain:
+        if not arrays.truth(points):
             status = numpy.where(points, status, numpy.int8(Status.OUTSIDE_DOMAIN))
             d, p0, angle = (numpy.where(points, part, numpy.nan) for part in (d, p0, angle))
         contact = Contact(

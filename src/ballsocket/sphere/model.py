@@ -17,6 +17,7 @@ from ..cup import UP, Cup
 from ..fem.model import largest_poisson
 from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint
+from ..law import Law
 from ..model import Model
 from ..per_joint import Piece, taken_apart
 from ..sources import Source
@@ -130,6 +131,9 @@ class Sphere(Model):
     def parameters(self) -> tuple[Array, ...]:
         parts = (self.direction[..., axis] for axis in range(3))
         return tuple(float(part) if part.ndim == 0 else part for part in parts)
+
+    def _law(self, joint: Joint) -> Law:
+        raise TypeError("rings about the cup's axis are too coarse for a law from first touch on: ask exact")
 
     def in_cup(self, cup: Cup) -> Sphere:
         return replace(self, cup=cup)
