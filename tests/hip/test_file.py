@@ -148,3 +148,31 @@ def test_wear_factors_that_are_none(text, refused):
 def test_ways_to_write_the_coefficient_of_the_area_law():
     for text in ("1e-6 mm/m", "1e-6 mm^3/(mm^2 m)", "1e-9", 1e-9):
         assert share_of_slide("coefficient", text) == pytest.approx(1e-9, rel=1e-12)
+
+
+def test_creep_and_film_in_a_file(tmp_path):
+    film = '[film]\nviscosity = 1e-3\ncup_roughness = "0.5 um"\nfriction = 0.04\n'
+    given = read_hip(told(tmp_path, text=f"{TEXT}\n[creep]\n{film}"))
+    assert len(given.use.creep.times) == 9
+    assert given.lubricant.cup_roughness == pytest.approx(5e-4)
+    own = "[creep]\ncompliances = [1e-3, 2e-3]\ntimes = [60, 3600]\nseconds_per_cycle = 3\n"
+    given = read_hip(told(tmp_path, text=f"{TEXT}\n{own}"))
+    assert given.use.creep.times == (60.0, 3600.0)
+    assert given.use.seconds == 3.0
+
+
+@pytest.mark.parametrize(
+    ("table", "refused"),
+    [
+        ('[creep]\nlaw = "log"', "creep law 'log' is not known; did you mean 'logarithmic'"),
+        ('[creep]\nlaw = "logarithmic"\ntimes = [1]', "times belongs to the law 'kelvin-voigt'"),
+        ("[creep]\ntimes = [1]", "compliances = None must be a list of numbers"),
+        ("[creep]\ntimes = [1]\ncompliances = [1, 2]", "as many compliances as times"),
+        ("[creep]\nseconds_per_cycle = 0", "seconds_per_cycle = 0 is not allowed"),
+        ("[film]\nviscosity = -1", "viscosity = -1 is not allowed"),
+        ("[film]\nviscosities = 1", "'viscosities' in .film. is not known; did you mean 'viscosity'"),
+    ],
+)
+def test_creep_and_films_that_are_none(tmp_path, table, refused):
+    with pytest.raises(ValueError, match=refused):
+        read_hip(told(tmp_path, text=f"{TEXT}\n{table}\n"))

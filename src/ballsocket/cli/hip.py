@@ -32,7 +32,10 @@ def hip(
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("wearing", total=given.cycles)
         history = given.use.after(
-            given.cycles, given.report_at, listen=lambda done: progress.update(task, completed=done)
+            given.cycles,
+            given.report_at,
+            listen=lambda done: progress.update(task, completed=done),
+            lubricant=given.lubricant,
         )
     if as_json:
         echo_json({"version": bs.__version__, **history.summary()})

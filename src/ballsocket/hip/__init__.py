@@ -1,5 +1,7 @@
-"""The hip in use: gait, sliding, wear over millions of cycles."""
+"""The hip in use: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
+from .creep import Ladder, logarithmic
+from .film import Film, Lubricant
 from .gait import Cycle, constant_load, flexion, iso_14242_1, iso_14242_1_key_points, named_cycle, rocking
 from .history import History
 from .laws import Archard, AreaLaw, CrossShear, OwnLaw
@@ -10,13 +12,17 @@ __all__ = [
     "AreaLaw",
     "CrossShear",
     "Cycle",
+    "Film",
     "History",
     "InUse",
+    "Ladder",
+    "Lubricant",
     "OwnLaw",
     "constant_load",
     "flexion",
     "iso_14242_1",
     "iso_14242_1_key_points",
+    "logarithmic",
     "named_cycle",
     "rocking",
 ]

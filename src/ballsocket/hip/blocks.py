@@ -11,6 +11,7 @@ import numpy
 
 from ..arrays import Numbers
 from .chebyshev import Step, longest, stages_of, step
+from .creep import Ladder
 from .history import Report
 from .laws import Pass
 from .sliding import Sliding
@@ -23,6 +24,8 @@ _FIRST = 1e-2  # of the time in which what wears fastest would be worn in
 _SAFE, _LEAST, _MOST = 0.8, 0.2, 4.0
 _NUDGE = 1e-6  # of the largest pressure, for the slope of a law
 _SURE = 1.1
+_SOON, _GROWTH = 30.0, 0.25  # s of the first block with creep; of the time before, for the later ones
+_SWEEPS, _MET = 8, 1e-3
 _MARGIN = 0.3  # of the largest overlap: so far from contact cells are still looked at
 
 
@@ -66,11 +69,17 @@ class Run:
 
     def __post_init__(self) -> None:
         self.depth = numpy.zeros(len(self.use.bed.areas))
+        self.strain = self.use.creep.rested(len(self.depth)) if self.use.creep else numpy.zeros((1, len(self.depth)))
         self._lost = 0.0
         self._displacement = self.use.unworn.displacement
         self._look()
         if self._fastest > 0:
             self.length = _FIRST / self._fastest
+
+    @property
+    def crept(self) -> Numbers:
+        """Depth of creep in mm: (cells,)."""
+        return float(self.use.joint.liner_thickness) * self.strain.sum(axis=0)
 
     @property
     def volume(self) -> float:
@@ -85,8 +94,9 @@ class Run:
     def _look(self) -> None:
         """Which cells are in reach, and what a cycle adds to them."""
         bed = self.use.bed
-        cells = numpy.flatnonzero(bed.near(self._displacement, self.depth, _MARGIN))
+        cells = numpy.flatnonzero(bed.near(self._displacement, self.depth + self.crept, _MARGIN))
         self._near = _Near(cells=cells, bed=bed.part(cells), sliding=self.use.sliding.part(cells))
+        self._creep = self.crept[cells]
         self._slope = self._rate(self._values)
 
     @property
@@ -97,7 +107,7 @@ class Run:
     def _rate(self, values: Numbers) -> Numbers:
         """What a cycle adds to the values."""
         near = self._near
-        rest = near.bed.rest(self.use.loads, values[:-1], self._displacement)
+        rest = near.bed.rest(self.use.loads, values[:-1] + self._creep, self._displacement)
         self._displacement = rest.displacement
         self.settled = self.settled and rest.settled
         self._pass = Pass(pressure=rest.pressure, sliding=near.sliding)
@@ -125,7 +135,7 @@ class Run:
         """A block, as long as its error allows, and no further than asked for."""
         fastest, left = self._fastest, count - self.cycles
         while True:
-            length = _shared(min(self.length, longest(fastest)), left)
+            length = _shared(min(self.length, longest(fastest), self._calm), left)
             taken = step(self._rate, self._values, self._slope, length, stages_of(length, fastest))
             error = self._error(taken, fastest)
             self.length = length * min(max(_SAFE * max(error, 1e-12) ** (-1 / 3), _LEAST), _MOST)
@@ -136,8 +146,33 @@ class Run:
         self.depth[self._near.cells], self.work = taken.values[:-1], float(taken.values[-1])
         self.steps, self._slope = self.steps + 1, taken.rate
         self.cycles = count if length == left else self.cycles + length
-        if self._spreads:
+        if self.use.creep is not None:
+            self._advance_creep(self.use.creep, length * self.use.seconds)
+        if self._spreads or self.use.creep is not None:
             self._look()
+
+    @property
+    def _calm(self) -> float:
+        """Cycles in which little creeps: a share of those that there were."""
+        return max(_GROWTH * self.cycles, _SOON / self.use.seconds) if self.use.creep else inf
+
+    def _advance_creep(self, creep: Ladder, seconds: float) -> None:
+        """Creep under the pressure that there is at the end, which falls where it creeps: a few sweeps to meet it."""
+        near, instants = self._near, self.use.cycle.instants
+        stays, adds = creep.linear(self.strain[:, near.cells], seconds)
+        thickness = float(self.use.joint.liner_thickness)
+        mean = self._pass.pressure.sum(axis=0) / instants
+        stiff = near.bed.stiffest * (self._pass.pressure > 0).sum(axis=0) / instants
+        for _ in range(_SWEEPS):
+            self._creep = thickness * (stays + adds * mean)
+            self._rate(self._values)
+            change = (self._pass.pressure.sum(axis=0) / instants - mean) / (1 + stiff * thickness * adds)
+            mean = numpy.maximum(mean + change, 0.0)
+            if abs(change).max(initial=0.0) <= _MET * mean.max(initial=0.0):
+                break
+        pressure = numpy.zeros(len(self.depth))
+        pressure[near.cells] = mean
+        self.strain = creep.advanced(self.strain, pressure, seconds)
 
     def _error(self, taken: Step, fastest: float) -> float:
         """What a block missed in the mean square of the cells, over what it may."""
@@ -149,22 +184,29 @@ class Run:
     @property
     def _spreads(self) -> bool:
         """Whether the contact comes near to cells that are not looked at."""
-        close = self.use.bed.near(self._displacement, self.depth, _MARGIN / 2)
+        close = self.use.bed.near(self._displacement, self.depth + self.crept, _MARGIN / 2)
         close[self._near.cells] = False
         return bool(close.any())
 
     def _report(self) -> Report:
-        use = self.use
-        rest = use.rest(self.depth, self._displacement)
+        use, crept, shape = self.use, self.crept, (self.use.grid.rings, -1)
+        rest = use.rest(self.depth + crept, self._displacement)
+        only = [use.rest(depth) if depth.any() else use.unworn for depth in (self.depth, crept)]
+        moved = [(each.displacement - use.unworn.displacement)[use.largest].sum(axis=0) for each in (rest, *only)]
         return Report(
             cycles=self.cycles,
-            wear=self.depth.reshape(use.grid.rings, -1),
+            wear=self.depth.reshape(shape),
             volume=self.volume,
             depth=float(self.depth.max()),
             work=self.work,
-            displacement=(rest.displacement - use.unworn.displacement)[use.largest].sum(axis=0),
+            displacement=moved[0],
+            worn_in=moved[1],
+            crept_in=moved[2],
             max_pressure=float(rest.pressure.max(initial=0.0)),
-            settled=self.settled and rest.settled,
+            edge_distance=use.edge_distance(rest, self.depth + crept),
+            crept=crept.reshape(shape),
+            creep_depth=float(crept.max()),
+            settled=self.settled and all(each.settled for each in (rest, *only)),
         )
 
 

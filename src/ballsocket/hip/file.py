@@ -20,16 +20,20 @@ from ..models.foundation import RadialFoundation
 from ..presets import joints
 from ..sphere.surfaces import Springs
 from .coefficients import share_of_slide, wear_factor
+from .creep import Ladder, logarithmic
 from .cycle_file import read_cycle
+from .film import Lubricant
 from .gait import CYCLES, INSTANTS, Cycle, constant_load, named_cycle, order_of, rocking
 from .laws import Archard, AreaLaw, CrossShear, Law
 from .use import InUse, check_cycles
 
 _DESCRIBED = ("joint", "liner", "ball", "backing", "cup")
 _TABLES: Mapping[str, tuple[str, ...]] = {
-    "": ("name", "source", *_DESCRIBED, "cycle", "wear", "cycles", "report_at"),
+    "": ("name", "source", *_DESCRIBED, "cycle", "wear", "creep", "film", "cycles", "report_at"),
     "cup": (*KEYS["cup"], "tilt"),
     "cycle": ("name", "file", "instants", "rotation_order", "body_weight", "force", "amplitude"),
+    "creep": ("law", "compliances", "times", "seconds_per_cycle"),
+    "film": ("viscosity", "ball_roughness", "cup_roughness", "friction"),
     "wear": ("law", "coefficient", "circular", "exponent", "reference", "contact", "model", "ring_width"),
 }
 _KEYS = {**{name: KEYS[name] for name in _DESCRIBED}, **_TABLES}
@@ -43,6 +47,7 @@ class HipFile:
     use: InUse
     cycles: float
     report_at: tuple[float, ...]
+    lubricant: Lubricant
 
 
 def read_hip(path: str | Path) -> HipFile:
@@ -53,7 +58,9 @@ def read_hip(path: str | Path) -> HipFile:
     `name` ("iso-14242-1", "iso-14242-1-key-points", "flexion", "biaxial-rocking", "constant-load"; the last two with
     `force` and `amplitude`) or a `file` (a table of text), `instants`, `rotation_order`, `body_weight`. `wear` has a
     `law` ("archard", "area", "cross-shear"), its `coefficient` in mm³/(N m), `contact` ("springs"), the `model`
-    whose springs they are, `ring_width`. At the top: `cycles`, `report_at` (a list).
+    whose springs they are, `ring_width`. `creep`, which may be empty, has a `law` ("logarithmic", unverified; or
+    "kelvin-voigt" with `compliances` in 1/MPa and `times` in s) and `seconds_per_cycle`. `film` has `viscosity` in
+    Pa s, `ball_roughness`, `cup_roughness`, `friction`. At the top: `cycles`, `report_at` (a list).
 
     Raises
     ------
@@ -68,7 +75,7 @@ def read_hip(path: str | Path) -> HipFile:
 
 def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     check_keys(content, "", "at the top", _KEYS)
-    for name in ("cup", "cycle", "wear"):
+    for name in ("cup", "cycle", "wear", "creep", "film"):
         check_keys(_table(content, name), name, f"in [{name}]", _KEYS)
     given = _joint(content, folder)
     cycle, wear = _cycle(_table(content, "cycle"), folder), _table(content, "wear")
@@ -78,6 +85,8 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         cycle=cycle,
         wear=_law(wear),
         surface=_surface(wear),
+        creep=_creep(content),
+        seconds_per_cycle=_seconds(_table(content, "creep")),
         **({"ring_width": parse("ring_width", wear["ring_width"], Kind.ANGLE)} if "ring_width" in wear else {}),
     )
     cycles = _count("cycles", content.get("cycles", 5 * _MILLION))
@@ -86,7 +95,7 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         raise ValueError(f"report_at = {shown(looks)} must be a list of numbers of cycles")
     at = tuple(_count("report_at", look) for look in looks)
     check_cycles(cycles, at)
-    return HipFile(use=use, cycles=cycles, report_at=at)
+    return HipFile(use=use, cycles=cycles, report_at=at, lubricant=_lubricant(_table(content, "film")))
 
 
 def _count(name: str, value: Any) -> float:
@@ -188,6 +197,44 @@ def _law(table: Mapping[str, Any]) -> Law:
         exponent=parse("exponent", table.get("exponent", 0.0), Kind.NUMBER),
         reference=parse("reference", table.get("reference", 1.0), Kind.MODULUS),
     )
+
+
+_CREEPS = ("logarithmic", "kelvin-voigt")
+_ELEMENTS = ("compliances", "times")
+
+
+def _creep(content: Mapping[str, Any]) -> Ladder | None:
+    """Without a table there is no creep."""
+    if "creep" not in content:
+        return None
+    table = _table(content, "creep")
+    given = [name for name in _ELEMENTS if name in table]
+    name = known_name("creep law", table.get("law", "kelvin-voigt" if given else "logarithmic"), _CREEPS)
+    if name == "logarithmic":
+        if given:
+            raise ValueError(f"{given[0]} belongs to the law 'kelvin-voigt', and the law is {name!r}")
+        return logarithmic()
+    compliances, times = (_numbers(each, table.get(each)) for each in _ELEMENTS)
+    return Ladder(compliances=compliances, times=times)
+
+
+def _numbers(name: str, value: Any) -> tuple[float, ...]:
+    if not isinstance(value, list) or not value:
+        raise ValueError(f"{name} = {shown(value)} must be a list of numbers, in 1/MPa and in s")
+    return tuple(parse(name, each, Kind.NUMBER) for each in value)
+
+
+def _seconds(table: Mapping[str, Any]) -> float | None:
+    value = table.get("seconds_per_cycle")
+    return None if value is None else parse("seconds_per_cycle", value, Kind.NUMBER)
+
+
+def _lubricant(table: Mapping[str, Any]) -> Lubricant:
+    words = {name: parse(name, table[name], Kind.NUMBER) for name in ("viscosity", "friction") if name in table}
+    words |= {
+        name: parse(name, table[name], Kind.LENGTH) for name in ("ball_roughness", "cup_roughness") if name in table
+    }
+    return Lubricant(**words)
 
 
 _CONTACTS = ("springs",)

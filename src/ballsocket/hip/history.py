@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..arrays import Numbers
+from .film import Lubricant
 
 if TYPE_CHECKING:
     from .use import InUse
@@ -55,8 +56,14 @@ class Report:
         ∫ p |v| dA dt of all cycles so far, in N mm.
     displacement : array (3,)
         How far the ball's centre has moved since the first cycle at the largest force, in mm, in the cup's frame.
+    worn_in, crept_in : array (3,)
+        The same of a bore that were only worn, and of one that had only crept.
     max_pressure : float
         In the cycle, in MPa.
+    edge_distance : array (loaded,)
+        From the edge of each contact of the cycle to the end of the bore in mm; 0 where it reaches it.
+    crept : array (rings, meridians)
+        Depth of creep in mm.
     creep_depth : float
         At the point that has crept furthest, in mm.
     settled : bool
@@ -69,7 +76,11 @@ class Report:
     depth: float
     work: float
     displacement: Numbers
+    worn_in: Numbers
+    crept_in: Numbers
     max_pressure: float
+    edge_distance: Numbers
+    crept: Numbers
     creep_depth: float = 0.0
     settled: bool = True
 
@@ -86,8 +97,11 @@ class Report:
             "depth": self.depth,
             "penetration": self.penetration,
             "penetration_vector": [float(part) for part in self.displacement],
+            "penetration_of_wear": float(numpy.linalg.norm(self.worn_in)),
+            "penetration_of_creep": float(numpy.linalg.norm(self.crept_in)),
             "max_pressure": self.max_pressure,
             "creep_depth": self.creep_depth,
+            "edge_distance": float(self.edge_distance.min()) if len(self.edge_distance) else None,
         }
 
 
@@ -114,12 +128,14 @@ class History:
     error : Error
     steps : int
         Blocks in which the geometry was updated.
+    lubricant : Lubricant
     """
 
     use: InUse
     reports: tuple[Report, ...]
     error: Error
     steps: int
+    lubricant: Lubricant = Lubricant()  # noqa: RUF009 (frozen)
 
     @property
     def last(self) -> Report:
@@ -133,7 +149,16 @@ class History:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be said of it."""
-        return self.use.notes + (() if self.settled else (_UNSETTLED,))
+        return (*self.use.notes, *self._at_the_rim, *(() if self.settled else (_UNSETTLED,)))
+
+    @property
+    def _at_the_rim(self) -> tuple[str, ...]:
+        """Where and when a contact reaches the rim first."""
+        for report in self.reports:
+            if report.edge_distance.min(initial=1.0) <= 0:
+                when = self.use.cycle.phases[self.use.loaded][report.edge_distance.argmin()]
+                return (_REACHES.format(report.cycles, 100 * when),)
+        return ()
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
@@ -147,6 +172,7 @@ class History:
                 "cross_shear_mean": first.cross_shear,
                 "peaks": {"force_N": first.max_force, "max_pressure_MPa": first.max_pressure},
             },
+            "film": self.use.film(self.lubricant).summary(),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
             "history": [report.summary() for report in self.reports],
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
@@ -154,4 +180,5 @@ class History:
         }
 
 
+_REACHES = "edge loading: after {:g} cycles the contact reaches the rim, first at {:.1f} % of the cycle"
 _UNSETTLED = "a contact did not balance its load: no digit of this run is to be trusted"

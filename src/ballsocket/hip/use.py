@@ -17,6 +17,8 @@ from ..joint import Joint
 from ..sphere.grid import Grid, grid
 from ..sphere.surfaces import Springs
 from .blocks import Run
+from .creep import Ladder
+from .film import Film, Lubricant, film
 from .gait import Cycle
 from .history import Error, First, History
 from .laws import Law, Pass
@@ -45,6 +47,10 @@ class InUse:
         How the bore gives way; the paper's springs by default.
     ring_width : float
         Of the rings of the wear map in rad, 3° by default.
+    creep : Ladder, optional
+        How the liner creeps; not at all by default.
+    seconds_per_cycle : float, optional
+        In which creep goes on; those that the cycle lasts by default.
     tolerance : float
         Of a block, over the largest depth so far. Default 4e-3.
 
@@ -69,6 +75,8 @@ class InUse:
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
     surface: Springs = Springs()  # noqa: RUF009 (frozen)
     ring_width: float = radians(3.0)
+    creep: Ladder | None = None
+    seconds_per_cycle: float | None = None
     tolerance: float = 4e-3
 
     def __post_init__(self) -> None:
@@ -76,7 +84,13 @@ class InUse:
             raise ValueError("a hip in use is one joint, and this one has arrays of numbers")
         require("ring_width", self.ring_width, radians(0.5) <= self.ring_width <= radians(10.0), "0.5 to 10 degrees")
         require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
+        require("seconds_per_cycle", self.seconds, 0 < self.seconds < inf, "a time (s) is positive and finite")
         self._check_held()
+
+    @property
+    def seconds(self) -> float:
+        """That a cycle stands for in the life of the liner."""
+        return self.cycle.duration if self.seconds_per_cycle is None else self.seconds_per_cycle
 
     def _check_held(self) -> None:
         forces = self.cycle.forces[self.loaded]
@@ -130,7 +144,8 @@ class InUse:
         """What is to be said of the cycle, the cup and the law."""
         placed = () if self.placed == self.cup else (_PLACED.format(degrees(self.cycle.cup_tilt or 0.0)),)
         lifted = () if len(self.loaded) == self.cycle.instants else (_LIFTS,)
-        return (*self.cycle.notes, *placed, *lifted, *self.wear.notes)
+        crept = self.creep.notes if self.creep else ()
+        return (*self.cycle.notes, *placed, *lifted, *self.wear.notes, *crept)
 
     @cached_property
     def grid(self) -> Grid:
@@ -151,6 +166,22 @@ class InUse:
     def sliding(self) -> Sliding:
         return Sliding(radius=float(self.joint.ball_radius), turns=self.turns, directions=self.bed.directions)
 
+    def edge_distance(self, rest: Rest, depth: Numbers | float = 0.0) -> Numbers:
+        """The arc in mm from the edge of each contact to the end of the bore where it is nearest: (loaded,).
+
+        0 where the contact reaches it: edge loading.
+        """
+        overlap = rest.displacement @ self.bed.normals - self.bed.clearance - depth
+        polar = self.grid.polar
+        rows = overlap.reshape(len(overlap), len(polar), self.grid.meridians)
+        ends = (rows > 0) & numpy.concatenate([rows[:, 1:] <= 0, numpy.ones_like(rows[:, :1], dtype=bool)], axis=1)
+        fall = rows[:, :-1] - rows[:, 1:]
+        share = numpy.divide(rows[:, :-1], fall, out=numpy.ones_like(fall), where=ends[:, :-1])
+        edges = polar[:-1, None] + share * numpy.diff(polar)[:, None]
+        edges = numpy.concatenate([edges, numpy.full_like(edges[:, :1], self.reach)], axis=1)
+        edge = numpy.where(ends, edges, 0.0).max(axis=(1, 2), initial=0.0)
+        return (self.reach - edge) * self.bed.socket_radius
+
     def rest(self, depth: Numbers | float = 0.0, start: Numbers | None = None) -> Rest:
         """The contacts of a cycle on a bore that is worn by a depth in mm (cells,)."""
         return self.bed.rest(self.loads, numpy.broadcast_to(depth, self.bed.areas.shape), start)
@@ -163,6 +194,10 @@ class InUse:
     def unworn(self) -> Rest:
         """The contacts of the first cycle."""
         return self.rest()
+
+    def film(self, lubricant: Lubricant, depth: Numbers | float = 0.0) -> Film:
+        """The film and the friction of a cycle on a bore that is worn by a depth in mm (cells,)."""
+        return film(self, self.rest(depth), lubricant)
 
     @property
     def slide(self) -> float:
@@ -192,6 +227,7 @@ class InUse:
         cycles: float,
         report_at: Sequence[float] = (),
         listen: Callable[[float], None] = lambda done: None,
+        lubricant: Lubricant = Lubricant(),  # noqa: B008 (frozen)
     ) -> History:
         """The hip after so many cycles.
 
@@ -202,6 +238,8 @@ class InUse:
             Cycles at which to look; the end is always looked at.
         listen : function
             Called with the number of cycles done after each block.
+        lubricant : Lubricant
+            Of the film that `summary` tells of.
 
         Raises
         ------
@@ -211,7 +249,7 @@ class InUse:
         counts = check_cycles(cycles, report_at)
         run = Run(use=self)
         reports = tuple(run.until(count, listen) for count in counts)
-        return History(use=self, reports=reports, error=self.error(run.missed), steps=run.steps)
+        return History(use=self, reports=reports, error=self.error(run.missed), steps=run.steps, lubricant=lubricant)
 
     def error(self, blocks: float) -> Error:
         """What the volume may be off by: blocks as they estimate it, rings and instants by halving them once."""

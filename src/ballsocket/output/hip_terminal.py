@@ -13,6 +13,8 @@ _HEADS = {
     "depth": "mm",
     "penetration": "mm",
     "pmax": "MPa",
+    "creep": "mm",
+    "to the rim": "mm",
 }
 
 
@@ -28,6 +30,7 @@ def print_hip(history: History) -> None:
     )
     print_folded(terminal, f"unworn: {first.volume:.4g} mm³ and {first.depth:.4g} mm a million cycles", "")
     terminal.print(_table(history))
+    print_folded(terminal, _film(history), "")
     off = f"volume within {100 * history.error.volume:.2g} % of the same model in the finest steps"
     print_folded(terminal, f"{off}, in {history.steps} blocks", "dim")
     for note in history.notes:
@@ -40,6 +43,18 @@ def _table(history: History) -> Table:
         table.add_column(head, justify="right", no_wrap=True)
     table.add_row(*_HEADS.values(), style="dim")
     for each in history.reports:
-        numbers = (each.volume, each.depth, each.penetration, each.max_pressure)
+        rim = each.edge_distance.min(initial=float("inf"))
+        numbers = (each.volume, each.depth, each.penetration, each.max_pressure, each.creep_depth, rim)
         table.add_row(f"{each.cycles / 1e6:g}", *(f"{number:.4g}" for number in numbers))
     return table
+
+
+def _film(history: History) -> str:
+    """The film and the friction of the first cycle, in a line."""
+    film = history.use.film(history.lubricant)
+    if not len(film.phases):
+        return "no film: nothing is pressed"
+    told = film.summary()
+    thick = f"film {told['least_nm']:.3g} to {told['largest_nm']:.3g} nm"
+    rubs = f"friction up to {told['moment_Nmm'] / 1e3:.3g} N m, {told['power_W']:.2g} W"
+    return f"{thick}, λ up to {told['lambda'][1]:.2g}, {told['regime']} lubrication; {rubs}"

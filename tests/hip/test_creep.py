@@ -1,0 +1,115 @@
+"""Creep: the ladder against its closed form, the logarithm, and together with wear."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.hip import Archard, InUse, Ladder, iso_14242_1, logarithmic
+
+from .test_wear import TILTED, K, hip
+
+LADDER = Ladder(compliances=(1e-3, 5e-4, 2e-3), times=(30.0, 4e3, 7e5))
+
+
+@pytest.mark.parametrize("steps", [1, 3, 1000])
+@pytest.mark.parametrize("last", [10.0, 1e4, 1e7])
+def test_a_step_of_pressure_is_met_exactly_whatever_the_steps(steps, last):
+    rng = np.random.default_rng(steps)
+    ends = np.sort(np.append(rng.uniform(0.0, last, steps - 1), last))
+    pressure, strain = np.array([0.0, 3.0, 11.0]), LADDER.rested(3)
+    for seconds in np.diff(ends, prepend=0.0):
+        strain = LADDER.advanced(strain, pressure, seconds)
+    assert strain.sum(axis=0) == pytest.approx(LADDER.response(last) * pressure, rel=1e-10)
+    closed = sum(J * (1 - np.exp(-last / time)) for J, time in zip(LADDER.compliances, LADDER.times, strict=True))
+    assert LADDER.response(last) == pytest.approx(closed, rel=1e-10)
+
+
+def test_what_is_unloaded_comes_back():
+    strain = LADDER.advanced(LADDER.rested(1), np.array([5.0]), 1e9)
+    assert strain.sum() == pytest.approx(5 * sum(LADDER.compliances), rel=1e-10)
+    assert LADDER.advanced(strain, np.zeros(1), 1e9).sum() == pytest.approx(0.0, abs=1e-15)
+
+
+def test_the_two_parts_of_an_advance_are_the_advance():
+    rng = np.random.default_rng(4)
+    strain, pressure = rng.uniform(size=(3, 5)), rng.uniform(size=5)
+    stays, adds = LADDER.linear(strain, 500.0)
+    assert stays + adds * pressure == pytest.approx(LADDER.advanced(strain, pressure, 500.0).sum(axis=0), rel=1e-12)
+
+
+def test_the_ladder_of_the_logarithm_is_within_two_percent_of_it():
+    minutes = np.logspace(1.0, 7.3, 300)
+    expected = 3.491e-3 + 7.966e-4 * (np.log10(minutes) - 4)
+    assert logarithmic().response(60 * minutes) == pytest.approx(expected, rel=0.02)
+    assert "not verified" in logarithmic().notes[0]
+
+
+@pytest.mark.parametrize(
+    ("words", "refused"),
+    [
+        (
+            {"compliances": (1e-3,), "times": (1.0, 2.0)},
+            "as many compliances as times, .* got 1 .* and 2",
+        ),
+        ({"compliances": (), "times": ()}, "at least one, got 0"),
+        ({"compliances": (-1e-3,), "times": (1.0,)}, "compliance = -0.001 is not allowed"),
+        ({"compliances": (1e-3,), "times": (0.0,)}, "time = 0 is not allowed"),
+    ],
+)
+def test_ladders_that_are_none(words, refused):
+    with pytest.raises(ValueError, match=refused):
+        Ladder(**words)
+
+
+def test_without_wear_the_ball_beds_in_and_the_load_stays_balanced():
+    use = hip(wear=Archard(coefficient=0.0), creep=LADDER)
+    report = use.after(1e7).last
+    rest = use.rest((report.wear + report.crept).ravel())
+    carried = np.einsum("tp,kp,p->tk", rest.pressure, use.bed.normals, use.bed.areas)
+    assert carried == pytest.approx(use.loads, abs=1e-6 * 300)
+    mean = rest.pressure.sum(axis=0) / use.cycle.instants
+    fully = use.joint.liner_thickness * sum(LADDER.compliances) * mean  # 1e7 s are many times of each element
+    assert report.crept.ravel() == pytest.approx(fully, abs=2e-2 * fully.max())
+    assert report.volume == 0
+    assert rest.pressure.max() < 0.8 * use.first.max_pressure
+
+
+def test_radiographs_see_bedding_in_and_then_a_slope():
+    history = hip(creep=logarithmic()).after(4e6, [1e5, 1e6, 2e6, 3e6])
+    early, *later = history.reports
+    assert np.linalg.norm(early.crept_in) > 5 * np.linalg.norm(early.worn_in)
+    rates = np.diff([report.penetration for report in later])
+    worn = np.diff([np.linalg.norm(report.worn_in) for report in later])
+    assert rates == pytest.approx(worn, rel=0.15)
+    assert early.penetration > 0.5 * rates[0]
+    assert any("not verified" in note for note in history.notes)
+
+
+def test_creep_in_half_the_steps_is_the_same(monkeypatch):
+    from ballsocket.hip import blocks
+
+    use = hip(creep=LADDER)
+    usual = use.after(3e5).last
+    monkeypatch.setattr(blocks, "_GROWTH", blocks._GROWTH / 2)
+    finer = use.after(3e5).last
+    assert usual.creep_depth == pytest.approx(finer.creep_depth, rel=0.01)
+    assert usual.volume == pytest.approx(finer.volume, rel=0.005)
+
+
+def test_a_day_a_cycle_creeps_as_a_day():
+    slow = hip(creep=LADDER, seconds_per_cycle=100.0).after(1e4).last
+    usual = hip(creep=LADDER, wear=Archard(coefficient=1e-2 * K)).after(1e6).last
+    assert slow.creep_depth == pytest.approx(usual.creep_depth, rel=1e-2)
+
+
+def test_a_liner_that_creeps_a_little_is_a_softer_spring():
+    """A fast element of compliance J adds J L to 1/K under the mean pressure of a constant load."""
+    walk = replace(iso_14242_1(72), force=lambda t: 2000.0 + 0 * t)
+    joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
+    fast = Ladder(compliances=(1e-4,), times=(1.0,))
+    use = InUse(joint=joint, cup=TILTED, cycle=walk, wear=Archard(coefficient=0.0), creep=fast)
+    softer = 1 / (1 / use.bed.modulus + 8.0 * 1e-4)
+    expected = replace(use.bed, modulus=softer).rest(use.loads, np.zeros(len(use.bed.areas))).pressure.max()
+    assert use.after(1e4).last.max_pressure == pytest.approx(expected, rel=2e-3)

@@ -1,0 +1,74 @@
+"""Film, friction and the distance to the rim over a cycle."""
+
+from math import radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.hip import Lubricant
+from ballsocket.hip.film import film_thickness
+
+from .test_wear import hip
+
+
+def test_films_of_a_hip():
+    joint = bs.Joint(
+        ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.Material(young=1000.0, poisson=0.4), ball=bs.COCR
+    )
+    least, central = film_thickness(joint, np.array(2500.0), np.array(1.5), 2.5e-3)
+    assert 1e6 * least == pytest.approx(72, abs=0.5)
+    assert 1e6 * central == pytest.approx(139, abs=0.5)
+
+
+def test_films_scale_with_speed_and_viscosity_alike():
+    joint, force = hip().joint, np.array(2500.0)
+    films = [
+        film_thickness(joint, force, np.array(w), eta)[0] for w, eta in ((1.5, 2.5e-3), (1.5, 5e-3), (3.0, 2.5e-3))
+    ]
+    assert films[1] == pytest.approx(films[2], rel=1e-12)
+    assert films[1] / films[0] == pytest.approx(2**0.65, rel=1e-12)
+
+
+def test_what_the_moment_does_is_what_friction_takes():
+    use = hip()
+    film = use.film(Lubricant(friction=0.1))
+    assert 1e-3 * np.einsum("tk,tk->", film.moment, use.turns) == pytest.approx(film.heat, rel=1e-12)
+    assert film.heat == pytest.approx(0.1 * use.first.work, rel=1e-12)
+    assert film.power.mean() * use.cycle.duration == pytest.approx(film.heat, rel=1e-12)
+
+
+def test_the_moment_lies_between_those_of_force_and_pressure():
+    """μ R F for a contact that is a point, and less than μ R ∫ p dA."""
+    use = hip()
+    film, size = use.film(Lubricant(friction=0.05)), use.cycle.sizes
+    moment = np.linalg.norm(film.moment, axis=1)
+    whole = (use.unworn.pressure @ use.bed.areas) * 0.05 * 14.0
+    assert (moment < whole).all()
+    assert (moment > 0.5 * 0.05 * 14.0 * size).all()
+
+
+def test_smooth_surfaces_have_a_full_film():
+    assert hip().film(Lubricant(ball_roughness=1e-6, cup_roughness=1e-6)).regime == "full"
+    assert hip().film(Lubricant()).regime == "boundary"
+
+
+@pytest.mark.parametrize("words", [{"viscosity": 0.0}, {"friction": -0.1}, {"cup_roughness": np.inf}])
+def test_lubricants_that_are_none(words):
+    with pytest.raises(ValueError, match=f"{next(iter(words))} = .* is not allowed"):
+        Lubricant(**words)
+
+
+def test_the_distance_to_the_rim_is_that_of_the_closed_form():
+    use = hip()
+    contact = bs.HessForsbach().press(use.joint, force=use.cycle.sizes)
+    expected = use.cup.edge_distance(use.joint.socket_radius, contact.half_angle)
+    assert use.edge_distance(use.unworn) == pytest.approx(expected, abs=0.05)
+
+
+def test_a_contact_at_the_rim_is_told_with_its_instant():
+    history = hip(cup=bs.Cup(inclination=radians(60.0))).after(1e5)
+    assert history.last.edge_distance.min() == 0
+    assert any(
+        note.startswith("edge loading: after 100000 cycles the contact reaches the rim") for note in history.notes
+    )
