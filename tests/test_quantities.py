@@ -25,6 +25,7 @@ from ballsocket.io.joint_toml import tables_of
 from ballsocket.io.units import parse
 from ballsocket.kinds import Unit
 from ballsocket.quantities import (
+    AIM,
     BEARING,
     CONTACT,
     CUP,
@@ -98,7 +99,7 @@ def test_tables_studies_and_json_speak_of_the_same_objects():
 
 def test_nothing_is_named_or_written_twice():
     assert len(QUANTITIES) == sum(
-        map(len, (CONTACT, BEARING, JOINT, FIT, MATERIAL, STRENGTH, PARTS, LAYER, CUP, FIELD, DERIVED))
+        map(len, (CONTACT, BEARING, JOINT, FIT, MATERIAL, STRENGTH, PARTS, LAYER, CUP, AIM, FIELD, DERIVED))
     )
     shared = {each.symbol for each in (*MATERIAL.values(), *PARTS.values())}
     symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]

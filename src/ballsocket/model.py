@@ -83,6 +83,8 @@ class Model(Theory):
         As the domain, of how ball and socket fit: without interference, except where a model knows better.
     parameters : tuple of array
         Numbers of the model's own that may be arrays and broadcast against joint and load.
+    off_axis : bool
+        Whether a press takes where the load points and where the cup faces: `tilt`, `inclination`, `anteversion`.
     differentiable : bool
         Whether JAX can trace a press.
     smooth_step : float
@@ -97,6 +99,7 @@ class Model(Theory):
 
     planar: ClassVar[bool] = False
     fits: ClassVar[tuple[Range, ...]] = (LOOSE,)
+    off_axis: ClassVar[bool] = False
     differentiable: ClassVar[bool] = True
     smooth_step: ClassVar[float] = 1e-4
     seconds_a_press: ClassVar[float] = 4e-7

@@ -304,6 +304,11 @@ CUP = _table(
              **_turn("an anteversion", -90.0, 90.0)),
 )
 """How far the socket reaches around the ball, and where it faces."""
+
+AIM = _table(
+    Quantity("tilt", "γ", "tilt", Kind.ANGLE, "Between load and cup's own axis.", **_turn("a tilt", 0.0, 180.0)),
+)
+"""Where a load points that does not go along the cup's axis."""
 # fmt: on
 
 PARTS = MappingProxyType({**_of("liner", ("E", "ν", "σy")), **_of("ball", ("E1", "ν1", "σy1"))})
@@ -316,6 +321,6 @@ HEADLINE = ("force", "indentation", "half_angle", "max_pressure", "area", "stiff
 """What a table of a contact shows that has no room for all."""
 
 QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
-    {**CONTACT, **BEARING, **JOINT, **FIT, **MATERIAL, **STRENGTH, **PARTS, **LAYER, **CUP, **FIELD, **DERIVED}
+    {**CONTACT, **BEARING, **JOINT, **FIT, **MATERIAL, **STRENGTH, **PARTS, **LAYER, **CUP, **AIM, **FIELD, **DERIVED}
 )
 """All of them by their names."""

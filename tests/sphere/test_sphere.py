@@ -295,3 +295,33 @@ def test_random_cups_loads_and_directions_end_in_an_answer_or_a_status():
             assert np.isnan(value[~good]).all() or name in load
         assert (contact.max_pressure[good] >= 0).all()
         assert degrees(contact.max_pressure_angle[good].max(initial=0.0)) < 180
+
+
+# --- many cups ---
+
+
+def test_orientations_are_axes_of_a_study():
+    import xarray
+
+    cup = bs.Cup(inclination=radians(45.0))
+    model = bs.Sphere(cup=cup, ring_width=radians(4.0))
+    study = bs.study(
+        model,
+        RIGID,
+        inclination=np.radians([30.0, 45.0, 60.0]),
+        anteversion=np.radians([0.0, 20.0]),
+        force=2000.0,
+        quantities=["max_pressure", "edge_distance"],
+    )
+    assert isinstance(study, xarray.Dataset)
+    assert study.sizes == {"inclination": 3, "anteversion": 2}
+    one = bs.Sphere(cup=replace(cup, inclination=radians(60.0), anteversion=radians(20.0)), ring_width=radians(4.0))
+    there = study.sel(inclination=radians(60.0), anteversion=radians(20.0), method="nearest")
+    assert float(there.max_pressure) == pytest.approx(one.press(RIGID, force=2000.0).max_pressure, rel=2e-3)
+    assert (np.diff(study.edge_distance, axis=0) < 0).all()
+    tilts = bs.study(model, RIGID, tilt=np.radians([0.0, 40.0]), force=2000.0, quantities=["max_pressure"])
+    assert tilts.sizes == {"tilt": 2}
+    with pytest.raises(ValueError, match="take sphere"):
+        bs.study(bs.Exact(), RIGID, tilt=[0.0, 0.5], force=2000.0)
+    with pytest.raises(ValueError, match="one too many"):
+        bs.study(model, RIGID, tilt=[0.0, 0.5], inclination=[0.1, 0.2], force=2000.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import pi, radians
+from math import radians
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
@@ -11,7 +11,7 @@ import numpy
 from .. import arrays
 from ..answer import Answer
 from ..arrays import Array, Numbers
-from ..checks import needs, numeric, one_load, refuse_unnamed, require, vectors
+from ..checks import needs, one_load, refuse_unnamed, require, vectors
 from ..contact import Contact
 from ..cup import UP, Cup
 from ..fem.model import largest_poisson
@@ -20,6 +20,7 @@ from ..joint import Joint
 from ..law import Law
 from ..model import Model
 from ..per_joint import Piece, taken_apart
+from ..quantities import AIM, CUP
 from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from .contact import OffAxisContact
@@ -87,6 +88,7 @@ class Sphere(Model):
     title: ClassVar[str] = "full elasticity in rings about the cup's axis, any direction of load"
     sources: ClassVar[tuple[Source, ...]] = (Source("polonsky1999"),)
     contact_type: ClassVar[type[Contact]] = OffAxisContact
+    off_axis: ClassVar[bool] = True
     differentiable: ClassVar[bool] = False
     smooth_step: ClassVar[float] = 3e-3
     seconds_a_press: ClassVar[float] = 0.03
@@ -148,6 +150,8 @@ class Sphere(Model):
         displacement: Array | None = None,
         direction: Array | None = None,
         tilt: Array | None = None,
+        inclination: Array | None = None,
+        anteversion: Array | None = None,
     ) -> Contact:
         """Press the ball into the cup by one of three loads, along a direction.
 
@@ -169,6 +173,8 @@ class Sphere(Model):
             In the body's frame, upwards by default; its leading axes broadcast against joint and load.
         tilt : float or array, optional
             In place of a direction its angle from the cup's axis in rad, from the dome to the rim.
+        inclination, anteversion : float or array, optional
+            Other orientations of the cup, in rad: many of them under one load, or each under its own.
 
         Returns
         -------
@@ -183,6 +189,8 @@ class Sphere(Model):
         """
         refuse_unnamed(unnamed)
         load = {"force": force, "indentation": indentation, "half_angle": half_angle}
+        if inclination is not None or anteversion is not None:
+            return self.along(direction, tilt).facing(inclination, anteversion)._pressed(joint, **load)
         if displacement is None:
             return self.along(direction, tilt)._pressed(joint, **load)
         one_load(**load, displacement=displacement)
@@ -210,8 +218,26 @@ class Sphere(Model):
             return replace(self, direction=self._tilted(tilt))
         return self if direction is None else replace(self, direction=direction)
 
+    def facing(self, inclination: Array | None = None, anteversion: Array | None = None) -> Sphere:
+        """This model under the load that a cup of other orientations finds: arrays are as many cups.
+
+        What they are made of is the same, and their own frames; so they are directions of load to one cup.
+        """
+        angles = [
+            arrays.to_numpy(CUP[name].checked(getattr(self.cup, name) if given is None else given))
+            for name, given in (("inclination", inclination), ("anteversion", anteversion))
+        ]
+        pairs = numpy.broadcast_arrays(*angles)
+        frames = [
+            replace(self.cup, inclination=float(one), anteversion=float(other)).frame
+            for one, other in zip(*(each.ravel() for each in pairs), strict=True)
+        ]
+        turned = numpy.array(frames).reshape(*pairs[0].shape, 3, 3)
+        inside = numpy.einsum("...ij,...j->...i", turned, self.direction)
+        return replace(self, direction=inside @ numpy.array(self.cup.frame))
+
     def _tilted(self, tilt: Array) -> Numbers:
-        angle = arrays.to_numpy(check_tilt(tilt))
+        angle = arrays.to_numpy(AIM["tilt"].checked(tilt))
         inside = numpy.stack([numpy.sin(angle), 0.0 * angle, numpy.cos(angle)], axis=-1)
         return inside @ numpy.array(self.cup.frame)
 
@@ -286,16 +312,3 @@ def _checked_direction(direction: Any) -> Numbers:
     length = numpy.linalg.norm(found, axis=-1)
     require("length of direction", length, (length > 0) & (length < numpy.inf), "a direction points somewhere")
     return found
-
-
-def check_tilt(tilt: Any) -> Array:
-    """A tilt in rad, if it is one.
-
-    Raises
-    ------
-    ValueError
-        Below 0 or above π; what can only be degrees is named with what it is in radians.
-    """
-    angle = numeric("tilt", tilt)
-    require("tilt", angle, (angle >= 0) & (angle <= pi), "a tilt is 0 to pi radians (45 degrees are 0.7854 radians)")
-    return angle

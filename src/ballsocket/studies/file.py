@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..catalogue import catalogue, judge
+from ..catalogue import catalogue, judge, off_axis
 from ..checks import check_names, check_text, known_name, nearest, plain_name, shown
 from ..engines.dask import Distributed
 from ..engines.local import Engine, Processes, Serial
@@ -41,7 +41,7 @@ _DESCRIBED = ("joint", "liner", "ball", "backing", "cup")
 _KEYS = {"": _TOP, **{name: KEYS[name] for name in _DESCRIBED}, "axes": tuple(PARAMETERS)}
 _ENGINES = ("serial", "processes", "dask")
 _LARGEST = 1 << 53
-models: dict[str, Model] = {**catalogue, judge.name: judge}
+models: dict[str, Model] = {**catalogue, judge.name: judge, off_axis.name: off_axis}
 """By the names that files and the command line use."""
 
 

@@ -16,13 +16,10 @@ from ..dimensions import OWN, Dimensions, resolved
 from ..kinds import Kind
 from ..quantities import CONTACT, JOINT
 from .parameters import PARAMETERS
-from .task import QUANTITIES
+from .task import EDGE_DISTANCE, QUANTITIES
 
 if TYPE_CHECKING:
     import xarray
-
-EDGE_DISTANCE = "edge_distance"
-"""Arc in mm from the edge of the contact to the rim of the socket, along its surface."""
 
 _ANGLES = tuple(name for name, each in {**PARAMETERS, **CONTACT}.items() if each.kind is Kind.ANGLE)
 
@@ -68,7 +65,7 @@ class Limit:
 
     def of(self, study: xarray.Dataset) -> Any:
         """The quantity at every point."""
-        if self.name == EDGE_DISTANCE:
+        if self.name == EDGE_DISTANCE and EDGE_DISTANCE not in study.data_vars:
             return self.cup.edge_distance(dimension(study, "socket_radius"), study.half_angle, self.direction)
         return study[self.name] if self.name in study.data_vars else dimension(study, self.name)
 

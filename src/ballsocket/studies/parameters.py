@@ -12,7 +12,12 @@ from ..dimensions import DIAMETERS, OWN, check_once, resolved
 from ..joint import Joint, Material
 from ..quantities import JOINT, MATERIAL, PARTS, STRENGTH, Quantity
 
-PARAMETERS: Mapping[str, Quantity] = MappingProxyType({**JOINT, **PARTS, **quantities.LOADS})
+AIMS: Mapping[str, Quantity] = MappingProxyType(
+    {**quantities.AIM, **{name: quantities.CUP[name] for name in ("inclination", "anteversion")}}
+)
+"""Where the load points, or the cup faces: for models that press off the axis."""
+
+PARAMETERS: Mapping[str, Quantity] = MappingProxyType({**JOINT, **PARTS, **quantities.LOADS, **AIMS})
 """By the name under which they are axes of a study."""
 
 LOADS = tuple(quantities.LOADS)
@@ -62,9 +67,9 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
 
 
 def pressable(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, dict[str, Array], Array]:
-    """The joint with other numbers, the load among them as the keyword of a press, and where they make a joint."""
-    load = {name: value for name, value in values.items() if name in LOADS}
-    made, possible = varied(joint, {name: value for name, value in values.items() if name not in LOADS})
+    """The joint with other numbers, load and aim among them as keywords of a press, and where they make a joint."""
+    load = {name: value for name, value in values.items() if name in (*LOADS, *AIMS)}
+    made, possible = varied(joint, {name: value for name, value in values.items() if name not in load})
     return made, load, possible
 
 
@@ -77,6 +82,8 @@ def contradiction(names: Mapping[str, object]) -> None:
     loads = [name for name in LOADS if name in names]
     if len(loads) > 1:
         raise ValueError(f"one load is needed, got {', '.join(loads)}")
+    if "tilt" in names and ("inclination" in names or "anteversion" in names):
+        raise ValueError("tilt and the cup's orientation are one too many: either says where the load points")
 
 
 def _material(material: Material | None, values: Mapping[str, Array], part: str) -> Material | None:

@@ -22,10 +22,17 @@ from .parameters import pressable
 QUANTITIES = (*(column.attribute for column in COLUMNS), *BEARING)
 """What a study can answer; `status` and `valid` come with every study."""
 
+EDGE_DISTANCE = "edge_distance"
+"""What a study can answer besides, of a model that presses off the axis."""
+
 USUAL = ("indentation", "half_angle", "max_pressure", "area")
 """What it answers unless told otherwise, with the force where that is not given."""
 
-DTYPES: dict[str, Any] = {**dict.fromkeys(QUANTITIES, numpy.float64), "status": numpy.int8, "valid": numpy.bool_}
+DTYPES: dict[str, Any] = {
+    **dict.fromkeys((*QUANTITIES, EDGE_DISTANCE), numpy.float64),
+    "status": numpy.int8,
+    "valid": numpy.bool_,
+}
 
 _CACHED = 1 << 14  # points: a block's intermediate numbers stay in the processor's cache
 _SECONDS, _MOST = 0.5, 1 << 20
