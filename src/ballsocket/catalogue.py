@@ -6,7 +6,7 @@ from .checks import Named
 from .elastic.exact import Exact
 from .elastic.tabulated.model import Tabulated
 from .fem.model import FiniteElement
-from .model import Model, Theory
+from .model import Model
 from .models.adhesion import AdhesiveSocket
 from .models.foundation import Bartel, BondedLayer, BondedLayerExact, CosineLimit, HessForsbach, Vessel
 from .models.half_space import Hertz, Steuermann
@@ -15,6 +15,7 @@ from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
 from .sphere.model import Sphere
+from .theory import Theory
 
 reference: Model = Exact()
 """What every other model is measured by."""

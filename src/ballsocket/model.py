@@ -1,8 +1,8 @@
-"""What a theory and a model are: frozen values; a model answers to `press`, from a few short laws."""
+"""What a model is: a frozen value that answers to `press`, from a few short laws; and one model around another."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import partial
 from operator import attrgetter
@@ -18,54 +18,8 @@ from .contact import Contact, Laws
 from .cup import Cup, Interface
 from .joint import Joint
 from .law import CurveLaw, Law, curve_law
-from .sources import Source
-from .validity import LOOSE, Nowhere, Promise, Range, Remark, inside
-
-
-class Theory(ABC):
-    """What can be listed, cited, and trusted inside of ranges; how it is asked is up to its kind.
-
-    Attributes
-    ----------
-    name, title : str
-        As in the catalogue; one line for people.
-    sources : tuple of Source
-        Where the formulas come from.
-    validity : tuple of Range
-        Closed ranges inside which the answer can be trusted.
-    promise : Promise or None
-        How close to the elastic answer it is there, as measured; None where there is nothing to measure it by.
-    remarks : tuple of Remark
-        Where something is to be said of an answer that can be trusted.
-    reach : str
-        What loads have an answer, in words for those that have none; empty where there is nothing to say.
-    """
-
-    reach: ClassVar[str] = ""
-
-    @property
-    @abstractmethod
-    def name(self) -> str: ...
-
-    @property
-    @abstractmethod
-    def title(self) -> str: ...
-
-    @property
-    @abstractmethod
-    def sources(self) -> tuple[Source, ...]: ...
-
-    @property
-    @abstractmethod
-    def validity(self) -> tuple[Range, ...]: ...
-
-    @property
-    def promise(self) -> Promise | None:
-        return None
-
-    @property
-    def remarks(self) -> tuple[Remark, ...]:
-        return ()
+from .theory import Theory
+from .validity import LOOSE, Nowhere, Range, inside
 
 
 class Model(Theory):

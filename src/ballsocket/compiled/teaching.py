@@ -11,7 +11,7 @@ import numpy
 from numba.core import types
 from numba.extending import overload, register_jitable
 
-from .. import arrays
+from .. import arrays, roots
 
 compilable = register_jitable(forceinline=True)
 """Lets compiled code call a formula as it stands, and puts it into the caller's loop."""
@@ -96,14 +96,14 @@ def _false(condition: Any) -> Callable[..., Any]:
     return lambda condition: not condition
 
 
-@overload(arrays.increasing_root, strict=False)
+@overload(roots.increasing_root, strict=False)
 def _increasing_root(
     law: Any, target: Any, low: Any, high: Any, start: Any, given: Any = (), steps: Any = 60, tolerance: Any = 1e-8
 ) -> Callable[..., Any]:
-    return lambda law, target, low, high, start, given=(), steps=60, tolerance=1e-8: arrays.root_of_number(
+    return lambda law, target, low, high, start, given=(), steps=60, tolerance=1e-8: roots.root_of_number(
         law, target, low, high, start, given, steps, tolerance
     )
 
 
 compilable(arrays.divisor)
-taught(arrays.root_of_number)
+taught(roots.root_of_number)

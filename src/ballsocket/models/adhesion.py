@@ -7,9 +7,10 @@ from functools import partial
 from math import inf, pi
 from typing import Any, ClassVar
 
-from ..arrays import Array, broadcast, clip, divisor, increasing_root, sqrt, where
+from ..arrays import Array, broadcast, clip, divisor, sqrt, where
 from ..checks import numeric, require
 from ..joint import Joint
+from ..roots import increasing_root
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Range
 from .closed_form import ClosedForm

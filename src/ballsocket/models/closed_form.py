@@ -15,6 +15,7 @@ from ..arrays import Array, where
 from ..joint import Joint
 from ..law import Law, answered
 from ..model import Model
+from ..roots import increasing_root
 from ..validity import Status
 
 
@@ -99,7 +100,7 @@ class ClosedForm(Model):
         shape = (steep, flat, known)
         low = arrays.broadcast(where(goal > 0, steep, flat), *shape)
         high = arrays.broadcast(where(goal > 0, flat, steep), *shape)
-        root = arrays.increasing_root(law, arrays.broadcast(goal, *shape), low, high, low + (high - low) / 4)
+        root = increasing_root(law, arrays.broadcast(goal, *shape), low, high, low + (high - low) / 4)
         return where(force > 0, scale * arrays.exp(root), 0.0 * root)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:

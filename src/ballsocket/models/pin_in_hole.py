@@ -11,12 +11,13 @@ import numpy
 
 from .. import arrays
 from ..answer import check_joint, prepared
-from ..arrays import Array, asinh, atan, broadcast, clip, divisor, increasing_root, log, sqrt, tan, where
+from ..arrays import Array, asinh, atan, broadcast, clip, divisor, log, sqrt, tan, where
 from ..checks import numeric, one_load, require
 from ..joint import Joint
-from ..model import Theory
 from ..outcome import Outcome
+from ..roots import increasing_root
 from ..sources import Source
+from ..theory import Theory
 from ..validity import Range, Status
 
 

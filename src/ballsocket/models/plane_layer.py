@@ -14,6 +14,7 @@ from ..answer import Answer
 from ..arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, integral, log, sin, sqrt, where
 from ..joint import Joint
 from ..model import Model
+from ..roots import increasing_root
 from ..sources import Source
 from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
 
@@ -282,7 +283,7 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
     missing = -goal - law(0.0 * goal, reach)[0]  # below 0 where even the widest does not suffice
     steep, guess, flat = (clip(missing, 0.0, inf) / power for power in _POWERS[kind])
     reach = _reach(widest * exp(-steep))
-    root = arrays.increasing_root(lambda narrowing: law(narrowing, reach), -goal, steep, flat, guess, steps=24)
+    root = increasing_root(lambda narrowing: law(narrowing, reach), -goal, steep, flat, guess, steps=24)
     width = where(missing >= 0, widest * exp(-root), float("nan"))
     return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=reach)
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from .. import arrays
 from ..arrays import Array, cos, exp, log, sin, where
+from ..roots import Increasing, increasing_root
 from .liner_compliance import Liner, Pair, log_compliance, log_compliance_anywhere
 
 
@@ -206,11 +207,11 @@ def edge_of_force(load: Array, liner: Liner) -> Array:
     return _edge_of(_force_miss, load, log(load / (2.5 + load / 3)) / 3, liner)
 
 
-def _edge_of(miss: arrays.Increasing, load: Array, start: Array, liner: Liner) -> Array:
+def _edge_of(miss: Increasing, load: Array, start: Array, liner: Liner) -> Array:
     """By Newton's method from ln ε = `start`, which is near: F ~ ε³ and d ~ ε² as in Hertz, but never wide."""
     start = start + (_END - ln(WIDEST))
     end = 0.0 * start + (_END + 1e-12)  # the widest contact itself is answered
-    root = arrays.increasing_root(miss, 0.0 * start, start - 6.0, end, start, given=(load, liner))
+    root = increasing_root(miss, 0.0 * start, start - 6.0, end, start, given=(load, liner))
     return where(root < end, exp(root - _END) * WIDEST, nan)
 
 

@@ -17,6 +17,7 @@ import numpy
 
 from ... import arrays
 from ...arrays import Array, cos, exp, log, log1p, sin, where
+from ...roots import Increasing, increasing_root
 from .chebyshev import LIMIT, NEAR, angle_root, polynomials, waves_at
 
 Pair = tuple[Array, Array]
@@ -105,11 +106,11 @@ def angle_of_force(load: Array, curve: Curve) -> Array:
     return _angle_of(_force_miss, load, log(load / (3 + load)) / 3, curve)
 
 
-def _angle_of(miss: arrays.Increasing, load: Array, start: Array, curve: Curve) -> Array:
+def _angle_of(miss: Increasing, load: Array, start: Array, curve: Curve) -> Array:
     """By Newton's method from ln ε = `start`, which is near: F ~ ε³ and d ~ ε² as in Hertz, but never wide."""
     start = start + (_END - math.log(LIMIT))
     end = 0.0 * start + (_END + 1e-12)  # the widest contact itself is answered
-    root = arrays.increasing_root(miss, 0.0 * start, start - 6.0, end, start, given=(load, curve), steps=16)
+    root = increasing_root(miss, 0.0 * start, start - 6.0, end, start, given=(load, curve), steps=16)
     return where(root < end, exp(root - _END) * LIMIT, math.nan)
 
 
