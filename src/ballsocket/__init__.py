@@ -57,7 +57,19 @@ from .presets import (
     materials,
 )
 from .sources import cite
-from .sphere import ClosedShell, DepthTable, Pinched, Preload, RealCup, Sphere, Springs, Worn, read_scan
+from .sphere import (
+    ClosedShell,
+    DepthTable,
+    Orientations,
+    Pinched,
+    Preload,
+    RealCup,
+    Sphere,
+    Springs,
+    Worn,
+    orient,
+    read_scan,
+)
 from .studies.run import study
 from .validity import OutsideDomainError, Range, Status
 from .version import __version__ as __version__
@@ -90,6 +102,8 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "catalogue",
     "cite",
     "compare",
+    "Orientations",
+    "orient",
     "studies",
     "study",
     # models

@@ -131,3 +131,37 @@ def test_files_that_nobody_fills_are_refused(words, said, tmp_path):
     assert done.returncode == 2
     assert said in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_orientations_of_a_cup(tmp_path):
+    path, figure = str(EXAMPLES / "tilted_hip.toml"), tmp_path / "map.svg"
+    words = ("orient", path, *COARSE, "--points", "3", "--inclination", "30..60", "--figure", str(figure))
+    told = run(*words)
+    assert told.returncode == 0
+    assert "furthest from the rim: 5." in told.stdout
+    assert "mm at inclination 30°, anteversion 0°" in told.stdout
+    assert "sphere: rings of 4°, 9 orientations in " in told.stdout
+    assert "edge distance" in figure.read_text("utf-8")
+    stood = json.loads(run(*words, "--json").stdout)
+    assert stood["inclination_deg"] == pytest.approx([30, 45, 60])
+    assert stood["anteversion_deg"] == pytest.approx([0, 15, 30])
+    alone = answered(path, *COARSE)["sphere"]  # the file's cup is that of the middle
+    assert stood["edge_distance"][1][1] == pytest.approx(alone["edge_distance"], abs=1e-4)
+    assert stood["max_pressure"][1][1] == pytest.approx(alone["max_pressure"], rel=1e-6)
+    assert stood["edge_loaded"][2][2] is True
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--inclination", "30 to 60"), "inclination = '30 to 60' is not a range, such as '30..60 deg'"),
+        (("--inclination", "30..100"), "inclination is 0 to 90 degrees"),
+        (("--direction", "0,0,0"), "points somewhere"),
+        (("--ring-width", "20 deg"), "0.5 to 6 degrees"),
+    ],
+)
+def test_orientations_that_no_cup_has_are_refused(words, said):
+    done = run("orient", "hip-36", "--force", "3kN", "--points", "2", *words)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1

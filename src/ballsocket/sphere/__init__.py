@@ -2,6 +2,7 @@
 
 from .forms import DepthTable, Pinched, Scan, read_scan
 from .model import Sphere
+from .orientations import Orientations, orient
 from .preload import Preload
 from .surfaces import ClosedShell, RealCup, Springs
 from .worn import Worn
@@ -9,6 +10,7 @@ from .worn import Worn
 __all__ = [
     "ClosedShell",
     "DepthTable",
+    "Orientations",
     "Pinched",
     "Preload",
     "RealCup",
@@ -16,5 +18,6 @@ __all__ = [
     "Sphere",
     "Springs",
     "Worn",
+    "orient",
     "read_scan",
 ]

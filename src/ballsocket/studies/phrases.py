@@ -33,6 +33,21 @@ def range_of(phrase: str) -> tuple[str, float, float]:
     return name, parse(name, _with_unit(low, high), kind), parse(name, high, kind)
 
 
+def ends_of(name: str, phrase: str, kind: str) -> tuple[float, float]:
+    """Two ends of a range of something of that kind, from "30..60 deg".
+
+    Raises
+    ------
+    ValueError
+        Another form.
+    """
+    found = _matched(r"\s*(.+?)\s*\.\.\s*(.+?)\s*", phrase)
+    if found is None:
+        raise ValueError(f"{name} = {shown(phrase)} is not a range, such as '30..60 deg'")
+    low, high = found.groups()
+    return parse(name, _with_unit(low, high), kind), parse(name, high, kind)
+
+
 def choice_of(phrase: str) -> tuple[str, list[Any]] | None:
     """A name with a list, from "head_diameter=28, 32, 36 mm" or "liner=uhmwpe,pom"; None of another form.
 

@@ -1,0 +1,212 @@
+"""How a cup may stand: one load of the body pressed into it at many inclinations and anteversions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import degrees, inf, radians
+from time import perf_counter
+from typing import Any
+
+import numpy
+
+from .. import arrays
+from ..arrays import Array, Numbers
+from ..checks import require
+from ..cup import Side
+from ..fem.progress import tell
+from ..joint import Joint
+from ..quantities import CUP
+from ..validity import Status, missing
+from ..version import __version__
+from .contact import OffAxisContact
+from .model import Sphere
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Orientations:
+    """Contacts of one cup that stands in many ways, under one load; numbers are arrays (inclinations, anteversions).
+
+    They are NaN where the bore does not hold the ball, and the `status` says so.
+
+    Attributes
+    ----------
+    model : Sphere
+        With the cup as it was given, and the direction of the load in the body's frame.
+    joint : Joint
+    load : dict
+        As it was given.
+    inclination, anteversion : array (n,), array (m,)
+        In rad.
+    contacts : tuple of OffAxisContact
+        For each inclination those of all anteversions; vectors are in the frame of the cup that stands so.
+    seconds : float
+        What it took.
+    """
+
+    model: Sphere
+    joint: Joint
+    load: dict[str, float]
+    inclination: Numbers
+    anteversion: Numbers
+    contacts: tuple[OffAxisContact, ...]
+    seconds: float
+
+    def _each(self, of: Callable[[OffAxisContact], Array]) -> Numbers:
+        return numpy.stack([arrays.to_numpy(of(contact)) for contact in self.contacts])
+
+    @cached_property
+    def status(self) -> Numbers:
+        """How each press ended, as the numbers of `Status`."""
+        return self._each(lambda contact: contact.status)
+
+    @cached_property
+    def valid(self) -> Numbers:
+        """Whether each answer can be trusted."""
+        return self._each(lambda contact: contact.valid)
+
+    @cached_property
+    def tilt(self) -> Numbers:
+        """The angle in rad between load and cup's axis."""
+        return self._each(lambda contact: contact.tilt)
+
+    @cached_property
+    def edge_distance(self) -> Numbers:
+        """The arc in mm from the contact to the rim; below 0 the contact is cut off."""
+        return self._each(lambda contact: contact.edge_distance)
+
+    @cached_property
+    def edge_loaded(self) -> Numbers:
+        """Whether the contact reaches the rim."""
+        return self._each(lambda contact: contact.edge_loaded)
+
+    @cached_property
+    def max_pressure(self) -> Numbers:
+        """The largest pressure in MPa; infinite where the end of the bore digs in."""
+        return self._each(lambda contact: contact.max_pressure)
+
+    @cached_property
+    def half_angle(self) -> Numbers:
+        """In rad, of a round contact of the same area."""
+        return self._each(lambda contact: contact.half_angle)
+
+    @cached_property
+    def held(self) -> Numbers:
+        """Where there is an answer."""
+        return ~numpy.asarray(missing(self.status))
+
+    def best(self, of: Numbers) -> tuple[float, float, int]:
+        """Inclination and anteversion in rad where a field is largest, and its place in the flat field."""
+        place = int(numpy.where(self.held & numpy.isfinite(of), of, -inf).argmax())
+        row, column = divmod(place, len(self.anteversion))
+        return float(self.inclination[row]), float(self.anteversion[column]), place
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON: fields are a list of anteversions for each inclination, in mm, MPa and degrees."""
+        cup = self.model.cup
+        fields = {
+            "tilt_deg": numpy.degrees(self.tilt),
+            "edge_distance": self.edge_distance,
+            "max_pressure": self.max_pressure,
+            "half_angle_deg": numpy.degrees(self.half_angle),
+        }
+        return {
+            "version": __version__,
+            "model": self.model.name,
+            "joint": self.joint.summary(),
+            "cup": {"arc_of_cover_deg": degrees(cup.arc_of_cover), "chamfer": cup.chamfer, "side": cup.side.value},
+            "load": {**self.load, "direction": self.model.direction.tolist()},
+            "inclination_deg": numpy.degrees(self.inclination).tolist(),
+            "anteversion_deg": numpy.degrees(self.anteversion).tolist(),
+            **{name: arrays.to_list(values) for name, values in fields.items()},
+            "edge_loaded": [
+                [bool(loaded) if held else None for loaded, held in zip(*pair, strict=True)]
+                for pair in zip(self.edge_loaded, self.held, strict=True)
+            ],
+            "status": [[Status(int(each)).name for each in row] for row in self.status],
+            "valid": self.valid.tolist(),
+            "seconds": self.seconds,
+        }
+
+
+_INCLINATIONS, _ANTEVERSIONS = (tuple(radians(2.5 * i) for i in steps) for steps in (range(12, 25), range(13)))
+
+
+def orient(
+    joint: Joint,
+    *,
+    model: Sphere | None = None,
+    inclination: Array = _INCLINATIONS,
+    anteversion: Array = _ANTEVERSIONS,
+    **load: float,
+) -> Orientations:
+    """Press one joint in a cup that stands in many ways, under a load that keeps its direction in the body.
+
+    The cup's own rings do not know how it stands: it is set up once.
+
+    Parameters
+    ----------
+    joint : Joint
+        Of plain numbers.
+    model : Sphere, optional
+        With the cup (its own inclination and anteversion do not matter), one direction of load, upwards by default, and
+        the width of the rings.
+    inclination, anteversion : array (n,), array (m,)
+        Radiographic angles in rad: 30° to 60° and 0 to 30° by default, each 2.5°.
+    force, indentation, half_angle : float
+        One of them, as in a press.
+
+    Returns
+    -------
+    Orientations
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed; a model with more than one direction.
+
+    Examples
+    --------
+    >>> from math import radians
+    >>> import ballsocket as bs
+    >>> angles = [radians(each) for each in (30.0, 50.0)]
+    >>> stood = bs.orient(bs.joints["hip-36"], force=3000.0, inclination=angles, anteversion=[0.0, radians(20.0)])
+    >>> stood.edge_distance.round(1)
+    array([[ 5.4,  3.9],
+           [-0.1, -1.5]])
+    """
+    model = Sphere() if model is None else model
+    one = model.direction.ndim == 1
+    require("directions of the model", model.direction.size // 3, one, "a cup is turned under one direction of load")
+    axes = [_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))]
+    level = replace(model, cup=replace(model.cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT))
+    start, contacts = perf_counter(), []  # the frame of a level cup is the body's
+    for number, angle in enumerate(axes[0]):
+        tell(f"inclination {number + 1} of {len(axes[0])}")
+        cups = (replace(model.cup, inclination=float(angle), anteversion=float(other)) for other in axes[1])
+        turned = numpy.array([numpy.array(cup.frame) @ model.direction for cup in cups])
+        contacts.append(_complete(level.press(joint, direction=turned, **load)))
+    return Orientations(
+        model=model,
+        joint=joint,
+        load=load,
+        inclination=axes[0],
+        anteversion=axes[1],
+        contacts=tuple(contacts),
+        seconds=perf_counter() - start,
+    )
+
+
+def _angles(name: str, values: Array) -> Numbers:
+    """Angles (n,) in rad that a cup can have."""
+    angles = numpy.atleast_1d(numpy.asarray(CUP[name].checked(numpy.asarray(values, dtype=float))))
+    require(f"dimensions of {name}", angles.ndim, angles.ndim == 1 and angles.size > 0, "a row of angles is needed")
+    return angles
+
+
+def _complete(contact: Any) -> OffAxisContact:
+    """The contact, with what is made when it is first asked for."""
+    _ = contact.max_pressure, contact.edge_margin, contact.half_angle
+    found: OffAxisContact = contact
+    return found
