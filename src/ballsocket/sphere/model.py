@@ -72,7 +72,7 @@ class Sphere(Model):
     >>> from math import radians
     >>> import ballsocket as bs
     >>> cup = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
-    >>> contact = bs.Sphere(cup=cup).press(bs.joints["hip-36"], force=3000.0, direction=(0.26, 0.0, 0.97))
+    >>> contact = bs.Sphere(cup=cup).press(bs.joints["hip-36"], force=3000.0, direction=(-0.26, 0.0, 0.97))
     >>> bool(contact.edge_loaded)
     False
     """
