@@ -112,3 +112,13 @@ def test_a_map_is_drawn_and_clicked_in_the_unit_that_its_axis_names():
     chart.figure._trigger_event(Tap(chart.figure, x=40.0, y=14.0))
     assert page.screen.file.load == {"indentation": pytest.approx(0.04)}
     assert page.screen.file.joint.ball_radius == 14.0
+
+
+def test_a_map_of_joints_that_tables_do_not_know_is_solved():
+    page = Page(
+        "view=map&joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=UHMWPE"
+        "&backing.0.thickness=3&backing.0.material=titanium&load.force=3000"
+    )
+    told = page.view._told.object
+    assert "exact answers, since tabulated knows none of these joints" in told
+    assert "Smallest value of" in told

@@ -358,6 +358,38 @@ def command(folder, *words):
     return run(*words, folder=folder)
 
 
+@pytest.fixture
+def backed(tmp_path):
+    file = tmp_path / "backed.toml"
+    file.write_text(
+        '[joint]\nball_radius = 14\nclearance = 0.1\nliner_thickness = 5\n[liner]\nmaterial = "UHMWPE"\n'
+        '[[backing]]\nthickness = 3\nmaterial = "titanium"\n[load]\nforce = 3000\n'
+    )
+    return str(file)
+
+
+def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_path, backed):
+    ranges = ("--x", "ball_radius=12..16 mm", "--y", "liner_thickness=4..6 mm", "--points", "3")
+    found = command(tmp_path, "map", backed, *ranges, "--json")
+    assert json.loads(found.stdout)["model"] == "exact"
+    assert "exact answers, since tabulated knows none of these joints" in found.stderr
+    limited = command(tmp_path, "map", backed, *ranges, "--limit", "max_pressure<=1")
+    assert "no point of the map is allowed by max_pressure ≤ 1, as exact answers" in limited.stderr
+    named = command(tmp_path, "map", backed, *ranges, "--model", "tabulated")
+    assert "tabulated has no answer for layers behind the liner = 1: that is not in the tables" in named.stderr
+    best = command(tmp_path, "optimise", backed, "--vary", "liner_thickness=4..6 mm", "--json")
+    assert json.loads(best.stdout)["point"]["liner_thickness"] == pytest.approx(6.0)
+    usual = command(tmp_path, "map", "hip-28", "--force", "3 kN", *ranges, "--json")
+    assert json.loads(usual.stdout)["model"] == "tabulated"
+
+
+def test_a_model_without_an_answer_is_named_by_the_reason():
+    joint = HIP.replace(backing=(bs.Layer(thickness=3.0, material=bs.materials["titanium"]),))
+    found = bs.study(bs.Tabulated(), joint, clearance=[0.1, 0.2], force=3000.0)
+    with pytest.raises(ValueError, match="tabulated has no answer at any point: the model has no formula"):
+        pareto(found, ("area", "max_pressure"), [Limit(name="max_pressure", high=15.0)])
+
+
 def test_questions_on_the_command_line(tmp_path):
     shell = ("--limit", "outer_radius<=26 mm", "--limit", "liner_thickness>=4")
     ranges = ("--vary", "ball_radius=11..23 mm", "--vary", "liner_thickness=3..15 mm")

@@ -69,7 +69,7 @@ class MapChart:
         title, turn = head(name, screen)
         values = found[name].transpose(up.name, across.name).values * turn
         if numpy.isnan(values).all():
-            raise ValueError(f"{screen.map_model} has no answer anywhere on this map: choose another model")
+            raise ValueError(f"{found.attrs['model']} has no answer anywhere on this map: choose another model")
         fine = good(found, screen).transpose(up.name, across.name).values
         valid = found.valid.transpose(up.name, across.name).values
         heads, self._turns = zip(*(head(axis.name, screen) for axis in (across, up)), strict=True)

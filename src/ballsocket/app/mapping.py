@@ -10,27 +10,41 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import catalogue
+from ..catalogue import catalogue, reference
+from ..compare import THIN
 from ..io.joint_file import JointFile
 from ..joint import Joint
 from ..kinds import Kind
+from ..model import Model
 from ..quantities import PARTS, QUANTITIES, Quantity
 from ..studies.design import Span, grid
 from ..studies.limits import Limit, allowed, margin_over
 from ..studies.parameters import LOADS, PARAMETERS, pressable
 from ..studies.run import study
-from .screen import MAPPED, Axis, Screen
+from ..studies.usual import joints_of, usual
+from .screen import MAPPED, START, Axis, Screen
 from .words import unit_of
 
 _POINTS = 61
+_FEW = 17
+"""Values along an axis where every joint is solved: a second in all."""
 
 
 @lru_cache(maxsize=16)
 def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: Axis, up: Axis, model: str) -> Any:
-    axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, _POINTS) for axis in (across, up)}
+    asked = _asked(joint, {axis.name: [axis.low, axis.high] for axis in (across, up)}, model)
+    count = _FEW if asked is reference else _POINTS
+    axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, count) for axis in (across, up)}
     varied = any(name in axes for name in LOADS)
     design = grid(**axes, **({} if varied else dict(load)))
-    return study(catalogue[model], joint, design, quantities=MAPPED)
+    return study(asked, joint, design, quantities=MAPPED)
+
+
+def _asked(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
+    """The model of that name; for tables that know none of the joints the one behind them, where it is quick enough."""
+    model = usual(joint, ends) if name == START.map_model else catalogue[name]
+    slow = model is reference and bool(numpy.any(joints_of(joint, ends).thickness_ratio > THIN))
+    return catalogue[name] if slow else model
 
 
 def mapped(file: JointFile, across: Axis, up: Axis, model: str) -> Any:
@@ -76,6 +90,8 @@ def told(found: Any, screen: Screen) -> str:
     """What the map says, as HTML: the share that is allowed, and the least value there."""
     fine, point, name = good(found, screen), best(found, screen), screen.quantity
     words = []
+    if found.attrs["model"] != screen.map_model:
+        words.append(f"{found.attrs['model']} answers, since {screen.map_model} knows none of these joints.")
     if screen.limits:
         words.append(f"{100 * float(fine.mean()):.3g} % of the map is allowed by the limits.")
     if point is not None:
@@ -83,7 +99,7 @@ def told(found: Any, screen: Screen) -> str:
         title, turn = head(name, screen)
         least = float(found[name].sel(point)) * turn
         steps = ", ".join(
-            f"{(axis.high - axis.low) / (_POINTS - 1) * head(axis.name, screen)[1]:.2g}"
+            f"{(axis.high - axis.low) / (found.sizes[axis.name] - 1) * head(axis.name, screen)[1]:.2g}"
             for axis in (screen.across, screen.up)
         )
         words.append(f"Smallest value of {title} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")

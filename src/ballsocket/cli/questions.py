@@ -11,6 +11,7 @@ import typer
 
 import ballsocket as bs
 
+from ..catalogue import reference
 from ..checks import require
 from ..cup import Cup
 from ..io.joint_file import JointFile
@@ -18,23 +19,26 @@ from ..joint import Joint
 from ..model import Model
 from ..output import study_plots, study_summary, study_terminal
 from ..output.save import check_format, save
+from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.file import named_model
 from ..studies.limits import Limit
 from ..studies.optimum import optimise as find_optimum
 from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
-from ..studies.phrases import axis_of, choice_of, limit_of, range_of, spread_of
+from ..studies.phrases import choice_of, limit_of, range_of, spread_of
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
+from ..studies.usual import check_known, usual
 from .groups import grouped
-from .root import app
+from .root import app, complain
 from .words import AsJson, JointWords, echo_json, given, load_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 JointName = Annotated[str | None, typer.Argument(help="A joint file or a preset's name.")]
+_POINTS = "Values along each axis, 2 or more: by default 41, or 21 of a slow model."
 Limits = Annotated[list[str] | None, typer.Option("--limit", help="'outer_radius<=26 mm'; repeat")]
 
 
@@ -42,13 +46,28 @@ Limits = Annotated[list[str] | None, typer.Option("--limit", help="'outer_radius
 class PressWords:
     """By what model and under what load joints are pressed."""
 
-    model: Annotated[str, typer.Option(help="A model's name: tabulated, exact, hess-forsbach, ...")] = "tabulated"
+    model: Annotated[
+        str | None, typer.Option(help="A model's name: tabulated (default), exact (where tables know no joint), ...")
+    ] = None
     force: Annotated[str | None, typer.Option(help="'3 kN'; without a load that of the joint's file")] = None
     indentation: Annotated[str | None, typer.Option(help="'40 um' in place of a force")] = None
 
-    def model_in(self, cup: Cup) -> Model:
-        """The model by its name, in a cup."""
-        return named_model(self.model).in_cup(cup)
+    def model_for(self, file: JointFile, ends: Mapping[str, Any]) -> Model:
+        """The model by its name, or the usual one with a word where it is not that of the tables; in the file's cup.
+
+        Raises
+        ------
+        ValueError
+            It has no answer for any joint between these ends.
+        """
+        if self.model is None:
+            model = usual(file.joint, ends)
+            if model is reference:
+                complain(f"{model.name} answers, since tabulated knows none of these joints")
+        else:
+            model = named_model(self.model)
+            check_known(model, file.joint, ends)
+        return model.in_cup(file.cup)
 
     def load(self, file: JointFile, varied: Iterable[str]) -> dict[str, float]:
         """The load; none where it is among what varies."""
@@ -92,7 +111,7 @@ def design_map(
     words: JointWords,
     x: Annotated[str, typer.Option(help="The axis across, 'ball_radius=11..23 mm'.")] = "ball_radius=11..23 mm",
     y: Annotated[str, typer.Option(help="The axis upwards.")] = "liner_thickness=3..15 mm",
-    points: Annotated[int, typer.Option(help="Values along each axis, 2 or more.")] = 41,
+    points: Annotated[int | None, typer.Option(help=_POINTS)] = None,
     press: PressWords,
     limit: Limits = None,
     form: FormWords,
@@ -102,9 +121,10 @@ def design_map(
     _check_points(points)
     file = words.or_named(joint)
     limits = _limits(limit, file.cup)
-    axes = _once([axis_of(x, points), axis_of(y, points)])
-    design = grid(**axes, **press.load(file, axes))
-    found = bs.study(press.model_in(file.cup), file.joint, design, quantities=_quantities((), limits))
+    ends = _once((name, (low, high)) for name, low, high in map(range_of, (x, y)))
+    load, model = press.load(file, ends), press.model_for(file, ends)
+    axes = {name: Span(low, high, points or _points_of(model)) for name, (low, high) in ends.items()}
+    found = bs.study(model, file.joint, grid(**axes, **load), quantities=_quantities((), limits))
     form.print(lambda: study_summary.map_summary(found, limits), lambda: study_terminal.print_map(found, limits))
     form.draw(lambda: study_plots.design_map(found, limits))
 
@@ -124,7 +144,7 @@ def optimise(
     ] = None,
     press: PressWords,
     limit: Limits = None,
-    points: Annotated[int, typer.Option(help="Values along each range, for a front or a map.")] = 41,
+    points: Annotated[int | None, typer.Option(help=f"For a front or a map: {_POINTS}")] = None,
     form: FormWords,
 ) -> None:
     """Find the joint with the smallest answer within limits; with two answers, the joints that none beats in both."""
@@ -138,11 +158,13 @@ def optimise(
     ranges = _once((name, (low, high)) for name, low, high in map(range_of, phrases))
     if form.figure is not None and len(chosen) == 1 and len(ranges) != 2:
         raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
-    load, model = press.load(file, {**ranges, **among}), press.model_in(file.cup)
+    load, model = press.load(file, {**ranges, **among}), press.model_for(file, {**ranges, **among})
 
     def everywhere(joint: Joint, fixed: Mapping[str, Any]) -> Any:
         """The study of all the ranges."""
-        design = grid(**dict(axis_of(phrase, points) for phrase in phrases), **fixed, **load)
+        count = points or _points_of(model)
+        axes = {name: Span(low, high, count) for name, (low, high) in ranges.items()}
+        design = grid(**axes, **fixed, **load)
         return bs.study(model, joint, design, quantities=_quantities(chosen, limits))
 
     if len(chosen) == 2:
@@ -181,7 +203,8 @@ def sensitivity(
     form.check()
     file = words.or_named(joint)
     scattered = _once(map(spread_of, spread))
-    load, model = press.load(file, scattered), press.model_in(file.cup)
+    middle = {name: [float(each.frozen.mean())] for name, each in scattered.items()}
+    load, model = press.load(file, scattered), press.model_for(file, middle)
     found = find_sensitivity(model, file.joint, scattered, count=count, load=load)
     form.print(
         lambda: {
@@ -194,8 +217,14 @@ def sensitivity(
     form.draw(lambda: study_plots.sensitivity_figure(found))
 
 
-def _check_points(points: int) -> None:
-    require("points", points, points > 1, "an axis has 2 values or more")
+def _check_points(points: int | None) -> None:
+    if points is not None:
+        require("points", points, points > 1, "an axis has 2 values or more")
+
+
+def _points_of(model: Model) -> int:
+    """Values along an axis, so that a map takes seconds."""
+    return 41 if model.seconds_a_press < 1e-3 else 21
 
 
 def _limits(phrases: list[str] | None, cup: Cup) -> list[Limit]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..arrays import to_list
-from ..studies.limits import Limit, allowed
+from ..studies.limits import Limit, allowed, refusal
 from ..studies.parameters import PARTS_OF
 from ..studies.pieces import dims_of
 
@@ -26,7 +26,7 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
     """
     good = allowed(study, limits)
     if not bool(good.any()):
-        raise ValueError(f"no point of the map is allowed by {' and '.join(map(str, limits)) or 'the model'}")
+        raise ValueError(refusal(study, limits, "no point of the map is allowed", "at any point of the map"))
     quantities = {}
     for name in answers(study):
         values = study[name].where(good).transpose(*dims_of(study)).values

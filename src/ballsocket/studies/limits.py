@@ -15,6 +15,7 @@ from ..cup import UP, Cup, Direction
 from ..dimensions import OWN, Dimensions, resolved
 from ..kinds import Kind
 from ..quantities import CONTACT, JOINT
+from ..validity import Status
 from .parameters import PARAMETERS
 from .task import EDGE_DISTANCE, QUANTITIES
 
@@ -137,3 +138,15 @@ def allowed(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:
     for limit in limits:
         good = good & (limit.margin(study) >= 0)
     return good
+
+
+def refusal(study: xarray.Dataset, limits: Iterable[Limit], nobody: str, anywhere: str) -> str:
+    """Why no point of a study is allowed: limits, or a model without an answer.
+
+    `nobody` says so ("no point is allowed"), `anywhere` of what ("at any point").
+    """
+    model = study.attrs["model"]
+    if bool(allowed(study, ()).any()):
+        return f"{nobody} by {' and '.join(map(str, limits))}, as {model} answers"
+    numbers, counts = numpy.unique(study.status.values, return_counts=True)
+    return f"{model} has no answer {anywhere}: {Status(int(numbers[counts.argmax()])).sentence}"

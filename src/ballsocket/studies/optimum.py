@@ -16,7 +16,7 @@ from ..joint import Joint
 from ..model import Model
 from .design import Design, grid, sample
 from .distributions import Rectangular
-from .limits import EDGE_DISTANCE, Limit, allowed
+from .limits import EDGE_DISTANCE, Limit, allowed, refusal
 from .parameters import LOADS, PARAMETERS, PARTS_OF, varied
 from .run import study
 from .slopes import Derive, differences
@@ -213,8 +213,8 @@ class _Problem:
         points = self.study(sample(count, seed=seed, **ranges) * grid(**self.sizes))
         value = points[self.minimise].where(allowed(points, self.limits)).values
         if numpy.isnan(value).all():
-            limits = " and ".join(map(str, self.limits)) or "the model"
-            raise ValueError(f"none of {count} joints within the ranges is allowed by {limits}")
+            within = f"of {count} joints within the ranges"
+            raise ValueError(refusal(points, self.limits, f"none {within} is allowed", f"for any {within}"))
         best = numpy.argsort(value)[: min(_STARTS, int(numpy.isfinite(value).sum()))]
         shares = numpy.stack(
             [(points[name].values[best] - low) / (high - low) for name, (low, high) in self.vary.items()], axis=-1
@@ -226,7 +226,7 @@ class _Problem:
         point = self.study(grid(**self.sizes))
         if not bool(allowed(point, self.limits)):
             chosen = " and ".join(f"{name} = {value:g}" for name, value in self.sizes.items()) or "the joint"
-            raise ValueError(f"{chosen} is not allowed by {' and '.join(map(str, self.limits)) or 'the model'}")
+            raise ValueError(refusal(point, self.limits, f"{chosen} is not allowed", f"for {chosen}"))
         return numpy.zeros(0)
 
     def study(self, design: Design) -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy
 
 from ..checks import check_names
-from .limits import Limit, allowed
+from .limits import Limit, allowed, refusal
 
 if TYPE_CHECKING:
     import xarray
@@ -38,11 +38,12 @@ def pareto(
         A quantity that the study does not have; no point that is allowed.
     """
     check_names(minimise, [str(name) for name in study.data_vars], "among the study's answers")
+    limits = tuple(limits)
     good = allowed(study, limits)
     flat = study.stack(point=list(study.sizes), create_index=False)
     kept = good.stack(point=list(good.dims), create_index=False).values if good.dims else numpy.array([bool(good)])
     if not kept.any():
-        raise ValueError(f"no point is allowed by {' and '.join(map(str, limits)) or 'the model'}")
+        raise ValueError(refusal(study, limits, "no point is allowed", "at any point"))
     flat = flat.isel(point=numpy.flatnonzero(kept))
     first, second = (flat[name].values for name in minimise)
     order = numpy.lexsort((second, first))

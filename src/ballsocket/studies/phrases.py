@@ -9,7 +9,6 @@ from ..checks import check_names, shown
 from ..io.joint_file import named_material
 from ..io.units import LONGEST, parse
 from ..quantities import QUANTITIES
-from .axes import Span
 from .distributions import Distribution, Rectangular, tolerance
 from .limits import NAMES as LIMITED
 from .limits import Limit
@@ -67,12 +66,6 @@ def choice_of(phrase: str) -> tuple[str, list[Any]] | None:
         return None
     check_names([name], PARAMETERS, "among what can vary")
     return name, [parse(name, _with_unit(text, texts[-1]), PARAMETERS[name].kind) for text in texts]
-
-
-def axis_of(phrase: str, count: int) -> tuple[str, Span]:
-    """An axis of so many values, from the same form."""
-    name, low, high = range_of(phrase)
-    return name, Span(low, high, count)
 
 
 def spread_of(phrase: str) -> tuple[str, Distribution]:

@@ -23,8 +23,8 @@ def _ball_poisson(contact: Any) -> Array:
 
 
 def _layers(contact: Any) -> Array:
-    """More than 1 where something other than a rigid surface is behind the liner."""
-    return contact.joint.backing_ratio + 2.0 * len(contact.joint.backing)
+    """How many layers are behind the liner, as stiff as they may be."""
+    return len(contact.joint.backing) + 0.0 * contact.joint.liner.young
 
 
 _ASK = "that is not in the tables: ask exact"
@@ -61,6 +61,7 @@ class Tabulated(Model):
         Range(quantity="joint.modulus_ratio", high=0.0201, why=_ASK),
         Range(quantity=_ball_poisson, symbol="ν_ball", low=-0.01, high=0.501, why=_ASK),
         Range(quantity=_layers, symbol="layers behind the liner", high=1.0, why=_ASK),
+        Range(quantity="joint.backing_ratio", high=1.0, why="a free outer surface is not in the tables: ask exact"),
     )
     validity: ClassVar[tuple[Range, ...]] = (
         Range(

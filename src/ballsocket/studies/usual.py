@@ -1,0 +1,45 @@
+"""The model of a study for which none is named: from tables, or solved where these know none of the joints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ..catalogue import reference
+from ..elastic.tabulated.model import Tabulated
+from ..joint import Joint
+from ..model import Model
+from ..validity import OutsideDomainError, inside
+from .design import check_values, grid
+from .parameters import pressable
+
+_QUICK = Tabulated()
+
+
+def usual(joint: Joint, ends: Mapping[str, Any]) -> Model:
+    """`tabulated`, or `exact` where that has no answer for any of the joints.
+
+    Parameters
+    ----------
+    joint : Joint
+        Numbers that do not vary.
+    ends : mapping of str to sequence
+        Between what numbers the others vary, or which there are; materials by `liner` or `ball`.
+    """
+    try:
+        check_known(_QUICK, joint, ends)
+    except OutsideDomainError:
+        return reference
+    return _QUICK
+
+
+def check_known(model: Model, joint: Joint, ends: Mapping[str, Any]) -> None:
+    """Raise OutsideDomainError, with the reason, where a model has no answer for any of the joints of `usual`."""
+    inside((*model.fits, *model.domain), joints_of(joint, ends), model.name)
+
+
+def joints_of(joint: Joint, ends: Mapping[str, Any]) -> Joint:
+    """The joints of `usual` as one of arrays."""
+    design = grid(**ends)
+    check_values(design)
+    return pressable(joint, design.part([slice(None)] * len(design.axes)))[0]
