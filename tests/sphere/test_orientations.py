@@ -87,6 +87,7 @@ def test_a_map_shows_its_fields_and_the_cup_that_was_given():
         ({"anteversion": [[0.1, 0.2]]}, "a row of angles is needed"),
         ({"model": replace(SPHERE, direction=[(0, 0, 1), (0, 1, 1)])}, "one direction of load"),
         ({"force": -1.0}, "force = -1"),
+        ({"anteversion": [0.2, 0.1]}, "angles .rad. rise"),
     ],
 )
 def test_what_no_cup_can_be_is_refused(wrong, said):

@@ -24,7 +24,7 @@ from .elements import CupWords
 from .groups import grouped
 from .off_axis import AimWords
 from .questions import FormWords
-from .root import app
+from .root import FAILURE, app, complain
 from .words import JointWords, LoadWords, given
 
 
@@ -48,7 +48,7 @@ class StandWords:
         low, high = ends_of(name, getattr(self, name), CUP[name].kind)
         with as_given({name: getattr(self, name)}):
             CUP[name].checked(numpy.array([low, high]))
-        return numpy.linspace(low, high, self.points)
+        return numpy.unique(numpy.linspace(min(low, high), max(low, high), self.points))
 
     def aim(self, file: JointFile) -> Mapping[str, Any]:
         """The direction in words, or that of the joint's file."""
@@ -73,6 +73,8 @@ def orient(
 
     The load keeps its direction in the body while the cup is turned through inclinations and anteversions. Every
     orientation is pressed by full elasticity (sphere).
+
+    Exit status: 0 done, 2 misuse, 3 no orientation has an answer.
     """
     form.check()
     angles: dict[str, Any] = stands.angles()
@@ -83,3 +85,6 @@ def orient(
         stood: Orientations = stand(file.joint, model=model, **angles, **load.or_of(file))
     form.print(stood.summary, lambda: print_orientations(stood))
     form.draw(lambda: orientation_figure(stood))
+    if not stood.held.any():
+        complain("no orientation has an answer (see the statuses)")
+        raise typer.Exit(FAILURE)

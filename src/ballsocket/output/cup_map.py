@@ -115,9 +115,10 @@ def _from_page(right: Numbers, up: Numbers, reach: float) -> Numbers:
 
 def _draw_places(axes: Axes, contact: OffAxisContact) -> None:
     """Where the load points, and where the pressure is largest."""
-    load = contact.force_vector / numpy.linalg.norm(contact.force_vector)
-    axes.plot(*on_page(load), "x", color="white", markersize=8, markeredgewidth=3.6)
-    axes.plot(*on_page(load), "x", color=INK, markersize=7, markeredgewidth=1.6, linestyle="", label="load")
+    if contact.force > 0:
+        load = on_page(contact.force_vector / contact.force)
+        axes.plot(*load, "x", color="white", markersize=8, markeredgewidth=3.6)
+        axes.plot(*load, "x", color=INK, markersize=7, markeredgewidth=1.6, linestyle="", label="load")
     if not numpy.isfinite(contact.max_pressure):
         return
     said = f"largest pressure, {contact.max_pressure:.3g} {FIELD['pressure'].unit}"

@@ -42,7 +42,7 @@ def lateral(contact: OffAxisContact) -> Numbers:
     """The unit vector across the cup's axis in the plane of axis and load; the cup's x under a load along the axis."""
     x, y, _ = contact.force_vector
     size = numpy.hypot(x, y)
-    if size < 1e-9 * contact.force:
+    if size <= 1e-9 * contact.force:
         return numpy.array([1.0, 0.0, 0.0])
     return numpy.array([x / size, y / size, 0.0])
 
@@ -109,7 +109,9 @@ def _draw_margin(axes: Axes, contact: OffAxisContact, radius: float) -> None:
 
 
 def _draw_load(axes: Axes, contact: OffAxisContact, length: float) -> None:
-    """From the ball's centre half of the way to where it presses."""
+    """From the ball's centre half of the way to where it presses; a preloaded ball at rest has no load."""
+    if contact.force == 0:
+        return
     load = contact.force_vector / contact.force
     tip = 0.5 * length * float(load @ lateral(contact)), 0.5 * length * float(load[2])
     axes.annotate("", tip, (0.0, 0.0), arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.8})

@@ -63,9 +63,10 @@ def cup_view(contact: OffAxisContact, *, off_screen: bool = False) -> pyvista.Pl
     radius = float(contact.joint.socket_radius)
     edge = 0.999 * radius * numpy.vstack([contact.outline, contact.outline[:1]]) @ turn
     plotter.add_mesh(pyvista.MultipleLines(edge), color=INK, line_width=3)
-    load = contact.force_vector / contact.force @ turn
-    arrow = {"tip_length": 0.2, "tip_radius": 0.05, "shaft_radius": 0.015, "scale": 0.9 * radius}
-    plotter.add_mesh(pyvista.Arrow(start=(0.0, 0.0, 0.0), direction=load, **arrow), color=VERMILLION)
+    if contact.force > 0:
+        load = contact.force_vector / contact.force @ turn
+        arrow = {"tip_length": 0.2, "tip_radius": 0.05, "shaft_radius": 0.015, "scale": 0.9 * radius}
+        plotter.add_mesh(pyvista.Arrow(start=(0.0, 0.0, 0.0), direction=load, **arrow), color=VERMILLION)
     _look_into(plotter, contact, radius)
     return plotter
 

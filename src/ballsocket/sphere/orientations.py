@@ -202,6 +202,8 @@ def _angles(name: str, values: Array) -> Numbers:
     """Angles (n,) in rad that a cup can have."""
     angles = numpy.atleast_1d(numpy.asarray(CUP[name].checked(numpy.asarray(values, dtype=float))))
     require(f"dimensions of {name}", angles.ndim, angles.ndim == 1 and angles.size > 0, "a row of angles is needed")
+    rising = bool((numpy.diff(angles) > 0).all())
+    require(f"{name} from {angles[0]:.4g} to", angles[-1], rising, "angles (rad) rise from one to the next")
     return angles
 
 
