@@ -35,7 +35,7 @@ class CompiledLaw:
     Attributes
     ----------
     function : numba function
-        (indentation, *numbers) -> (force, stiffness).
+        From an indentation, and the numbers one after the other, to force and stiffness.
     numbers : tuple
         What it knows of the joint.
 
