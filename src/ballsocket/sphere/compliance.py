@@ -54,7 +54,8 @@ def _made(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
 
 
 def _inverse(matrices: Numbers) -> Numbers:
-    return numpy.ascontiguousarray(numpy.linalg.inv(matrices))
+    """Of single precision: it guides the iteration, and the end of that is judged by the compliance."""
+    return numpy.linalg.inv(matrices).astype(numpy.float32)
 
 
 _KEPT: OrderedDict[tuple[object, ...], Compliance] = OrderedDict()

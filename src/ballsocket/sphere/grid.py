@@ -127,17 +127,18 @@ class Turning:
     Attributes
     ----------
     matrices : array (degrees + 1, rings, rings)
+        In single precision where that is enough; it is twice as fast.
     """
 
     matrices: Numbers
 
     def __call__(self, fields: Numbers) -> Numbers:
-        """Of fields (batch, rings, meridians)."""
+        """Of fields (batch, rings, meridians), in the precision of the matrices."""
         batch, rings, meridians = fields.shape
-        waves = scipy.fft.rfft(fields)
+        waves = scipy.fft.rfft(fields.astype(self.matrices.dtype, copy=False))
         columns = numpy.ascontiguousarray(waves.transpose(2, 1, 0))
-        moved = self.matrices @ columns.view(float)
-        back = moved.reshape(len(self.matrices), rings, 2 * batch).view(complex).transpose(2, 1, 0)
+        moved = self.matrices @ columns.view(self.matrices.dtype)
+        back = moved.reshape(len(self.matrices), rings, 2 * batch).view(waves.dtype).transpose(2, 1, 0)
         return scipy.fft.irfft(back, n=meridians)
 
 
