@@ -12,6 +12,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 import ballsocket as bs
 
 from ..hip.file import read_hip
+from ..output.hip_report import check_page, write_hip_report
 from ..output.hip_terminal import print_hip
 from .root import FAILURE, app
 from .words import AsJson, echo_json
@@ -21,11 +22,17 @@ from .words import AsJson, echo_json
 def hip(
     file: Annotated[Path, typer.Argument(help="A file about a hip in use (TOML).")],
     as_json: AsJson = False,
+    report: Annotated[Path | None, typer.Option(help="Also write a page with figures (.html).")] = None,
+    store: Annotated[
+        Path | None, typer.Option(help="A folder to keep the run in: one that was stopped goes on from there.")
+    ] = None,
 ) -> None:
     """Wear a hip over millions of cycles of load and motion, as its file tells.
 
     Exit status: 0 done, 2 misuse, 3 a contact that did not balance its load.
     """
+    if report is not None:
+        check_page(report)
     given = read_hip(file)
     columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:,.0f} cycles")
     console = Console(stderr=True)
@@ -36,7 +43,10 @@ def hip(
             given.report_at,
             listen=lambda done: progress.update(task, completed=done),
             lubricant=given.lubricant,
+            store=store,
         )
+    if report is not None:
+        write_hip_report(history, report)
     if as_json:
         echo_json({"version": bs.__version__, **history.summary()})
     else:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import inf
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
@@ -15,7 +16,7 @@ from .creep import Ladder
 from .history import Report
 from .laws import Pass
 from .sliding import Sliding
-from .springs import SpringBed
+from .springs import CycleBed
 
 if TYPE_CHECKING:
     from .use import InUse
@@ -26,7 +27,7 @@ _NUDGE = 1e-6  # of the largest pressure, for the slope of a law
 _SURE = 1.1
 _SOON, _GROWTH = 30.0, 0.25  # s of the first block with creep; of the time before, for the later ones
 _SWEEPS, _MET = 8, 1e-3
-_MARGIN = 0.3  # of the largest overlap: so far from contact cells are still looked at
+_MARGIN = 0.3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,7 +35,7 @@ class _Near:
     """The cells that are in reach of the contacts, and what slides over them."""
 
     cells: Numbers
-    bed: SpringBed
+    bed: CycleBed
     sliding: Sliding
 
 
@@ -57,6 +58,10 @@ class Run:
         Blocks done.
     settled : bool
         Whether every contact has balanced its load.
+    lost : float
+        What the blocks missed of the volume, in mm³.
+    margin : float
+        Of the largest overlap: so far from contact cells are still looked at.
     """
 
     use: InUse
@@ -66,12 +71,13 @@ class Run:
     length: float = inf
     steps: int = 0
     settled: bool = True
+    lost: float = 0.0
+    margin: float = _MARGIN
 
     def __post_init__(self) -> None:
         self.depth = numpy.zeros(len(self.use.bed.areas))
         self.strain = self.use.creep.rested(len(self.depth)) if self.use.creep else numpy.zeros((1, len(self.depth)))
-        self._lost = 0.0
-        self._displacement = self.use.unworn.displacement
+        self._rest = self.use.unworn
         self._look()
         if self._fastest > 0:
             self.length = _FIRST / self._fastest
@@ -89,12 +95,12 @@ class Run:
     @property
     def missed(self) -> float:
         """What the blocks missed of the volume, relative to it."""
-        return self._lost / self.volume if self.volume > 0 else 0.0
+        return self.lost / self.volume if self.volume > 0 else 0.0
 
     def _look(self) -> None:
         """Which cells are in reach, and what a cycle adds to them."""
         bed = self.use.bed
-        cells = numpy.flatnonzero(bed.near(self._displacement, self.depth + self.crept, _MARGIN))
+        cells = numpy.flatnonzero(bed.near(self._rest, self.depth + self.crept, self.margin))
         self._near = _Near(cells=cells, bed=bed.part(cells), sliding=self.use.sliding.part(cells))
         self._creep = self.crept[cells]
         self._slope = self._rate(self._values)
@@ -107,11 +113,11 @@ class Run:
     def _rate(self, values: Numbers) -> Numbers:
         """What a cycle adds to the values."""
         near = self._near
-        rest = near.bed.rest(self.use.loads, values[:-1] + self._creep, self._displacement)
-        self._displacement = rest.displacement
+        rest = near.bed.rest(self.use.loads, values[:-1] + self._creep, self._rest)
+        self._rest = rest
         self.settled = self.settled and rest.settled
         self._pass = Pass(pressure=rest.pressure, sliding=near.sliding)
-        return numpy.append(self.use.wear.depth(self._pass), float(self._pass.work @ near.bed.areas))
+        return numpy.append(near.bed.smoothed(self.use.wear.depth(self._pass)), float(self._pass.work @ near.bed.areas))
 
     @property
     def _fastest(self) -> float:
@@ -123,6 +129,17 @@ class Run:
         more = Pass(pressure=done.pressure + nudge * (done.pressure > 0), sliding=done.sliding)
         steepest = (self.use.wear.depth(more) - self.use.wear.depth(done)).max() / nudge
         return _SURE * float(steepest) * self.use.bed.stiffest
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What it takes to go on from here, as numbers and arrays."""
+        return {name: getattr(self, name) for name in _STATE}
+
+    def resume(self, state: Mapping[str, Numbers]) -> None:
+        """Go on from a state that was kept."""
+        for name, kind in _STATE.items():
+            setattr(self, name, kind(state[name]))
+        self._look()
 
     def until(self, count: float, listen: Callable[[float], None]) -> Report:
         """Go on until so many cycles are done, and look."""
@@ -137,11 +154,15 @@ class Run:
         while True:
             length = _shared(min(self.length, longest(fastest), self._calm), left)
             taken = step(self._rate, self._values, self._slope, length, stages_of(length, fastest))
+            if self._overlooked(taken):
+                self.margin *= 2
+                self._look()
+                continue
             error = self._error(taken, fastest)
             self.length = length * min(max(_SAFE * max(error, 1e-12) ** (-1 / 3), _LEAST), _MOST)
             if error <= 1:
                 break
-        self._lost += abs(float(taken.error[:-1] @ self._near.bed.areas))
+        self.lost += abs(float(taken.error[:-1] @ self._near.bed.areas))
         self.depth = self.depth.copy()
         self.depth[self._near.cells], self.work = taken.values[:-1], float(taken.values[-1])
         self.steps, self._slope = self.steps + 1, taken.rate
@@ -181,16 +202,25 @@ class Run:
         missed = taken.error[:-1]
         return float(numpy.sqrt(missed @ missed / max(len(missed), 1))) / allowed if allowed > 0 else 0.0
 
+    def _overlooked(self, taken: Step) -> bool:
+        """Whether a block has brought the contact to cells that are not looked at."""
+        depth = self.crept
+        depth += self.depth
+        depth[self._near.cells] = taken.values[:-1] + self._creep
+        touched = self.use.bed.near(self._rest, depth, 0.0)
+        touched[self._near.cells] = False
+        return bool(touched.any())
+
     @property
     def _spreads(self) -> bool:
         """Whether the contact comes near to cells that are not looked at."""
-        close = self.use.bed.near(self._displacement, self.depth + self.crept, _MARGIN / 2)
+        close = self.use.bed.near(self._rest, self.depth + self.crept, self.margin / 2)
         close[self._near.cells] = False
         return bool(close.any())
 
     def _report(self) -> Report:
         use, crept, shape = self.use, self.crept, (self.use.grid.rings, -1)
-        rest = use.rest(self.depth + crept, self._displacement)
+        rest = use.rest(self.depth + crept, self._rest)
         only = [use.rest(depth) if depth.any() else use.unworn for depth in (self.depth, crept)]
         moved = [(each.displacement - use.unworn.displacement)[use.largest].sum(axis=0) for each in (rest, *only)]
         return Report(
@@ -208,6 +238,21 @@ class Run:
             creep_depth=float(crept.max()),
             settled=self.settled and all(each.settled for each in (rest, *only)),
         )
+
+
+_STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(
+    {
+        "cycles": float,
+        "depth": numpy.asarray,
+        "strain": numpy.asarray,
+        "work": float,
+        "length": float,
+        "steps": int,
+        "settled": bool,
+        "lost": float,
+        "margin": float,
+    }
+)
 
 
 def _shared(length: float, left: float) -> float:

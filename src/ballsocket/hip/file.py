@@ -18,7 +18,7 @@ from ..io.units import parse
 from ..kinds import Kind
 from ..models.foundation import RadialFoundation
 from ..presets import joints
-from ..sphere.surfaces import Springs
+from ..sphere.surfaces import ClosedShell, RealCup, Springs
 from .coefficients import share_of_slide, wear_factor
 from .creep import Ladder, logarithmic
 from .cycle_file import read_cycle
@@ -57,9 +57,9 @@ def read_hip(path: str | Path) -> HipFile:
     a joint file); in `cup` a `tilt` from the load may take the place of inclination and anteversion. `cycle` has a
     `name` ("iso-14242-1", "iso-14242-1-key-points", "flexion", "biaxial-rocking", "constant-load"; the last two with
     `force` and `amplitude`) or a `file` (a table of text), `instants`, `rotation_order`, `body_weight`. `wear` has a
-    `law` ("archard", "area", "cross-shear"), its `coefficient` in mm³/(N m), `contact` ("springs"), the `model`
-    whose springs they are, `ring_width`. `creep`, which may be empty, has a `law` ("logarithmic", unverified; or
-    "kelvin-voigt" with `compliances` in 1/MPa and `times` in s) and `seconds_per_cycle`. `film` has `viscosity` in
+    `law` ("archard", "area", "cross-shear"), its `coefficient` in mm³/(N m), `contact` ("springs", "shell", "cup"), the
+    `model` whose springs they are, `ring_width`. `creep`, which may be empty, has a `law` ("logarithmic", unverified,
+    or "kelvin-voigt" with `compliances` in 1/MPa and `times` in s) and `seconds_per_cycle`. `film` has `viscosity` in
     Pa s, `ball_roughness`, `cup_roughness`, `friction`. At the top: `cycles`, `report_at` (a list).
 
     Raises
@@ -237,11 +237,18 @@ def _lubricant(table: Mapping[str, Any]) -> Lubricant:
     return Lubricant(**words)
 
 
-_CONTACTS = ("springs",)
+_CONTACTS: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType(
+    {"springs": None, "shell": ClosedShell(), "cup": RealCup()}
+)
 
 
-def _surface(table: Mapping[str, Any]) -> Springs:
-    known_name("contact", table.get("contact", "springs"), _CONTACTS)
+def _surface(table: Mapping[str, Any]) -> Springs | ClosedShell | RealCup:
+    contact = known_name("contact", table.get("contact", "springs"), _CONTACTS)
+    elastic = _CONTACTS[contact]
+    if elastic is not None:
+        if "model" in table:
+            raise ValueError(f"a model has springs, and the contact is {contact!r}: leave one of them out")
+        return elastic
     model = catalogue[known_name("model", table.get("model", "hess-forsbach"), catalogue)]
     if not isinstance(model, RadialFoundation):
         names = ", ".join(name for name, each in catalogue.items() if isinstance(each, RadialFoundation))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy
 
@@ -28,11 +29,34 @@ class Rest:
         In MPa.
     settled : bool
         Whether every load is balanced.
+    levels : pair of arrays, optional
+        Displacements and pressures of the loads that were solved, where those are not all.
     """
 
     displacement: Numbers
     pressure: Numbers
     settled: bool
+    levels: tuple[Numbers, Numbers] | None = None
+
+
+class CycleBed(Protocol):
+    """A bore under a whole cycle of loads at once, in cells."""
+
+    @property
+    def clearance(self) -> float: ...
+    @property
+    def socket_radius(self) -> float: ...
+    @property
+    def directions(self) -> Numbers: ...
+    @property
+    def areas(self) -> Numbers: ...
+    @property
+    def stiffest(self) -> float: ...
+    def part(self, cells: Numbers) -> CycleBed: ...
+    def near(self, rest: Rest, depth: Numbers, margin: float) -> Numbers: ...
+    def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None) -> Rest: ...
+    def smoothed(self, depth: Numbers) -> Numbers: ...
+    def edge_field(self, rest: Rest, depth: Numbers) -> Numbers: ...
 
 
 def spring_bed(grid: Grid, modulus: float, clearance: float, socket_radius: float) -> SpringBed:
@@ -76,11 +100,19 @@ class SpringBed:
             self, directions=self.directions[:, cells], normals=self.normals[:, cells], areas=self.areas[cells]
         )
 
-    def near(self, displacement: Numbers, depth: Numbers, margin: float) -> Numbers:
+    def near(self, rest: Rest, depth: Numbers, margin: float) -> Numbers:
         """The cells that any of the displaced balls touches, or would if their overlap were larger by a share."""
-        overlap = (displacement @ self.normals).max(axis=0, initial=0.0) - self.clearance - depth
+        overlap = (rest.displacement @ self.normals).max(axis=0, initial=0.0) - self.clearance - depth
         found: Numbers = overlap > -margin * float(overlap.max())
         return found
+
+    def smoothed(self, depth: Numbers) -> Numbers:
+        """A depth as it is: springs carry every wave of the grid alike."""
+        return depth
+
+    def edge_field(self, rest: Rest, depth: Numbers) -> Numbers:
+        """What falls to 0 at the edge of the contacts as a straight line does: (loads, cells)."""
+        return rest.displacement @ self.normals - self.clearance - depth
 
     @property
     def stiffest(self) -> float:
@@ -98,14 +130,14 @@ class SpringBed:
         n = self.normals
         return (n[:, None] * n[None] * self.areas).reshape(9, -1).T.copy()
 
-    def start(self, loads: Numbers, depth: Numbers) -> Numbers:
+    def _begin(self, loads: Numbers, depth: Numbers) -> Numbers:
         """Displacements (loads, 3) in mm to begin with: those of a whole sphere, as deep again as the bore is worn."""
         size = numpy.linalg.norm(loads, axis=1)
         deep = linear_indentation(self.socket_radius, self.clearance, self.modulus, size)
         along = loads / numpy.where(size > 0, size, 1.0)[:, None]
         return along * (self.clearance + deep + float(depth.max()))[:, None]
 
-    def rest(self, loads: Numbers, depth: Numbers, start: Numbers | None = None) -> Rest:
+    def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None) -> Rest:
         """Where balls come to rest under loads.
 
         Parameters
@@ -114,10 +146,10 @@ class SpringBed:
             In N, in the cup's frame, none of them zero.
         depth : array (cells,)
             Of the worn bore below the sphere in mm.
-        start : array (loads, 3), optional
-            Displacements to begin with.
+        start : Rest, optional
+            To begin with.
         """
-        e = self.start(loads, depth) if start is None else start
+        e = self._begin(loads, depth) if start is None else start.displacement
         allowed = TOLERANCE * numpy.linalg.norm(loads, axis=1)
         lost = numpy.inf
         for _ in range(_ROUNDS):

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees, inf, radians
+from pathlib import Path
 
 import numpy
 
@@ -15,15 +16,17 @@ from ..cup import Cup
 from ..fem.shapes import socket_shape
 from ..joint import Joint
 from ..sphere.grid import Grid, grid
-from ..sphere.surfaces import Springs
+from ..sphere.surfaces import ClosedShell, RealCup, Springs
 from .blocks import Run
+from .checkpoint import Checkpoint, checkpoint
 from .creep import Ladder
+from .elastic_bed import elastic_bed, even_grid
 from .film import Film, Lubricant, film
 from .gait import Cycle
-from .history import Error, First, History
+from .history import Error, First, History, Report
 from .laws import Law, Pass
 from .sliding import Sliding, slide
-from .springs import Rest, SpringBed, spring_bed
+from .springs import CycleBed, Rest, spring_bed
 
 _LIFTED = 1e-6
 """Of the largest force: below, the ball is taken to be lifted off."""
@@ -43,7 +46,7 @@ class InUse:
         `Archard`, `AreaLaw`, `CrossShear` or `OwnLaw`.
     cup : Cup
         Arc of cover and where it faces; where the cycle's standard says a tilt, that of a cup that faces down.
-    surface : Springs
+    surface : Springs, ClosedShell or RealCup
         How the bore gives way; the paper's springs by default.
     ring_width : float
         Of the rings of the wear map in rad, 3° by default.
@@ -73,7 +76,7 @@ class InUse:
     cycle: Cycle
     wear: Law
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
-    surface: Springs = Springs()  # noqa: RUF009 (frozen)
+    surface: Springs | ClosedShell | RealCup = Springs()  # noqa: RUF009 (frozen)
     ring_width: float = radians(3.0)
     creep: Ladder | None = None
     seconds_per_cycle: float | None = None
@@ -150,17 +153,25 @@ class InUse:
     @cached_property
     def grid(self) -> Grid:
         """The cells of the bore."""
-        return grid(socket_shape(self.joint, self.cup).reach, self.ring_width)
+        reach = socket_shape(self.joint, self.cup).reach
+        return grid(reach, self.ring_width) if isinstance(self.surface, Springs) else even_grid(reach, self.ring_width)
 
     @cached_property
-    def bed(self) -> SpringBed:
+    def bed(self) -> CycleBed:
         joint = self.joint
+        if not isinstance(self.surface, Springs):
+            return elastic_bed(self.surface, joint, self._around, self.ring_width)
         return spring_bed(
             self.grid,
             modulus=float(self.surface.modulus(joint)),
             clearance=float(joint.clearance),
             socket_radius=float(joint.socket_radius),
         )
+
+    @property
+    def _around(self) -> Cup:
+        """The cup, wherever it faces."""
+        return Cup(arc_of_cover=self.cup.arc_of_cover, chamfer=self.cup.chamfer, interface=self.cup.interface)
 
     @cached_property
     def sliding(self) -> Sliding:
@@ -171,9 +182,9 @@ class InUse:
 
         0 where the contact reaches it: edge loading.
         """
-        overlap = rest.displacement @ self.bed.normals - self.bed.clearance - depth
         polar = self.grid.polar
-        rows = overlap.reshape(len(overlap), len(polar), self.grid.meridians)
+        field = self.bed.edge_field(rest, numpy.broadcast_to(depth, self.bed.areas.shape))
+        rows = field.reshape(len(field), len(polar), self.grid.meridians)
         ends = (rows > 0) & numpy.concatenate([rows[:, 1:] <= 0, numpy.ones_like(rows[:, :1], dtype=bool)], axis=1)
         fall = rows[:, :-1] - rows[:, 1:]
         share = numpy.divide(rows[:, :-1], fall, out=numpy.ones_like(fall), where=ends[:, :-1])
@@ -182,7 +193,7 @@ class InUse:
         edge = numpy.where(ends, edges, 0.0).max(axis=(1, 2), initial=0.0)
         return (self.reach - edge) * self.bed.socket_radius
 
-    def rest(self, depth: Numbers | float = 0.0, start: Numbers | None = None) -> Rest:
+    def rest(self, depth: Numbers | float = 0.0, start: Rest | None = None) -> Rest:
         """The contacts of a cycle on a bore that is worn by a depth in mm (cells,)."""
         return self.bed.rest(self.loads, numpy.broadcast_to(depth, self.bed.areas.shape), start)
 
@@ -228,6 +239,7 @@ class InUse:
         report_at: Sequence[float] = (),
         listen: Callable[[float], None] = lambda done: None,
         lubricant: Lubricant = Lubricant(),  # noqa: B008 (frozen)
+        store: Path | None = None,
     ) -> History:
         """The hip after so many cycles.
 
@@ -240,15 +252,17 @@ class InUse:
             Called with the number of cycles done after each block.
         lubricant : Lubricant
             Of the film that `summary` tells of.
+        store : Path, optional
+            A folder to keep the run in after each block: one that was stopped goes on from there.
 
         Raises
         ------
         ValueError
-            Numbers of cycles that are not allowed.
+            Numbers of cycles that are not allowed; a store that keeps another run.
         """
         counts = check_cycles(cycles, report_at)
         run = Run(use=self)
-        reports = tuple(run.until(count, listen) for count in counts)
+        reports = _looks(run, counts, listen, None if store is None else checkpoint(self, store))
         return History(use=self, reports=reports, error=self.error(run.missed), steps=run.steps, lubricant=lubricant)
 
     def error(self, blocks: float) -> Error:
@@ -262,6 +276,34 @@ class InUse:
         )
         volume, depth = rates
         return Error(blocks=blocks, volume=blocks + volume, depth=blocks + depth)
+
+
+def _looks(
+    run: Run, counts: Sequence[float], listen: Callable[[float], None], kept: Checkpoint | None
+) -> tuple[Report, ...]:
+    """What is seen after these counts of cycles, on from what was kept."""
+    reports: tuple[Report, ...] = ()
+    found = kept.read() if kept else None
+    if found is not None:
+        state, reports = found
+        run.resume(state)
+        reports = tuple(report for report in reports if report.cycles in counts)
+    seen = {report.cycles for report in reports}
+    for count in counts:
+        if count in seen:
+            continue
+        if count < run.cycles:
+            raise ValueError(f"the store is {run.cycles:g} cycles on and has not seen {count:g}; give another folder")
+
+        def listening(done: float) -> None:
+            if kept is not None and done < count:  # noqa: B023 (called before the next)
+                kept.write(run.state, reports)  # noqa: B023
+            listen(done)
+
+        reports = (*reports, run.until(count, listening))
+        if kept is not None:
+            kept.write(run.state, reports)
+    return reports
 
 
 _RATES = ("volume", "depth")

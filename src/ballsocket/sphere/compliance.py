@@ -43,7 +43,12 @@ class Compliance:
 
 
 def _made(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
-    cells, ball = grid(socket_shape(joint, cup).reach, width), ball_of(joint)
+    return compliance_on(surface, joint, cup, grid(socket_shape(joint, cup).reach, width))
+
+
+def compliance_on(surface: Surface, joint: Joint, cup: Cup, cells: Grid) -> Compliance:
+    """The compliance of a joint of plain numbers on these cells, made anew."""
+    ball = ball_of(joint)
     if isinstance(surface, Springs) and ball is None:
         modulus = float(surface.modulus(joint))
         return Compliance(grid=cells, softness=Local(scale=1 / modulus), stiffness=Local(scale=modulus))

@@ -79,7 +79,7 @@ class Bed:
         grid = self.compliance.grid
         return self.area * numpy.einsum("blij,kij,i->bkl", stretched, grid.normals, grid.areas[:, 0], optimize=True)
 
-    def under(self, load: Numbers, start: Numbers, held: Numbers) -> Rest:
+    def under(self, load: Numbers, start: Numbers, held: Numbers, pressure: Numbers | None = None) -> Rest:
         """Balls at rest under loads.
 
         Parameters
@@ -90,10 +90,12 @@ class Bed:
             Displacements to begin with, in mm, that touch.
         held : array of bool (batch,)
             Those that are asked for; the others stay where they are.
+        pressure : array (batch, rings, meridians), optional
+            Pressures to begin with, none of them negative.
         """
         rest = Rest(displacement=start.copy(), pressure=self._empty(len(load)), found=held & False)
         if held.any():
-            some = self._under(load[held], start[held])
+            some = self._under(load[held], start[held], None if pressure is None else pressure[held])
             for whole, part in zip((rest.displacement, rest.pressure, rest.found), some, strict=True):
                 whole[held] = part
         return rest
@@ -102,10 +104,10 @@ class Bed:
         grid = self.compliance.grid
         return numpy.zeros((count, grid.rings, grid.meridians))
 
-    def _under(self, load: Numbers, start: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+    def _under(self, load: Numbers, start: Numbers, pressure: Numbers | None) -> tuple[Numbers, Numbers, Numbers]:
         preload = self.area * self.stiffness * max(-self.separation.clearance, 0.0)
         size = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
-        e, p, q = start.copy(), None, None
+        e, p, q = start.copy(), pressure, None
         misses, found = numpy.full(len(load), numpy.inf), numpy.zeros(len(load), dtype=bool)
         tolerance = numpy.full(len(load), _LOOSE)
         for _ in range(_ROUNDS):

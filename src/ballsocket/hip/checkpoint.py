@@ -1,0 +1,98 @@
+"""A run on disk: after each block as far as it is, so that a process that is killed loses no more than one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from zipfile import BadZipFile
+
+import numpy
+
+from ..arrays import Numbers
+from ..atomic import at_once
+from .history import Report
+from .laws import OwnLaw
+
+if TYPE_CHECKING:
+    from .use import InUse
+
+_VERSION = 1
+_NAME = "hip_in_use.npz"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checkpoint:
+    """The folder in which one run is kept.
+
+    Attributes
+    ----------
+    folder : Path
+    identity : str
+        Of the hip, its cycle, its law, and how they are cut up.
+    """
+
+    folder: Path
+    identity: str
+
+    @property
+    def path(self) -> Path:
+        return self.folder / _NAME
+
+    def write(self, state: Mapping[str, Any], reports: tuple[Report, ...]) -> None:
+        """Keep the state of a run and what was seen so far."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        seen = {f"report_{i}_{each.name}": getattr(one, each.name) for i, one in enumerate(reports) for each in _FIELDS}
+        with at_once(self.path) as draft, draft.open("wb") as stream:
+            numpy.savez(stream, identity=self.identity, count=len(reports), **state, **seen)
+
+    def read(self) -> tuple[dict[str, Numbers], tuple[Report, ...]] | None:
+        """What was kept, or None where nothing is.
+
+        Raises
+        ------
+        ValueError
+            Another run is kept there, or a file that is none.
+        """
+        if not self.path.exists():
+            return None
+        try:
+            with numpy.load(self.path, allow_pickle=False) as file:
+                found = {name: file[name] for name in file.files}
+            identity, count = str(found.pop("identity")), int(found.pop("count"))
+            if identity == self.identity:
+                reports = tuple(_report(found, f"report_{i}_") for i in range(count))
+        except (OSError, ValueError, BadZipFile, KeyError, EOFError) as error:
+            raise ValueError(f"{self.path} is not a run that was kept; remove it to begin anew") from error
+        if identity != self.identity:
+            raise ValueError(f"{self.folder} keeps another run: another hip, cycle or law; give another folder")
+        return {name: each for name, each in found.items() if not name.startswith("report_")}, reports
+
+
+_FIELDS = fields(Report)
+_NUMBERS = {"float": float, "bool": bool}
+
+
+def _report(found: Mapping[str, Numbers], prefix: str) -> Report:
+    values: dict[str, Any] = {}
+    for each in _FIELDS:
+        as_it_was: Any = _NUMBERS.get(str(each.type), numpy.asarray)
+        values[each.name] = as_it_was(found[prefix + each.name])
+    return Report(**values)
+
+
+def checkpoint(use: InUse, folder: Path) -> Checkpoint:
+    """Where the run of a hip is kept.
+
+    Raises
+    ------
+    ValueError
+        A law of one's own, of which nothing tells whether it is still the same.
+    """
+    if isinstance(use.wear, OwnLaw):
+        raise ValueError("a run with a law of one's own cannot be kept: nothing tells whether it is still the same")
+    cycle = sha256(use.loads.tobytes() + use.turns.tobytes() + use.loaded.tobytes()).hexdigest()
+    parts = (use.joint, use.placed, use.wear, use.surface, use.ring_width, use.tolerance, use.creep, use.seconds)
+    return Checkpoint(folder=folder, identity=sha256(f"{_VERSION} {cycle} {parts!r}".encode()).hexdigest())

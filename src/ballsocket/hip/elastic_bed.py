@@ -1,0 +1,150 @@
+"""A bore of full elasticity under a whole cycle of loads: a closed shell, or the cup as it is built."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from math import ceil
+from typing import Any
+
+import numpy
+
+from ..arrays import Numbers
+from ..cup import Cup
+from ..fem.shapes import socket_shape
+from ..gaps import LinearGap
+from ..joint import Joint
+from ..models.kinematics import linear_indentation
+from ..sphere.compliance import Compliance, compliance_on
+from ..sphere.gap import Separation
+from ..sphere.grid import Grid
+from ..sphere.search import Bed
+from ..sphere.surfaces import ClosedShell, RealCup
+from .levels import Levels, levels_of
+from .smoothing import Smoothing
+from .springs import Rest
+
+_POWER = 60
+_SEED = 1
+
+
+def even_grid(reach: float, width: float) -> Grid:
+    """Rings of one width up to where the bore ends, cells as wide as long at 90°: none is stiffer than it need be."""
+    rings = max(ceil(reach / width - 1e-9), 4)
+    return Grid(edges=numpy.linspace(0.0, reach, rings + 1), meridians=2 * max(round(numpy.pi / width), 4))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ElasticBed:
+    """A bore whose cells know of each other.
+
+    Attributes
+    ----------
+    compliance : Compliance
+    clearance, socket_radius : float
+        In mm.
+    """
+
+    compliance: Compliance
+    clearance: float
+    socket_radius: float
+
+    @property
+    def grid(self) -> Grid:
+        return self.compliance.grid
+
+    @cached_property
+    def directions(self) -> Numbers:
+        """Unit vectors to the middles of the cells, in the cup's frame: (3, cells)."""
+        return numpy.ascontiguousarray(self.grid.middles.reshape(3, -1))
+
+    @cached_property
+    def normals(self) -> Numbers:
+        """Means of the outward normal over the cells: (3, cells)."""
+        return numpy.ascontiguousarray(self.grid.normals.reshape(3, -1))
+
+    @cached_property
+    def areas(self) -> Numbers:
+        """Of the cells in mm²: (cells,)."""
+        return numpy.repeat(self.grid.areas[:, 0], self.grid.meridians) * self.socket_radius**2
+
+    @cached_property
+    def _smoothing(self) -> Smoothing:
+        return Smoothing(grid=self.grid)
+
+    def smoothed(self, depth: Numbers) -> Numbers:
+        """A depth without what the grid cannot carry, of the same volume: (cells,)."""
+        return self._smoothing(depth.reshape(self.grid.rings, -1)).ravel()
+
+    @cached_property
+    def stiffest(self) -> float:
+        """The largest change of a pressure by the depth of a wave that is left after smoothing, in MPa/mm."""
+        field = numpy.random.default_rng(_SEED).normal(size=(1, self.grid.rings, self.grid.meridians))
+        growth = 0.0
+        for _ in range(_POWER):
+            field = field / numpy.linalg.norm(field)
+            field = self._smoothing(self.compliance.pressure(field))
+            growth = float(numpy.linalg.norm(field))
+        return growth
+
+    @cached_property
+    def evenly(self) -> float:
+        """Pressure by displacement where both are the same all over, in MPa/mm."""
+        even = self.compliance.pressure(numpy.ones((1, self.grid.rings, self.grid.meridians)))
+        return float(self.grid.total(even, numpy.ones_like(even))[0] / self.grid.ring_areas.sum())
+
+    def part(self, cells: Numbers) -> ElasticBed:
+        """All of them: they know of each other."""
+        return self
+
+    def near(self, rest: Rest, depth: Numbers, margin: float) -> Numbers:
+        """All cells."""
+        return numpy.ones(len(self.areas), dtype=bool)
+
+    def edge_field(self, rest: Rest, depth: Numbers) -> Numbers:
+        """What falls to 0 at the edge of the contacts as a straight line does: (loads, cells)."""
+        return rest.pressure**2
+
+    def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None) -> Rest:
+        """Where balls come to rest under loads; see `SpringBed.rest`.
+
+        Loads of one direction are solved at a few sizes, with straight lines between: those carry the load as it is.
+        """
+        levels = levels_of(loads)
+        shape = (len(levels.loads), self.grid.rings, self.grid.meridians)
+        separation = Separation(
+            grid=self.grid,
+            clearance=self.clearance,
+            socket_radius=self.socket_radius,
+            depth=depth.reshape(shape[1:]),
+            kind=LinearGap,
+        )
+        bed = Bed(compliance=self.compliance, separation=separation)
+        begin, pressure = self._begin(levels, depth, start, shape)
+        found = bed.under(levels.loads, begin, numpy.ones(shape[0], dtype=bool), pressure)
+        flat = found.pressure.reshape(shape[0], -1)
+        return Rest(
+            displacement=levels.between(found.displacement),
+            pressure=levels.between(flat),
+            settled=bool(found.found.all()),
+            levels=(found.displacement, found.pressure),
+        )
+
+    def _begin(self, levels: Levels, depth: Numbers, start: Rest | None, shape: Any) -> tuple[Numbers, Numbers | None]:
+        if start is not None and start.levels is not None and start.levels[1].shape == shape:
+            return start.levels
+        size = numpy.linalg.norm(levels.loads, axis=1)
+        deep = linear_indentation(self.socket_radius, self.clearance, self.evenly, size)
+        along = levels.loads / numpy.where(size > 0, size, 1.0)[:, None]
+        return along * (self.clearance + deep + float(depth.max(initial=0.0)))[:, None], None
+
+
+@lru_cache(maxsize=4)
+def elastic_bed(surface: RealCup | ClosedShell, joint: Joint, cup: Cup, width: float) -> ElasticBed:
+    """The bore of a joint in rings of one width (rad); the last few are kept."""
+    cells = even_grid(socket_shape(joint, cup).reach, width)
+    return ElasticBed(
+        compliance=compliance_on(surface, joint, cup, cells),
+        clearance=float(joint.clearance),
+        socket_radius=float(joint.socket_radius),
+    )

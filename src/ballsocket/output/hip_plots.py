@@ -1,0 +1,131 @@
+"""Figures of a hip in use: what is worn, how far the ball has sunk in, tracks, film, the distance to the rim."""
+
+from __future__ import annotations
+
+from math import degrees, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..hip.history import History, Report
+from ..hip.sliding import tracks
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..arrays import Numbers
+
+_INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"
+_SIZE = (6.4, 4.2)
+
+
+def _figure(size: tuple[float, float] = _SIZE, polar: bool = False) -> tuple[Figure, Any]:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, layout="constrained")
+    axes = figure.add_subplot(projection="polar" if polar else None)
+    if not polar:
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.grid(color="0.9", linewidth=0.6)
+    return figure, axes
+
+
+def wear_map(history: History, report: Report | None = None) -> Figure:
+    """The worn depth over the bore, seen along the cup's axis: the dome's pole in the middle, the rim outside."""
+    seen = history.last if report is None else report
+    grid = history.use.grid
+    figure, axes = _figure((5.6, 4.8), polar=True)
+    around = numpy.append(grid.azimuth, grid.azimuth[0] + 2 * pi)
+    depth = 1e3 * numpy.hstack([seen.wear, seen.wear[:, :1]])
+    shown = axes.contourf(around, numpy.degrees(grid.polar), depth, levels=20, cmap="cividis")
+    sizes = numpy.linalg.norm(history.use.loads, axis=1)
+    if len(sizes):
+        x, y, z = history.use.loads[sizes.argmax()] / sizes.max()
+        axes.plot(numpy.arctan2(y, x), degrees(numpy.arctan2(numpy.hypot(x, y), z)), "+", color="white", ms=12)
+    axes.set_ylim(0, degrees(history.use.reach))
+    axes.set_rgrids([30, 60], ["30°", "60°"], angle=100, color="0.85")
+    axes.set_xticks([0, pi / 2, pi, 3 * pi / 2], [""] * 4)
+    axes.grid(color="0.6", linewidth=0.4)
+    figure.colorbar(shown, ax=axes, label="worn depth [µm]", shrink=0.8)
+    axes.set_title(
+        f"{seen.volume:.4g} mm³ after {seen.cycles / 1e6:g} million cycles; the load leans to the right", fontsize=10
+    )
+    return figure
+
+
+def penetration_curve(history: History) -> Figure:
+    """How far the ball has sunk in, and how much of it wear and creep alone would make, with the band of the error."""
+    figure, axes = _figure()
+    count = numpy.array([0.0, *(report.cycles / 1e6 for report in history.reports)])
+    whole = numpy.array([0.0, *(report.penetration for report in history.reports)])
+    off = history.error.depth * whole
+    axes.fill_between(count, whole - off, whole + off, color=_INK, alpha=0.2, linewidth=0)
+    axes.plot(count, whole, "o-", color=_INK, ms=4, label="penetration")
+    if any(report.creep_depth > 0 for report in history.reports):
+        parts = {"worn_in": ("wear alone", _SECOND, "--"), "crept_in": ("creep alone", _THIRD, ":")}
+        for name, (label, colour, dash) in parts.items():
+            part = [0.0, *(float(numpy.linalg.norm(getattr(report, name))) for report in history.reports)]
+            axes.plot(count, part, dash, color=colour, label=label)
+    axes.plot(count, [0.0, *(report.depth for report in history.reports)], "-.", color="0.4", label="deepest wear")
+    axes.set_xlabel("million cycles")
+    axes.set_ylabel("mm")
+    axes.set_ylim(bottom=0)
+    axes.legend(frameon=False)
+    return figure
+
+
+def track_map(history: History) -> Figure:
+    """The tracks that points of the ball draw on the socket in a cycle, seen along the cup's axis, in mm."""
+    use = history.use
+    figure, axes = _figure((5.2, 4.8))
+    frame = numpy.array(use.placed.frame)
+    turned = numpy.einsum("ij,njk,lk->nil", frame, use.cycle.rotations, frame)
+    for track in tracks(turned, _points(use.reach), float(use.joint.ball_radius)):
+        axes.plot(track[:, 0], track[:, 1], color=_INK, linewidth=0.8)
+    rim = numpy.linspace(0.0, 2 * pi, 200)
+    size = float(use.joint.socket_radius) * numpy.sin(min(use.reach, pi / 2))
+    axes.plot(size * numpy.cos(rim), size * numpy.sin(rim), color="0.4")
+    axes.set_aspect("equal")
+    axes.set_xlabel("towards the nearest rim [mm]")
+    axes.set_ylabel("across [mm]")
+    return figure
+
+
+def _points(reach: float) -> Numbers:
+    """The pole, and three rings of points around it."""
+    rings = [(0.0, 1), *((0.85 * reach * share, count) for share, count in ((0.25, 6), (0.5, 12), (0.75, 18)))]
+    polar, around = numpy.array([(angle, 2 * pi * i / count) for angle, count in rings for i in range(count)]).T
+    across = numpy.sin(polar)
+    return numpy.stack([across * numpy.cos(around), across * numpy.sin(around), numpy.cos(polar)])
+
+
+def film_figure(history: History) -> Figure:
+    """Film thickness and the moment of friction over the first cycle."""
+    film = history.use.film(history.lubricant)
+    figure, axes = _figure()
+    axes.plot(100 * film.phases, 1e6 * film.least, color=_INK, label="least film")
+    axes.plot(100 * film.phases, 1e6 * film.central, "--", color=_INK, label="central film")
+    axes.set_xlabel("% of the cycle")
+    axes.set_ylabel("film [nm]")
+    axes.set_ylim(bottom=0)
+    other = axes.twinx()
+    other.plot(100 * film.phases, 1e-3 * numpy.linalg.norm(film.moment, axis=1), ":", color=_SECOND)
+    other.set_ylabel("moment of friction [N m], dotted", color=_SECOND)
+    other.set_ylim(bottom=0)
+    axes.legend(frameon=False, loc="lower right")
+    return figure
+
+
+def edge_figure(history: History) -> Figure:
+    """The distance from the contact's edge to the rim over the cycle, unworn and at the end."""
+    use = history.use
+    figure, axes = _figure()
+    phase = 100 * use.cycle.phases[use.loaded]
+    axes.plot(phase, use.edge_distance(use.unworn), color=_INK, label="unworn")
+    last = history.last
+    axes.plot(phase, last.edge_distance, "--", color=_SECOND, label=f"after {last.cycles / 1e6:g} million cycles")
+    axes.set_xlabel("% of the cycle")
+    axes.set_ylabel("contact's edge to the rim [mm]")
+    axes.set_ylim(bottom=-0.2)  # a line at 0 is seen
+    axes.legend(frameon=False)
+    return figure

@@ -1,0 +1,102 @@
+"""A hip in use as one page of HTML."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from ..atomic import write_text
+from ..hip.film import CONFORMING
+from ..hip.history import History
+from . import hip_plots
+from .html import drawn, page, picture, table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = MappingProxyType(
+    {
+        "wear": (
+            "Wear map",
+            hip_plots.wear_map,
+            "Seen along the cup's axis; a cross where the largest load points.",
+        ),
+        "penetration": (
+            "Penetration",
+            hip_plots.penetration_curve,
+            "How far the ball's centre has moved; the band is what blocks, rings and instants leave open, "
+            "not what the law does.",
+        ),
+        "tracks": ("Tracks", hip_plots.track_map, "Of points of the ball on the socket, in one cycle."),
+        "film": ("Film and friction", hip_plots.film_figure, f"{CONFORMING}."),
+        "edge": ("Edge distance", hip_plots.edge_figure, "0 is edge loading."),
+    }
+)
+_HEADS = (
+    "million cycles",
+    "volume [mm³]",
+    "depth [mm]",
+    "penetration [mm]",
+    "pmax [MPa]",
+    "creep [mm]",
+    "to the rim [mm]",
+)
+
+
+def check_page(path: Path) -> None:
+    """Raise ValueError unless a page can be written there."""
+    if path.suffix.lower() != ".html":
+        raise ValueError(f"report {str(path)!r} must end in .html")
+    if not path.parent.is_dir():
+        raise ValueError(f"{str(path.parent)!r} is no folder to write {path.name} into")
+
+
+def write_hip_report(history: History, path: Path) -> Path:
+    """Write the page; returns its path.
+
+    Raises
+    ------
+    ValueError
+        Another ending than .html, or no folder.
+    OSError
+        It cannot be written.
+    """
+    check_page(path)
+    sections = {"numbers": ("Numbers", _numbers(history))}
+    if len(history.use.loaded):
+        for name, (title, draw, caption) in _FIGURES.items():
+            sections[name] = (title, picture(drawn(draw(history)), title, escape(caption)))
+    return write_text(path, page("A hip in use", _lede(history), sections))
+
+
+def _lede(history: History) -> str:
+    use, last = history.use, history.last
+    notes = "".join(f"<li>{escape(note)}</li>" for note in history.notes)
+    told = (
+        f"{use.joint}, {use.cycle.name}: {last.volume:.4g} mm³ worn and a penetration of {last.penetration:.3g} mm "
+        f"after {last.cycles / 1e6:g} million cycles."
+    )
+    return f"<p>{escape(told)}</p><ul class='quiet'>{notes}</ul>"
+
+
+def _numbers(history: History) -> str:
+    first, error = history.use.first, history.error
+    rows = [
+        (
+            f"{each.cycles / 1e6:g}",
+            *(f"{number:.4g}" for number in (each.volume, each.depth, each.penetration, each.max_pressure)),
+            f"{each.creep_depth:.4g}",
+            f"{each.edge_distance.min(initial=float('inf')):.3g}",
+        )
+        for each in history.reports
+    ]
+    told = (
+        f"A cycle slides {first.slide:.4g} mm; pressure times slide is {first.work:.4g} N m, the mean cross-shear "
+        f"{first.cross_shear:.3g}. Unworn it wears {first.volume:.4g} mm³ and {first.depth:.3g} mm a million cycles. "
+        f"Against the same model in the finest steps the volume is within {100 * error.volume:.2g} %, the depth within "
+        f"{100 * error.depth:.2g} %."
+    )
+    return f"<p>{escape(told)}</p>{table(_HEADS, rows)}"

@@ -1,0 +1,129 @@
+"""Wear with full elasticity: the same identities, beside the springs, smooth, and stopped and gone on."""
+
+from math import radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.hip import iso_14242_1
+from ballsocket.hip.elastic_bed import elastic_bed, even_grid
+from ballsocket.hip.levels import levels_of
+from ballsocket.hip.smoothing import Smoothing
+
+from ..extent import either
+from .test_wear import TILTED, K, hip
+
+COARSE = radians(5.0)
+SURFACES = {"shell": bs.ClosedShell(), "cup": bs.RealCup()}
+
+
+def elastic(surface="shell", **words):
+    return hip(**({"surface": SURFACES[surface], "ring_width": COARSE, "cycle": iso_14242_1(50)} | words))
+
+
+@pytest.mark.parametrize("surface", SURFACES)
+def test_the_first_cycle_presses_as_sphere_does(surface):
+    use = elastic(surface, ring_width=radians(3.0))
+    sphere = bs.Sphere(cup=TILTED, surface=SURFACES[surface], ring_width=radians(3.0))
+    largest = int(use.cycle.sizes.argmax())
+    contact = sphere.press(use.joint, force=use.cycle.sizes[largest])
+    assert use.unworn.displacement[largest] == pytest.approx(contact.displacement, rel=2e-3, abs=2e-4)
+    assert use.first.max_pressure == pytest.approx(contact.max_pressure, rel=1e-2)
+
+
+@pytest.mark.parametrize("surface", SURFACES)
+def test_what_is_missing_is_what_was_rubbed_off(surface):
+    use = elastic(surface)
+    report = use.after(2e5).last
+    assert report.settled
+    assert report.volume == pytest.approx(1e-3 * K * report.work, rel=1e-6)
+
+
+def test_a_worn_bore_pressed_again_balances_its_load():
+    use = elastic()
+    report = use.after(2e5).last
+    rest = use.rest(report.wear.ravel())
+    carried = np.einsum("tp,kp,p->tk", rest.pressure, use.bed.normals, use.bed.areas)
+    assert np.linalg.norm(carried - use.loads, axis=1) == pytest.approx(0.0, abs=2e-6 * 3000)
+
+
+def test_elasticity_changes_volume_and_depth_by_little():
+    """What full elasticity makes of a hip against springs: the volume within 1 %, the depth within 3 %."""
+    cup, springs = elastic("cup").after(1e6).last, hip(cycle=iso_14242_1(50)).after(1e6).last
+    assert cup.volume == pytest.approx(springs.volume, rel=1e-2)
+    assert cup.depth == pytest.approx(springs.depth, rel=3e-2)
+    assert cup.volume != springs.volume
+
+
+def test_finer_rings_wear_the_same():
+    widths = either(quick=(5.0, 3.5), long=(3.0, 2.0))
+    volumes, depths = np.array(
+        [(each.volume, each.depth) for each in (elastic(ring_width=radians(w)).after(5e5).last for w in widths)]
+    ).T
+    assert volumes[0] == pytest.approx(volumes[1], rel=5e-3)
+    assert depths[0] == pytest.approx(depths[1], rel=2e-2)
+
+
+def test_no_spikes_grow_at_the_width_of_the_grid():
+    """Where the bore is worn in, its depth has no differences of the fourth order."""
+    use = elastic()
+    wear = use.after(1e6).last.wear
+    rough = np.abs(np.diff(wear, n=4, axis=0))[wear[2:-2] > 0.5 * wear.max()]
+    assert rough.max() < 0.02 * wear.max()
+    assert use.rest(wear.ravel()).pressure.max() < use.first.max_pressure
+
+
+def test_smoothing_keeps_what_is_worn_and_takes_the_checkerboard():
+    grid = even_grid(radians(90.0), radians(5.0))
+    smooth = Smoothing(grid=grid)
+    rng = np.random.default_rng(5)
+    field = rng.uniform(size=(grid.rings, grid.meridians))
+    assert (smooth(field) * grid.areas).sum() == pytest.approx((field * grid.areas).sum(), rel=1e-12)
+    assert smooth(np.ones_like(field)) == pytest.approx(1.0, rel=1e-12)
+    board = (-1.0) ** np.add.outer(np.arange(grid.rings), np.arange(grid.meridians))
+    assert np.abs(smooth(board)).max() < 1e-12
+    wide = np.cos(grid.polar)[:, None] + 0 * grid.azimuth
+    assert smooth(wide)[:-1] == pytest.approx(wide[:-1], abs=5e-3)
+
+
+def test_levels_carry_the_loads_they_stand_for():
+    cycle = iso_14242_1(100)
+    levels = levels_of(cycle.forces)
+    assert len(levels.loads) == 12
+    assert levels.between(levels.loads) == pytest.approx(cycle.forces, abs=1e-9)
+    assert levels.shares.sum(axis=1) == pytest.approx(1.0)
+    leaning = cycle.forces + np.outer(np.sin(2 * np.pi * cycle.phases), [100.0, 0.0, 0.0])
+    assert len(levels_of(leaning).loads) == 100
+    same = levels_of(np.tile([0.0, 0.0, 500.0], (40, 1)))
+    assert same.loads == pytest.approx(np.array([[0.0, 0.0, 500.0]]))
+    assert same.between(same.loads) == pytest.approx(np.tile([0.0, 0.0, 500.0], (40, 1)))
+
+
+def test_a_few_levels_wear_as_all_loads_do(monkeypatch):
+    from ballsocket.hip import elastic_bed as module
+
+    use = elastic()
+    few = use.first
+    monkeypatch.setattr(module, "levels_of", lambda loads: levels_of(loads, most=1000))
+    every = elastic().first
+    assert few.volume == pytest.approx(every.volume, rel=2e-3)
+    assert few.depth == pytest.approx(every.depth, rel=5e-3)
+
+
+def test_the_stiffest_wave_bounds_every_other():
+    bed = elastic_bed(bs.ClosedShell(), hip().joint, bs.Cup(), COARSE)
+    rng = np.random.default_rng(6)
+    for _ in range(5):
+        depth = rng.normal(size=len(bed.areas))
+        shape = (1, bed.grid.rings, -1)
+        answer = bed.smoothed(bed.compliance.pressure(depth.reshape(shape)).ravel())
+        assert np.linalg.norm(answer) <= 1.2 * bed.stiffest * np.linalg.norm(depth)
+
+
+@pytest.mark.long
+def test_five_million_cycles_in_a_real_cup():
+    """As in the explanation: 120 s are asked for on two cores."""
+    springs, cup = hip().after(5e6).last, hip(surface=bs.RealCup()).after(5e6).last
+    assert cup.volume == pytest.approx(springs.volume, rel=5e-3)
+    assert cup.depth == pytest.approx(springs.depth, rel=1e-2)
