@@ -352,6 +352,11 @@ def test_numbers_win_over_the_material():
         ("[joint]", "[joint]\nforce = 3", "hip: 'force' in .joint. is not known; it belongs in .load.$"),
         (
             "[joint]",
+            "[joint]\nball = 'steel'",
+            "hip: 'ball' in .joint. is not known; it is a table of its own, .ball.$",
+        ),
+        (
+            "[joint]",
             "[joint]\nthickness = 3",
             r"hip: 'thickness' in .joint. is not known; it belongs in \[\[backing\]\]$",
         ),

@@ -166,9 +166,16 @@ def check_keys(part: Mapping[str, Any], name: str, where: str, tables: Mapping[s
     """Raise ValueError for a key that the table of that name does not know, with the tables that do."""
     for key in part:
         if key not in tables[name]:
-            others = [_HEADS.get(other, f"[{other}]") for other, known in tables.items() if other and key in known]
-            hint = f"; it belongs in {' or '.join(others)}" if others else nearest(key, tables[name])
-            raise ValueError(f"{shown(key)} {where} is not known{hint}")
+            raise ValueError(f"{shown(key)} {where} is not known{_place(key, name, tables)}")
+
+
+def _place(key: str, name: str, tables: Mapping[str, Sequence[str]]) -> str:
+    """A hint: the tables that know a key, or that it is one, or the nearest key of its own."""
+    if others := [_HEADS.get(other, f"[{other}]") for other, known in tables.items() if other and key in known]:
+        return f"; it belongs in {' or '.join(others)}"
+    if key and key in tables:
+        return f"; it is a table of its own, {_HEADS.get(key, f'[{key}]')}"
+    return nearest(key, tables[name])
 
 
 def _joint(table: Mapping[str, Any], **words: Any) -> Joint:
