@@ -102,6 +102,12 @@ def test_a_port_that_is_none_is_refused():
         serve.server(70000)
 
 
+@pytest.mark.parametrize("address", ["nowhere.invalid", "a" * 300])
+def test_an_address_that_is_none_is_refused(address):
+    with pytest.raises(ValueError, match="address = 'nowhere.invalid' is not allowed|address = 'aaa.* is not allowed"):
+        serve.server(0, address)
+
+
 def test_a_map_is_drawn_and_clicked_in_the_unit_that_its_axis_names():
     """An indentation runs over micrometres, and a click at 40 of them presses 0.04 mm."""
     page = Page("view=map&preset=hip-28&across=indentation=0.02..0.06&up=ball_radius=12..16")

@@ -10,7 +10,7 @@ from typing import Any
 
 import panel as pn
 
-from ..checks import require
+from ..checks import require, shown
 from .guard import guard
 from .page import Page, template
 from .pressing import pressed
@@ -43,11 +43,12 @@ def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (
     Raises
     ------
     ValueError
-        A port that is none.
+        A port or an address that is none.
     OSError
         The port is taken.
     """
     require("port", port, 0 <= port <= 65535, "a port is 0 to 65535")
+    _check_address(address)
     pn.extension(notifications=False)
     pressed(START.file, (START.answered_by, *START.shown))  # what is loaded at the first press is loaded now
     port = port or _free_port(address)
@@ -69,6 +70,15 @@ def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (
     )
     guard(served._tornado, (*own, *origins))
     return served
+
+
+def _check_address(address: str) -> None:
+    try:
+        socket.getaddrinfo(address, None)
+    except (OSError, UnicodeError) as error:
+        raise ValueError(
+            f"address = {shown(address)} is not allowed: no interface of this machine is called so"
+        ) from error
 
 
 def _free_port(address: str) -> int:
