@@ -1,8 +1,11 @@
 """Tilted loads from the command line and from files."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
+
+from ballsocket.cli import off_axis
 
 from ..places import EXAMPLES
 from .command import run
@@ -50,6 +53,18 @@ def test_a_tilt_asks_sphere():
     assert "sphere" in answered(*NUMBERS, *COARSE, "--tilt", "45 deg", "--force", "1kN")
 
 
+def test_so_does_an_interference():
+    results = answered(
+        "suspension-ball-joint", "--interference", "0.02", *COARSE, "--arc-of-cover", "300", "--force", "1kN"
+    )
+    assert results["sphere"]["status"] == "OK"
+
+
+@pytest.mark.parametrize(("distance", "loaded"), [(0.02, True), (-0.02, True), (0.02, False)])
+def test_nothing_is_minus_nothing(distance, loaded):
+    assert "-0.0" not in off_axis._rim(SimpleNamespace(edge_distance=distance, edge_loaded=loaded))
+
+
 def test_a_file_says_where_the_load_points_and_the_words_win():
     path = str(EXAMPLES / "tilted_hip.toml")
     inside, over = (answered(path, *COARSE, *more)["sphere"] for more in ((), ("--tilt", "75 deg")))
@@ -75,6 +90,7 @@ def test_models_that_know_no_rim_are_not_trusted_near_it():
         (("--tilt", "10", "--direction", "0,0,1"), "both"),
         (("--tilt", "10", "--model", "fem"), "ask --model sphere"),
         (("--tilt", "10", "--ring-width", "20 deg"), "0.5 to 6 degrees"),
+        (("--ring-width", "2 deg"), "--ring-width is for contact on the sphere: add --model sphere"),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_a_sentence(words, said):

@@ -37,6 +37,11 @@ class AimWords:
         """The direction in words, or that of the joint's file; empty where there is none."""
         return read_aim(given({"tilt": self.tilt, "direction": self.direction})) or file.aim
 
+    def refuse(self) -> None:
+        """Raise ValueError for words that only `sphere` understands, where it is not asked."""
+        if self.ring_width is not None:
+            raise ValueError(f"--ring-width is for contact on the sphere: add --model {off_axis.name}, or a --tilt")
+
     def model(self) -> Sphere:
         """Contact on the sphere with such rings."""
         if self.ring_width is None:
@@ -90,7 +95,7 @@ def remark(contact: Any, seconds: float) -> str:
 def _rim(contact: OffAxisContact) -> str:
     distance = contact.edge_distance
     return (
-        f"contact cut off by {-distance:.1f} mm at the rim"
+        f"contact cut off by {max(-distance, 0.0):.1f} mm at the rim"
         if contact.edge_loaded
         else f"contact {distance:.1f} mm from the rim"
     )

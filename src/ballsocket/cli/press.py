@@ -82,10 +82,13 @@ def press(
     at = load.or_of(file)
     toward, remarks = aim.or_of(file), []
     around = aimed(cup.on(file.cup), toward)
-    chosen = models.chosen(off_axis.name if toward or around.tilt(UP) > 0 else DEFAULT_MODEL)
+    asks_sphere = toward or around.tilt(UP) > 0 or file.joint.clearance < 0
+    chosen = models.chosen(off_axis.name if asks_sphere else DEFAULT_MODEL)
     if models.judged and toward:
         raise ValueError("fem presses along the cup's own axis; for a tilt or a direction ask --model sphere")
     files.check_models(chosen)
+    if off_axis.name not in chosen:
+        aim.refuse()
     if off_axis.name in chosen:
         watched: Any = Watched(along(aim.model(), around, toward))
         chosen[off_axis.name] = watched
