@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.sphere.deck import Bricks, TiltedDeck, run
+from ballsocket.sphere.bricks import Bricks
+from ballsocket.sphere.deck import TiltedDeck, run
 
 from ..cli.command import run as command
 from ..extent import either
