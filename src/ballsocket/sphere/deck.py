@@ -9,9 +9,6 @@ Forces are close on coarse elements already; CalculiX' pressures at the nodes of
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import subprocess
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,14 +22,14 @@ from ..arrays import Numbers
 from ..atomic import write_text
 from ..checks import require
 from ..cup import Cup, Interface
-from ..fem.export.calculix import printed
+from ..fem.export.calculix import last_words, printed, started
+from ..fem.export.deck import EXPECTED, NAME
 from ..fem.mesh import graded, joined
 from ..fem.shapes import SocketShape, socket_shape
 from ..fem.solver import check_cup
 from ..joint import Joint
 from .bricks import Bricks
 
-NAME, EXPECTED = "ballsocket", "expected.json"
 _STIFFER = 500.0
 _SKIN = 0.1  # of the radius
 _INNER, _OUTER = "S1", "S2"
@@ -240,27 +237,11 @@ def run(folder: Path, *, threads: int = 1) -> Mapping[str, Any]:
     RuntimeError
         CalculiX failed; with its last words.
     """
-    folder, command = Path(folder), shutil.which("ccx")
-    if command is None:
-        raise FileNotFoundError("CalculiX is not installed: there is no command 'ccx'")
-    if not (folder / f"{NAME}.inp").is_file():
-        raise FileNotFoundError(f"there is no {NAME}.inp in {str(folder)!r}")
-    for suffix in ("dat", "frd"):
-        (folder / f"{NAME}.{suffix}").unlink(missing_ok=True)
-    words = subprocess.run(
-        [command, "-i", NAME],
-        cwd=folder,
-        env={**os.environ, "OMP_NUM_THREADS": str(threads)},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-    )
+    folder = Path(folder)
+    done = started(folder, threads)
     forces = printed(folder / f"{NAME}.dat", "PUSHED")
     if 0 not in forces:
-        last = [line.strip() for line in words.stdout.splitlines() if line.strip()][-8:]
-        raise RuntimeError(f"ccx ended with {words.returncode}: {'; '.join(last)}")
+        raise RuntimeError(f"ccx ended with {done.returncode}: {last_words(done)}")
     deck = json.loads((folder / EXPECTED).read_text(encoding="ascii"))
     x, _, z = 2 * forces[0][0] / deck["scale"]
     return {"force_vector": [float(x), 0.0, float(z)]}

@@ -59,6 +59,21 @@ def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
         did not reach are NaN.
     """
     folder = Path(folder)
+    done = started(folder, threads)
+    answer = read(folder)
+    if numpy.isnan(answer.force).all():
+        raise RuntimeError(f"ccx ended with {done.returncode} before the first step did: {last_words(done)}")
+    return answer
+
+
+def started(folder: Path, threads: int) -> subprocess.CompletedProcess[str]:
+    """CalculiX, ended, on the deck in a folder; what an earlier run left there is gone.
+
+    Raises
+    ------
+    FileNotFoundError
+        The command `ccx` is not installed, or there is no deck in the folder.
+    """
     command = shutil.which("ccx")
     if command is None:
         raise FileNotFoundError("CalculiX is not installed: there is no command 'ccx'")
@@ -66,7 +81,7 @@ def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
         raise FileNotFoundError(f"there is no {NAME}.inp in {str(folder)!r}")
     for suffix in ("dat", "frd"):
         (folder / f"{NAME}.{suffix}").unlink(missing_ok=True)  # or a failure would hand out an older answer
-    done = subprocess.run(
+    return subprocess.run(
         [command, "-i", NAME],
         cwd=folder,
         env={**os.environ, "OMP_NUM_THREADS": str(threads)},
@@ -76,11 +91,11 @@ def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
         text=True,
         errors="replace",
     )
-    answer = read(folder)
-    if numpy.isnan(answer.force).all():
-        words = [line.strip() for line in done.stdout.splitlines() if line.strip()][-_LINES:]
-        raise RuntimeError(f"ccx ended with {done.returncode} before the first step did: {'; '.join(words)}")
-    return answer
+
+
+def last_words(done: subprocess.CompletedProcess[str]) -> str:
+    """What CalculiX said in the end, in a line."""
+    return "; ".join([line.strip() for line in done.stdout.splitlines() if line.strip()][-_LINES:])
 
 
 def read(folder: Path) -> CcxAnswer:
