@@ -560,3 +560,33 @@ def test_deck_writes_the_model_for_other_programs(tmp_path):
         wrong = run("deck", EXAMPLE, "--out", str(tmp_path), *words)
         assert wrong.returncode == 2
         assert message in wrong.stderr
+
+
+def test_the_exact_answer_leads_and_every_number_below_is_marked():
+    lines = run("press", "hess-forsbach", "--force", "3 kN").stdout.splitlines()
+    names = [line.split()[0] for line in lines if line.startswith(("exact", "hess-forsbach ", "  Δ"))]
+    assert names == ["exact", "hess-forsbach", "Δ"]
+    marked = next(line.split() for line in lines if line.startswith("  Δ"))
+    assert marked == ["Δ", "%", "+2.0", "+5.4", "+0.9", "+10.5", "-3.3", "+2.6", "-1.1"]
+    said = " ".join(line.strip() for line in lines)
+    assert "ε half angle" in said
+    assert "Δ % from exact" in said
+
+
+def test_the_exact_answer_does_not_lead_where_it_is_not_to_be_trusted():
+    shown = run("press", str(EXAMPLES / "tilted_hip.toml")).stdout
+    assert shown.index("\nsphere ") < shown.index("\nexact ")
+
+
+def test_numbers_are_shown_in_inches_and_pounds():
+    words = ("press", "hess-forsbach", "--force", "3 kN", "--model", "exact")
+    shown = run(*words, "--units", "Imperial").stdout.splitlines()
+    heads, units, numbers = (line.split() for line in shown[-5:-2])
+    values = dict(zip(heads, [None, *map(float, numbers[1:9])], strict=False))
+    assert units == ["lbf", "mil", "°", "psi", "in²", "kip/in", "lbf", "in", "ksi/in"]
+    assert values["F"] == pytest.approx(3000 / 4.448222, rel=1e-3)
+    assert values["d"] == pytest.approx(0.03991695 / 0.0254, rel=1e-3)
+    assert values["pmax"] == pytest.approx(11.17 / 6.894757e-3, rel=1e-3)
+    assert values["dF/dd"] == pytest.approx(124.43e3 / 175.1268, rel=1e-3)
+    assert values["K"] == pytest.approx(279.8 / 0.2714471, rel=1e-3)
+    assert run(*words, "--json", "--units", "imperial").stdout == run(*words, "--json").stdout

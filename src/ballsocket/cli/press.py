@@ -17,6 +17,7 @@ from ..cup import UP
 from ..io.joint_file import JointFile
 from ..model import Model
 from ..output import terminal
+from ..output.unit_systems import Units
 from ..validity import Status
 from . import elements
 from .files import Files
@@ -61,6 +62,7 @@ def press(
     words: JointWords,
     load: LoadWords,
     models: ModelWords,
+    units: Annotated[Units, typer.Option(case_sensitive=False, help="Of the table; JSON has mm, N, MPa.")] = Units.SI,
     as_json: AsJson = False,
     files: Files,
     aim: AimWords,
@@ -103,7 +105,7 @@ def press(
     if as_json:
         echo_json(comparison.summary())
     else:
-        terminal.print_press(comparison, remarks)
+        terminal.print_press(comparison, remarks, units)
     _end(comparison, chosen)
 
 

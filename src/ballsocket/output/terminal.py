@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from math import pi
-from typing import TYPE_CHECKING, Any
 
 import numpy
 from rich.console import Console
@@ -13,21 +13,17 @@ from rich.table import Table
 from rich.text import Text
 
 from ..catalogue import reference
-from ..compare import Comparison
+from ..compare import Comparison, relative
 from ..contact import Contact
 from ..describe import UTILISATION, Column, number_text
 from ..quantities import CONTACT
-
-if TYPE_CHECKING:
-    pass
+from .unit_systems import Units
 
 _BARS = " ▁▂▃▄▅▆▇█"
 _BARS_ASCII = " .:-=+*#@"
 _PROFILE = "profile"
-_APART = "deviation"
 _OFF_THE_POLE = ("pole_pressure", "max_pressure_angle")
-_COLUMNS = (*(Column(each, each.shown) for each in CONTACT.values()), UTILISATION)
-_LATER = ("stiffness", "area", _PROFILE, _APART, "indentation", "force", "half_angle")
+_LATER = ("stiffness", "area", _PROFILE, "indentation", "force", "half_angle")
 _DROPPED = (*(name for name in reversed(tuple(CONTACT)) if name not in (*_LATER, "max_pressure")), *_LATER)
 """What a narrow terminal does without, first to last; never the largest pressure, nor the utilisation."""
 
@@ -35,13 +31,32 @@ _NEAR = 0.5
 """The utilisation from which on it is shown."""
 
 
-def print_press(comparison: Comparison, remarks: Iterable[str] = ()) -> None:
-    """The comparison as a table, each model with its pressure profile from the pole to 90 degrees, and remarks."""
-    terminal = console()
-    print_folded(terminal, str(comparison.joint), "bold")
-    terminal.print(_fitting(comparison, terminal))
-    for reason in (*remarks, *comparison.notes()):
-        print_folded(terminal, reason, "dim")
+def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Units = Units.SI) -> None:
+    """The comparison as a table, the exact answer on top and below each other model how far from it every number is.
+
+    Beside the numbers the pressure from the pole to 90 degrees; below them what the letters mean, remarks and notes.
+    """
+    terminal, led = console(), _led(comparison)
+    print_folded(terminal, str(led.joint), "bold")
+    table, shown = _fitting(led, terminal, units)
+    terminal.print(table)
+    for line in (_letters(led, shown), *remarks, *led.notes()):
+        print_folded(terminal, line, "dim")
+
+
+def _led(comparison: Comparison) -> Comparison:
+    """With the exact answer on top, where it can be trusted."""
+    exact = comparison.get(reference.name)
+    if exact is None or not exact.valid:
+        return comparison
+    return replace(comparison, contacts={reference.name: exact, **comparison.contacts})
+
+
+def _letters(comparison: Comparison, columns: Sequence[Column]) -> str:
+    """What the heads of the columns mean."""
+    meant = ", ".join(f"{column.symbol} {column.title}" for column in columns)
+    apart = any(comparison.deviation(name) is not None for name in comparison)
+    return f"{meant}; Δ % from {reference.name}" if apart else meant
 
 
 def console() -> Console:
@@ -55,16 +70,18 @@ def print_folded(console: Console, text: str, style: str) -> None:
     console.print(Text(folded, style=style), soft_wrap=True)
 
 
-def _fitting(comparison: Comparison, console: Console) -> Table:
-    """The table with as many columns as the terminal is wide enough for."""
+def _fitting(comparison: Comparison, console: Console, units: Units) -> tuple[Table, list[Column]]:
+    """The table with as many columns as the terminal is wide enough for, and those columns."""
     unbounded = console.options.update(width=10_000)
     bars = _BARS if console.encoding.startswith("utf") else _BARS_ASCII
     usual = (*_pole(comparison), *_rest(comparison))
     for count in range(len(_DROPPED) + 1):
-        table = _press_table(comparison, (*usual, *_DROPPED[:count]), bars)
+        dropped = (*usual, *_DROPPED[:count])
+        columns = [column for column in units.columns if column.attribute not in dropped]
+        table = _press_table(comparison, columns, "" if _PROFILE in dropped else bars)
         if console.measure(table, options=unbounded).maximum <= console.width:
             break
-    return table
+    return table, columns
 
 
 def _pole(comparison: Comparison) -> tuple[str, ...]:
@@ -79,52 +96,40 @@ def _rest(comparison: Comparison) -> tuple[str, ...]:
     return () if any(contact.utilisation > _NEAR for contact in near) else (UTILISATION.attribute,)
 
 
-def _press_table(comparison: Comparison, dropped: Sequence[str], bars: str) -> Table:
-    columns = [column for column in _COLUMNS if column.attribute not in dropped]
+def _press_table(comparison: Comparison, columns: Sequence[Column], bars: str) -> Table:
+    """Without bars no profiles."""
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
     table.add_column("model", no_wrap=True)
-    apart = () if _APART in dropped else _compared(comparison)
-    for head in (*(column.symbol for column in columns), *(f"Δ{column.symbol[0]}" for column in apart)):
-        table.add_column(head, justify="right", no_wrap=True)
-    if _PROFILE not in dropped:
+    for column in columns:
+        table.add_column(column.symbol, justify="right", no_wrap=True)
+    if bars:
         table.add_column(" p, 0° to 90°", no_wrap=True)
     table.add_column("valid", justify="center", no_wrap=True)
-    units = (*(column.unit for column in columns), *("%" for _ in apart))
-    table.add_row("", *(Text(unit, style="dim") for unit in units))
-    profiles = {} if _PROFILE in dropped else _profiles(comparison, bars)
+    table.add_row("", *(Text(column.unit, style="dim") for column in columns))
+    profiles = _profiles(comparison, bars) if bars else {}
     for name, contact in comparison.items():
-        away = _percents(comparison.deviation(name), apart)
-        table.add_row(*_cells(name, contact, columns, away, [profiles[name]] if profiles else []))
+        table.add_row(*_cells(name, contact, columns, [profiles[name]] if profiles else []))
+        if comparison.deviation(name) is not None and not contact.status.failed:
+            away = _percents(contact, comparison[reference.name], columns)
+            table.add_row(*(Text(text, style="dim") for text in ("  Δ %", *away)))
     for name in comparison.missing:
-        gaps = [*["-"] * len(columns), *[""] * (len(apart) + (_PROFILE not in dropped))]
+        gaps = [*["-"] * len(columns), *[""] * bool(bars)]
         table.add_row(Text(name, style="dim"), *gaps, Text("no", style="red"))
     return table
 
 
-def _compared(comparison: Comparison) -> tuple[Column, ...]:
-    """What is measured against the exact answer: what the load leaves open, and the peak pressure."""
-    if comparison.get(reference.name) is None or len(comparison) == 1:
-        return ()
-    by_depth = len({contact.indentation for contact in comparison.values()}) == 1
-    first = "force" if by_depth else "indentation"
-    return tuple(column for column in _COLUMNS if column.attribute in (first, "max_pressure"))
+def _percents(contact: Contact, exact: Contact, columns: Sequence[Column]) -> list[str]:
+    """How far a contact is from the exact one; nothing where they are equal, or there is nothing to measure by."""
+    shares = [100 * float(relative(column.of(contact), column.of(exact))) for column in columns]
+    return ["" if share != share or share == 0 else f"{share:+.1f}".replace("-0.0", "+0.0") for share in shares]
 
 
-def _percents(deviation: dict[str, Any] | None, columns: Sequence[Column]) -> list[str]:
-    if deviation is None:
-        return [""] * len(columns)
-    shares = [100 * float(deviation[column.name]) for column in columns]
-    return ["-" if share != share else f"{share:+.1f}" for share in shares]
-
-
-def _cells(
-    name: str, contact: Contact, columns: Sequence[Column], away: Sequence[str], profile: Sequence[str]
-) -> list[Text]:
+def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequence[str]) -> list[Text]:
     style = "" if contact.valid else "yellow"
     numbers = [number_text(column.of(contact), 4, "-") for column in columns]
     bars = [Text(f" {bar}", style=style or "cyan") for bar in profile]
     mark = Text("yes", style="green") if contact.valid else Text("no", style="yellow")
-    return [*(Text(text, style=style) for text in (name, *numbers, *away)), *bars, mark]
+    return [*(Text(text, style=style) for text in (name, *numbers)), *bars, mark]
 
 
 def _profiles(comparison: Comparison, bars: str) -> dict[str, str]:
