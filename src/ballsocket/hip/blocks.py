@@ -51,7 +51,7 @@ class Run:
     depth : array (cells,)
         Worn away, in mm.
     work : float
-        ∫∫ p |v| dA dt so far, in N mm.
+        ∫∫ p v dA dt so far, in N mm.
     length : float
         Of the next block, in cycles.
     steps : int

@@ -148,7 +148,7 @@ def film(use: InUse, rest: Rest, lubricant: Lubricant) -> Film:
 
 
 def _moment(use: InUse, rest: Rest) -> Numbers:
-    """∫ R n × v/|v| p dA, v = R ω × n: n × (ω × n) = ω - (ω·n) n; in N mm: (instants, 3)."""
+    """∫ R n × v/abs(v) p dA, v = R ω × n: n × (ω × n) = ω - (ω·n) n; in N mm: (instants, 3)."""
     n, radius = use.bed.directions, use.sliding.radius
     steps = use.sliding.steps
     share = numpy.divide(rest.pressure * use.bed.areas * radius**2, steps, out=numpy.zeros_like(steps), where=steps > 0)

@@ -23,7 +23,7 @@ class First:
     slide : float
         Of the ball past the line of the load, in mm.
     work : float
-        ∫∫ p |v| dA dt in N m.
+        ∫∫ p v dA dt in N m.
     cross_shear : float
         Its mean over the socket, weighted by p |v|.
     volume, depth : float
@@ -53,7 +53,7 @@ class Report:
     volume, depth : float
         Worn away: mm³, and mm at the deepest point.
     work : float
-        ∫ p |v| dA dt of all cycles so far, in N mm.
+        ∫ p v dA dt of all cycles so far, in N mm.
     displacement : array (3,)
         How far the ball's centre has moved since the first cycle at the largest force, in mm, in the cup's frame.
     worn_in, crept_in : array (3,)

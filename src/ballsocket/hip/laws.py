@@ -33,7 +33,7 @@ class Pass:
 
     @cached_property
     def work(self) -> Numbers:
-        """∫ p |v| dt of each point, in N/mm: (points,)."""
+        """∫ p v dt of each point, in N/mm: (points,)."""
         return numpy.einsum("tp,tp->p", self.pressure, self.sliding.steps)
 
     @cached_property
@@ -77,7 +77,7 @@ def _unusual(*coefficients: float) -> tuple[str, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class Archard:
-    """dh = k p |v| dt.
+    """dh = k p v dt, v being the speed of sliding.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class Archard:
 
 @dataclass(frozen=True, kw_only=True)
 class AreaLaw:
-    """dh = C |v| dt wherever there is contact, whatever the pressure.
+    """dh = C v dt, v being the speed of sliding, wherever there is contact, whatever the pressure.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ class AreaLaw:
 
 @dataclass(frozen=True, kw_only=True)
 class CrossShear:
-    """dh = k p |v| dt with a k that grows with the cross-shear, and may fall with the pressure.
+    """dh = k p v dt with a k that grows with the cross-shear, and may fall with the pressure.
 
     k = [straight + 2 CS (circular - straight)] (p/reference)^exponent, p being the mean pressure of a point while it
     slides in contact.
