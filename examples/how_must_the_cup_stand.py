@@ -6,8 +6,8 @@ Distance to the rim and largest pressure over inclination and anteversion.
 
 In single-leg stance the load of a hip leans to the middle of the body, and the cup opens to the side. How steep may it
 stand until the contact reaches its rim? With a 32 mm head and 170° of cover, at 15° of anteversion: 48°. Every
-orientation is pressed by full elasticity in the cup as it is built, whose rings do not know how it stands: a map of a
-hundred takes a second or two.
+orientation is pressed by full elasticity in the cup as it is built, whose rings do not know how it stands: a map of
+seventy takes a second.
 """
 
 from dataclasses import replace
@@ -22,7 +22,7 @@ hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=7.0, liner=bs.CR
 stance = (-0.2, 0.0, 1.0)  # to the right, to the front, upwards: the middle of the body is to the left of a right hip
 cup = bs.Cup(arc_of_cover=np.radians(170.0), inclination=np.radians(45.0), anteversion=np.radians(15.0))
 sphere = bs.Sphere(cup=cup, direction=stance, ring_width=np.radians(3.0))
-angles = {"inclination": np.radians(np.linspace(25, 60, 15)), "anteversion": np.radians(np.linspace(0, 30, 7))}
+angles = {"inclination": np.radians(np.linspace(30, 60, 13)), "anteversion": np.radians(np.linspace(0, 30, 5))}
 
 stood = bs.orient(hip, model=sphere, force=3000.0, **angles)
 print(f"{stood.status.size} orientations in {stood.seconds:.1f} s")
@@ -35,8 +35,9 @@ orientation_figure(stood).savefig("how_must_the_cup_stand.png", dpi=150)
 
 
 def steepest(stood: bs.Orientations) -> np.ndarray:
-    """The inclination in degrees at which the contact reaches the rim, for each anteversion."""
-    return np.array([np.interp(0.0, -margin, np.degrees(stood.inclination)) for margin in stood.edge_distance.T])
+    """The inclination in degrees at which the contact reaches the rim, for each anteversion; NaN outside of the map."""
+    inclination = np.degrees(stood.inclination)
+    return np.array([np.interp(0.0, -margin, inclination, np.nan, np.nan) for margin in stood.edge_distance.T])
 
 
 figure = Figure(figsize=(6.4, 4.2), layout="constrained")
@@ -45,7 +46,7 @@ for arc, colour, dash in ((160, "#0072B2", (0, (6, 2))), (170, "black", "-"), (1
     model = replace(sphere, cup=replace(cup, arc_of_cover=np.radians(arc)))
     limit = steepest(bs.orient(hip, model=model, force=3000.0, **angles))
     axes.plot(limit, np.degrees(angles["anteversion"]), color=colour, linestyle=dash, linewidth=2, label=f"{arc}°")
-    print(f"arc of cover {arc}°, anteversion 15°: off the rim up to an inclination of {limit[3]:.0f}°")
+    print(f"arc of cover {arc}°, anteversion 15°: off the rim up to an inclination of {limit[2]:.0f}°")
 axes.set_xlabel("inclination at which the contact reaches the rim [°]")
 axes.set_ylabel("anteversion [°]")
 axes.grid(color="0.9", linewidth=0.6)
