@@ -29,6 +29,7 @@ BENCHMARKS = {
         "a million presses by force from the tables, beside the exact solver and the paper's model",
     ),
     "off-axis": ("off_axis", "a ball in a cup at a tilt: set up, displacement, force, a cycle; and CalculiX"),
+    "hip": ("hip", "a hip in use: a cycle, millions of them, springs and real cup; and a loop by hand in NumPy"),
     "gpu": ("gpu", "presses a second on a GPU through PyTorch, against its memory's bandwidth; skipped without one"),
     "app": ("app", "the explorer in a browser: first view, a slider that moves, fifty sessions at once"),
     "import": ("start", "how long a fresh interpreter takes to import the package and to answer a joint file"),

@@ -216,6 +216,13 @@ def test_a_ball_that_lifts_off_wears_only_where_it_presses():
     assert half.after(1e6).last.volume > 0
 
 
+def test_a_liner_that_is_worn_through_is_told():
+    thin = hip(liner=2.0, wear=Archard(coefficient=1e-5))
+    assert any(note.startswith("worn through: after 5e+06 cycles") for note in thin.after(5e6, [1e5]).notes)
+    assert any("its stiffness is still that of a whole one" in note for note in thin.after(1e6).notes)
+    assert not any("worn" in note for note in hip().after(1e5).notes)
+
+
 def test_a_cycle_without_a_load_wears_nothing():
     history = hip(cycle=walked(0.0, 0.0)).after(1e6)
     assert history.last.volume == 0

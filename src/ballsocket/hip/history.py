@@ -149,7 +149,18 @@ class History:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be said of it."""
-        return (*self.use.notes, *self._at_the_rim, *(() if self.settled else (_UNSETTLED,)))
+        unsettled = () if self.settled else (_UNSETTLED,)
+        return (*self.use.notes, *self._worn_through, *self._at_the_rim, *unsettled)
+
+    @property
+    def _worn_through(self) -> tuple[str, ...]:
+        """When the liner is gone, or so thin that it is another spring."""
+        liner = float(self.use.joint.liner_thickness)
+        for limit, sentence in ((1.0, _THROUGH), (_THIN, _THINNER)):
+            found = next((report for report in self.reports if report.depth > limit * liner), None)
+            if found is not None:
+                return (sentence.format(found.cycles, found.depth, liner),)
+        return ()
 
     @property
     def _at_the_rim(self) -> tuple[str, ...]:
@@ -180,5 +191,8 @@ class History:
         }
 
 
+_THIN = 0.25
+_THROUGH = "worn through: after {:g} cycles the depth is {:.3g} mm in a liner of {:g} mm; what follows has no meaning"
+_THINNER = "after {:g} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of a whole one"
 _REACHES = "edge loading: after {:g} cycles the contact reaches the rim, first at {:.1f} % of the cycle"
 _UNSETTLED = "a contact did not balance its load: no digit of this run is to be trusted"
