@@ -120,6 +120,23 @@ def test_a_preloaded_joint_loses_its_contact_where_it_is_pulled_from_and_by_wear
     assert not (beyond.pressure_map[2] > 0).all()
 
 
+def test_a_preloaded_joint_is_stiff_whichever_way_it_is_pressed():
+    pressed, pulled = (WRAPPED.press(TIGHT, indentation=each) for each in (0.06, 0.03))
+    rest = WRAPPED.press(TIGHT, force=0.0)
+    assert pulled.indentation < rest.indentation < pressed.indentation
+    assert pulled.force < 0 < pressed.force
+    for contact in (pressed, pulled, rest):
+        assert contact.stiffness > 0
+    slope = (pressed.force - pulled.force) / 0.03
+    assert slope == pytest.approx(pressed.stiffness, rel=1e-3)  # all of the bore touches: nothing but linear
+    assert WRAPPED.press(TIGHT, force=5000.0).indentation > rest.indentation
+
+
+def test_a_hemisphere_pushes_a_ball_out_that_is_too_large():
+    contact = replace(WRAPPED, cup=bs.Cup()).press(TIGHT, force=0.0)
+    assert contact.status is bs.Status.DISLOCATED
+
+
 def test_springs_in_a_preloaded_shell_are_the_linear_law():
     """All in contact: F = K R2² ∫ n nᵀ dΩ e, with no half angle in it."""
     model = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(340.0)), surface=bs.Springs(), ring_width=radians(2.0))

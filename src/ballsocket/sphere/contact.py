@@ -23,7 +23,8 @@ class OffAxisContact(SolvedContact):
     Vectors have a last axis of 3, in the cup's own frame: from the centre of the bore x leans towards the rim, z points
     to the dome's pole (`cup.frame` gives them in the body's). `force` is the size of the load, `indentation` how far
     the ball's centre is displaced beyond the clearance, `half_angle` that of a round contact of the same area;
-    angles count from the load.
+    angles count from the load. In a preloaded joint force and indentation are those along the load's axis: a force
+    below 0 pulls.
     """
 
     model: Any

@@ -29,11 +29,15 @@ def _forced(bed: Bed, force: Numbers, axes: Numbers, edges: Edges) -> States:
     held = (_polar(axes) < reach) | (reach > numpy.pi / 2)
     rest = bed.under(axes * force[:, None], _start(bed, force, axes), held)
     leaves = _polar(rest.displacement) > reach + _SWUNG
-    return States(bed=bed, rest=rest, axes=axes, edges=edges, dislocated=~held | (~rest.found & leaves))
+    out = held & (numpy.linalg.norm(rest.displacement, axis=1) > _AWAY * bed.separation.socket_radius)
+    return States(bed=bed, rest=rest, axes=axes, edges=edges, dislocated=~held | out | (~rest.found & leaves))
 
 
 _OUT = 0.5
 """Of the bore's radius: a ball that touches nothing and is displaced further has left its bore."""
+
+_AWAY = 0.25
+"""Of the bore's radius: a ball at rest is nearer, and a preloaded one that is not was pushed out by its bore."""
 
 _SWUNG = numpy.pi / 3
 """So far beyond the rim the centre of a ball has swung that no longer comes to rest.

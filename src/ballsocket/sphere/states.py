@@ -93,13 +93,23 @@ class States:
 
     @property
     def force(self) -> Numbers:
-        """The size of the load in N."""
+        """The size of the load in N; in a preloaded joint the load along its axis, below 0 where it pulls."""
+        if self._preloaded:
+            return self._along(self.force_vector)
         return numpy.linalg.norm(self.force_vector, axis=0)
 
     @property
     def indentation(self) -> Numbers:
-        """How far the ball moved on after it could first touch, in mm."""
-        return numpy.linalg.norm(self.displacement, axis=0) - self.bed.separation.clearance
+        """How far the ball moved on after it could first touch, in mm; in a preloaded joint along the load's axis."""
+        moved = self._along(self.displacement) if self._preloaded else numpy.linalg.norm(self.displacement, axis=0)
+        return moved - self.bed.separation.clearance
+
+    @property
+    def _preloaded(self) -> bool:
+        return self.bed.separation.clearance < 0
+
+    def _along(self, vectors: Numbers) -> Numbers:
+        return numpy.einsum("kn,nk->n", vectors, self.axes)
 
     @cached_property
     def tangent(self) -> Numbers:
@@ -109,7 +119,9 @@ class States:
 
     @property
     def stiffness(self) -> Numbers:
-        """Slope of the load along itself over the displacement's length, in N/mm."""
+        """Slope of force over indentation, in N/mm."""
+        if self._preloaded:
+            return numpy.einsum("nk,kln,nl->n", self.axes, self.tangent, self.axes)
         along, way = (each / numpy.linalg.norm(each, axis=0) for each in (self.force_vector, self.displacement))
         return numpy.einsum("kn,kln,ln->n", along, self.tangent, way)
 
