@@ -31,6 +31,7 @@ myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 myst_dmath_double_inline = True
 
+suppress_warnings = ["ref.python"]  # a quantity is an attribute of several answers
 default_role = "py:obj"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"

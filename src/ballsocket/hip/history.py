@@ -25,7 +25,7 @@ class First:
     work : float
         ∫∫ p v dA dt in N m.
     cross_shear : float
-        Its mean over the socket, weighted by p |v|.
+        Its mean over the socket, weighted by p v.
     volume, depth : float
         What a million such cycles would wear: mm³, and mm at the deepest point.
     max_pressure, max_force : float
