@@ -128,3 +128,12 @@ def test_a_map_of_joints_that_tables_do_not_know_is_solved():
     told = page.view._told.object
     assert "exact answers, since tabulated knows none of these joints" in told
     assert "Smallest value of" in told
+
+
+def test_a_legend_of_many_models_covers_no_curve_and_the_exact_one_lies_below():
+    page = Page(f"view=press&preset=hip-28&load.force=3000&shown={','.join(reversed(bs.catalogue))}")
+    chart = page.view._charts._pressure
+    assert not chart.legend.visible
+    assert chart._lines.data["name"][0] == "exact"
+    page.ask(shown=("exact", "hertz"))
+    assert chart.legend.visible

@@ -44,3 +44,15 @@ def test_axes_are_drawn_in_the_unit_that_they_name():
     bands = study_plots.band_figure(bs.study(bs.HessForsbach(), HIP, scattered))
     assert bands.axes[0].get_xlabel() == "indentation d [µm]"
     assert bands.axes[0].lines[0].get_xdata()[-1] == pytest.approx(60.0)
+
+
+def test_a_map_says_what_it_shows_and_names_its_limits():
+    space = bs.study(
+        bs.HessForsbach(), HIP, ball_radius=Span(11.0, 23.0, 9), liner_thickness=Span(3.0, 15.0, 9), force=3000.0
+    )
+    limits = (Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0, high=12.0))
+    figure = study_plots.design_map(space, limits, ["max_pressure"])
+    assert figure.get_suptitle() == "hess-forsbach; normal force = 3000 N; answered by hess-forsbach"
+    said = {text.get_text() for text in figure.axes[0].texts}
+    assert {"outer radius ≤ 26 mm", "liner thickness ≥ 4 mm", "liner thickness ≤ 12 mm"} <= said
+    assert all(text.get_path_effects() for text in figure.axes[0].texts)

@@ -60,8 +60,9 @@ class CurveChart:
 
 
 def _lines(curves: Mapping[str, Curve], palette: Palette) -> dict[str, list[Any]]:
-    """Thick where a curve can be trusted, thin all the way where it cannot."""
-    rows = [row for name, curve in curves.items() for row in _rows(name, curve, palette)]
+    """Thick where a curve can be trusted, thin all the way where it cannot; one without gaps lies below the others."""
+    ordered = sorted(curves.items(), key=lambda named: bool(named[1].line.dash))
+    rows = [row for name, curve in ordered for row in _rows(name, curve, palette)]
     return {
         head: [row[place] for row in rows] for place, head in enumerate(("name", "x", "y", "width", "colour", "dash"))
     }

@@ -9,6 +9,7 @@ import numpy
 
 from ..contact import Contact
 from ..output.press_plot import FORCE_CURVE
+from ..output.quick_plot import MOST
 from ..output.style import Line
 from ..quantities import FIELD
 from .curves import Curve, CurveChart
@@ -37,6 +38,7 @@ class PressCharts:
             self._pressure.show({}, 1.0, 1.0)
             self._force.show({}, 1.0, 1.0)
             return
+        self._pressure.legend.visible = len(contacts) <= MOST  # else it covers curves, and the table below says it
         each = contacts.values()
         widest = min(max(float(contact.half_angle) for contact in each), pi / 2)
         highest = max(float(contact.max_pressure) for contact in each)

@@ -30,6 +30,7 @@ def press_figure(
     curves: Mapping[str, Contact],
     title: str = "",
     lines: Mapping[str, Line] | None = None,
+    note: str = "",
 ) -> Figure:
     """Pressure over angle beside force over indentation.
 
@@ -43,6 +44,8 @@ def press_figure(
         By default the joint of the first contact, and its load.
     lines : mapping of str to Line, optional
         How each is drawn; by default as the model of that name is drawn everywhere.
+    note : str
+        What is said above the legend.
 
     Returns
     -------
@@ -70,8 +73,8 @@ def press_figure(
     right.set_xlim(0.0, 1.12 * furthest[0] or 1.0)
     right.set_ylim(0.0, 1.6 * furthest[1] or 1.0)
     columns = min(len(contacts), 4)
-    legend = figure.legend(loc="outside lower center", ncols=columns, **LEGEND)
-    for text in legend.get_texts():
+    legend = figure.legend(loc="outside lower center", ncols=columns, title=note, title_fontsize=8, **LEGEND)
+    for text in (*legend.get_texts(), legend.get_title()):
         text.set_parse_math(False)
     figure.suptitle(title or _title(next(iter(contacts.values()))), fontsize=10, parse_math=False)
     return figure

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from ..catalogue import reference
 from ..compare import answered, force_curves
 from ..contact import Contact
 from ..sphere.contact import OffAxisContact
@@ -15,10 +16,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+MOST = 7
+"""Curves that can be told from each other in one figure."""
+
+
 def plot(contacts: Mapping[str, Contact]) -> Figure:
     """The pressure over the angle of single contacts, beside the force over the indentation.
 
-    A contact off the cup's axis that is alone is drawn in its cup.
+    A contact off the cup's axis that is alone is drawn in its cup. Of many models at most `MOST` are drawn, and the
+    others named.
 
     Raises
     ------
@@ -36,5 +42,27 @@ def plot(contacts: Mapping[str, Contact]) -> Figure:
     alone = next(iter(shown.values())) if len(shown) == 1 else None
     if isinstance(alone, OffAxisContact) and alone.indentation > 0:
         return cup_figure(alone)
-    models: Any = {name: contact.model for name, contact in shown.items()}
-    return press_figure(shown, force_curves(shown, models))
+    kept = telling(shown)
+    models: Any = {name: contact.model for name, contact in kept.items()}
+    return press_figure(kept, force_curves(kept, models), note=_left_out(shown, kept))
+
+
+def telling(contacts: Mapping[str, Contact]) -> dict[str, Contact]:
+    """At most `MOST` of the contacts: those that can be trusted first, and none that lies on the exact one."""
+    if len(contacts) <= MOST:
+        return dict(contacts)
+    exact = contacts.get(reference.name)
+    apart = [name for name, contact in contacts.items() if exact in (None, contact) or not _same(contact, exact)]
+    first = sorted(apart, key=lambda name: not contacts[name].valid)[:MOST]
+    return {name: contact for name, contact in contacts.items() if name in first}
+
+
+def _same(contact: Contact, exact: Contact) -> bool:
+    """Whether two curves would lie on each other."""
+    ratios = [getattr(contact, name) / getattr(exact, name) for name in ("force", "indentation", "max_pressure")]
+    return all(abs(ratio - 1) < 1e-3 for ratio in ratios)
+
+
+def _left_out(shown: Iterable[str], kept: Mapping[str, Contact]) -> str:
+    names = [name for name in shown if name not in kept]
+    return f"not drawn: {', '.join(names)}" if names else ""

@@ -3,96 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy
 
 from ..quantities import QUANTITIES
-from ..studies.limits import Limit, allowed, margin_over
+from ..studies.limits import Limit, allowed
+from .design_map import SHOWN, design_map, read
 from .style import BLUE, INK, LEGEND, ORANGE, finish
 
 if TYPE_CHECKING:
     import xarray
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SHOWN = ("max_pressure", "area", "half_angle")
-"""What a design map shows."""
-
-
-def design_map(
-    study: xarray.Dataset, limits: Sequence[Limit] = (), quantities: Iterable[str] = SHOWN, best: Any = None
-) -> Figure:
-    """Contours of answers over the two axes of a study, pale where a limit is broken, hatched where the model is
-    not to be trusted.
-
-    Parameters
-    ----------
-    study : xarray.Dataset
-        From `study`, with two axes of more than one value.
-    limits : sequence of Limit
-        Their ends are dotted lines.
-    quantities : iterable of str
-    best : mapping of str to float, optional
-        A point to mark.
-
-    Raises
-    ------
-    ValueError
-        A study that has not two axes.
-    """
-    from matplotlib.figure import Figure
-
-    names = [name for name in quantities if name in study.data_vars]
-    across, up = _two_axes(study)
-    figure = Figure(figsize=(4.4 * len(names) + 0.4, 4.0), layout="constrained")
-    good = allowed(study, limits).transpose(up, across).values
-    trusted = study.valid.transpose(up, across).values
-    for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values = _read(study, name).transpose(up, across).values
-        x, y = _read(study, across).values, _read(study, up).values
-        axes.contourf(x, y, values, levels=14, cmap="viridis")
-        lines = axes.contour(x, y, values, levels=7, colors="white", linewidths=0.6)
-        axes.clabel(lines, fontsize=8)
-        if not good.all():
-            axes.contourf(x, y, (~good).astype(float), levels=[0.5, 1.5], colors="white", alpha=0.65)
-        if not trusted.all():
-            doubt = axes.contourf(x, y, (~trusted).astype(float), levels=[0.5, 1.5], colors="none", hatches=["//"])
-            doubt.set_edgecolor("0.85")
-            doubt.set_linewidth(0)
-        _draw_limits(axes, study, limits, across, up)
-        if best is not None:
-            place = (best[axis] * QUANTITIES[axis].shown.factor for axis in (across, up))
-            axes.plot(*place, "o", color="white", markeredgecolor="black", markersize=8)
-        axes.set_xlabel(QUANTITIES[across].label())
-        axes.set_ylabel(QUANTITIES[up].label())
-        axes.set_title(QUANTITIES[name].label(), fontsize=10)
-    said = [(good, "pale: a limit is broken, or no answer"), (trusted, "hatched: the model is not to be trusted")]
-    figure.supxlabel("; ".join(words for where, words in said if not where.all()), fontsize=8, color="0.3")
-    return figure
-
-
-def _read(study: xarray.Dataset, name: str) -> xarray.DataArray:
-    """A quantity or axis in the unit in which it is drawn."""
-    return study[name] * QUANTITIES[name].shown.factor
-
-
-def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
-    long = [str(dim) for dim, size in study.sizes.items() if size > 1]
-    if len(long) != 2:
-        raise ValueError(f"a map needs two axes of more than one value, got {', '.join(long) or 'none'}")
-    for name in long:
-        if name not in QUANTITIES:
-            raise ValueError(f"a map has axes of numbers, and {name} has names")
-    return long[0], long[1]
-
-
-def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], across: str, up: str) -> None:
-    for limit in limits:
-        values = margin_over(study, limit, across, up)
-        if numpy.nanmin(values) < 0 < numpy.nanmax(values):
-            x, y = _read(study, across).values, _read(study, up).values
-            axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
+__all__ = ["SHOWN", "band_figure", "design_map", "front_figure", "sensitivity_figure"]
 
 
 def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressure", "half_angle")) -> Figure:
@@ -111,7 +35,7 @@ def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressur
     names = [name for name in quantities if name in study.data_vars]
     figure = Figure(figsize=(5.0 * len(names), 4.0), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values, x = _read(study, name), _read(study, others[0]).values
+        values, x = read(study, name), read(study, others[0]).values
         for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
             low, high = (values.quantile(end, dim="sample").values for end in ((1 - share) / 2, (1 + share) / 2))
             axes.fill_between(x, low, high, color=shade, label=f"{100 * share:g} % of the joints", linewidth=0)
@@ -138,9 +62,9 @@ def front_figure(
     figure = Figure(figsize=(6.4, 4.6), layout="constrained")
     axes = figure.subplots()
     good = allowed(study, limits)
-    one, other = (_read(study, name).where(good).values.ravel() for name in minimise)
+    one, other = (read(study, name).where(good).values.ravel() for name in minimise)
     axes.plot(one, other, ".", color="0.75", markersize=3, label="allowed")
-    best = [_read(front, name).values for name in minimise]
+    best = [read(front, name).values for name in minimise]
     axes.plot(*best, "o-", color=INK, markersize=4, linewidth=1.2, label="no other is better in both")
     finish(axes, *(QUANTITIES[name].label() for name in minimise))
     axes.legend(**LEGEND)
