@@ -113,3 +113,9 @@ def test_a_liner_that_creeps_a_little_is_a_softer_spring():
     softer = 1 / (1 / use.bed.modulus + 8.0 * 1e-4)
     expected = replace(use.bed, modulus=softer).rest(use.loads, np.zeros(len(use.bed.areas))).pressure.max()
     assert use.after(1e4).last.max_pressure == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_massive_socket_wears_and_cannot_creep():
+    assert hip(liner=float("inf")).after(1e5).last.volume > 0
+    with pytest.raises(ValueError, match="liner_thickness = inf is not allowed: creep needs a liner that ends"):
+        hip(liner=float("inf"), creep=LADDER)

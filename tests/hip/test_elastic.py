@@ -1,12 +1,13 @@
 """Wear with full elasticity: the same identities, beside the springs, smooth, and stopped and gone on."""
 
+from dataclasses import replace
 from math import radians
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import iso_14242_1
+from ballsocket.hip import iso_14242_1, logarithmic, rocking
 from ballsocket.hip.elastic_bed import elastic_bed, even_grid
 from ballsocket.hip.levels import levels_of
 from ballsocket.hip.smoothing import Smoothing
@@ -127,3 +128,25 @@ def test_five_million_cycles_in_a_real_cup():
     springs, cup = hip().after(5e6).last, hip(surface=bs.RealCup()).after(5e6).last
     assert cup.volume == pytest.approx(springs.volume, rel=5e-3)
     assert cup.depth == pytest.approx(springs.depth, rel=1e-2)
+
+
+def test_loads_that_swing_in_a_worn_bore_come_to_rest():
+    """Small loads in a bore that is worn to the ball's form, where many cells touch at once."""
+    use = elastic(cycle=rocking(20))
+    report = use.after(8e5).last
+    assert report.settled
+    assert report.volume == pytest.approx(hip(cycle=rocking(20)).after(8e5).last.volume, rel=1e-2)
+
+
+def test_creep_in_a_bore_of_full_elasticity_lowers_its_pressures():
+    crept = elastic(creep=logarithmic()).after(3e4).last
+    assert crept.settled
+    assert crept.creep_depth == pytest.approx(hip(creep=logarithmic()).after(3e4).last.creep_depth, rel=0.1)
+    assert crept.max_pressure < 0.8 * elastic().first.max_pressure
+
+
+def test_an_incompressible_liner_is_refused_and_springs_take_it():
+    joint = replace(hip().joint, liner=bs.Material(young=1000.0, poisson=0.5))
+    with pytest.raises(bs.OutsideDomainError, match="full elasticity has no answer for ν = 0.5"):
+        replace(elastic(), joint=joint)
+    assert replace(hip(), joint=joint).first.volume > 0

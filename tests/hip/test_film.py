@@ -1,5 +1,6 @@
 """Film, friction and the distance to the rim over a cycle."""
 
+import json
 from math import radians
 
 import numpy as np
@@ -72,3 +73,17 @@ def test_a_contact_at_the_rim_is_told_with_its_instant():
     assert any(
         note.startswith("edge loading: after 100000 cycles the contact reaches the rim") for note in history.notes
     )
+
+
+@pytest.mark.parametrize(
+    ("words", "lubricant", "missing"),
+    [
+        ({"clearance": 0.0}, Lubricant(), "least_nm"),
+        ({}, Lubricant(ball_roughness=0.0, cup_roughness=0.0), "lambda_largest"),
+    ],
+)
+def test_what_has_no_film_is_missing_in_json(words, lubricant, missing):
+    told = hip(**words).after(1e4, lubricant=lubricant).summary()
+    assert told["film"][missing] is None
+    assert told["film"]["heat_J_per_cycle"] > 0
+    json.dumps(told, allow_nan=False)

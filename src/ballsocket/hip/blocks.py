@@ -85,7 +85,8 @@ class Run:
     @property
     def crept(self) -> Numbers:
         """Depth of creep in mm: (cells,)."""
-        return float(self.use.joint.liner_thickness) * self.strain.sum(axis=0)
+        strain = self.strain.sum(axis=0)
+        return self.use.bed.smoothed(float(self.use.joint.liner_thickness) * strain) if strain.any() else strain
 
     @property
     def volume(self) -> float:
@@ -185,7 +186,7 @@ class Run:
         mean = self._pass.pressure.sum(axis=0) / instants
         stiff = near.bed.stiffest * (self._pass.pressure > 0).sum(axis=0) / instants
         for _ in range(_SWEEPS):
-            self._creep = thickness * (stays + adds * mean)
+            self._creep = near.bed.smoothed(thickness * (stays + adds * mean))
             self._rate(self._values)
             change = (self._pass.pressure.sum(axis=0) / instants - mean) / (1 + stiff * thickness * adds)
             mean = numpy.maximum(mean + change, 0.0)

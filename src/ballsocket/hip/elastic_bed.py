@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import ceil
-from typing import Any
 
 import numpy
 
@@ -19,6 +18,7 @@ from ..sphere.compliance import Compliance, compliance_on
 from ..sphere.gap import Separation
 from ..sphere.grid import Grid
 from ..sphere.search import Bed
+from ..sphere.search import Rest as BedRest
 from ..sphere.surfaces import ClosedShell, RealCup
 from .levels import Levels, levels_of
 from .smoothing import Smoothing
@@ -26,6 +26,7 @@ from .springs import Rest
 
 _POWER = 60
 _SEED = 1
+_DEEPER = 1.0, 1.2
 
 
 def even_grid(reach: float, width: float) -> Grid:
@@ -120,8 +121,7 @@ class ElasticBed:
             kind=LinearGap,
         )
         bed = Bed(compliance=self.compliance, separation=separation)
-        begin, pressure = self._begin(levels, depth, start, shape)
-        found = bed.under(levels.loads, begin, numpy.ones(shape[0], dtype=bool), pressure)
+        found = self._settled(bed, levels, depth, start)
         flat = found.pressure.reshape(shape[0], -1)
         return Rest(
             displacement=levels.between(found.displacement),
@@ -130,13 +130,27 @@ class ElasticBed:
             levels=(found.displacement, found.pressure),
         )
 
-    def _begin(self, levels: Levels, depth: Numbers, start: Rest | None, shape: Any) -> tuple[Numbers, Numbers | None]:
-        if start is not None and start.levels is not None and start.levels[1].shape == shape:
-            return start.levels
+    def _settled(self, bed: Bed, levels: Levels, depth: Numbers, start: Rest | None) -> BedRest:
+        """Balls at rest, from where they were before; those that do not settle begin again, pressed in deeper."""
+        count, deep = len(levels.loads), self._deep(levels, depth)
+        kept = None if start is None else start.levels
+        begin, pressure = kept if kept is not None and len(kept[0]) == count else (deep, None)
+        found = bed.under(levels.loads, begin, numpy.ones(count, dtype=bool), pressure)
+        for more in _DEEPER:
+            if found.found.all():
+                break
+            again = bed.under(levels.loads, more * deep, ~found.found)
+            missed = ~found.found
+            for name in ("displacement", "pressure", "found"):
+                getattr(found, name)[missed] = getattr(again, name)[missed]
+        return found
+
+    def _deep(self, levels: Levels, depth: Numbers) -> Numbers:
+        """Displacements (levels, 3) of balls that are pressed in deeper than they will be, in mm."""
         size = numpy.linalg.norm(levels.loads, axis=1)
         deep = linear_indentation(self.socket_radius, self.clearance, self.evenly, size)
         along = levels.loads / numpy.where(size > 0, size, 1.0)[:, None]
-        return along * (self.clearance + deep + float(depth.max(initial=0.0)))[:, None], None
+        return along * (self.clearance + deep + float(depth.max(initial=0.0)))[:, None]
 
 
 @lru_cache(maxsize=4)

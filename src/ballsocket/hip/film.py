@@ -61,7 +61,14 @@ def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float
         Of the ball across the load, in rad/s.
     viscosity : float
         In Pa s.
+
+    Returns
+    -------
+    pair of arrays
+        NaN without clearance, where no body of revolution stands for ball and socket.
     """
+    if float(joint.clearance) == 0:
+        return numpy.full_like(force, numpy.nan), numpy.full_like(force, numpy.nan)
     # h_min = 2.80 R* U^.65 W^-.21, h_cen = 3.34 R* U^.64 W^-.22, U = ηu/(E'R*), W = F/(E'R*²), u = ωR1/2
     radius = float(joint.ball_radius * joint.socket_radius / joint.clearance)
     modulus = 2 / (_give(joint.liner) + (0.0 if joint.ball is None else _give(joint.ball)))
@@ -106,8 +113,10 @@ class Film:
 
     @property
     def regime(self) -> str:
-        """Where the film is thickest: boundary, mixed or full."""
+        """Where the film is thickest: boundary, mixed or full; unknown without clearance."""
         largest = float(self.ratio.max(initial=0.0))
+        if numpy.isnan(largest):
+            return "unknown"
         return "boundary" if largest < _MIXED else "mixed" if largest < _FULL else "full"
 
     def summary(self) -> dict[str, Any]:
@@ -115,16 +124,17 @@ class Film:
         if not len(self.phases):
             return {}
         size = numpy.linalg.norm(self.moment, axis=1)
-        return {
-            "least_nm": 1e6 * float(self.least.min()),
-            "largest_nm": 1e6 * float(self.least.max()),
-            "lambda": [float(self.ratio.min()), float(self.ratio.max())],
-            "regime": self.regime,
-            "moment_Nmm": float(size.max()),
-            "power_W": float(self.power.mean()),
+        told = {
+            "least_nm": 1e6 * self.least.min(),
+            "largest_nm": 1e6 * self.least.max(),
+            "lambda_least": self.ratio.min(),
+            "lambda_largest": self.ratio.max(),
+            "moment_Nmm": size.max(),
+            "power_W": self.power.mean(),
             "heat_J_per_cycle": self.heat,
-            "note": CONFORMING,
         }
+        numbers = {name: float(each) if numpy.isfinite(each) else None for name, each in told.items()}
+        return {**numbers, "regime": self.regime, "note": CONFORMING}
 
 
 def film(use: InUse, rest: Rest, lubricant: Lubricant) -> Film:

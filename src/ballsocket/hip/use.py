@@ -16,7 +16,9 @@ from ..cup import Cup
 from ..fem.shapes import socket_shape
 from ..joint import Joint
 from ..sphere.grid import Grid, grid
+from ..sphere.model import Sphere
 from ..sphere.surfaces import ClosedShell, RealCup, Springs
+from ..validity import inside
 from .blocks import Run
 from .checkpoint import Checkpoint, checkpoint
 from .creep import Ladder
@@ -87,6 +89,11 @@ class InUse:
             raise ValueError("a hip in use is one joint, and this one has arrays of numbers")
         require("ring_width", self.ring_width, radians(0.5) <= self.ring_width <= radians(10.0), "0.5 to 10 degrees")
         require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
+        if not isinstance(self.surface, Springs):
+            inside(Sphere(cup=self._around).domain, self.joint, "full elasticity")
+        if self.creep is not None:
+            thickness = float(self.joint.liner_thickness)
+            require("liner_thickness", thickness, thickness < inf, "creep needs a liner that ends")
         require("seconds_per_cycle", self.seconds, 0 < self.seconds < inf, "a time (s) is positive and finite")
         self._check_held()
 

@@ -55,6 +55,6 @@ def _film(history: History) -> str:
     if not len(film.phases):
         return "no film: nothing is pressed"
     told = film.summary()
-    thick = f"film {told['least_nm']:.3g} to {told['largest_nm']:.3g} nm"
+    thick = f"film {1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm, λ up to {film.ratio.max():.2g}"
     rubs = f"friction up to {told['moment_Nmm'] / 1e3:.3g} N m, {told['power_W']:.2g} W"
-    return f"{thick}, λ up to {told['lambda'][1]:.2g}, {told['regime']} lubrication; {rubs}"
+    return f"{thick}, {told['regime']} lubrication; {rubs}"
