@@ -53,7 +53,7 @@ class CompiledLaw:
     ...         total += force * deepest / steps
     ...     return total
     >>> round(work(law, 0.05, 1000), 3)
-    77.825
+    78.226
     """
 
     function: Any

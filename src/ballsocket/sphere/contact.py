@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees
+from math import degrees, prod
 from typing import Any
 
 import numpy
@@ -39,6 +39,22 @@ class OffAxisContact(SolvedContact):
     def von_mises_between(self) -> tuple[Array, Array]:
         """What `von_mises` lies between, which is quickly told."""
         return self.von_mises, self.von_mises
+
+    @property
+    def single_state(self) -> Any:
+        """The solver's own answer, of one contact that touches, with a load or preloaded.
+
+        Raises
+        ------
+        ValueError
+            More than one contact, or one that does not touch.
+        """
+        if prod(self.laws.shape) != 1:
+            raise ValueError(f"a pressure map is for one contact, not {self.laws.shape}: press it alone")
+        pieces = self.laws.pieces
+        if self._failed_everywhere or not pieces or not pieces[0][1].touching.all():
+            raise ValueError("a pressure map needs a contact that touches")
+        return pieces[0][1].state
 
     @cached_property
     def force_vector(self) -> Array:
