@@ -1,10 +1,13 @@
 """One option: `pytest --long` runs every case, and the proofs that take half a minute each."""
 
 import os
-from tempfile import mkdtemp
+from tempfile import gettempdir, mkdtemp
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the cores are busy with other tests
 os.environ.setdefault("BALLSOCKET_CACHE", mkdtemp(prefix="ballsocket-cache-"))  # not that of who runs them
+
+os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", f"{gettempdir()}/ballsocket-jax")  # compiled once for all workers
+os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.1")
 
 import pytest
 from hypothesis import settings

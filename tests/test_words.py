@@ -1,7 +1,9 @@
 """Material, Joint, presets, Contact: checked once, printed well, cited."""
 
+import ast
 import json
 import pickle
+import re
 from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
@@ -10,6 +12,7 @@ import pytest
 import ballsocket as bs
 
 from .joints import HIP
+from .places import ROOT
 
 PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
 GOOD = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "liner": bs.UHMWPE}
@@ -497,3 +500,17 @@ def test_nothing_pressed_is_nothing(model):
     assert contact.max_pressure.shape == (0,)
     assert contact.valid.shape == (0,)
     assert "no answer" in repr(contact)
+
+
+LEANING = re.compile(r"^(Of|The same|That of|Those of|As|Its|Their|Like) ")
+
+
+def test_the_first_line_of_a_docstring_names_its_noun():
+    """It is read in a list, beside a name, where nothing else says what it is about."""
+    leaning = []
+    for path in sorted((ROOT / "src" / "ballsocket").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.FunctionDef | ast.ClassDef):
+                said = ast.get_docstring(node) or ""
+                leaning += [f"{path.name}: {said.splitlines()[0]}"] if LEANING.match(said) else []
+    assert leaning == []

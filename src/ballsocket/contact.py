@@ -292,7 +292,7 @@ class Contact(Outcome):
         return describe.summary(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as `summary()`."""
+        """The contact as a dictionary, which is its `summary()`."""
         return self.summary()
 
     def to_frame(self) -> pandas.DataFrame:

@@ -127,7 +127,7 @@ class Cup:
         return x, y, z
 
     def tilted(self, angle: float) -> Cup:
-        """The same cup turned so that a vertical load comes at this angle (rad, at most π/2) from its axis."""
+        """This cup turned so that a vertical load comes at this angle (rad, at most π/2) from its axis."""
         return replace(self, inclination=angle, anteversion=0.0)
 
     def tilt(self, direction: Array) -> Array:

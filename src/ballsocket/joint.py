@@ -267,7 +267,7 @@ class Joint(Dimensions):
         return (*self.liner.strengths.values(), *ball)
 
     def without_strengths(self) -> Joint:
-        """The same joint of materials whose strengths are not known; no solution depends on them."""
+        """This joint of materials whose strengths are not known; no solution depends on them."""
         ball = None if self.ball is None else _elastic(self.ball)
         backing = tuple(Layer(thickness=layer.thickness, material=_elastic(layer.material)) for layer in self.backing)
         return unchecked(Joint, **{**vars(self), "liner": _elastic(self.liner), "ball": ball, "backing": backing})
@@ -327,7 +327,7 @@ class Joint(Dimensions):
         return Joint(**kept | called | others, **made)
 
     def with_floats(self) -> Joint:
-        """The same joint of Python numbers with all of them floats."""
+        """This joint of Python numbers with all of them floats."""
         numbers = self.numbers()
         return self if all(type(number) is float for number in numbers) else self.with_numbers(map(float, numbers))
 

@@ -129,7 +129,7 @@ class PiecedSolution:
         return self._own(self._flat(lambda place, piece: quantity(piece), prod(rows)), rows)
 
     def located(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray]) -> Array:
-        """The same of a quantity that depends on the places of the piece's contacts too."""
+        """Values of a quantity that depends on the places of the piece's contacts too."""
         return self._own(self._flat(quantity))
 
     def _flat(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray], rows: int = 1) -> numpy.ndarray:

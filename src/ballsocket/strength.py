@@ -59,7 +59,7 @@ def share(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
 
 
 def share_of_ball(poisson: Array) -> Array:
-    """The same in a ball, as in a half-space under Hertz' pressure (Johnson 1985, section 4.2), within 2 %."""
+    """Share of the pressure in a ball, as in a half-space under Hertz' (Johnson 1985, section 4.2), within 2 %."""
     # 1.5/(1 + z²) - (1 + ν)(1 - z atan(1/z)) on the axis, at the depth z = 0.48 a
     return 1.2191 - 0.4608 * (1 + poisson)
 
@@ -110,7 +110,7 @@ def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
 def _told(
     part: str, material: Material, most: Array, von_mises: Callable[[], Array], pressure: Array
 ) -> Iterator[tuple[Array, str]]:
-    """Of one material, whose von Mises stress is `most` at most."""
+    """Remarks on one material, whose von Mises stress is `most` at most."""
     for name, strength in material.strengths.items():
         by_pressure = name == "allowable_pressure"
         if truth(false((pressure if by_pressure else most) > strength)):

@@ -242,7 +242,7 @@ def _nested(flat: Mapping[str, str]) -> Tables:
 
 
 def _bare(name: str, value: float) -> str:
-    """As `units.parse` takes it, to the last digit: a bare angle would be degrees."""
+    """The text that `units.parse` takes, to the last digit: a bare angle would be degrees."""
     return f"{value!r} {Kind.ANGLE.unit}" if QUANTITIES[name].kind is Kind.ANGLE else repr(value)
 
 

@@ -54,7 +54,7 @@ class WrittenContact(Contact):
 
 
 def written(contact: Contact, curve: Contact | None = None) -> WrittenContact:
-    """The same contact without what solved it, and its curve from first touch on, if there is one."""
+    """A contact without what solved it, and its curve from first touch on, if there is one."""
     laws = Written(**{name: getattr(contact, name) for name in _NAMES}, profile=_profile(contact))
     return WrittenContact(
         model=contact.model,

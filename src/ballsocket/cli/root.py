@@ -121,7 +121,7 @@ def complain(message: str) -> None:
 
 
 def _one_line(message: str) -> str:
-    """As any terminal can show it, whatever the names in it are, and how long."""
+    """A text as any terminal can show it, whatever the names in it are, and how long."""
     text = " ".join(message.split())
     if len(text) > _LONGEST:
         text = f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 4 :]}"

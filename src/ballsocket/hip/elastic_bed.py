@@ -66,7 +66,7 @@ class ElasticBed:
 
     @cached_property
     def areas(self) -> Numbers:
-        """Of the cells in mm²: (cells,)."""
+        """Areas of the cells in mm²: (cells,)."""
         return numpy.repeat(self.grid.areas[:, 0], self.grid.meridians) * self.socket_radius**2
 
     @cached_property

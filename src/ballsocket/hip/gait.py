@@ -94,7 +94,7 @@ class Cycle:
 
     @cached_property
     def sizes(self) -> Numbers:
-        """Of the forces in N: (instants,)."""
+        """Sizes of the forces in N: (instants,)."""
         return numpy.linalg.norm(self.forces, axis=1)
 
     @cached_property
@@ -110,7 +110,7 @@ class Cycle:
         return rotation_vectors(self.rotations[1:] @ self.rotations[:-1].swapaxes(1, 2))
 
     def scaled(self, factor: float) -> Cycle:
-        """The same motion under forces that are larger by a factor."""
+        """A cycle of this motion under forces that are larger by a factor."""
         return replace(self, force=lambda phases: factor * self.force(phases))
 
 

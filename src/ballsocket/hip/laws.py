@@ -38,7 +38,7 @@ class Pass:
 
     @cached_property
     def cross_shear(self) -> Numbers:
-        """Of each point: (points,)."""
+        """Cross-shear of each point: (points,)."""
         return self.sliding.cross_shear(self.pressure)
 
 

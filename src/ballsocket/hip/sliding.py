@@ -117,7 +117,7 @@ class Sliding:
         return a * a * share, b * b * share, a * b * share
 
     def cross_shear(self, pressure: Numbers) -> Numbers:
-        """Of each point of the socket, weighted by pressures (instants, points): (points,)."""
+        """Cross-shear of each point of the socket, weighted by pressures (instants, points): (points,)."""
         return cross_shear(*(numpy.einsum("tp,tp->p", pressure, part) for part in self._moments))
 
 

@@ -42,7 +42,7 @@ class Smoothing:
         return numpy.minimum(areas[1:], areas[:-1]) / 4
 
     def __call__(self, fields: Numbers) -> Numbers:
-        """Of fields (..., rings, meridians)."""
+        """Smoothed fields (..., rings, meridians)."""
         waves = scipy.fft.rfft(fields) * self._around
         turned = scipy.fft.irfft(waves, n=self.grid.meridians)
         flux = self._flux * numpy.diff(turned, axis=-2)

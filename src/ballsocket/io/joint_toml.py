@@ -57,7 +57,7 @@ def cup_table(cup: Cup) -> Tables:
 
 
 def _bare(name: str, value: float) -> float:
-    """As a bare number of the file."""
+    """A quantity as a bare number of the file."""
     return _degrees(value) if QUANTITIES[name].kind is Kind.ANGLE else value
 
 

@@ -102,7 +102,7 @@ def _quantity(name: str, text: str, kind: str) -> float:
 
 
 def _plain(unit: str) -> str:
-    """As pint reads it."""
+    """A unit as pint reads it."""
     return _SQUARE.sub("**2", unit)
 
 

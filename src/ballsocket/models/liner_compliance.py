@@ -102,7 +102,7 @@ def log_compliance_anywhere(k: Array, liner: Liner) -> Pair:
 
 
 def _log_compliance_near(k: Array, liner: Liner) -> Pair:
-    """The same near q = 1, with q - 1 divided out of N and D."""
+    """The logarithm near q = 1, with q - 1 divided out of N and D."""
     nu = liner.poisson
     k0, g, t = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 4 * nu
     q = sqrt(k * k + 0.25)

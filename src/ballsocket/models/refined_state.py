@@ -26,7 +26,7 @@ class Fit(NamedTuple):
     spans: tuple[float, float, float]
     """From each of the waves to the next, in ln k."""
     gamma: tuple[float, float, float]
-    """Of ln[(k2/2)^s Γ(1 - s/2) Γ(2 - s/2)] as a cubic in s."""
+    """Coefficients of ln[(k2/2)^s Γ(1 - s/2) Γ(2 - s/2)] as a cubic in s."""
 
 
 def fit_of(
@@ -126,7 +126,7 @@ def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -
 
 
 def one_by_one(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
-    """The same of one number."""
+    """The four functions at one number."""
     return (
         log_compliance_anywhere(waves[0] / half_angle, liner),
         log_compliance(waves[1] / half_angle, liner),
@@ -224,7 +224,7 @@ def _indentation_miss(unknown: Array, load: Array, liner: Liner) -> Pair:
 
 
 def _force_miss(unknown: Array, load: Array, liner: Liner) -> Pair:
-    """The same of the indentation that belongs to the load by the secant at that half angle."""
+    """ln x/(1 + x) at a half angle less that of the indentation by the secant of the load there, and its slope."""
     at = state(exp(unknown - _END) * WIDEST, liner)
     whole = 2 * at.share + at.gap
     miss = log(2 * at.share / whole * (1 + at.secant / load))

@@ -59,7 +59,7 @@ def compliance_on(surface: Surface, joint: Joint, cup: Cup, cells: Grid) -> Comp
 
 
 def _inverse(matrices: Numbers) -> Numbers:
-    """Of single precision: it guides the iteration, and the end of that is judged by the compliance."""
+    """The inverses in single precision: they guide the iteration, and the end of that is judged by the compliance."""
     return numpy.linalg.inv(matrices).astype(numpy.float32)
 
 

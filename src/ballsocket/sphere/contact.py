@@ -30,7 +30,7 @@ class OffAxisContact(SolvedContact):
     model: Any
 
     def _von_mises_of(self, place: Numbers, piece: Piece) -> Numbers:
-        """As of a closed form, from half angle and largest pressure: only the surface is solved."""
+        """An estimate as of a closed form, from half angle and largest pressure: only the surface is solved."""
         joint, state = joint_at(self.joint, self.laws.shape, int(place[0])), piece.state
         estimate = share(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         return numpy.asarray(estimate * state.max_pressure)
@@ -63,12 +63,12 @@ class OffAxisContact(SolvedContact):
 
     @cached_property
     def displacement(self) -> Array:
-        """Of the ball's centre from the centre of the bore, in mm."""
+        """Place of the ball's centre from the centre of the bore, in mm."""
         return self._vector("displacement")
 
     @cached_property
     def moment(self) -> Array:
-        """Of the contact on the ball about its own centre, without friction, in N mm."""
+        """Moment of the contact on the ball about its own centre, without friction, in N mm."""
         return arrays.namespace(self.force_vector).linalg.cross(self.displacement, self.force_vector)
 
     @cached_property
@@ -131,7 +131,7 @@ class OffAxisContact(SolvedContact):
 
     @property
     def pressure_map(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Of a single contact: polar angles (rings,), azimuths (meridians,) in rad, pressures (rings, meridians)."""
+        """The grid of one contact: polar angles (rings,), azimuths (meridians,), pressures (rings, meridians)."""
         patch = self.single_state.patches[0]
         return patch.grid.polar, patch.grid.azimuth, patch.pressure
 

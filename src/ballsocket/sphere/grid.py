@@ -52,7 +52,7 @@ class Grid:
 
     @property
     def width(self) -> float:
-        """Of the widest ring, in rad."""
+        """Width of the widest ring, in rad."""
         return float(numpy.diff(self.edges).max())
 
     @cached_property
@@ -67,12 +67,12 @@ class Grid:
 
     @cached_property
     def ring_areas(self) -> Numbers:
-        """Of whole rings on a sphere of radius 1."""
+        """Areas of whole rings on a sphere of radius 1."""
         return 4 * pi * numpy.sin(self.polar) * numpy.sin(numpy.diff(self.edges) / 2)
 
     @cached_property
     def areas(self) -> Numbers:
-        """Of the cells on a sphere of radius 1: (rings, 1)."""
+        """Areas of cells on a sphere of radius 1: (rings, 1)."""
         return (self.ring_areas / self.meridians)[:, None]
 
     @cached_property
@@ -133,7 +133,7 @@ class Turning:
     matrices: Numbers
 
     def __call__(self, fields: Numbers) -> Numbers:
-        """Of fields (batch, rings, meridians), in the precision of the matrices."""
+        """What becomes of fields (batch, rings, meridians), in the precision of the matrices."""
         batch, rings, meridians = fields.shape
         waves = scipy.fft.rfft(fields.astype(self.matrices.dtype, copy=False))
         columns = numpy.ascontiguousarray(waves.transpose(2, 1, 0))
@@ -149,5 +149,5 @@ class Local:
     scale: float
 
     def __call__(self, fields: Numbers) -> Numbers:
-        """Of fields (batch, rings, meridians)."""
+        """What becomes of fields (batch, rings, meridians)."""
         return fields * self.scale

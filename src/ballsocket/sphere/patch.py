@@ -135,7 +135,7 @@ class Patch:
 
     @cached_property
     def half_angle(self) -> float:
-        """Of a round contact of the same area, in rad: ε with 2π (1 - cos ε) the solid angle inside the outline.
+        """Half angle in rad of a round contact of the same area: 2π (1 - cos ε) is the solid angle in the outline.
 
         A contact that the load does not point into, a ring around a preloaded ball, has the area of its cells.
         """

@@ -44,7 +44,7 @@ class Bed:
 
     @property
     def area(self) -> float:
-        """Of a cell on the bore, over that on a sphere of radius 1: mm²."""
+        """Area on the bore over that on a sphere of radius 1, in mm²."""
         return self.separation.socket_radius**2
 
     @cached_property

@@ -88,7 +88,7 @@ class States:
 
     @property
     def displacement(self) -> Numbers:
-        """Of the ball's centre from the centre of the bore in mm: (3, contacts)."""
+        """Places of the ball's centre from the centre of the bore in mm: (3, contacts)."""
         return self.rest.displacement.T
 
     @property
@@ -143,7 +143,7 @@ class States:
 
     @property
     def half_angle(self) -> Numbers:
-        """Of round contacts of the same area, in rad."""
+        """Half angles in rad of round contacts of the same area."""
         return self._each("half_angle")
 
     @property

@@ -105,7 +105,7 @@ def dimension(study: xarray.Dataset, name: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class _Lengths(Dimensions):
-    """Those of the joints of a study, each a number or labelled along axes."""
+    """Dimensions of the joints of a study, each a number or labelled along axes."""
 
     ball_radius: Any
     clearance: Any

@@ -107,7 +107,7 @@ class Table:
         return arrays.namespace(first).reshape(own(self.curves, first) @ found, (*self.shape, -1))
 
     def of_one(self, places: list[float]) -> numpy.ndarray:
-        """The same (functions, angles) of one joint."""
+        """Values (functions, angles) of one joint."""
         first, second, *ball = (waves_at(*both) for both in zip(places, self.counts, strict=False))
         found = self.liner @ numpy.outer(first, second).ravel()
         if ball:

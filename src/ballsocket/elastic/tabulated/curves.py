@@ -110,7 +110,7 @@ class Curves:
 
 @lru_cache(maxsize=256)
 def curves_of_one(file: str, joint: Joint) -> Curves:
-    """Those of a joint of Python numbers; kept, since more loads on it are likely."""
+    """Curves of a joint of Python numbers; kept, since more loads on it are likely."""
     return Curves(file, joint)
 
 

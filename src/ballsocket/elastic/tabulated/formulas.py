@@ -122,7 +122,7 @@ def _indentation_miss(unknown: Array, load: Array, curve: Curve) -> Pair:
 
 
 def _force_miss(unknown: Array, load: Array, curve: Curve) -> Pair:
-    """The same of the indentation that belongs to the load by the secant F/d at that half angle."""
+    """ln d/(c + d) at a half angle less that of the indentation by the secant F/d there, and its slope."""
     angle = exp(unknown - _END) * LIMIT
     share, force = at(angle, curve, TWO)
     sigma, rate = opening(angle, share)
