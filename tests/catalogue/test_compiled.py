@@ -106,7 +106,7 @@ def test_solved_models_are_the_same_digit_for_digit(model, ball):
     for load in ({"force": force}, {"indentation": depth}):
         one, other = fast.press(joint, **load), model.press(joint, **load)
         for name in (*NAMES, "pole_pressure", "foundation_modulus", "pressure_integral"):
-            np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-12, err_msg=name)
+            np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-11, err_msg=name)
         assert one.notes == other.notes
 
 

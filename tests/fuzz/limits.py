@@ -1,5 +1,6 @@
 """How many inputs there are, what any of them may cost, and how a refusal looks."""
 
+import os
 import resource
 import signal
 import sys
@@ -19,11 +20,14 @@ MOST = 1e9
 _PATIENCE = 60
 _KIB = 1 if sys.platform == "darwin" else 1024
 
+_LONG = int(os.environ.get("BALLSOCKET_INPUTS", "50000")) // 100
+
 
 def inputs(share):
-    """A hundredth of all inputs, so many times: 2000 of them in a quick run, 50 000 in a long one."""
+    """A hundredth of all inputs, so many times: 2000 of them in a quick run, 50 000 in a long one, or as many as
+    the environment's BALLSOCKET_INPUTS says."""
     return settings(
-        max_examples=either(quick=20, long=500) * share,
+        max_examples=either(quick=20, long=_LONG) * share,
         suppress_health_check=list(HealthCheck),
         deadline=None,
         phases=either(quick=[Phase.generate], long=[Phase.generate, Phase.shrink]),

@@ -264,7 +264,7 @@ def test_settings_that_make_no_sense_are_refused():
 
 def test_random_cups_loads_and_directions_end_in_an_answer_or_a_status():
     random = np.random.default_rng(3)
-    for _ in range(either(quick=8, long=300)):
+    for _ in range(either(quick=8, long=150)):
         radius, poisson = random.uniform(8.0, 30.0), random.choice([0.0, 0.3, 0.45, 0.49, 0.4999])
         joint = bs.Joint(
             ball_radius=radius,

@@ -102,6 +102,8 @@ def _status() -> int:
     except UsageError as error:
         message = error.format_message()
     except OSError as error:
+        if error.filename is None:
+            _write_no_more()  # what is still to be written would fail again at the very end
         message = f"{error.filename or 'output'}: {error.strerror or error}"
     except ValueError as error:
         message = str(error)

@@ -122,7 +122,7 @@ class States:
         """Slope of force over indentation, in N/mm."""
         if self._preloaded:
             return numpy.einsum("nk,kln,nl->n", self.axes, self.tangent, self.axes)
-        along, way = (each / numpy.linalg.norm(each, axis=0) for each in (self.force_vector, self.displacement))
+        along, way = (_unit(each) for each in (self.force_vector, self.displacement))
         return numpy.einsum("kn,kln,ln->n", along, self.tangent, way)
 
     @property
@@ -197,3 +197,9 @@ class States:
         errors |= {name: _SHARPEST + factor * numpy.sqrt(share) for name, factor in _EDGES.items()}
         errors[kind] = 0.0 * share
         return {name: errors[name] for name in QUANTITIES}
+
+
+def _unit(vectors: Numbers) -> Numbers:
+    """Vectors (3, contacts) of length 1; those that have none stay so."""
+    length = numpy.linalg.norm(vectors, axis=0)
+    return vectors / numpy.where(length > 0, length, 1.0)

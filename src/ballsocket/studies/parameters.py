@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -10,6 +10,7 @@ from .. import quantities
 from ..arrays import Array, where
 from ..dimensions import DIAMETERS, OWN, check_once, resolved
 from ..joint import Joint, Material
+from ..model import Model
 from ..quantities import JOINT, MATERIAL, PARTS, STRENGTH, Quantity
 
 AIMS: Mapping[str, Quantity] = MappingProxyType(
@@ -71,6 +72,13 @@ def pressable(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, dict[st
     load = {name: value for name, value in values.items() if name in (*LOADS, *AIMS)}
     made, possible = varied(joint, {name: value for name, value in values.items() if name not in load})
     return made, load, possible
+
+
+def check_aims(model: Model, names: Iterable[str]) -> None:
+    """Raise ValueError where what varies says where the load points, and the model does not know it."""
+    for name in names:
+        if name in AIMS and not model.off_axis:
+            raise ValueError(f"{name} does not vary for {model.name}, which presses along the axis: take sphere")
 
 
 _ROUNDING = 1e-12  # of a radius

@@ -20,7 +20,7 @@ from ..model import Model
 from .blocks import Blocks
 from .design import Design, check_values, grid, is_one
 from .labels import arranged, dataset
-from .parameters import AIMS, LOADS
+from .parameters import LOADS, check_aims
 from .room import check_room
 from .store import Store, Writing
 from .task import DTYPES, EDGE_DISTANCE, QUANTITIES, USUAL, Task, points_a_block
@@ -159,9 +159,7 @@ def _task(model: Model, joint: Joint, design: Design | None, axes: dict[str, Any
     loads = [name for name in LOADS if name in points.names]
     if not loads:
         raise ValueError(f"one load is needed, as an axis or a number: {', '.join(LOADS)}")
-    aims = [name for name in AIMS if name in points.names]
-    if aims and not model.off_axis:
-        raise ValueError(f"{aims[0]} does not vary for {model.name}, which presses along the axis: take sphere")
+    check_aims(model, points.names)
     known = (*QUANTITIES, EDGE_DISTANCE) if model.off_axis else QUANTITIES
     check_names(quantities, known, "among the quantities")
     if not all(is_one(number) for number in (*joint.numbers(), *model.parameters)):

@@ -12,7 +12,7 @@ from ..arrays import Numbers
 from ..checks import check_names, needs
 from ..joint import Joint
 from ..model import Model
-from .parameters import LOADS, PARAMETERS, pressable
+from .parameters import LOADS, PARAMETERS, check_aims, pressable
 from .task import QUANTITIES
 
 Slopes = dict[str, dict[str, float]]
@@ -111,6 +111,7 @@ def _compiled(model: Model, joint: Joint, quantities: tuple[str, ...]) -> Callab
     import jax
 
     def answers(values: dict[str, Any]) -> dict[str, Any]:
+        check_aims(model, values)
         made, load, _ = pressable(joint, values)
         contact = model.press(made, **load)
         return {name: getattr(contact, name) for name in quantities}
@@ -148,6 +149,7 @@ def elasticities(
 
 def pressed(model: Model, joint: Joint, values: Mapping[str, Any], quantities: Iterable[str]) -> dict[str, Any]:
     """Quantities of a press at values that broadcast; NaN where these make no joint."""
+    check_aims(model, values)
     made, load, possible = pressable(joint, values)
     contact = model.press(made, **load)
     return {name: numpy.where(possible, getattr(contact, name), numpy.nan) for name in quantities}
