@@ -150,7 +150,9 @@ def test_a_backed_joint_is_a_jax_tree():
     jax = pytest.importorskip("jax")
     import ballsocket.pytrees  # noqa: F401 - registers the words
 
-    assert jax.tree_util.tree_leaves(BACKED) == list(BACKED.numbers())
+    behind = (strength for layer in BACKED.backing for strength in layer.material.strengths.values())
+    known = [*BACKED.numbers(), *BACKED.strengths(), *behind]
+    assert sorted(jax.tree_util.tree_leaves(BACKED)) == sorted(known)
     slopes = jax.grad(lambda joint: joint.backing_ratio)(BACKED)
     softest = slopes.backing[1].material
     assert float(softest.young) == pytest.approx(-1000.0 / 2300.0**2)
