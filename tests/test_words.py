@@ -5,6 +5,7 @@ import json
 import pickle
 import re
 from dataclasses import FrozenInstanceError, replace
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ import ballsocket as bs
 from .joints import HIP
 from .places import ROOT
 
+NEEDS_STUDIES = pytest.mark.skipif(find_spec("xarray") is None, reason="the extra for studies is not installed")
 PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
 GOOD = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "liner": bs.UHMWPE}
 
@@ -301,9 +303,10 @@ def test_compare_prints_a_row_a_model_and_the_reasons_for_the_missing():
         (lambda: bs.compare("hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
         (lambda: bs.compare(HIP, force=1.0, models=["exact"]), r"models must be a mapping .* got \['exact'\]$"),
         (lambda: bs.compare(HIP, force=1.0, models={"exact": "exact"}), r"models\['exact'\] must be a model"),
-        (
+        pytest.param(
             lambda: bs.study("exact", HIP, force=1.0),
             r"model must be a Model, got 'exact'; bs.catalogue\['exact'\] is",
+            marks=NEEDS_STUDIES,
         ),
     ],
 )
@@ -440,9 +443,10 @@ def test_ratios_without_load():
         (lambda: bs.Exact().press(HIP, half_angle=40), "half_angle = 40 is .*; 40 degrees are 0.6981 radians$"),
         (lambda: bs.Cup(arc_of_cover=160), "arc_of_cover = 160 is .*; 160 degrees are 2.793 radians$"),
         (lambda: bs.Cup(inclination=45), "inclination = 45 is .*; 45 degrees are 0.7854 radians$"),
-        (
+        pytest.param(
             lambda: bs.study(bs.Hertz(), HIP, half_angle=[20, 40]),
             "half_angle.* = 20 .*; 20 degrees are 0.3491 rad",
+            marks=NEEDS_STUDIES,
         ),
     ],
 )

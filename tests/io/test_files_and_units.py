@@ -450,6 +450,7 @@ fatigue_limit = "0.4 GPa"
 
 
 def test_strengths_are_read_with_units_and_written_again():
+    pytest.importorskip("tomli_w")
     file = parse_joint(STRONG.encode(), "file")
     liner, ball = file.joint.liner, file.joint.ball
     assert (liner.young, liner.yield_stress, liner.fatigue_limit, liner.allowable_pressure) == (900.0, 23.0, None, 15.0)
