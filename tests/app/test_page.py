@@ -38,6 +38,18 @@ def test_a_file_that_cannot_be_made_says_why():
     assert "run the finite elements first" in page._trouble.object
 
 
+def test_a_refusal_outlives_the_end_of_loading_and_goes_with_the_next_change():
+    page = Page("view=judge")
+    judge = page.view
+    assert judge._arc.value == 180  # before the page has loaded: nothing overwrites what is typed meanwhile
+    judge._arc.value = 20
+    page._refresh()  # the page has loaded
+    assert "arc_of_cover = 20" in judge._trouble.object
+    assert judge._arc.value == 180
+    judge._arc.value = 150
+    assert judge._trouble.object == ""
+
+
 def test_what_does_not_change_is_not_shown_again(monkeypatch):
     page, shown = Page(""), []
     monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen))

@@ -45,7 +45,7 @@ class Judge:
         self._interface = pn.widgets.Select(
             label="Liner on its backing", options=[one.value for one in Interface], width=160, stylesheets=inputs()
         )
-        self._said, self._numbers, self._picture = html(), html(), html()
+        self._trouble, self._said, self._numbers, self._picture = html(), html(), html(), html()
         self._go.on_click(lambda event: self._begin())
         self._halt.on_click(lambda event: self._stopped())
         for widget, key in ((self._arc, "arc_of_cover"), (self._chamfer, "chamfer"), (self._interface, "interface")):
@@ -54,13 +54,17 @@ class Judge:
         self.panel = pn.Column(
             pn.FlexBox(self._arc, self._chamfer, self._interface, align_items="end", gap="12px", **wide),
             pn.FlexBox(self._go, self._halt, self._bar, align_items="center", gap="12px", **wide),
+            self._trouble,
             self._said,
             self._numbers,
             self._picture,
             **wide,
         )
+        self._put(screen)  # before it is seen: what is typed into a page that still loads is not overwritten
 
     def show(self, screen: Screen) -> None:
+        if screen != self._screen:  # what was refused stays to be read until something else is asked
+            self._refuse("")
         self._screen = screen
         self._put(screen)
         if self._run is None:
@@ -86,7 +90,7 @@ class Judge:
         self._said.object = f"<p class='quiet' role='status'>{escape(words)}</p>" if words else ""
 
     def _refuse(self, why: str) -> None:
-        self._said.object = alert(why)
+        self._trouble.object = alert(why) if why else ""
 
     def _cup(self, key: str, value: Any) -> None:
         if self._putting:
@@ -102,6 +106,7 @@ class Judge:
     def _begin(self) -> None:
         if self._run is not None:
             return
+        self._refuse("")
         self._asked = self._screen.file
         self._run = Run(partial(judged, self._asked))
         self._go.disabled, self._halt.disabled = True, False
@@ -120,6 +125,7 @@ class Judge:
             self._say(news.words)
         elif isinstance(news, Refused):
             self._ended()
+            self._say("")
             self._refuse(news.why)
         elif isinstance(news, Done):
             self._found = (self._asked, news.value)
