@@ -10,7 +10,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.catalogue import judge, off_axis, theories
-from ballsocket.describe import COLUMNS
+from ballsocket.contact.describe import COLUMNS
 from ballsocket.paper.claims import elsewhere
 from ballsocket.sources import bibliography
 

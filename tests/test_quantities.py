@@ -19,7 +19,7 @@ import pytest
 import ballsocket as bs
 from ballsocket import quantities
 from ballsocket.compare import HEADS
-from ballsocket.describe import COLUMNS
+from ballsocket.contact.describe import COLUMNS
 from ballsocket.io.joint_file import JointFile
 from ballsocket.io.joint_toml import tables_of
 from ballsocket.io.units import parse

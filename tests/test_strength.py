@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.strength import ELASTIC, share, share_of_ball
+from ballsocket.contact.strength import ELASTIC, share, share_of_ball
 
 HIP = bs.joints["hip-36"]
 WEAK = bs.Material(young=1000.0, poisson=0.4, yield_stress=8.0, fatigue_limit=5.0, allowable_pressure=10.0)

@@ -7,6 +7,7 @@ from .elastic.exact import Exact
 from .elastic.tabulated.model import Tabulated
 from .fem.model import FiniteElement
 from .model import Model
+from .model.theory import Theory
 from .models.adhesion import AdhesiveSocket
 from .models.foundation import Bartel, BondedLayer, BondedLayerExact, CosineLimit, HessForsbach, Vessel
 from .models.half_space import Hertz, Steuermann
@@ -15,7 +16,6 @@ from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
 from .sphere.model import Sphere
-from .theory import Theory
 
 reference: Model = Exact()
 """What every other model is measured by."""

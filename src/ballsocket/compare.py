@@ -15,8 +15,8 @@ from .arrays import Array, to_list, where
 from .catalogue import catalogue, reference
 from .checks import nearest, needs, one_load, refuse_unnamed, shown
 from .contact import Contact
+from .contact.describe import COLUMNS, UTILISATION, count, number_text
 from .cup import Cup
-from .describe import COLUMNS, UTILISATION, count, number_text
 from .joint import Joint
 from .model import Model
 from .quantities import HEADLINE

@@ -9,7 +9,7 @@ from math import inf, radians
 import numpy as np
 
 import ballsocket as bs
-from ballsocket.strength import POWERS, places
+from ballsocket.contact.strength import POWERS, places
 
 ANGLES = (4, 8, 15, 25, 35, 45, 55, 65, 75, 85)
 POISSON = (0.0, 0.15, 0.3, 0.4, 0.45, 0.48, 0.499)

@@ -10,9 +10,9 @@ from typing import Any
 
 import panel as pn
 
-from ..dimensions import DIAMETERS
 from ..io.joint_file import JointFile, joint_of
 from ..io.joint_toml import Tables, tables_of
+from ..joint.dimensions import DIAMETERS
 from ..kinds import Unit
 from ..presets import joints, materials
 from ..quantities import JOINT, LOADS, MATERIAL, QUANTITIES

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..catalogue import judge, reference
 from ..contact import Contact
-from ..describe import summary
+from ..contact.describe import summary
 from ..fem.contact import MeshedContact
 from ..io.joint_file import JointFile
 from ..output.html import drawn

@@ -10,7 +10,7 @@ from typing import Any
 from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
-from ..describe import COLUMNS, Column
+from ..contact.describe import COLUMNS, Column
 from ..kinds import Kind, Unit
 from ..output.style import THICK, line_of
 from ..quantities import CONTACT, HEADLINE, Quantity

@@ -12,8 +12,8 @@ from rich.console import Console
 
 from ..catalogue import judge
 from ..checks import known_name, require
+from ..contact.describe import COLUMNS
 from ..cup import Cup
-from ..describe import COLUMNS
 from ..fem.contact import MeshedContact
 from ..fem.model import FiniteElement
 from ..fem.progress import listening
@@ -21,7 +21,7 @@ from ..fem.spacing import Adapted, Element, Spacing, Uniform
 from ..io.joint_file import read_cup
 from ..io.units import parse
 from ..kinds import Kind
-from ..per_joint import SolvedContact
+from ..model.per_joint import SolvedContact
 from ..quantities import CONTACT, LOADS
 from .words import given
 

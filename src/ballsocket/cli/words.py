@@ -10,8 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from ..checks import nearest, plain_name
-from ..dimensions import LENGTHS
 from ..io.joint_file import JointFile, joint_of, read_joint, read_load, varied
+from ..joint.dimensions import LENGTHS
 from ..presets import joints
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")]

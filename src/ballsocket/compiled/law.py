@@ -19,8 +19,8 @@ from numba.extending import (
     unbox,
 )
 
-from .. import law as formulas
-from ..law import CurveLaw, Law
+from ..model import law as formulas
+from ..model.law import CurveLaw, Law
 from ..models.closed_form import ClosedLaw
 from ..models.foundation import Springs
 from ..models.kinematics import Kinematics

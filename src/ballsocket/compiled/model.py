@@ -8,13 +8,13 @@ from typing import Any
 import numpy
 
 from .. import arrays
-from ..answer import Answer, check_joint, checked_load, prepared, spread
 from ..arrays import Array
 from ..checks import refuse_unnamed
 from ..contact import Contact
 from ..elastic.tabulated.model import Tabulated
 from ..joint import Joint
 from ..model import Wrapped
+from ..model.answer import Answer, check_joint, checked_load, prepared, spread
 from ..models.closed_form import Bound
 from ..models.foundation import RadialFoundation
 from ..models.refined import Refined

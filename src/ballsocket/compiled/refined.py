@@ -10,9 +10,9 @@ from typing import Any
 import numpy
 from numba.extending import overload
 
-from ..answer import Answer
 from ..arrays import Numbers
 from ..joint import Joint
+from ..model.answer import Answer
 from ..models import liner_compliance, refined_state
 from ..models.liner_compliance import liner_of
 from ..models.refined import RefinedSolution, answer_of, scaled

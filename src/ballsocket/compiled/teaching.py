@@ -11,7 +11,8 @@ import numpy
 from numba.core import types
 from numba.extending import overload, register_jitable
 
-from .. import arrays, roots
+from .. import arrays
+from ..model import roots
 
 compilable = register_jitable(forceinline=True)
 """Lets compiled code call a formula as it stands, and puts it into the caller's loop."""

@@ -23,7 +23,7 @@ import numpy
 
 from ..arrays import Numbers, gauss_legendre
 from ..gaps import Gap
-from ..per_joint import largest_pressure
+from ..model.per_joint import largest_pressure
 from .grid import Grid
 from .intervals import Intervals, KeptIntervals
 from .kernel import Kernel

@@ -10,7 +10,7 @@ import numpy
 from .. import arrays
 from ..arrays import Array
 from ..checks import numeric, require
-from ..per_joint import Piece, SolvedContact
+from ..model.per_joint import Piece, SolvedContact
 from ..quantities import QUANTITIES
 from ..stress import Peak, Stress
 from .abel import State

@@ -10,7 +10,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..gaps import Gap
-from ..per_joint import Piece
+from ..model.per_joint import Piece
 from .abel import State
 from .grid import grid
 from .intervals import Intervals, KeptIntervals

@@ -8,14 +8,14 @@ from math import inf
 from typing import Any, ClassVar
 
 from .. import arrays
-from ..answer import Answer
 from ..arrays import Array
 from ..checks import numeric, require
 from ..contact import Contact
 from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint, Support
 from ..model import Model
-from ..per_joint import taken_apart
+from ..model.answer import Answer
+from ..model.per_joint import taken_apart
 from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, bodies
 from .contact import ElasticContact

@@ -8,7 +8,7 @@ from math import log1p, radians
 import numpy
 
 from ..arrays import Numbers
-from ..strength import share_of_ball
+from ..contact.strength import share_of_ball
 from ..stress import Peak, Stress
 from .abel import State
 from .intervals import Intervals

@@ -12,7 +12,7 @@ import numpy
 from ..arrays import Array, Numbers, to_numpy
 from ..cup import Cup
 from ..joint import Joint
-from ..per_joint import Piece, SolvedContact, joint_at
+from ..model.per_joint import Piece, SolvedContact, joint_at
 from ..stress import Peak
 from ..validity import Status
 from .memory import MeshSize, mesh_size

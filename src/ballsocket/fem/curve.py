@@ -10,7 +10,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..gaps import Gap
-from ..per_joint import QUANTITIES, Piece
+from ..model.per_joint import QUANTITIES, Piece
 from .full_contact import Brimful
 from .load_search import Ladder, is_contact
 from .round_contact import cap

@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from .. import arrays
-from ..answer import Answer
 from ..arrays import Array
 from ..checks import needs, require
 from ..contact import Contact
 from ..cup import Cup
 from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint
-from ..law import Law
 from ..model import Model
-from ..per_joint import taken_apart
+from ..model.answer import Answer
+from ..model.law import Law
+from ..model.per_joint import taken_apart
 from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, bodies
 from .contact import MeshedContact

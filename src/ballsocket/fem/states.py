@@ -10,7 +10,7 @@ from operator import attrgetter
 import numpy
 
 from ..arrays import Numbers
-from ..per_joint import QUANTITIES, largest_pressure
+from ..model.per_joint import QUANTITIES, largest_pressure
 from .full_contact import Brimful
 from .work import Solved, stiffness, work
 

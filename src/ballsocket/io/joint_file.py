@@ -9,12 +9,12 @@ from math import degrees, hypot, inf, pi
 from pathlib import Path
 from typing import Any
 
-from ..answer import checked_load
 from ..checks import check_text, known_name, nearest, require, shown
 from ..cup import Cup, Interface, Side
-from ..dimensions import LENGTHS
 from ..joint import Joint, Layer, Material, Support
+from ..joint.dimensions import LENGTHS
 from ..kinds import Kind
+from ..model.answer import checked_load
 from ..presets import materials
 from ..quantities import CUP, LAYER, LOADS, MATERIAL, STRENGTH
 from .toml import parse_toml, read_toml

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from ..arrays import Array, broadcast, clip, divisor, sqrt, where
 from ..checks import numeric, require
 from ..joint import Joint
-from ..roots import increasing_root
+from ..model.roots import increasing_root
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Range
 from .closed_form import ClosedForm

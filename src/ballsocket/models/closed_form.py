@@ -10,12 +10,12 @@ from typing import Any, ClassVar
 import numpy
 
 from .. import arrays
-from ..answer import Answer
 from ..arrays import Array, where
 from ..joint import Joint
-from ..law import Law, answered
 from ..model import Model
-from ..roots import increasing_root
+from ..model.answer import Answer
+from ..model.law import Law, answered
+from ..model.roots import increasing_root
 from ..validity import Status
 
 

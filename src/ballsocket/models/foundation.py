@@ -7,7 +7,7 @@ from math import nan
 
 from ..arrays import Array, cos, where
 from ..joint import Joint
-from ..law import Law, answered
+from ..model.law import Law, answered
 from ..sources import Source
 from ..validity import SMALL_STRAIN, Promise, Range
 from .closed_form import ClosedForm

@@ -10,14 +10,14 @@ from typing import Any, ClassVar
 import numpy
 
 from .. import arrays
-from ..answer import check_joint, prepared
 from ..arrays import Array, asinh, atan, broadcast, clip, divisor, log, sqrt, tan, where
 from ..checks import numeric, one_load, require
+from ..contact.outcome import Outcome
 from ..joint import Joint
-from ..outcome import Outcome
-from ..roots import increasing_root
+from ..model.answer import check_joint, prepared
+from ..model.roots import increasing_root
+from ..model.theory import Theory
 from ..sources import Source
-from ..theory import Theory
 from ..validity import Range, Status
 
 

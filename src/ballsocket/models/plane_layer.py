@@ -10,11 +10,11 @@ from typing import ClassVar
 import numpy
 
 from .. import arrays
-from ..answer import Answer
 from ..arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, integral, log, sin, sqrt, where
 from ..joint import Joint
 from ..model import Model
-from ..roots import increasing_root
+from ..model.answer import Answer
+from ..model.roots import increasing_root
 from ..sources import Source
 from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
 

@@ -8,10 +8,10 @@ from math import inf, nan, pi, radians
 from typing import ClassVar
 
 from .. import arrays
-from ..answer import Answer
 from ..arrays import Array, broadcast, clip, divisor, integral, sin, where
 from ..joint import Joint
 from ..model import Model
+from ..model.answer import Answer
 from ..sources import Source
 from ..validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Status
 from .liner_compliance import Liner, liner_of

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from .. import arrays
 from ..arrays import Array, cos, exp, log, sin, where
-from ..roots import Increasing, increasing_root
+from ..model.roots import Increasing, increasing_root
 from .liner_compliance import Liner, Pair, log_compliance, log_compliance_anywhere
 
 

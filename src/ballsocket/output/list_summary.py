@@ -6,8 +6,8 @@ from math import isfinite
 from typing import Any
 
 from ..joint import Joint, Material
+from ..model.theory import Theory
 from ..sources import Source
-from ..theory import Theory
 from ..validity import Range
 
 

@@ -8,9 +8,9 @@ from rich.table import Table
 from rich.text import Text
 
 from ..joint import Joint, Material
+from ..model.theory import Theory
 from ..presets import joints, materials
 from ..quantities import JOINT, MATERIAL, QUANTITIES, STRENGTH, Quantity
-from ..theory import Theory
 from .terminal import console, print_folded
 
 _NARROW = 72  # columns: lists are paragraphs below

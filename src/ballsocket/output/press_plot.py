@@ -9,7 +9,7 @@ import numpy
 
 from .. import arrays
 from ..contact import Contact
-from ..describe import Column
+from ..contact.describe import Column
 from ..kinds import Unit
 from ..quantities import CONTACT, FIELD
 from .style import LEGEND, THICK, THIN, Line, finish, in_matplotlib, line_of

@@ -9,7 +9,7 @@ import numpy
 from rich.table import Table
 from rich.text import Text
 
-from ..describe import number_text
+from ..contact.describe import number_text
 from ..identify.modulus import Calibration
 from ..paper.table_3 import RATIOS
 from ..paper.table_3 import Column as TableColumn

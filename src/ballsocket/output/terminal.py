@@ -15,7 +15,7 @@ from rich.text import Text
 from ..catalogue import reference
 from ..compare import Comparison, relative
 from ..contact import Contact
-from ..describe import UTILISATION, Column, number_text
+from ..contact.describe import UTILISATION, Column, number_text
 from ..quantities import CONTACT
 from .unit_systems import Units
 

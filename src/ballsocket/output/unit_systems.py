@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from types import MappingProxyType
 
-from ..describe import UTILISATION, Column
+from ..contact.describe import UTILISATION, Column
 from ..kinds import Kind, Unit
 from ..quantities import CONTACT
 

@@ -11,8 +11,8 @@ import numpy
 
 from .. import arrays
 from ..arrays import Array, Numbers
-from ..per_joint import Piece, SolvedContact, joint_at
-from ..strength import share
+from ..contact.strength import share
+from ..model.per_joint import Piece, SolvedContact, joint_at
 from ..validity import Status
 
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy
 
 from .. import arrays
-from ..answer import Answer
 from ..arrays import Array, Numbers
 from ..checks import needs, one_load, refuse_unnamed, require, vectors
 from ..contact import Contact
@@ -17,9 +16,10 @@ from ..cup import UP, Cup
 from ..fem.model import largest_poisson
 from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint
-from ..law import Law
 from ..model import Model
-from ..per_joint import Piece, taken_apart
+from ..model.answer import Answer
+from ..model.law import Law
+from ..model.per_joint import Piece, taken_apart
 from ..quantities import AIM, CUP
 from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status

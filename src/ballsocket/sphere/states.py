@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy
 
 from ..arrays import Numbers
-from ..per_joint import QUANTITIES
+from ..model.per_joint import QUANTITIES
 from .patch import Patch
 from .search import Bed, Rest
 

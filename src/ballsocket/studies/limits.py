@@ -12,7 +12,7 @@ import numpy
 
 from ..checks import check_names, in_radians, require
 from ..cup import UP, Cup, Direction
-from ..dimensions import OWN, Dimensions, resolved
+from ..joint.dimensions import OWN, Dimensions, resolved
 from ..kinds import Kind
 from ..quantities import CONTACT, JOINT
 from ..validity import Status

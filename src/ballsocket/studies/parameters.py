@@ -8,8 +8,8 @@ from types import MappingProxyType
 
 from .. import quantities
 from ..arrays import Array, where
-from ..dimensions import DIAMETERS, OWN, check_once, resolved
 from ..joint import Joint, Material
+from ..joint.dimensions import DIAMETERS, OWN, check_once, resolved
 from ..model import Model
 from ..quantities import JOINT, MATERIAL, PARTS, STRENGTH, Quantity
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..answer import check_joint
 from ..catalogue import catalogue
 from ..checks import check_names, needs, shown
 from ..engines.local import Engine, Serial
 from ..joint import Joint
 from ..model import Model
+from ..model.answer import check_joint
 from .blocks import Blocks
 from .design import Design, check_values, grid, is_one
 from .labels import arranged, dataset

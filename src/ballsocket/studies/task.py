@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 
 from ..arrays import Numbers
-from ..describe import COLUMNS
+from ..contact.describe import COLUMNS
 from ..fingerprint import fingerprint
 from ..joint import Joint
 from ..model import Model

@@ -17,7 +17,7 @@ import numpy
 
 from ... import arrays
 from ...arrays import Array, cos, exp, log, log1p, sin, where
-from ...roots import Increasing, increasing_root
+from ...model.roots import Increasing, increasing_root
 from .chebyshev import LIMIT, NEAR, angle_root, polynomials, waves_at
 
 Pair = tuple[Array, Array]

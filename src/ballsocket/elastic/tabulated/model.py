@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from ... import arrays
-from ...answer import Answer
 from ...arrays import Array, broadcast, divisor
 from ...joint import Joint
 from ...model import Model
+from ...model.answer import Answer
 from ...sources import Source
 from ...validity import SMALL_STRAIN, Promise, Range, Status
 from .chebyshev import POISSON, THICKNESS_RATIO

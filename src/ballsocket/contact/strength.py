@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy
 
-from .arrays import Array, clip, false, sin, to_numpy, truth, where
-from .joint import Joint, Material, larger
-from .quantities import STRENGTH
-from .validity import RIGID_BACKING, Range
+from ..arrays import Array, clip, false, sin, to_numpy, truth, where
+from ..joint import Joint, Material, larger
+from ..quantities import STRENGTH
+from ..validity import RIGID_BACKING, Range
 
 ELASTIC = 1.38
 """The utilisation up to which a linear answer holds.

@@ -10,10 +10,10 @@ from typing import Protocol
 
 import numpy
 
-from . import arrays
-from .arrays import Array
-from .joint import Joint
-from .validity import Range, Status, missing
+from .. import arrays
+from ..arrays import Array
+from ..joint import Joint
+from ..validity import Range, Status, missing
 
 
 class Answerer(Protocol):

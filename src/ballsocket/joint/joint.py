@@ -1,4 +1,4 @@
-"""The words of the problem: a material, a layer, and a ball in a lined socket."""
+"""The problem itself: a ball in a lined socket."""
 
 from __future__ import annotations
 
@@ -10,67 +10,11 @@ from itertools import chain
 from math import inf
 from typing import Any, Unpack
 
-from .arrays import Array, is_plain, to_list, where
-from .checks import check_names, require
+from ..arrays import Array, is_plain, to_list, where
+from ..checks import check_names, require
 from .dimensions import LENGTHS, OWN, Dimensions, Lengths, made_of
-from .quantities import LAYER, MATERIAL, STRENGTH
-
-
-@dataclass(frozen=True, kw_only=True)
-class Material:
-    """A linear elastic, isotropic material.
-
-    Parameters
-    ----------
-    young : float or array
-        Young's modulus E in MPa, positive.
-    poisson : float or array
-        Poisson's ratio, above -1 and at most 0.5.
-    name, source : str
-        What it is called, and where the numbers come from.
-    yield_stress, fatigue_limit, allowable_pressure : float or array, optional
-        Strengths in MPa. None, the default, is one that is not known.
-
-    Raises
-    ------
-    ValueError
-        A number that is not allowed, named with its value.
-    TypeError
-        What is neither a number nor an array.
-
-    Examples
-    --------
-    >>> Material(young=1000.0, poisson=0.4).poisson
-    0.4
-    """
-
-    young: Array
-    poisson: Array
-    name: str = ""
-    source: str = ""
-    yield_stress: Array | None = None
-    fatigue_limit: Array | None = None
-    allowable_pressure: Array | None = None
-
-    def __post_init__(self) -> None:
-        elastic = {name: quantity.checked(getattr(self, name)) for name, quantity in MATERIAL.items()}
-        strong = {name: STRENGTH[name].checked(strength) for name, strength in self.strengths.items()}
-        _set(self, **elastic, **strong)
-
-    @property
-    def strengths(self) -> dict[str, Array]:
-        """Those that are known, by their names."""
-        listed = {name: getattr(self, name) for name in STRENGTH}
-        return {name: strength for name, strength in listed.items() if strength is not None}
-
-    def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
-        numbers = {"young": self.young, "poisson": self.poisson, **self.strengths}
-        return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
-
-    def __str__(self) -> str:
-        numbers = f"E {_text(self.young)} MPa, nu {_text(self.poisson)}"
-        return f"{self.name} ({numbers})" if self.name else numbers
+from .material import Layer, Material
+from .values import larger, set_fields, short_text, unchecked
 
 
 class Support(Enum):
@@ -78,48 +22,6 @@ class Support(Enum):
 
     FIXED = "fixed"
     FREE = "free"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Layer:
-    """A layer behind the liner: a metal shell, cement, bone.
-
-    Parameters
-    ----------
-    thickness : float or array
-        In mm, positive; `inf` is a massive body.
-    material : Material
-
-    Raises
-    ------
-    ValueError
-        A thickness that is not allowed, named with its value.
-    TypeError
-        A material that is none.
-
-    Examples
-    --------
-    >>> import ballsocket as bs
-    >>> print(Layer(thickness=3.0, material=bs.TITANIUM))
-    3 mm of titanium (E 110000 MPa, nu 0.3)
-    """
-
-    thickness: Array
-    material: Material
-
-    def __post_init__(self) -> None:
-        thickness = LAYER["thickness"].checked(self.thickness)
-        if not isinstance(self.material, Material):
-            raise TypeError(f"material must be a Material, got {self.material!r}")
-        _set(self, thickness=thickness)
-
-    def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
-        return {"thickness": to_list(self.thickness), **self.material.summary()}
-
-    def __str__(self) -> str:
-        text = _text(self.thickness)
-        return f"a massive body of {self.material}" if text == "inf" else f"{text} mm of {self.material}"
 
 
 @dataclass(frozen=True, kw_only=True, init=False)
@@ -202,8 +104,8 @@ class Joint(Dimensions):
         if not isinstance(support, Support):
             raise TypeError(f"support must be Support.FIXED or Support.FREE, got {support!r}")
         layers = _checked_backing(backing)
-        _set(self, **made_of(lengths, {}, _shell(layers)))
-        _set(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
+        set_fields(self, **made_of(lengths, {}, _shell(layers)))
+        set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
         for name, inner in self._thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
 
@@ -268,9 +170,12 @@ class Joint(Dimensions):
 
     def without_strengths(self) -> Joint:
         """This joint of materials whose strengths are not known; no solution depends on them."""
-        ball = None if self.ball is None else _elastic(self.ball)
-        backing = tuple(Layer(thickness=layer.thickness, material=_elastic(layer.material)) for layer in self.backing)
-        return unchecked(Joint, **{**vars(self), "liner": _elastic(self.liner), "ball": ball, "backing": backing})
+        parts: dict[str, Any] = {
+            "liner": self.liner.without_strengths(),
+            "ball": None if self.ball is None else self.ball.without_strengths(),
+            "backing": tuple(layer.without_strengths() for layer in self.backing),
+        }
+        return unchecked(Joint, **{**vars(self), **parts})
 
     def with_numbers(self, numbers: Any) -> Joint:
         """A joint like this one with other numbers, in the order of `numbers()`. Nothing is checked."""
@@ -282,9 +187,9 @@ class Joint(Dimensions):
             ball_radius=radius,
             clearance=clearance,
             liner_thickness=thickness,
-            liner=_with(self.liner, young, poisson),
-            ball=_with(self.ball, *others[:2]) if self.ball is not None else None,
-            backing=tuple(_layer_with(layer, *three) for layer, *three in triples),
+            liner=self.liner.with_numbers(young, poisson),
+            ball=self.ball.with_numbers(*others[:2]) if self.ball is not None else None,
+            backing=tuple(layer.with_numbers(*three) for layer, *three in triples),
             support=self.support,
             name=self.name,
             source=self.source,
@@ -347,7 +252,7 @@ class Joint(Dimensions):
     def dimensions(self) -> str:
         """Ball, clearance and what lines the socket, in words."""
         lined = _thickness(self.liner_thickness)
-        return f"R1 {_text(self.ball_radius)} mm, clearance {_text(self.clearance)} mm, {lined}"
+        return f"R1 {short_text(self.ball_radius)} mm, clearance {short_text(self.clearance)} mm, {lined}"
 
     def __str__(self) -> str:
         ball = "rigid" if self.ball is None else str(self.ball)
@@ -379,43 +284,6 @@ def _checked_backing(backing: Any) -> tuple[Layer, ...]:
     return tuple(backing)
 
 
-def larger(one: Array, other: Array) -> Array:
-    """The larger of two, element by element."""
-    return max(one, other) if is_plain(one) and is_plain(other) else where(one > other, one, other)
-
-
-def _elastic(material: Material) -> Material:
-    return unchecked(Material, **{**vars(material), **dict.fromkeys(STRENGTH)})
-
-
-def _with(material: Material, young: Array, poisson: Array) -> Material:
-    return unchecked(Material, **{**vars(material), "young": young, "poisson": poisson})
-
-
-def _layer_with(layer: Layer, thickness: Array, young: Array, poisson: Array) -> Layer:
-    return unchecked(Layer, thickness=thickness, material=_with(layer.material, young, poisson))
-
-
-def unchecked(cls: Any, **fields: Any) -> Any:
-    """A material, layer or joint from numbers that have been checked before, or are not known yet."""
-    made = object.__new__(cls)
-    _set(made, **fields)
-    return made
-
-
-def _set(made: Any, **fields: Any) -> None:
-    for name, value in fields.items():
-        object.__setattr__(made, name, value)
-
-
 def _thickness(value: Array) -> str:
-    text = _text(value)
+    text = short_text(value)
     return "massive socket" if text == "inf" else f"liner {text} mm"
-
-
-def _text(value: Array) -> str:
-    shape = tuple(getattr(value, "shape", ()))
-    try:
-        return f"{float(value):g}" if not shape else f"<array {'x'.join(map(str, shape))}>"
-    except TypeError:  # a tracer has no value yet
-        return "<traced>"

@@ -8,9 +8,9 @@ from math import floor, log10
 from types import MappingProxyType
 from typing import TypedDict
 
-from .arrays import Array, is_plain
-from .checks import check_names, require
-from .quantities import FIT, JOINT
+from ..arrays import Array, is_plain
+from ..checks import check_names, require
+from ..quantities import FIT, JOINT
 
 DIAMETERS = MappingProxyType(
     {"head_diameter": "ball_radius", "diametral_clearance": "clearance", "outer_diameter": "outer_radius"}

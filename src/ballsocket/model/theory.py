@@ -5,8 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import ClassVar
 
-from .sources import Source
-from .validity import Promise, Range, Remark
+from ..sources import Source
+from ..validity import Promise, Range, Remark
 
 
 class Theory(ABC):

@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy
 
-from .arrays import Numbers
+from ..arrays import Numbers
 
 Pieces = Sequence[Sequence[float]]
 

@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy
 
-from . import arrays, describe, strength
-from .arrays import Array
-from .checks import in_radians, numeric, require, vectors
-from .joint import Joint
-from .kinds import Unit
+from .. import arrays
+from ..arrays import Array
+from ..checks import in_radians, numeric, require, vectors
+from ..joint import Joint
+from ..kinds import Unit
+from ..quantities import QUANTITIES
+from ..validity import Range
+from . import describe, strength
 from .outcome import Answerer, Outcome
-from .quantities import QUANTITIES
-from .validity import Range
 
 if TYPE_CHECKING:
     import pandas

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy
 
-from . import arrays, strength
-from .arrays import Array
-from .contact import Contact
-from .joint import Joint
+from .. import arrays
+from ..arrays import Array
+from ..contact import Contact, strength
+from ..joint import Joint
 from .model import Model
 
 QUANTITIES = (

@@ -10,16 +10,16 @@ from typing import Any, ClassVar
 
 import numpy
 
-from . import arrays
+from .. import arrays
+from ..arrays import Array, where
+from ..checks import refuse_unnamed, require, vectors
+from ..contact import Contact, Laws
+from ..cup import Cup, Interface
+from ..joint import Joint
+from ..validity import LOOSE, Nowhere, Range, inside
 from .answer import Answer, check_joint, checked_load, finished, finished_number, prepared, spread
-from .arrays import Array, where
-from .checks import refuse_unnamed, require, vectors
-from .contact import Contact, Laws
-from .cup import Cup, Interface
-from .joint import Joint
 from .law import CurveLaw, Law, curve_law
 from .theory import Theory
-from .validity import LOOSE, Nowhere, Range, inside
 
 
 class Model(Theory):

@@ -9,7 +9,7 @@ from typing import Any
 import array_api_compat
 import numpy
 
-from .arrays import Array, divisor, false, frozen, namespace, truth, where
+from ..arrays import Array, divisor, false, frozen, namespace, truth, where
 
 Increasing = Callable[..., tuple[Array, Array]]
 """x, ... -> (value, slope), both of the shape of x."""

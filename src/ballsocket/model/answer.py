@@ -8,14 +8,14 @@ from typing import Any, Protocol
 
 import numpy
 
-from . import arrays
-from .arrays import Array, where
-from .checks import one_load, plain_name, shown
-from .contact import Contact, Laws, Pressed
-from .joint import Joint
-from .presets import joints
-from .quantities import LOADS
-from .validity import Status, missing
+from .. import arrays
+from ..arrays import Array, where
+from ..checks import one_load, plain_name, shown
+from ..contact import Contact, Laws, Pressed
+from ..joint import Joint
+from ..presets import joints
+from ..quantities import LOADS
+from ..validity import Status, missing
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
