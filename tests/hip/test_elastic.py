@@ -8,9 +8,10 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.hip import iso_14242_1, logarithmic, rocking
-from ballsocket.hip.elastic_bed import elastic_bed, even_grid
+from ballsocket.hip.elastic_bed import elastic_bed
 from ballsocket.hip.levels import levels_of
 from ballsocket.hip.smoothing import Smoothing
+from ballsocket.sphere.grid import even_grid
 
 from ..extent import either
 from .test_wear import TILTED, K, hip

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from ballsocket.hip import flexion, iso_14242_1
-from ballsocket.hip.sliding import Sliding, cross_shear_of, tangents, tracks
+from ballsocket.hip.sliding import Sliding, cross_shear_of, tracks
+from ballsocket.sphere.directions import tangents
 
 POLE = np.array([[0.0], [0.0], [1.0]])
 

@@ -85,15 +85,13 @@ def test_what_is_kept_is_read_again_and_what_is_damaged_made_anew(tmp_path, monk
     assert len(made) == 1
     assert (first == again).all()
     assert again.shape == (2, 3, 4)
-    (file,) = tmp_path.glob("*.rings")
-    raw = bytearray(file.read_bytes())
-    raw[100] ^= 1
-    file.write_bytes(bytes(raw))
-    assert (kept.kept("key", make) == first).all()
-    assert len(made) == 2
-    file.write_bytes(b"short")
-    assert (kept.kept("key", make) == first).all()
-    assert len(made) == 3
+    (file,) = tmp_path.glob("cup-*")
+    sound = file.read_bytes()
+    for damaged in (sound[:200] + b"?" + sound[201:], sound.replace(b"(2, 3, 4)", b"(1, 3, 4)"), b"short", b""):
+        file.write_bytes(damaged)
+        before = len(made)
+        assert (kept.kept("key", make) == first).all()
+        assert len(made) == before + 1
 
 
 def test_where_nothing_can_be_written_it_is_made_each_time(tmp_path, monkeypatch):

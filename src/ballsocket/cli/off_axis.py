@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import atan2, degrees, hypot, isfinite, pi
+from math import degrees, isfinite, pi
 from time import perf_counter
 from typing import Annotated, Any
 
@@ -18,6 +18,7 @@ from ..io.units import parse
 from ..joint import Joint
 from ..kinds import Kind
 from ..sphere.contact import OffAxisContact
+from ..sphere.directions import polar_angle
 from ..sphere.model import Sphere
 from .elements import error_bars
 from .words import given
@@ -104,5 +105,4 @@ def _rim(contact: OffAxisContact) -> str:
 def _largest(contact: OffAxisContact) -> str:
     if not isfinite(contact.max_pressure):
         return "pressure unbounded there"
-    x, y, z = contact.max_pressure_at
-    return f"largest pressure {degrees(atan2(hypot(x, y), z)):.3g}° from the axis"
+    return f"largest pressure {degrees(polar_angle(contact.max_pressure_at)):.3g}° from the axis"

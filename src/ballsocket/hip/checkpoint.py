@@ -7,12 +7,11 @@ from dataclasses import dataclass, fields
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from zipfile import BadZipFile
 
 import numpy
 
 from ..arrays import Numbers
-from ..atomic import at_once
+from ..npz import read_arrays, write_arrays
 from .history import Report
 from .laws import OwnLaw
 
@@ -45,8 +44,7 @@ class Checkpoint:
         """Keep the state of a run and what was seen so far."""
         self.folder.mkdir(parents=True, exist_ok=True)
         seen = {f"report_{i}_{each.name}": getattr(one, each.name) for i, one in enumerate(reports) for each in _FIELDS}
-        with at_once(self.path) as draft, draft.open("wb") as stream:
-            numpy.savez(stream, identity=self.identity, count=len(reports), **state, **seen)
+        write_arrays(self.path, identity=self.identity, count=len(reports), **state, **seen)
 
     def read(self) -> tuple[dict[str, Numbers], tuple[Report, ...]] | None:
         """What was kept, or None where nothing is.
@@ -59,12 +57,11 @@ class Checkpoint:
         if not self.path.exists():
             return None
         try:
-            with numpy.load(self.path, allow_pickle=False) as file:
-                found = {name: file[name] for name in file.files}
+            found = read_arrays(self.path)
             identity, count = str(found.pop("identity")), int(found.pop("count"))
             if identity == self.identity:
                 reports = tuple(_report(found, f"report_{i}_") for i in range(count))
-        except (OSError, ValueError, BadZipFile, KeyError, EOFError) as error:
+        except (OSError, ValueError, KeyError) as error:
             raise ValueError(f"{self.path} is not a run that was kept; remove it to begin anew") from error
         if identity != self.identity:
             raise ValueError(f"{self.folder} keeps another run: another hip, cycle or law; give another folder")

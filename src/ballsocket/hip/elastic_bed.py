@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import ceil
 
 import numpy
 
@@ -13,10 +12,10 @@ from ..cup import Cup
 from ..fem.shapes import socket_shape
 from ..gaps import LinearGap
 from ..joint import Joint
-from ..models.kinematics import linear_indentation
 from ..sphere.compliance import Compliance, compliance_on
-from ..sphere.gap import Separation
-from ..sphere.grid import Grid
+from ..sphere.directions import sized
+from ..sphere.gap import Separation, sunk
+from ..sphere.grid import Grid, even_grid
 from ..sphere.search import Bed
 from ..sphere.search import Rest as BedRest
 from ..sphere.surfaces import ClosedShell, RealCup
@@ -27,12 +26,6 @@ from .springs import Rest
 _POWER = 60
 _SEED = 1
 _DEEPER = 1.0, 1.2
-
-
-def even_grid(reach: float, width: float) -> Grid:
-    """Rings of one width up to where the bore ends, cells as wide as long at 90°: none is stiffer than it need be."""
-    rings = max(ceil(reach / width - 1e-9), 4)
-    return Grid(edges=numpy.linspace(0.0, reach, rings + 1), meridians=2 * max(round(numpy.pi / width), 4))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,12 +81,6 @@ class ElasticBed:
             growth = float(numpy.linalg.norm(field))
         return growth
 
-    @cached_property
-    def evenly(self) -> float:
-        """Pressure by displacement where both are the same all over, in MPa/mm."""
-        even = self.compliance.pressure(numpy.ones((1, self.grid.rings, self.grid.meridians)))
-        return float(self.grid.total(even, numpy.ones_like(even))[0] / self.grid.ring_areas.sum())
-
     def part(self, cells: Numbers) -> ElasticBed:
         """All of them: they know of each other."""
         return self
@@ -132,7 +119,7 @@ class ElasticBed:
 
     def _settled(self, bed: Bed, levels: Levels, depth: Numbers, start: Rest | None) -> BedRest:
         """Balls at rest, from where they were before; those that do not settle begin again, pressed in deeper."""
-        count, deep = len(levels.loads), self._deep(levels, depth)
+        count, deep = len(levels.loads), sunk(self, self.compliance.evenly, depth, *sized(levels.loads))
         kept = None if start is None else start.levels
         begin, pressure = kept if kept is not None and len(kept[0]) == count else (deep, None)
         found = bed.under(levels.loads, begin, numpy.ones(count, dtype=bool), pressure)
@@ -144,13 +131,6 @@ class ElasticBed:
             for name in ("displacement", "pressure", "found"):
                 getattr(found, name)[missed] = getattr(again, name)[missed]
         return found
-
-    def _deep(self, levels: Levels, depth: Numbers) -> Numbers:
-        """Displacements (levels, 3) of balls that are pressed in deeper than they will be, in mm."""
-        size = numpy.linalg.norm(levels.loads, axis=1)
-        deep = linear_indentation(self.socket_radius, self.clearance, self.evenly, size)
-        along = levels.loads / numpy.where(size > 0, size, 1.0)[:, None]
-        return along * (self.clearance + deep + float(depth.max(initial=0.0)))[:, None]
 
 
 @lru_cache(maxsize=4)

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy
 
 from ..arrays import Numbers
+from ..sphere.directions import tangents
 
 
 def rotation_matrices(angles: Numbers, order: str = "xyz") -> Numbers:
@@ -119,14 +120,6 @@ class Sliding:
     def cross_shear(self, pressure: Numbers) -> Numbers:
         """Cross-shear of each point of the socket, weighted by pressures (instants, points): (points,)."""
         return cross_shear(*(numpy.einsum("tp,tp->p", pressure, part) for part in self._moments))
-
-
-def tangents(directions: Numbers) -> tuple[Numbers, Numbers]:
-    """Two unit vectors (3, points) across each direction and each other."""
-    least = abs(directions).argmin(axis=0)
-    one = numpy.cross(directions.T, numpy.eye(3)[least])
-    one = (one / numpy.linalg.norm(one, axis=1)[:, None]).T
-    return one, numpy.cross(directions.T, one.T).T
 
 
 def slide(radius: float, turns: Numbers, direction: Numbers) -> float:

@@ -9,7 +9,8 @@ from typing import Protocol
 import numpy
 
 from ..arrays import Numbers
-from ..models.kinematics import linear_indentation
+from ..sphere.directions import sized
+from ..sphere.gap import sunk
 from ..sphere.grid import Grid
 
 _ROUNDS = 60
@@ -130,13 +131,6 @@ class SpringBed:
         n = self.normals
         return (n[:, None] * n[None] * self.areas).reshape(9, -1).T.copy()
 
-    def _begin(self, loads: Numbers, depth: Numbers) -> Numbers:
-        """Displacements (loads, 3) in mm to begin with: those of a whole sphere, as deep again as the bore is worn."""
-        size = numpy.linalg.norm(loads, axis=1)
-        deep = linear_indentation(self.socket_radius, self.clearance, self.modulus, size)
-        along = loads / numpy.where(size > 0, size, 1.0)[:, None]
-        return along * (self.clearance + deep + float(depth.max()))[:, None]
-
     def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None) -> Rest:
         """Where balls come to rest under loads.
 
@@ -149,7 +143,7 @@ class SpringBed:
         start : Rest, optional
             To begin with.
         """
-        e = self._begin(loads, depth) if start is None else start.displacement
+        e = sunk(self, self.modulus, depth, *sized(loads)) if start is None else start.displacement
         allowed = TOLERANCE * numpy.linalg.norm(loads, axis=1)
         lost = numpy.inf
         for _ in range(_ROUNDS):

@@ -15,14 +15,14 @@ from ..checks import require
 from ..cup import Cup
 from ..fem.shapes import socket_shape
 from ..joint import Joint
-from ..sphere.grid import Grid, grid
+from ..sphere.grid import Grid, even_grid, grid
 from ..sphere.model import Sphere
 from ..sphere.surfaces import ClosedShell, RealCup, Springs
 from ..validity import inside
 from .blocks import Run
 from .checkpoint import Checkpoint, checkpoint
 from .creep import Ladder
-from .elastic_bed import elastic_bed, even_grid
+from .elastic_bed import elastic_bed
 from .film import Film, Lubricant, film
 from .gait import Cycle
 from .history import Error, First, History, Report

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import inf, prod
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy
 
@@ -189,6 +189,8 @@ class SolvedContact(Contact):
 
     laws: PiecedSolution
 
+    _inside: ClassVar[str] = "displacements and stresses"
+
     @cached_property
     def error(self) -> dict[str, Array]:
         """Estimated relative error of each quantity, by name, from the solution itself."""
@@ -209,18 +211,23 @@ class SolvedContact(Contact):
 
     @property
     def single_state(self) -> Any:
-        """The solver's own answer, of one contact under load.
+        """The solver's own answer, of one contact that touches, with a load or preloaded.
 
         Raises
         ------
         ValueError
-            More than one contact, or one without load or answer.
+            More than one contact, or one that does not touch or has no answer.
         """
         if prod(self.laws.shape) != 1:
-            raise ValueError(f"displacements and stresses are for one contact, not {self.laws.shape}: press it alone")
-        if not bool(arrays.to_numpy(self.indentation > 0).all()):
-            raise ValueError("displacements and stresses need a contact under load")
-        return self.laws.pieces[0][1].state
+            raise ValueError(f"{self._inside} are for one contact, not {self.laws.shape}: press it alone")
+        pieces = self.laws.pieces
+        if self._failed_everywhere or not pieces or not pieces[0][1].touching.all():
+            raise ValueError(f"{self._inside} need a contact under load, or preloaded")
+        return pieces[0][1].state
+
+    @property
+    def _failed_everywhere(self) -> bool:
+        return bool(arrays.to_numpy(self._failed).all())
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON, with the error estimates."""

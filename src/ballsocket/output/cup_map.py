@@ -13,7 +13,7 @@ import numpy
 from ..arrays import Numbers
 from ..quantities import FIELD
 from ..sphere.contact import OffAxisContact
-from ..sphere.grid import unit_vectors
+from ..sphere.directions import unit_vectors
 from .style import INK, VERMILLION
 
 if TYPE_CHECKING:

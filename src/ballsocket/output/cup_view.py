@@ -13,7 +13,7 @@ from ..atomic import at_once
 from ..checks import needs
 from ..quantities import FIELD
 from ..sphere.contact import OffAxisContact
-from ..sphere.grid import unit_vectors
+from ..sphere.directions import unit_vectors
 from .cup_map import drawn, highest
 from .style import INK, VERMILLION
 

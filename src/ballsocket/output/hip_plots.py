@@ -9,6 +9,7 @@ import numpy
 
 from ..hip.history import History, Report
 from ..hip.sliding import tracks
+from ..sphere.directions import polar_angle
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,8 +41,8 @@ def wear_map(history: History, report: Report | None = None) -> Figure:
     shown = axes.contourf(around, numpy.degrees(grid.polar), depth, levels=20, cmap="cividis")
     sizes = numpy.linalg.norm(history.use.loads, axis=1)
     if len(sizes):
-        x, y, z = history.use.loads[sizes.argmax()] / sizes.max()
-        axes.plot(numpy.arctan2(y, x), degrees(numpy.arctan2(numpy.hypot(x, y), z)), "+", color="white", ms=12)
+        largest = history.use.loads[sizes.argmax()]
+        axes.plot(numpy.arctan2(largest[1], largest[0]), degrees(polar_angle(largest)), "+", color="white", ms=12)
     axes.set_ylim(0, degrees(history.use.reach))
     axes.set_rgrids([30, 60], ["30°", "60°"], angle=100, color="0.85")
     axes.set_xticks([0, pi / 2, pi, 3 * pi / 2], [""] * 4)

@@ -10,7 +10,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..fem.mesh import with_middles
-from .grid import unit_vectors
+from .directions import unit_vectors
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass
+from functools import cached_property
 from threading import Lock
 
 import numpy
@@ -40,6 +41,12 @@ class Compliance:
     def pressure(self, displacement: Numbers) -> Numbers:
         """The pressures (MPa, of either sign) under which they give way so far (mm) all over the bore."""
         return self.stiffness(displacement)
+
+    @cached_property
+    def evenly(self) -> float:
+        """Pressure by displacement where both are the same all over, in MPa/mm."""
+        ones = numpy.ones((1, self.grid.rings, self.grid.meridians))
+        return float(self.grid.total(self.pressure(ones), ones)[0] / self.grid.ring_areas.sum())
 
 
 def _made(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:

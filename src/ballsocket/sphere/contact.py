@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees, prod
-from typing import Any
+from math import degrees
+from typing import Any, ClassVar
 
 import numpy
 
@@ -14,6 +14,7 @@ from ..arrays import Array, Numbers
 from ..contact.strength import share
 from ..model.per_joint import Piece, SolvedContact, joint_at
 from ..validity import Status
+from .directions import polar_angle
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -29,6 +30,8 @@ class OffAxisContact(SolvedContact):
 
     model: Any
 
+    _inside: ClassVar[str] = "pressure maps"
+
     def _von_mises_of(self, place: Numbers, piece: Piece) -> Numbers:
         """An estimate as of a closed form, from half angle and largest pressure: only the surface is solved."""
         joint, state = joint_at(self.joint, self.laws.shape, int(place[0])), piece.state
@@ -39,22 +42,6 @@ class OffAxisContact(SolvedContact):
     def von_mises_between(self) -> tuple[Array, Array]:
         """What `von_mises` lies between, which is quickly told."""
         return self.von_mises, self.von_mises
-
-    @property
-    def single_state(self) -> Any:
-        """The solver's own answer, of one contact that touches, with a load or preloaded.
-
-        Raises
-        ------
-        ValueError
-            More than one contact, or one that does not touch.
-        """
-        if prod(self.laws.shape) != 1:
-            raise ValueError(f"a pressure map is for one contact, not {self.laws.shape}: press it alone")
-        pieces = self.laws.pieces
-        if self._failed_everywhere or not pieces or not pieces[0][1].touching.all():
-            raise ValueError("a pressure map needs a contact that touches")
-        return pieces[0][1].state
 
     @cached_property
     def force_vector(self) -> Array:
@@ -110,7 +97,7 @@ class OffAxisContact(SolvedContact):
     @property
     def tilt(self) -> Array:
         """The angle in rad from the dome's pole to where the load points."""
-        return self._plain(self.laws.spread(lambda piece: _polar(piece.state.axes.T)))
+        return self._plain(self.laws.spread(lambda piece: polar_angle(piece.state.axes.T)))
 
     @property
     def outline(self) -> Numbers:
@@ -148,10 +135,6 @@ class OffAxisContact(SolvedContact):
             notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _REACHES)
         return tuple(notes)
 
-    @property
-    def _failed_everywhere(self) -> bool:
-        return bool(arrays.to_numpy(self._failed).all())
-
     def _scalar(self, name: str) -> Array:
         return self._answer(lambda: self.laws.spread(lambda piece: getattr(piece.state, name)))
 
@@ -164,7 +147,7 @@ class OffAxisContact(SolvedContact):
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON: vectors in the cup's frame, `max_pressure_at_deg` as polar angle and azimuth."""
         at = arrays.to_numpy(self.max_pressure_at)
-        angles = numpy.stack([_polar(numpy.moveaxis(at, -1, 0)), numpy.arctan2(at[..., 1], at[..., 0])], axis=-1)
+        angles = numpy.stack([polar_angle(numpy.moveaxis(at, -1, 0)), numpy.arctan2(at[..., 1], at[..., 0])], axis=-1)
         status = arrays.to_numpy(self.status)
         names = [Status(int(each)).name for each in status.ravel()]
         return {
@@ -180,11 +163,6 @@ class OffAxisContact(SolvedContact):
             "edge_loaded": self.edge_loaded if self._is_plain else arrays.to_numpy(self.edge_loaded).tolist(),
             "stiffness_matrix": arrays.to_list(self.stiffness_matrix),
         }
-
-
-def _polar(direction: Numbers) -> Numbers:
-    """The angle from the dome in rad, of directions (3, ...)."""
-    return numpy.arctan2(numpy.hypot(direction[0], direction[1]), direction[2])
 
 
 _REACHES = "edge loading: the contact reaches the rim"

@@ -12,6 +12,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..checks import needs, require
+from .directions import polar_angle, tangents
 
 if TYPE_CHECKING:
     from scipy.interpolate import RegularGridInterpolator
@@ -105,8 +106,8 @@ class DepthTable:
         return RegularGridInterpolator((self.polar, around), rows)
 
     def depth(self, directions: Numbers) -> Numbers:
-        x, y, z = directions
-        polar = numpy.clip(numpy.arctan2(numpy.hypot(x, y), z), self.polar[0], self.polar[-1])
+        x, y, _ = directions
+        polar = numpy.clip(polar_angle(directions), self.polar[0], self.polar[-1])
         first = self._between.grid[1][0]
         azimuth = first + (numpy.arctan2(y, x) - first) % (2 * pi)
         table: Numbers = self._between(numpy.stack([polar, azimuth], axis=-1))
@@ -207,15 +208,15 @@ def scan_of(points: Numbers, name: str = "the scan") -> Scan:
     size = float(numpy.linalg.norm(middle))
     if size < 1e-3:
         raise ValueError(f"{name} is not a bore: its points go all around")
-    frame = _frame(middle / size)
-    directions = frame @ (out / length[:, None]).T
+    axis = middle / size
+    directions = numpy.stack([*tangents(axis), axis]) @ (out / length[:, None]).T
     reach = float(numpy.arccos(numpy.clip(directions[2], -1, 1)).max())
     if reach < _NARROWEST:
         raise ValueError(f"{name} covers {numpy.degrees(reach):.0f}° around its pole; a bore takes 25° and more")
     return Scan(
         radius=radius,
         centre=centre,
-        axis=middle / size,
+        axis=axis,
         reach=reach,
         roughness=roughness,
         directions=directions,
@@ -237,11 +238,3 @@ def _fitted(points: Numbers) -> tuple[Numbers, float]:
 
     found = least_squares(off, start).x
     return found[:3], float(found[3])
-
-
-def _frame(axis: Numbers) -> Numbers:
-    """Rows x, y, z of a frame whose z is the axis."""
-    other = numpy.eye(3)[int(numpy.argmin(abs(axis)))]
-    x = other - (other @ axis) * axis
-    x = x / numpy.linalg.norm(x)
-    return numpy.stack([x, numpy.cross(axis, x), axis])

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy
 
 from ..arrays import Numbers
 from ..gaps import CircularGap, LinearGap
+from ..models.kinematics import linear_indentation
 from .grid import Grid
 
 
@@ -63,3 +65,32 @@ class Separation:
         """The ball's radius, and the square of half the chord that it cuts off each ray."""
         ball = self.socket_radius - self.clearance
         return ball, ball * ball - (displacement * displacement).sum(axis=1)[:, None, None] + along * along
+
+
+class Bore(Protocol):
+    """What a ball is pressed into, as far as its sizes go."""
+
+    @property
+    def clearance(self) -> float: ...
+    @property
+    def socket_radius(self) -> float: ...
+
+
+def sunk(bore: Bore, modulus: float, depth: Numbers, force: Numbers, axes: Numbers) -> Numbers:
+    """Displacements (n, 3) in mm to begin with: along the loads, into a whole sphere of springs, by the wear deeper.
+
+    Parameters
+    ----------
+    bore : object with a clearance and a socket_radius
+        In mm.
+    modulus : float
+        Of the springs in MPa/mm: that of the bore under pressure all over.
+    depth : array
+        Of the worn bore below the sphere, in mm.
+    force, axes : array (n,), array (n, 3)
+        The size of the loads in N, and unit vectors along them.
+    """
+    clearance = max(bore.clearance, 0.0)
+    deep = linear_indentation(bore.socket_radius, clearance, modulus, force)
+    begin: Numbers = axes * (clearance + deep + float(depth.max(initial=0.0)))[:, None]
+    return begin

@@ -16,6 +16,7 @@ import scipy.fft
 
 from ..arrays import Numbers
 from ..fem.mesh import joined
+from .directions import unit_vectors
 
 _FINER = numpy.array([0.5, 0.25, 0.25])
 """Of the last ring, which is cut towards the rim."""
@@ -104,20 +105,23 @@ class Grid:
         return numpy.einsum("...ij,...ij,i->...", one, other, self.areas[:, 0], optimize=False)
 
 
-def unit_vectors(polar: Numbers, azimuth: Numbers) -> Numbers:
-    """Unit vectors (3, ...) at angles in rad."""
-    across = numpy.sin(polar)
-    parts = across * numpy.cos(azimuth), across * numpy.sin(azimuth), numpy.cos(polar) + 0 * azimuth
-    return numpy.stack(parts)
-
-
 def grid(reach: float, width: float) -> Grid:
     """Rings of about this width up to where the bore ends, the last one cut in three; cells as wide as long at 90°."""
     rings = max(ceil(reach / width - 1e-9), 2)
     whole = numpy.linspace(0.0, reach, rings + 1)
     last = whole[-2] + numpy.append(0.0, numpy.cumsum(_FINER)) * (reach - whole[-2])
     last[-1] = reach
-    return Grid(edges=joined([whole[:-1], last]), meridians=2 * max(round(pi / width), 4))
+    return Grid(edges=joined([whole[:-1], last]), meridians=_meridians(width))
+
+
+def even_grid(reach: float, width: float) -> Grid:
+    """Rings of one width up to where the bore ends, cells as wide as long at 90°: none is stiffer than it need be."""
+    rings = max(ceil(reach / width - 1e-9), 4)
+    return Grid(edges=numpy.linspace(0.0, reach, rings + 1), meridians=_meridians(width))
+
+
+def _meridians(width: float) -> int:
+    return 2 * max(round(pi / width), 4)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

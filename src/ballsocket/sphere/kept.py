@@ -8,12 +8,10 @@ from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 
-import numpy
-
 from ..arrays import Numbers
-from ..atomic import at_once
+from ..npz import read_arrays, write_arrays
 
-VERSION = 1
+VERSION = 2
 """Of what is kept: a change of the elements or of the rings makes it another."""
 
 _MOST = 2 * 2**30
@@ -37,13 +35,13 @@ def kept(key: object, make: Callable[[], Numbers]) -> Numbers:
         Whatever it depends on, as its `repr` tells.
     make : function
     """
-    path = folder() / f"cup-{sha256(f'{VERSION} {key!r}'.encode()).hexdigest()[:32]}.rings"
+    path = folder() / f"cup-{sha256(f'{VERSION} {key!r}'.encode()).hexdigest()[:32]}.npz"
     found = _read(path)
     if found is None:
         found = make()
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
-            _write(path, found)
+            write_arrays(path, rings=found)
             _thin_out(path.parent)
     return found
 
@@ -51,28 +49,14 @@ def kept(key: object, make: Callable[[], Numbers]) -> Numbers:
 def _read(path: Path) -> Numbers | None:
     """The array of a file, or None where there is none or it is damaged."""
     try:
-        raw = path.read_bytes()
-        size = int.from_bytes(raw[:8], "little")
-        shape = tuple(int.from_bytes(raw[8 + 8 * i : 16 + 8 * i], "little") for i in range(3))
-        digest, body = raw[32:64], raw[64:]
-        if size != len(body) or sha256(body).digest() != digest:
-            return None
-        return numpy.frombuffer(body).reshape(shape)
-    except (OSError, ValueError):
+        return read_arrays(path)["rings"]
+    except (OSError, ValueError, KeyError):
         return None
-
-
-def _write(path: Path, values: Numbers) -> None:
-    """Size and shape in eight bytes each, the checksum, the numbers."""
-    body = numpy.ascontiguousarray(values, dtype="<f8").tobytes()
-    head = b"".join(number.to_bytes(8, "little") for number in (len(body), *values.shape))
-    with at_once(path) as draft:
-        draft.write_bytes(head + sha256(body).digest() + body)
 
 
 def _thin_out(room: Path) -> None:
     """Remove the oldest files while there is too much."""
-    files = sorted(room.glob("cup-*.rings"), key=lambda path: path.stat().st_mtime, reverse=True)
+    files = sorted(room.glob("cup-*"), key=lambda path: path.stat().st_mtime, reverse=True)
     total = 0
     for path in files:
         total += path.stat().st_size

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy
 
 from ..arrays import Numbers
-from ..models.kinematics import linear_indentation, linear_indentation_of_versine
-from .search import Bed, Rest
+from ..models.kinematics import linear_indentation_of_versine
+from .directions import polar_angle
+from .gap import sunk
+from .search import Bed
 from .states import Edges, States
 
 Loaded = Callable[[Bed, Numbers, Numbers, Edges], States]
@@ -26,9 +29,10 @@ def _displaced(bed: Bed, indentation: Numbers, axes: Numbers, edges: Edges) -> S
 
 def _forced(bed: Bed, force: Numbers, axes: Numbers, edges: Edges) -> States:
     reach = bed.compliance.grid.reach
-    held = (_polar(axes) < reach) | (reach > numpy.pi / 2)
-    rest = bed.under(axes * force[:, None], _start(bed, force, axes), held)
-    leaves = _polar(rest.displacement) > reach + _SWUNG
+    held = (polar_angle(axes.T) < reach) | (reach > numpy.pi / 2)
+    begin = sunk(bed.separation, bed.compliance.evenly, bed.separation.depth, force, axes)
+    rest = bed.under(axes * force[:, None], begin, held)
+    leaves = polar_angle(rest.displacement.T) > reach + _SWUNG
     out = held & (numpy.linalg.norm(rest.displacement, axis=1) > _AWAY * bed.separation.socket_radius)
     return States(bed=bed, rest=rest, axes=axes, edges=edges, dislocated=~held | out | (~rest.found & leaves))
 
@@ -47,14 +51,6 @@ end, one that ends behind it holds any.
 """
 
 
-def _start(bed: Bed, force: Numbers, axes: Numbers) -> Numbers:
-    """Displacements along the load, as deep as in springs that are as stiff as the bore under pressure all over."""
-    separation = bed.separation
-    clearance = max(separation.clearance, 0.0)
-    depth = linear_indentation(separation.socket_radius, clearance, bed.stiffness, force)
-    return axes * (clearance + depth + float(separation.depth.max()))[:, None]
-
-
 _ROUNDS = 12
 
 
@@ -70,19 +66,7 @@ def _spread(bed: Bed, half_angle: Numbers, axes: Numbers, edges: Edges) -> State
             break
         depth = depth * numpy.clip(shares, 0.25, 4.0)
     missed = (abs(shares - 1) >= 1e-3) & ~states.dislocated
-    return States(
-        bed=bed,
-        rest=Rest(
-            displacement=states.rest.displacement, pressure=states.rest.pressure, found=states.rest.found & ~missed
-        ),
-        axes=axes,
-        edges=edges,
-        dislocated=states.dislocated,
-    )
-
-
-def _polar(direction: Numbers) -> Numbers:
-    return numpy.arctan2(numpy.hypot(direction[:, 0], direction[:, 1]), direction[:, 2])
+    return replace(states, rest=replace(states.rest, found=states.rest.found & ~missed))
 
 
 LOADED: MappingProxyType[str, Loaded] = MappingProxyType(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, inf, radians
 from time import perf_counter
@@ -14,7 +14,6 @@ import numpy
 from .. import arrays
 from ..arrays import Array, Numbers
 from ..checks import require
-from ..cup import Side
 from ..fem.progress import tell
 from ..joint import Joint
 from ..quantities import CUP
@@ -180,13 +179,10 @@ def orient(
     one = model.direction.ndim == 1
     require("directions of the model", model.direction.size // 3, one, "a cup is turned under one direction of load")
     axes = [_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))]
-    level = replace(model, cup=replace(model.cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT))
-    start, contacts = perf_counter(), []  # the frame of a level cup is the body's
+    start, contacts = perf_counter(), []
     for number, angle in enumerate(axes[0]):
         tell(f"inclination {number + 1} of {len(axes[0])}")
-        cups = (replace(model.cup, inclination=float(angle), anteversion=float(other)) for other in axes[1])
-        turned = numpy.array([numpy.array(cup.frame) @ model.direction for cup in cups])
-        contacts.append(_complete(level.press(joint, direction=turned, **load)))
+        contacts.append(_complete(model.press(joint, inclination=float(angle), anteversion=axes[1], **load)))
     return Orientations(
         model=model,
         joint=joint,

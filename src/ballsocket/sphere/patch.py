@@ -10,7 +10,8 @@ import numpy
 from scipy.interpolate import RegularGridInterpolator
 
 from ..arrays import Numbers
-from .grid import Grid, unit_vectors
+from .directions import polar_angle, unit_vectors
+from .grid import Grid
 
 _RAYS = 90
 _NEAR = 2.2  # widths of a ring: cells that far tell where the largest pressure is
@@ -157,23 +158,19 @@ class Patch:
         """
         if self.edge_loaded:
             dome = float(self._edges[_RAYS // 2])
-            return min(self.grid.reach - _polar(self.axis) - dome, 0.0)
+            return min(self.grid.reach - float(polar_angle(self.axis)) - dome, 0.0)
         return float(self.grid.reach - numpy.arccos(numpy.clip(self.outline[:, 2], -1, 1)).max())
 
 
 def _angles(directions: Numbers) -> Numbers:
     """Polar angle and azimuth (..., 2) of directions."""
-    x, y, z = numpy.moveaxis(directions, -1, 0)
-    return numpy.stack([numpy.arctan2(numpy.hypot(x, y), z), numpy.arctan2(y, x) % (2 * pi)], axis=-1)
-
-
-def _polar(direction: Numbers) -> float:
-    return float(numpy.arctan2(numpy.hypot(direction[0], direction[1]), direction[2]))
+    first = numpy.moveaxis(directions, -1, 0)
+    return numpy.stack([polar_angle(first), numpy.arctan2(first[1], first[0]) % (2 * pi)], axis=-1)
 
 
 def _across(axis: Numbers) -> tuple[Numbers, Numbers]:
     """Two unit vectors across an axis: away from the pole in its meridian, and around it."""
-    polar, azimuth = _polar(axis), float(numpy.arctan2(axis[1], axis[0]))
+    polar, azimuth = float(polar_angle(axis)), float(numpy.arctan2(axis[1], axis[0]))
     around = numpy.array([-numpy.sin(azimuth), numpy.cos(azimuth), 0.0])
     return unit_vectors(numpy.asarray(polar + pi / 2), numpy.asarray(azimuth)), around
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy
 
@@ -46,13 +45,6 @@ class Bed:
     def area(self) -> float:
         """Area on the bore over that on a sphere of radius 1, in mm²."""
         return self.separation.socket_radius**2
-
-    @cached_property
-    def stiffness(self) -> float:
-        """Pressure per displacement of a bore under pressure all over, in MPa/mm."""
-        grid = self.compliance.grid
-        everywhere = numpy.ones((1, grid.rings, grid.meridians))
-        return float(grid.total(self.compliance.pressure(everywhere), everywhere)[0] / grid.ring_areas.sum())
 
     def force(self, pressure: Numbers) -> Numbers:
         """The load in N that pressures (batch, rings, meridians) carry: (batch, 3)."""
@@ -105,7 +97,7 @@ class Bed:
         return numpy.zeros((count, grid.rings, grid.meridians))
 
     def _under(self, load: Numbers, start: Numbers, pressure: Numbers | None) -> tuple[Numbers, Numbers, Numbers]:
-        preload = self.area * self.stiffness * max(-self.separation.clearance, 0.0)
+        preload = self.area * self.compliance.evenly * max(-self.separation.clearance, 0.0)
         size = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
         e, p, q = start.copy(), pressure, None
         misses, found = numpy.full(len(load), numpy.inf), numpy.zeros(len(load), dtype=bool)

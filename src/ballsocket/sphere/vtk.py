@@ -12,7 +12,7 @@ from ..atomic import at_once
 from ..checks import needs
 from ..fem.export.vtk import check_suffix
 from .contact import OffAxisContact
-from .grid import unit_vectors
+from .directions import unit_vectors
 
 BORE, BALL, EDGE = 0, 1, 2
 """Parts, as the cell data number them."""
