@@ -22,7 +22,7 @@ from ballsocket.studies.limits import Limit
 from ballsocket.studies.rows import table
 from ballsocket.studies.run import read
 
-from ..extent import either
+from ..extent import either, some
 
 HIP = bs.joints["hess-forsbach"]
 AXES = {"clearance": [0.05, 0.1, 0.2], "ball_radius": [14.0, 17.9], "force": [500.0, 1500.0, 3000.0, 4000.0]}
@@ -395,7 +395,7 @@ def test_too_many_points_are_refused_with_size_and_time(tmp_path):
 
 def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
     monkeypatch.setattr("ballsocket.studies.run.points_a_block", lambda model: 5)
-    for model in (bs.HessForsbach(), bs.Exact()):
+    for model in some([bs.Exact(), bs.HessForsbach()], 1):
         here = bs.study(model, HIP, **AXES)
         for engine in (Serial(), Processes(workers=2), Distributed(workers=1)):
             assert same(bs.study(model, HIP, engine=engine, **AXES), here)
