@@ -74,6 +74,8 @@ def test_a_preset_in_place_of_a_joint(tmp_path):
     head, tail = TEXT.split("[joint]")[0], TEXT[TEXT.index("[cup]") :]
     given = read_hip(told(tmp_path, text=f'{head}joint = "hip-28"\n{tail}'))
     assert given.use.joint.ball_radius == 14.0
+    with pytest.raises(ValueError, match=r"joint = 'hip-28' is a whole joint: \[liner\] belongs to a table \[joint\]"):
+        read_hip(told(tmp_path, text=f'{head}joint = "hip-28"\n[liner]\nyoung = 3\n{tail}'))
 
 
 @pytest.mark.parametrize(

@@ -10,14 +10,14 @@ from types import MappingProxyType
 from typing import Any
 
 from ..catalogue import catalogue
-from ..checks import check_names, check_text, known_name, nearest, plain_name, require, shown
+from ..checks import check_names, check_text, known_name, require, shown
 from ..cup import Cup
-from ..io.joint_file import KEYS, JointFile, check_keys, joint_of, read_joint
-from ..io.toml import read_toml
+from ..io.joint_file import KEYS, JointFile, check_keys, read_cup
+from ..io.named_joint import PARTS, joint_in
+from ..io.toml import read_toml, table_of
 from ..io.units import parse
 from ..kinds import Kind
 from ..models.foundation import RadialFoundation
-from ..presets import joints
 from ..sphere.surfaces import ClosedShell, RealCup, Springs
 from .coefficients import share_of_slide, wear_factor
 from .creep import Ladder, logarithmic
@@ -27,16 +27,15 @@ from .gait import CYCLES, INSTANTS, Cycle, constant_load, named_cycle, order_of,
 from .laws import Archard, AreaLaw, CrossShear, Law
 from .use import InUse, check_cycles
 
-_DESCRIBED = ("joint", "liner", "ball", "backing", "cup")
 _TABLES: Mapping[str, tuple[str, ...]] = {
-    "": ("name", "source", *_DESCRIBED, "cycle", "wear", "creep", "film", "cycles", "report_at"),
+    "": ("name", "source", *PARTS, "cycle", "wear", "creep", "film", "cycles", "report_at"),
     "cup": (*KEYS["cup"], "tilt"),
     "cycle": ("name", "file", "instants", "rotation_order", "body_weight", "force", "amplitude"),
     "creep": ("law", "compliances", "times", "seconds_per_cycle"),
     "film": ("viscosity", "ball_roughness", "cup_roughness", "friction"),
     "wear": ("law", "coefficient", "circular", "exponent", "reference", "contact", "model", "ring_width"),
 }
-_KEYS = {**{name: KEYS[name] for name in _DESCRIBED}, **_TABLES}
+_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
 _MILLION = 1e6
 
 
@@ -76,9 +75,9 @@ def read_hip(path: str | Path) -> HipFile:
 def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     check_keys(content, "", "at the top", _KEYS)
     for name in ("cup", "cycle", "wear", "creep", "film"):
-        check_keys(_table(content, name), name, f"in [{name}]", _KEYS)
+        check_keys(table_of(content, name), name, f"in [{name}]", _KEYS)
     given = _joint(content, folder)
-    cycle, wear = _cycle(_table(content, "cycle"), folder), _table(content, "wear")
+    cycle, wear = _cycle(table_of(content, "cycle"), folder), table_of(content, "wear")
     use = InUse(
         joint=given.joint,
         cup=given.cup,
@@ -86,7 +85,7 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         wear=_law(wear),
         surface=_surface(wear),
         creep=_creep(content),
-        seconds_per_cycle=_seconds(_table(content, "creep")),
+        seconds_per_cycle=_seconds(table_of(content, "creep")),
         **({"ring_width": parse("ring_width", wear["ring_width"], Kind.ANGLE)} if "ring_width" in wear else {}),
     )
     cycles = _count("cycles", content.get("cycles", 5 * _MILLION))
@@ -95,7 +94,7 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         raise ValueError(f"report_at = {shown(looks)} must be a list of numbers of cycles")
     at = tuple(_count("report_at", look) for look in looks)
     check_cycles(cycles, at)
-    return HipFile(use=use, cycles=cycles, report_at=at, lubricant=_lubricant(_table(content, "film")))
+    return HipFile(use=use, cycles=cycles, report_at=at, lubricant=_lubricant(table_of(content, "film")))
 
 
 def _count(name: str, value: Any) -> float:
@@ -104,31 +103,14 @@ def _count(name: str, value: Any) -> float:
     return float(value)
 
 
-def _table(content: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    part = content.get(name, {})
-    if not isinstance(part, Mapping):
-        raise ValueError(f"{name} = {shown(part)} must be a table: [{name}]")
-    return part
-
-
 def _joint(content: Mapping[str, Any], folder: Path) -> JointFile:
-    """Joint and cup, a tilt in place of where the cup faces."""
-    given, around = content.get("joint"), dict(_table(content, "cup"))
-    if given is None:
-        raise ValueError("a joint is needed: a table [joint], a joint file, or a preset's name")
+    """Joint and cup, which may have a tilt in place of where it faces, and stands beside a joint's name too."""
+    around = dict(table_of(content, "cup"))
     tilt = around.pop("tilt", None)
-    parts = {name: content[name] for name in _DESCRIBED if name in content}
-    if isinstance(given, Mapping):
-        file = joint_of({**parts, **({"cup": around} if around else {"cup": {}})})
-    else:
-        file = _named(check_text("joint", given), folder)
-        if around:
-            file = replace(file, cup=joint_of({"joint": _PLAIN, "liner": _LINER, "cup": around}).cup)
+    file = joint_in({name: each for name, each in content.items() if name != "cup"}, folder)
+    if around:
+        file = replace(file, cup=read_cup(around))
     return file if tilt is None else replace(file, cup=_tilted(file.cup, tilt, around))
-
-
-_PLAIN: Mapping[str, Any] = MappingProxyType({"ball_radius": 1.0, "clearance": 0.1, "liner_thickness": 1.0})
-_LINER: Mapping[str, Any] = MappingProxyType({"young": 1.0, "poisson": 0.4})
 
 
 def _tilted(cup: Cup, tilt: Any, given: Mapping[str, Any]) -> Cup:
@@ -138,14 +120,6 @@ def _tilted(cup: Cup, tilt: Any, given: Mapping[str, Any]) -> Cup:
     angle = parse("tilt", tilt, Kind.ANGLE)
     require("tilt", degrees(angle), 0 <= angle <= pi / 2, "a cup's tilt from the load is 0 to 90 degrees")
     return cup.tilted(angle)
-
-
-def _named(name: str, folder: Path) -> JointFile:
-    if plain_name(name) in joints:
-        return JointFile(joints[plain_name(name)], {})
-    if not (folder / name).is_file():
-        raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
-    return read_joint(folder / name)
 
 
 _AMPLE: Mapping[str, tuple[Callable[..., Cycle], str]] = MappingProxyType(
@@ -207,7 +181,7 @@ def _creep(content: Mapping[str, Any]) -> Ladder | None:
     """Without a table there is no creep."""
     if "creep" not in content:
         return None
-    table = _table(content, "creep")
+    table = table_of(content, "creep")
     given = [name for name in _ELEMENTS if name in table]
     name = known_name("creep law", table.get("law", "kelvin-voigt" if given else "logarithmic"), _CREEPS)
     if name == "logarithmic":

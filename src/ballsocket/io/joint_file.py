@@ -17,7 +17,7 @@ from ..kinds import Kind
 from ..model.answer import checked_load
 from ..presets import materials
 from ..quantities import CUP, LAYER, LOADS, MATERIAL, STRENGTH
-from .toml import parse_toml, read_toml
+from .toml import parse_toml, read_toml, table_of
 from .units import as_given, parse
 
 _CHOICES: dict[str, type[Enum]] = {"interface": Interface, "side": Side}
@@ -86,9 +86,7 @@ def parse_joint(raw: bytes, title: str) -> JointFile:
 def joint_of(table: Mapping[str, Any]) -> JointFile:
     """Joint and load from the tables of a joint file, or of the command line; see `read_joint`."""
     for name in _TABLES:
-        part = table.get(name, {}) if name else table
-        if not isinstance(part, Mapping):
-            raise ValueError(f"{name} = {shown(part)} must be a table: [{name}]")
+        part = table_of(table, name) if name else table
         check_keys(part, name, f"in [{name}]" if name else "at the top", KEYS)
     for name in ("name", "source"):
         check_text(name, table.get(name, ""))

@@ -62,6 +62,14 @@ def parse_toml(raw: bytes, title: str, kind: str, make: Callable[[Mapping[str, A
         raise ValueError(f"{title}: {error}") from error
 
 
+def table_of(content: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """The table of that name, empty where there is none; ValueError where it is something else."""
+    part = content.get(name, {})
+    if not isinstance(part, Mapping):
+        raise ValueError(f"{name} = {shown(part)} must be a table: [{name}]")
+    return part
+
+
 def _content(raw: bytes, title: str, kind: str) -> Mapping[str, Any]:
     if len(raw) > MOST:
         raise ValueError(f"{title} is larger than {MOST} bytes; a {kind} file is a few lines")

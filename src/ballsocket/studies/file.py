@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from ..catalogue import catalogue, judge, off_axis
-from ..checks import check_names, check_text, known_name, nearest, plain_name, shown
+from ..checks import check_names, check_text, known_name, nearest, shown
 from ..engines.dask import Distributed
 from ..engines.local import Engine, Processes, Serial
-from ..io.joint_file import KEYS, JointFile, check_keys, joint_of, named_material, read_joint
-from ..io.toml import read_toml
+from ..io.joint_file import KEYS, check_keys, named_material
+from ..io.named_joint import PARTS, joint_in
+from ..io.toml import read_toml, table_of
 from ..io.units import as_given, parse
 from ..joint import Joint
 from ..model import Model
-from ..presets import joints
 from .axes import Method, Span
 from .design import Design, grid, sample
 from .distributions import Distribution, Normal, Rectangular, tolerance
@@ -25,11 +25,7 @@ from .rows import table
 
 _TOP = (
     "model",
-    "joint",
-    "liner",
-    "ball",
-    "backing",
-    "cup",
+    *PARTS,
     "axes",
     "samples",
     "table",
@@ -37,8 +33,7 @@ _TOP = (
     "store",
     "engine",
 )
-_DESCRIBED = ("joint", "liner", "ball", "backing", "cup")
-_KEYS = {"": _TOP, **{name: KEYS[name] for name in _DESCRIBED}, "axes": tuple(PARAMETERS)}
+_KEYS = {"": _TOP, **{name: KEYS[name] for name in PARTS}, "axes": tuple(PARAMETERS)}
 _ENGINES = ("serial", "processes", "dask")
 _LARGEST = 1 << 53
 models: dict[str, Model] = {**catalogue, judge.name: judge, off_axis.name: off_axis}
@@ -85,14 +80,14 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     quantities = content.get("quantities", [])
     if not (isinstance(quantities, list) and all(isinstance(name, str) for name in quantities)):
         raise ValueError(f"quantities = {shown(quantities)} must be a list of names")
-    given = _joint(content, folder)
+    given = joint_in(content, folder)
     return StudyFile(
         model=named_model(content.get("model", "hess-forsbach")).in_cup(given.cup),
         joint=given.joint,
         design=_design(content, folder),
         quantities=tuple(quantities),
         store=folder / _text("store", content["store"]) if "store" in content else None,
-        engine=read_engine(_table_of(content, "engine")),
+        engine=read_engine(table_of(content, "engine")),
     )
 
 
@@ -127,25 +122,8 @@ def read_engine(content: Mapping[str, Any]) -> Engine:
     return Processes(workers=workers) if kind == "processes" else Serial()
 
 
-def _joint(content: Mapping[str, Any], folder: Path) -> JointFile:
-    given = content.get("joint")
-    if isinstance(given, Mapping):
-        return joint_of({name: content[name] for name in _DESCRIBED if name in content})
-    others = [name for name in _DESCRIBED[1:] if name in content]
-    if given is not None and others:
-        raise ValueError(f"joint = {shown(given)} is a whole joint: [{others[0]}] belongs to a table [joint]")
-    if given is None:
-        raise ValueError("a joint is needed: a joint file, a preset's name, or a table [joint]")
-    name = _text("joint", given)
-    if plain_name(name) in joints:
-        return JointFile(joints[plain_name(name)], {})
-    if not (folder / name).is_file():
-        raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
-    return read_joint(folder / name)
-
-
 def _design(content: Mapping[str, Any], folder: Path) -> Design:
-    axes, samples, rows = (_table_of(content, name) for name in ("axes", "samples", "table"))
+    axes, samples, rows = (table_of(content, name) for name in ("axes", "samples", "table"))
     check_names(axes, (*PARAMETERS, *PARTS_OF), "in [axes]")
     design = grid(**{name: _values(name, value) for name, value in axes.items()})
     if samples:
@@ -228,13 +206,6 @@ def _whole(name: str, value: Any) -> int:
     if not -_LARGEST < value < _LARGEST:
         raise ValueError(f"{name} = {shown(value)} is too large a number")
     return value
-
-
-def _table_of(content: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    part = content.get(name, {})
-    if not isinstance(part, Mapping):
-        raise ValueError(f"{name} = {shown(part)} must be a table: [{name}]")
-    return part
 
 
 def _text(name: str, value: Any) -> str:
