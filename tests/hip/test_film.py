@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Lubricant
+from ballsocket.hip import Cycle, Lubricant, flexion
 from ballsocket.hip.film import film_thickness
 
 from .test_wear import hip
@@ -67,12 +67,25 @@ def test_the_distance_to_the_rim_is_that_of_the_closed_form():
     assert use.edge_distance(use.unworn) == pytest.approx(expected, abs=0.05)
 
 
-def test_a_contact_at_the_rim_is_told_with_its_instant():
+def test_a_contact_at_the_rim_is_told_with_its_instant_and_place():
     history = hip(cup=bs.Cup(inclination=radians(60.0))).after(1e5)
     assert history.last.edge_distance.min() == 0
-    assert any(
-        note.startswith("edge loading: after 100000 cycles the contact reaches the rim") for note in history.notes
+    note = next(note for note in history.notes if note.startswith("edge loading: in the first cycle"))
+    assert "of 72 instants, most at 11.8 % of the cycle, 0° from the cup's uppermost point" in note
+    told = history.summary()["history"][-1]["edge"]
+    assert (told["distance_mm"], told["place_deg"]) == (0.0, pytest.approx(0.0, abs=0.1))
+
+
+def test_the_place_at_the_rim_is_where_the_load_leans():
+    """Seen along the cup's axis: 40° around it, new, at every load."""
+    lean = np.array([np.cos(radians(40.0)), np.sin(radians(40.0)), 1.0])
+    use = hip(
+        cycle=Cycle(name="leaning", force=lambda t: np.outer(lean, 800 + 600 * t), angles=flexion().angles),
+        cup=bs.Cup(),
     )
+    edge = use.edge(use.unworn)
+    assert np.degrees(edge.place) == pytest.approx(40.0, abs=2.0)
+    assert edge.worst(use).told == "99.5 % of the cycle"
 
 
 @pytest.mark.parametrize(

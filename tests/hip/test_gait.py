@@ -5,9 +5,18 @@ from math import degrees, pi, radians, sin
 import numpy as np
 import pytest
 
-from ballsocket.hip import Cycle, constant_load, flexion, iso_14242_1, iso_14242_1_key_points, named_cycle, rocking
+from ballsocket.hip import (
+    Cycle,
+    constant_load,
+    flexion,
+    iso_14242_1,
+    iso_14242_1_key_points,
+    named_cycle,
+    rocking,
+    two_axis,
+)
+from ballsocket.hip.cycle import order_of
 from ballsocket.hip.cycle_file import read_cycle
-from ballsocket.hip.gait import order_of
 from ballsocket.hip.sliding import rotation_matrices, rotation_vectors, slide
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -82,13 +91,37 @@ def test_cycles_by_name(name):
 
 
 def test_a_cycle_that_is_none_is_told_its_neighbour():
-    with pytest.raises(ValueError, match="cycle 'iso-14242' is not known; did you mean 'iso-14242-1'"):
+    with pytest.raises(ValueError, match="cycle 'iso-14242' is not known; did you mean 'iso-14242-[14]'"):
         named_cycle("iso-14242")
 
 
 def test_a_cycle_of_numbers_that_are_none_is_refused():
     with pytest.raises(ValueError, match="force.* = nan .*is not allowed: the numbers of a cycle are finite"):
         Cycle(name="own", force=lambda t: np.where(t > 0.5, np.nan, 1.0), angles=lambda t: np.zeros((3, len(t))))
+
+
+def test_two_axes_cross_tracks():
+    cycle = two_axis(1000)
+    angles = np.degrees(cycle.angles(np.linspace(0.0, 1.0, 1001)))
+    assert np.ptp(angles, axis=1) == pytest.approx([46.0, 12.0, 0.0], abs=1e-9)
+    assert (cycle.sizes.min(), cycle.largest_force) == pytest.approx((400.0, 2000.0), rel=1e-6)
+
+
+@pytest.mark.parametrize(("name", "percent"), [("walking", 247), ("stairs-down", 260), ("stumbling", 870)])
+def test_loads_of_patients_are_multiples_of_their_weight(name, percent):
+    cycle = named_cycle(name, body_weight=750.0)
+    assert cycle.largest_force == pytest.approx(7.5 * percent, rel=1e-6)
+    assert "Bergmann" in cycle.notes[0]
+    assert "assumed" in cycle.notes[0]
+
+
+def test_the_weight_of_a_body_belongs_to_loads_of_patients():
+    with pytest.raises(ValueError, match="the loads of 'jogging' are multiples of the body's weight"):
+        named_cycle("jogging")
+    with pytest.raises(ValueError, match="the loads of 'two-axis' are a machine's: it takes no body_weight"):
+        named_cycle("two-axis", body_weight=750.0)
+    with pytest.raises(ValueError, match="body_weight = -1 is not allowed"):
+        named_cycle("walking", body_weight=-1.0)
 
 
 def test_rocking_goes_round_and_a_constant_load_is_constant():

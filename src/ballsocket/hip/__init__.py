@@ -1,28 +1,39 @@
 """The hip in use: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
 from .creep import Ladder, logarithmic
+from .cycle import Cycle, Frame, Spring
 from .film import Film, Lubricant
-from .gait import Cycle, constant_load, flexion, iso_14242_1, iso_14242_1_key_points, named_cycle, rocking
+from .gait import constant_load, flexion, iso_14242_1, iso_14242_1_key_points, iso_14242_4, rocking, two_axis
 from .history import History
+from .in_vivo import in_vivo
 from .laws import Archard, AreaLaw, CrossShear, OwnLaw
+from .mix import Activity, Mix
+from .named_cycles import named_cycle
 from .use import InUse
 
 __all__ = [
+    "Activity",
     "Archard",
     "AreaLaw",
     "CrossShear",
     "Cycle",
     "Film",
+    "Frame",
     "History",
     "InUse",
     "Ladder",
     "Lubricant",
+    "Mix",
     "OwnLaw",
+    "Spring",
     "constant_load",
     "flexion",
+    "in_vivo",
     "iso_14242_1",
     "iso_14242_1_key_points",
+    "iso_14242_4",
     "logarithmic",
     "named_cycle",
     "rocking",
+    "two_axis",
 ]

@@ -180,15 +180,15 @@ class Run:
 
     def _advance_creep(self, creep: Ladder, seconds: float) -> None:
         """Creep under the pressure that there is at the end, which falls where it creeps: a few sweeps to meet it."""
-        near, instants = self._near, self.use.cycle.instants
+        near, shares = self._near, self.use.cycle.seconds[self.use.loaded] / self.use.cycle.duration
         stays, adds = creep.linear(self.strain[:, near.cells], seconds)
         thickness = float(self.use.joint.liner_thickness)
-        mean = self._pass.pressure.sum(axis=0) / instants
-        stiff = near.bed.stiffest * (self._pass.pressure > 0).sum(axis=0) / instants
+        mean = shares @ self._pass.pressure
+        stiff = near.bed.stiffest * (shares @ (self._pass.pressure > 0))
         for _ in range(_SWEEPS):
             self._creep = near.bed.smoothed(thickness * (stays + adds * mean))
             self._rate(self._values)
-            change = (self._pass.pressure.sum(axis=0) / instants - mean) / (1 + stiff * thickness * adds)
+            change = (shares @ self._pass.pressure - mean) / (1 + stiff * thickness * adds)
             mean = numpy.maximum(mean + change, 0.0)
             if abs(change).max(initial=0.0) <= _MET * mean.max(initial=0.0):
                 break
@@ -224,6 +224,7 @@ class Run:
         rest = use.rest(self.depth + crept, self._rest)
         only = [use.rest(depth) if depth.any() else use.unworn for depth in (self.depth, crept)]
         moved = [(each.displacement - use.unworn.displacement)[use.largest].sum(axis=0) for each in (rest, *only)]
+        edge = use.edge(rest, self.depth + crept)
         return Report(
             cycles=self.cycles,
             wear=self.depth.reshape(shape),
@@ -234,7 +235,8 @@ class Run:
             worn_in=moved[1],
             crept_in=moved[2],
             max_pressure=float(rest.pressure.max(initial=0.0)),
-            edge_distance=use.edge_distance(rest, self.depth + crept),
+            edge_distance=edge.distance,
+            edge_place=edge.place,
             crept=crept.reshape(shape),
             creep_depth=float(crept.max()),
             settled=self.settled and all(each.settled for each in (rest, *only)),

@@ -18,7 +18,7 @@ from .laws import OwnLaw
 if TYPE_CHECKING:
     from .use import InUse
 
-_VERSION = 1
+_VERSION = 2
 _NAME = "hip_in_use.npz"
 
 

@@ -13,7 +13,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..checks import check_names, require, shown
-from .gait import INSTANTS, Course, Cycle
+from .cycle import INSTANTS, Course, Cycle
 
 _LARGEST = 10_000_000
 _ROWS = 5, 100_000

@@ -21,10 +21,12 @@ from ..models.foundation import RadialFoundation
 from ..sphere.surfaces import ClosedShell, RealCup, Springs
 from .coefficients import share_of_slide, wear_factor
 from .creep import Ladder, logarithmic
+from .cycle import INSTANTS, Cycle, order_of
 from .cycle_file import read_cycle
 from .film import Lubricant
-from .gait import CYCLES, INSTANTS, Cycle, constant_load, named_cycle, order_of, rocking
+from .gait import constant_load, rocking
 from .laws import Archard, AreaLaw, CrossShear, Law
+from .named_cycles import CYCLES, named_cycle
 from .use import InUse, check_cycles
 
 _TABLES: Mapping[str, tuple[str, ...]] = {

@@ -101,6 +101,8 @@ class Film:
         Of friction in W.
     heat : float
         Of a cycle in J.
+    duration : float
+        Of a cycle in s.
     """
 
     phases: Numbers
@@ -110,6 +112,7 @@ class Film:
     moment: Numbers
     power: Numbers
     heat: float
+    duration: float
 
     @property
     def regime(self) -> str:
@@ -130,7 +133,7 @@ class Film:
             "lambda_least": self.ratio.min(),
             "lambda_largest": self.ratio.max(),
             "moment_Nmm": size.max(),
-            "power_W": self.power.mean(),
+            "power_W": self.heat / self.duration,
             "heat_J_per_cycle": self.heat,
         }
         numbers = {name: float(each) if numpy.isfinite(each) else None for name, each in told.items()}
@@ -139,7 +142,7 @@ class Film:
 
 def film(use: InUse, rest: Rest, lubricant: Lubricant) -> Film:
     """The film and the friction of a cycle of contacts."""
-    instant = use.cycle.duration / use.cycle.instants
+    instant = use.cycle.seconds[use.loaded]
     size = numpy.linalg.norm(use.loads, axis=1)
     across = numpy.linalg.norm(numpy.cross(use.turns, use.loads), axis=1) / numpy.where(size > 0, size, 1.0)
     least, central = film_thickness(use.joint, size, across / instant, lubricant.viscosity)
@@ -154,6 +157,7 @@ def film(use: InUse, rest: Rest, lubricant: Lubricant) -> Film:
         moment=lubricant.friction * _moment(use, rest),
         power=1e-3 * work / instant,
         heat=1e-3 * float(work.sum()),
+        duration=use.cycle.duration,
     )
 
 

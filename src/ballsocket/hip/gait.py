@@ -1,158 +1,14 @@
-"""Cycles of load and motion: what a hip goes through in a step, as values."""
+"""Cycles by name: what simulators and their standards let a hip go through."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from math import pi, radians
-from types import MappingProxyType
-from typing import Any
 
 import numpy
 
 from ..arrays import Numbers
-from ..checks import known_name, require, shown
-from .sliding import rotation_matrices, rotation_vectors
-
-INSTANTS = 100
-_FEWEST, _MOST = 8, 10_000
-_FINE = 10_000
-
-Course = Callable[[Numbers], Numbers]
-"""From phases 0 to 1 of a cycle to a quantity, with the phases as the last axis."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Cycle:
-    """A cycle of load and motion, cut into instants of equal length.
-
-    Directions are those of the body, or of the machine: x to the side (lateral), y to the front, z upwards. The socket
-    stands still and the ball turns by R = the product of three rotations, flexion about x, adduction about y,
-    inward rotation about z.
-
-    Parameters
-    ----------
-    name : str
-    force : function
-        From phases (n,) in 0 to 1 to forces of the ball on the socket (3, n) in N, or to their sizes (n,) upwards; what
-        pulls the ball off, a size below 0, is no contact.
-    angles : function
-        From phases to flexion, adduction and rotation (3, n) in rad.
-    instants : int
-    order : str
-        The axes as they are multiplied: "xyz" is R = Rx Ry Rz.
-    duration : float
-        In s.
-    cup_tilt : float, optional
-        In rad from the load, where a standard says how a socket is put in.
-    notes : tuple of str
-        What is to be said of it.
-
-    Raises
-    ------
-    ValueError
-        Numbers that are not finite; a number of instants or an order that is none.
-    """
-
-    name: str
-    force: Course
-    angles: Course
-    instants: int = INSTANTS
-    order: str = "xyz"
-    duration: float = 1.0
-    cup_tilt: float | None = None
-    notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        check_instants(self.instants)
-        object.__setattr__(self, "order", order_of(self.order))
-        for name, values in {"force": self.forces, "angle": self.rotations}.items():
-            require(name, values, numpy.isfinite(values), "the numbers of a cycle are finite")
-
-    @property
-    def phases(self) -> Numbers:
-        """The middle of each instant, 0 to 1."""
-        return (numpy.arange(self.instants) + 0.5) / self.instants
-
-    @cached_property
-    def forces(self) -> Numbers:
-        """In the middle of each instant, in N: (instants, 3)."""
-        return self._forces_at(self.phases)
-
-    def _forces_at(self, phases: Numbers) -> Numbers:
-        found = numpy.asarray(self.force(phases), dtype=float)
-        if found.ndim == 1:
-            size = numpy.maximum(found, 0.0)
-            found = numpy.stack([0 * size, 0 * size, size])
-        return numpy.ascontiguousarray(found.T)
-
-    @cached_property
-    def largest_force(self) -> float:
-        """In the whole cycle, between the instants too, in N."""
-        return float(numpy.linalg.norm(self._forces_at(numpy.linspace(0.0, 1.0, _FINE + 1)), axis=1).max())
-
-    @cached_property
-    def sizes(self) -> Numbers:
-        """Sizes of the forces in N: (instants,)."""
-        return numpy.linalg.norm(self.forces, axis=1)
-
-    @cached_property
-    def rotations(self) -> Numbers:
-        """Rotation matrices of the ball at the ends of the instants, the last one the first: (instants + 1, 3, 3)."""
-        angles = numpy.asarray(self.angles(numpy.arange(self.instants) / self.instants), dtype=float).T
-        turned = rotation_matrices(angles, self.order)
-        return numpy.concatenate([turned, turned[:1]])
-
-    @cached_property
-    def turns(self) -> Numbers:
-        """How the ball turns during each instant: rotation vectors in rad, (instants, 3)."""
-        return rotation_vectors(self.rotations[1:] @ self.rotations[:-1].swapaxes(1, 2))
-
-    def scaled(self, factor: float) -> Cycle:
-        """A cycle of this motion under forces that are larger by a factor."""
-        return replace(self, force=lambda phases: factor * self.force(phases))
-
-
-def check_instants(count: Any) -> int:
-    """A number of instants, if it is one.
-
-    Raises
-    ------
-    ValueError
-        No whole number from 8 to 10 000.
-    """
-    if isinstance(count, bool) or not isinstance(count, int) or not _FEWEST <= count <= _MOST:
-        raise ValueError(f"instants = {shown(count)} is not allowed: a whole number from {_FEWEST} to {_MOST}")
-    return count
-
-
-_AXES = {
-    **dict.fromkeys(("flexion", "flexion-extension", "fe", "f", "x"), "x"),
-    **dict.fromkeys(("adduction", "abduction", "abduction-adduction", "adduction-abduction", "aa", "a", "y"), "y"),
-    **dict.fromkeys(("rotation", "inward rotation", "inward-outward rotation", "ier", "ie", "r", "z"), "z"),
-}
-
-
-def order_of(text: Any) -> str:
-    """The axes of "flexion, adduction, rotation", "FE-AA-IER" or "xyz" as they are multiplied: "xyz".
-
-    Raises
-    ------
-    ValueError
-        Not the three rotations, each of them once.
-    """
-    words = text if isinstance(text, list | tuple) else _words(text) if isinstance(text, str) else []
-    axes = "".join(_AXES.get(str(word).strip().lower(), "?") for word in words)
-    if sorted(axes) != ["x", "y", "z"]:
-        known = "'flexion, adduction, rotation' in any order"
-        raise ValueError(f"rotation_order = {shown(text)} is not allowed: {known} (R is their product from the left)")
-    return axes
-
-
-def _words(text: str) -> list[str]:
-    parts = text.replace(";", ",").split(",") if "," in text else text.replace("-", " ").split()
-    return list(parts[0].strip()) if len(parts) == 1 and len(parts[0].strip()) == 3 else parts
+from .cycle import INSTANTS, Course, Cycle, Spring, order_of
 
 
 def half_cosines(phases: Numbers, knots: Numbers, values: Numbers) -> Numbers:
@@ -168,6 +24,10 @@ _ISO_ANGLES = (
     (numpy.array([0, 50, 100]) / 100, numpy.radians([25.0, -18.0, 25.0])),
     (numpy.array([0, 21, 50, 71, 100]) / 100, numpy.radians([3.0, 7.0, -4.0, -4.0, 3.0])),
     (numpy.array([0, 50, 100]) / 100, numpy.radians([-10.0, 2.0, -10.0])),
+)
+_TWO = radians(23.0), radians(6.0)
+_SET_OFF = (
+    "mismatch, spring and swing load are as in published tests after ISO 14242-4; the standard itself was not read"
 )
 _UNREAD = "the key points of ISO 14242-1 are as quoted in the literature; the standard itself was not read"
 
@@ -229,6 +89,61 @@ def flexion(instants: int = INSTANTS, order: str = "xyz") -> Cycle:
     )
 
 
+def iso_14242_4(
+    instants: int = INSTANTS,
+    order: str = "xyz",
+    *,
+    mismatch: float = 4.0,
+    stiffness: float = 100.0,
+    swing: float = 70.0,
+) -> Cycle:
+    """Walking with a socket that is set off to the side (ISO 14242-4): in the swing phase a spring pulls the ball out.
+
+    Parameters
+    ----------
+    instants : int
+    order : str
+        Of the rotations; see `Cycle`.
+    mismatch : float
+        Of the centres in mm.
+    stiffness : float
+        Of the spring in N/mm.
+    swing : float
+        The load in the swing phase, in N.
+    """
+    knots, values = _ISO_FORCE
+    return replace(
+        iso_14242_1(instants, order),
+        name="iso-14242-4",
+        force=lambda phases: half_cosines(phases, knots, numpy.where(values > 300.0, values, swing)),
+        spring=Spring(stiffness=stiffness, mismatch=mismatch),
+        notes=(_UNREAD, _SET_OFF),
+    )
+
+
+def two_axis(instants: int = INSTANTS, order: str = "xyz", *, peak: float = 2000.0) -> Cycle:
+    """A simulator of two axes: flexion by 46° and adduction by 12° in all, a quarter of a cycle apart.
+
+    Parameters
+    ----------
+    instants : int
+    order : str
+        Of the rotations; see `Cycle`.
+    peak : float
+        The force has the course of ISO 14242-1 between a fifth of it and all of it, in N.
+    """
+    return Cycle(
+        name="two-axis",
+        force=lambda phases: peak * (0.2 + 0.8 * (_iso_force(phases) - 300.0) / 2700.0),
+        angles=lambda phases: numpy.stack(
+            [_TWO[0] * numpy.cos(2 * pi * phases), _TWO[1] * numpy.sin(2 * pi * phases), 0 * phases]
+        ),
+        instants=instants,
+        order=order,
+        notes=("the course of the two-axis simulator is a typical one, and no machine's own",),
+    )
+
+
 def rocking(
     instants: int = INSTANTS, order: str = "xyz", *, amplitude: float = radians(23.0), peak: float = 2000.0
 ) -> Cycle:
@@ -275,19 +190,3 @@ def constant_load(
         instants=instants,
         order=order,
     )
-
-
-CYCLES: Mapping[str, Callable[[int, str], Cycle]] = MappingProxyType(
-    {
-        "iso-14242-1": iso_14242_1,
-        "iso-14242-1-key-points": iso_14242_1_key_points,
-        "flexion": flexion,
-        "biaxial-rocking": rocking,
-        "constant-load": constant_load,
-    }
-)
-
-
-def named_cycle(name: Any, instants: int = INSTANTS, order: str = "xyz") -> Cycle:
-    """A cycle by its name; ValueError with the nearest one where there is none of that name."""
-    return CYCLES[known_name("cycle", name, CYCLES)](instants, order)

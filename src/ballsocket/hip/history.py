@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..arrays import Numbers
+from .edge import Edge, Worst
 from .film import Lubricant
 
 if TYPE_CHECKING:
@@ -62,6 +63,8 @@ class Report:
         In the cycle, in MPa.
     edge_distance : array (loaded,)
         From the edge of each contact of the cycle to the end of the bore in mm; 0 where it reaches it.
+    edge_place : array (loaded,)
+        Where that is around the cup's axis, in rad from its uppermost point.
     crept : array (rings, meridians)
         Depth of creep in mm.
     creep_depth : float
@@ -80,6 +83,7 @@ class Report:
     crept_in: Numbers
     max_pressure: float
     edge_distance: Numbers
+    edge_place: Numbers
     crept: Numbers
     creep_depth: float = 0.0
     settled: bool = True
@@ -88,6 +92,11 @@ class Report:
     def penetration(self) -> float:
         """How far the ball's centre has moved, in mm."""
         return float(numpy.linalg.norm(self.displacement))
+
+    @property
+    def edge(self) -> Edge:
+        """How near the contacts come to the rim."""
+        return Edge(distance=self.edge_distance, place=self.edge_place)
 
     def summary(self) -> dict[str, Any]:
         """For JSON, in mm, MPa, mm³."""
@@ -163,17 +172,24 @@ class History:
         return ()
 
     @property
+    def worst(self) -> Worst | None:
+        """The instant of the first cycle in which the contact comes nearest to the rim."""
+        return self.use.edge(self.use.unworn).worst(self.use)
+
+    @property
     def _at_the_rim(self) -> tuple[str, ...]:
-        """Where and when a contact reaches the rim first."""
-        for report in self.reports:
-            if report.edge_distance.min(initial=1.0) <= 0:
-                when = self.use.cycle.phases[self.use.loaded][report.edge_distance.argmin()]
-                return (_REACHES.format(report.cycles, 100 * when),)
+        """When a contact reaches the rim first, in which instant most, and where."""
+        seen = [(_NEW, self.worst)]
+        seen += [(_LATER.format(report.cycles), report.edge.worst(self.use)) for report in self.reports]
+        for when, worst in seen:
+            if worst is not None and worst.reaching:
+                of = len(self.use.loaded)
+                return (_REACHES.format(when, worst.reaching, of, worst.where),)
         return ()
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
-        first = self.use.first
+        first, apart = self.use.first, self.use.separation
         return {
             "cycle": {
                 "name": self.use.cycle.name,
@@ -181,11 +197,13 @@ class History:
                 "slide_mm": first.slide,
                 "pressure_slide_integral_Nm": first.work,
                 "cross_shear_mean": first.cross_shear,
+                "edge": _told(self.worst),
+                "microseparation": None if apart is None else apart.summary(self.use),
                 "peaks": {"force_N": first.max_force, "max_pressure_MPa": first.max_pressure},
             },
             "film": self.use.film(self.lubricant).summary(),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
-            "history": [report.summary() for report in self.reports],
+            "history": [{**each.summary(), "edge": _told(each.edge.worst(self.use))} for each in self.reports],
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
             "notes": list(self.notes),
         }
@@ -194,5 +212,10 @@ class History:
 _THIN = 0.25
 _THROUGH = "worn through: after {:g} cycles the depth is {:.3g} mm in a liner of {:g} mm; what follows has no meaning"
 _THINNER = "after {:g} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of a whole one"
-_REACHES = "edge loading: after {:g} cycles the contact reaches the rim, first at {:.1f} % of the cycle"
+_NEW, _LATER = "in the first cycle", "after {:g} cycles"
+_REACHES = "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}"
 _UNSETTLED = "a contact did not balance its load: no digit of this run is to be trusted"
+
+
+def _told(worst: Worst | None) -> dict[str, Any] | None:
+    return None if worst is None else worst.summary()

@@ -12,7 +12,7 @@ import numpy
 
 from ..arrays import Numbers, is_plain
 from ..checks import require
-from ..cup import Cup
+from ..cup import Cup, Side
 from ..fem.shapes import socket_shape
 from ..joint import Joint
 from ..sphere.grid import Grid, even_grid, grid
@@ -22,11 +22,14 @@ from ..validity import inside
 from .blocks import Run
 from .checkpoint import Checkpoint, checkpoint
 from .creep import Ladder
+from .cycle import Cycle, Frame
+from .edge import Edge, edge_of
 from .elastic_bed import elastic_bed
 from .film import Film, Lubricant, film
-from .gait import Cycle
 from .history import Error, First, History, Report
 from .laws import Law, Pass
+from .mix import Mix
+from .separation import Separation, on_the_rim
 from .sliding import Sliding, slide
 from .springs import CycleBed, Rest, spring_bed
 
@@ -42,8 +45,8 @@ class InUse:
     ----------
     joint : Joint
         Of plain numbers.
-    cycle : Cycle
-        In the body's frame, as the cup's orientation is.
+    cycle : Cycle or Mix
+        In the body's frame, as the cup's orientation is. On a left cup it is mirrored.
     wear : Law
         `Archard`, `AreaLaw`, `CrossShear` or `OwnLaw`.
     cup : Cup
@@ -75,7 +78,7 @@ class InUse:
     """
 
     joint: Joint
-    cycle: Cycle
+    cycle: Cycle | Mix
     wear: Law
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
     surface: Springs | ClosedShell | RealCup = Springs()  # noqa: RUF009 (frozen)
@@ -103,17 +106,48 @@ class InUse:
         return self.cycle.duration if self.seconds_per_cycle is None else self.seconds_per_cycle
 
     def _check_held(self) -> None:
-        forces = self.cycle.forces[self.loaded]
-        if not len(forces):
-            return
-        tilt, reach = numpy.asarray(self.placed.tilt(forces)), self.reach
-        if (tilt >= reach).any():
-            out = int((tilt >= reach).argmax())
-            when = 100 * self.cycle.phases[self.loaded][out]
+        out = self._over
+        if self.separation is not None:
+            out = out[numpy.isnan(self.separation.displacement[:, 0])]
+        if len(out):
+            first = out[0]
             raise ValueError(
-                f"dislocated at {when:.1f} % of the cycle: the load of {numpy.linalg.norm(forces[out]):.0f} N points "
-                f"{degrees(tilt[out]):.1f}° from the dome's pole, and the bore ends at {degrees(reach):.1f}°"
+                f"dislocated at {self.cycle.told(first)}: the load of {numpy.linalg.norm(self.forces[first]):.0f} N "
+                f"points {degrees(self._tilts[first]):.1f}° from the dome's pole, and the bore ends at "
+                f"{degrees(self.reach):.1f}°"
             )
+
+    @cached_property
+    def moved(self) -> Cycle | Mix:
+        """The cycle on the side of the body that the cup belongs to."""
+        return self.cycle.mirrored() if self.cup.side is Side.LEFT else self.cycle
+
+    @cached_property
+    def forces(self) -> Numbers:
+        """Of the ball on the socket in N, in the cup's frame: (instants, 3)."""
+        given = self.moved.forces
+        return given if self.cycle.frame is Frame.CUP else _in_cup(self.placed, given)
+
+    @property
+    def _tilts(self) -> Numbers:
+        """Of the forces from the dome's pole, in rad: (instants,)."""
+        return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
+
+    @cached_property
+    def _pressed(self) -> Numbers:
+        """Whether there is a load at all: (instants,)."""
+        sizes = self.cycle.sizes
+        return numpy.asarray(sizes > _LIFTED * max(float(sizes.max()), 1e-300))
+
+    @cached_property
+    def _over(self) -> Numbers:
+        """The instants in which the load points beyond the rim."""
+        return numpy.flatnonzero(self._pressed & (self._tilts >= self.reach))
+
+    @cached_property
+    def separation(self) -> Separation | None:
+        """The instants in which a spring has pushed the ball onto the rim; None where it never does."""
+        return on_the_rim(self, self._over) if self.cycle.spring is not None and len(self._over) else None
 
     @cached_property
     def placed(self) -> Cup:
@@ -130,13 +164,14 @@ class InUse:
     @cached_property
     def loaded(self) -> Numbers:
         """The instants in which the ball is pressed into the bore."""
-        sizes = self.cycle.sizes
-        return numpy.flatnonzero(sizes > _LIFTED * max(float(sizes.max()), 1e-300))
+        within = self._pressed.copy()
+        within[self._over] = False
+        return numpy.flatnonzero(within)
 
     @cached_property
     def loads(self) -> Numbers:
         """The forces of those instants in the cup's frame: (loaded, 3)."""
-        return numpy.ascontiguousarray(self.cycle.forces[self.loaded] @ numpy.array(self.placed.frame).T)
+        return numpy.ascontiguousarray(self.forces[self.loaded])
 
     @property
     def largest(self) -> Numbers:
@@ -147,15 +182,21 @@ class InUse:
     @cached_property
     def turns(self) -> Numbers:
         """How the ball turns in those instants, in the cup's frame: (loaded, 3)."""
-        return numpy.ascontiguousarray(self.cycle.turns[self.loaded] @ numpy.array(self.placed.frame).T)
+        return _in_cup(self.placed, self.moved.turns[self.loaded])
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be said of the cycle, the cup and the law."""
         placed = () if self.placed == self.cup else (_PLACED.format(degrees(self.cycle.cup_tilt or 0.0)),)
-        lifted = () if len(self.loaded) == self.cycle.instants else (_LIFTS,)
+        apart = () if self.separation is None else (self.separation.told(self),)
         crept = self.creep.notes if self.creep else ()
-        return (*self.cycle.notes, *placed, *lifted, *self.wear.notes, *crept)
+        return (*self.cycle.notes, *placed, *self._lifted, *apart, *self.wear.notes, *crept)
+
+    @property
+    def _lifted(self) -> tuple[str, ...]:
+        """When the ball is lifted off, in a sentence."""
+        off = numpy.flatnonzero(~self._pressed)
+        return (_LIFTS.format(self.cycle.told(int(off[0])), len(off), self.cycle.instants),) if len(off) else ()
 
     @cached_property
     def grid(self) -> Grid:
@@ -184,21 +225,16 @@ class InUse:
     def sliding(self) -> Sliding:
         return Sliding(radius=float(self.joint.ball_radius), turns=self.turns, directions=self.bed.directions)
 
+    def edge(self, rest: Rest, depth: Numbers | float = 0.0) -> Edge:
+        """How near the edge of each contact comes to the end of the bore, and where."""
+        return edge_of(self, self.bed.edge_field(rest, numpy.broadcast_to(depth, self.bed.areas.shape)))
+
     def edge_distance(self, rest: Rest, depth: Numbers | float = 0.0) -> Numbers:
         """The arc in mm from the edge of each contact to the end of the bore where it is nearest: (loaded,).
 
         0 where the contact reaches it: edge loading.
         """
-        polar = self.grid.polar
-        field = self.bed.edge_field(rest, numpy.broadcast_to(depth, self.bed.areas.shape))
-        rows = field.reshape(len(field), len(polar), self.grid.meridians)
-        ends = (rows > 0) & numpy.concatenate([rows[:, 1:] <= 0, numpy.ones_like(rows[:, :1], dtype=bool)], axis=1)
-        fall = rows[:, :-1] - rows[:, 1:]
-        share = numpy.divide(rows[:, :-1], fall, out=numpy.ones_like(fall), where=ends[:, :-1])
-        edges = polar[:-1, None] + share * numpy.diff(polar)[:, None]
-        edges = numpy.concatenate([edges, numpy.full_like(edges[:, :1], self.reach)], axis=1)
-        edge = numpy.where(ends, edges, 0.0).max(axis=(1, 2), initial=0.0)
-        return (self.reach - edge) * self.bed.socket_radius
+        return self.edge(rest, depth).distance
 
     def rest(self, depth: Numbers | float = 0.0, start: Rest | None = None) -> Rest:
         """The contacts of a cycle on a bore that is worn by a depth in mm (cells,)."""
@@ -221,8 +257,8 @@ class InUse:
     def slide(self) -> float:
         """How far the ball slides past the loads' line in a cycle, in mm."""
         sizes = self.cycle.sizes[:, None]
-        along = numpy.divide(self.cycle.forces, sizes, out=numpy.zeros_like(self.cycle.forces), where=sizes > 0)
-        return slide(float(self.joint.ball_radius), self.cycle.turns, _held(along, self.loaded))
+        along = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
+        return slide(float(self.joint.ball_radius), _in_cup(self.placed, self.moved.turns), _held(along, self.loaded))
 
     @cached_property
     def first(self) -> First:
@@ -274,9 +310,7 @@ class InUse:
 
     def error(self, blocks: float) -> Error:
         """What the volume may be off by: blocks as they estimate it, rings and instants by halving them once."""
-        finer = replace(
-            self, ring_width=self.ring_width / 2, cycle=replace(self.cycle, instants=2 * self.cycle.instants)
-        )
+        finer = replace(self, ring_width=self.ring_width / 2, cycle=self.cycle.finer())
         mine, other = self.first, finer.first
         rates = (
             abs(getattr(mine, name) / getattr(other, name) - 1) if getattr(other, name) else 0.0 for name in _RATES
@@ -315,7 +349,12 @@ def _looks(
 
 _RATES = ("volume", "depth")
 _PLACED = "the cup is tilted by {:g}° from the load, as the cycle's standard has it"
-_LIFTS = "the ball lifts off in a part of the cycle; nothing is pressed or worn there"
+_LIFTS = "the ball lifts off, first at {}, and comes down again: in {} of {} instants nothing is pressed or worn"
+
+
+def _in_cup(cup: Cup, vectors: Numbers) -> Numbers:
+    """Vectors (n, 3) of the body in the cup's own frame."""
+    return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
 
 
 def _held(along: Numbers, loaded: Numbers) -> Numbers:

@@ -80,7 +80,7 @@ def track_map(history: History) -> Figure:
     use = history.use
     figure, axes = _figure((5.2, 4.8))
     frame = numpy.array(use.placed.frame)
-    turned = numpy.einsum("ij,njk,lk->nil", frame, use.cycle.rotations, frame)
+    turned = numpy.einsum("ij,njk,lk->nil", frame, use.moved.rotations, frame)
     for track in tracks(turned, _points(use.reach), float(use.joint.ball_radius)):
         axes.plot(track[:, 0], track[:, 1], color=_INK, linewidth=0.8)
     rim = numpy.linspace(0.0, 2 * pi, 200)
@@ -125,6 +125,8 @@ def edge_figure(history: History) -> Figure:
     axes.plot(phase, use.edge_distance(use.unworn), color=_INK, label="unworn")
     last = history.last
     axes.plot(phase, last.edge_distance, "--", color=_SECOND, label=f"after {last.cycles / 1e6:g} million cycles")
+    worst = last.edge_distance.argmin()
+    axes.plot(phase[worst], last.edge_distance[worst], "o", color=_SECOND, ms=5)
     axes.set_xlabel("% of the cycle")
     axes.set_ylabel("contact's edge to the rim [mm]")
     axes.set_ylim(bottom=-0.2)  # a line at 0 is seen

@@ -32,7 +32,7 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
         ),
         "tracks": ("Tracks", hip_plots.track_map, "Of points of the ball on the socket, in one cycle."),
         "film": ("Film and friction", hip_plots.film_figure, f"{CONFORMING}."),
-        "edge": ("Edge distance", hip_plots.edge_figure, "0 is edge loading."),
+        "edge": ("Edge distance", hip_plots.edge_figure, "0 is edge loading; a dot where the contact comes nearest."),
     }
 )
 _HEADS = (
@@ -99,4 +99,15 @@ def _numbers(history: History) -> str:
         f"Against the same model in the finest steps the volume is within {100 * error.volume:.2g} %, the depth within "
         f"{100 * error.depth:.2g} %."
     )
-    return f"<p>{escape(told)}</p>{table(_HEADS, rows)}"
+    return f"<p>{escape(told)}</p><p>{escape(_rim(history))}</p>{table(_HEADS, rows)}"
+
+
+def _rim(history: History) -> str:
+    """How near the contact comes to the rim, when and where, new and at the end."""
+    seen = {"New": history.worst, "at the end": history.last.edge.worst(history.use)}
+    told = (
+        f"{name} the contact comes within {worst.distance:.3g} mm of the rim at {worst.where}"
+        for name, worst in seen.items()
+        if worst is not None
+    )
+    return "; ".join(told) or "nothing is pressed"
