@@ -7,7 +7,7 @@ import pytest
 
 import ballsocket as bs
 
-from .joints import HIP
+from ..joints import HIP
 
 NARROW = bs.Cup(arc_of_cover=radians(60.0))
 KNOWS_NONE = bs.catalogue

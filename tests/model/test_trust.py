@@ -9,8 +9,8 @@ import pytest
 import ballsocket as bs
 from ballsocket.quantities import CONTACT
 
-from .extent import either
-from .joints import HIP
+from ..extent import either
+from ..joints import HIP
 
 NUMBERS = ("indentation", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
 EVERY = {**bs.catalogue, "fem": bs.FiniteElement(meshes=1)}

@@ -14,7 +14,7 @@ import ballsocket as bs
 from ballsocket.output import accuracy_table
 from ballsocket.paper.accuracy import accuracies, paper_joints
 
-from .places import ROOT
+from ..places import ROOT
 
 FILE = re.search(r"^```python\n(.*?)^```$", (ROOT / "CONTRIBUTING.md").read_text("utf-8"), re.MULTILINE | re.DOTALL)[1]
 CONTRACT = ("catalogue", "evidence", "models/test_limits.py", "test_words.py")
