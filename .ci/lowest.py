@@ -9,7 +9,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 TOOLS = ("array-api-strict", "hypothesis", "mpmath", "pytest", "pytest-xdist")
-TESTS = ("catalogue", "models/test_limits.py", "models/test_published.py", "io", "test_words.py")
+TESTS = (
+    "catalogue",
+    "contact/test_largest_pressure.py",
+    "model/test_laws.py",
+    "models/test_limits.py",
+    "models/test_published.py",
+    "io",
+    "test_words.py",
+)
 ASIDE = ("-k", "not array_libraries", "-W", "ignore::DeprecationWarning")  # what newer tools say of older ones
 
 
