@@ -9,6 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.sphere.forms import scan_of
+from ballsocket.sphere.grid import even_grid
 
 from ..joints import HIP
 
@@ -41,6 +42,16 @@ def test_a_table_is_the_function_it_was_made_from():
     contacts = [replace(COARSE, worn=worn).press(RIGID, force=2000.0, tilt=0.3) for worn in (table, function)]
     assert contacts[0].max_pressure == pytest.approx(contacts[1].max_pressure, rel=2e-3)
     assert contacts[0].indentation == pytest.approx(contacts[1].indentation, rel=2e-3)
+
+
+def test_a_measured_depth_is_computed_once_for_a_grid_and_anew_where_points_may_change():
+    scan, grid = scan_of(bore(depth=lambda n: 0.02 * n[0] ** 2)), even_grid(1.2, 0.2)
+    first = scan.depth(grid.middles)
+    assert scan.depth(grid.middles) is first
+    moving = grid.middles.copy()
+    assert scan.depth(moving) == pytest.approx(first)
+    moving[:2] *= -1
+    assert scan.depth(moving) == pytest.approx(scan.depth(np.array(moving)))
 
 
 @pytest.mark.parametrize(

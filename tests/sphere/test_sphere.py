@@ -108,6 +108,9 @@ def test_error_bars_hold():
         model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(random.choice([2.0, 4.0])))
         contact = model.press(joint, indentation=exact.indentation, tilt=random.uniform(0.0, 0.4, 8))
         off += [abs(getattr(contact, name) / getattr(exact, name) - 1) / contact.error[name] for name in names]
+        wide = model.press(joint, half_angle=exact.half_angle[:2], tilt=0.3)
+        names_of_wide = [name for name in names if name != "half_angle"]
+        off += [abs(getattr(wide, one) / getattr(exact, one)[:2] - 1) / wide.error[one] for one in names_of_wide]
     off = np.concatenate(off)
     assert (off <= 1).mean() >= 0.94
     assert off.max() < 3
@@ -161,9 +164,16 @@ def test_a_force_is_balanced_and_the_ball_leans_where_the_rim_gives_way():
     assert contact.moment == pytest.approx(np.cross(contact.displacement, contact.force_vector))
 
 
-def test_a_contact_of_a_half_angle_has_it():
+def test_a_contact_of_a_half_angle_has_it_to_the_jumps_of_its_rings_or_a_status():
     contact = bs.Sphere().press(RIGID, half_angle=0.7, tilt=0.3)
     assert contact.half_angle == pytest.approx(0.7, rel=1e-3)
+    coarse = bs.Sphere(ring_width=radians(6.0))
+    angle, tilt = np.meshgrid([0.2, 0.5, 0.8, 1.1, 1.5], np.linspace(0.0, 1.4, 7))
+    wide = coarse.press(RIGID, half_angle=angle, tilt=tilt)
+    found = wide.status == 0
+    assert abs(wide.half_angle - angle)[found].max() < 0.5 * radians(6.0)
+    assert found[angle + tilt < radians(80.0)].all()
+    assert (wide.status[angle == 1.5] == int(bs.Status.NOT_REACHED)).all()  # wider than what a hemisphere holds
 
 
 def test_many_loads_are_the_same_as_one_after_the_other():

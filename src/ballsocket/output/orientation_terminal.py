@@ -63,7 +63,7 @@ def _remarks(stood: Orientations) -> Iterator[str]:
         yield f"least pressure: {_at(stood, -stood.max_pressure, 'MPa')}"
     loaded = int((stood.edge_loaded & stood.held).sum())
     if loaded:
-        yield f"{loaded} of {stood.status.size} orientations load the rim (below 0: what it cuts off)"
+        yield f"{loaded} of {stood.status.size} orientations load the rim (below 0: how far beyond first touch)"
     if numpy.isposinf(stood.max_pressure).any():
         yield "inf: the end of the bore digs in, where the pressure is unbounded"
     for status in Status:

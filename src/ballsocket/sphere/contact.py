@@ -85,7 +85,7 @@ class OffAxisContact(SolvedContact):
     def edge_distance(self) -> Array:
         """The arc in mm from the edge of the contact to the end of the bore (contact patch edge to rim).
 
-        Below 0 the contact is cut off: so much is missing of what it reaches on the side of the dome.
+        Below 0 it is cut off there: so far would the load have to turn back towards the dome for it to end at the rim.
         """
         return self.edge_margin * self.joint.socket_radius
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, pi, radians
@@ -57,8 +58,27 @@ class Pinched:
         return depth
 
 
+class _Measured:
+    """A depth between measured points, which takes its time: that at the last directions is remembered."""
+
+    def depth(self, directions: Numbers) -> Numbers:
+        """In mm, positive where material is missing, at unit vectors (3, ...) in the cup's frame."""
+        if directions.flags.writeable:
+            return self._between_points(directions)
+        last, found = vars(self).get("_last", (None, None))
+        if last is not directions:
+            found = self._between_points(directions)
+            vars(self)["_last"] = directions, found
+        depth: Numbers = found
+        return depth
+
+    @abstractmethod
+    def _between_points(self, directions: Numbers) -> Numbers:
+        """The depth in mm at unit vectors (3, ...)."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
-class DepthTable:
+class DepthTable(_Measured):
     """A depth that is known at polar angles and azimuths, linear between them.
 
     Parameters
@@ -105,7 +125,7 @@ class DepthTable:
             around, rows = self.azimuth, self.values
         return RegularGridInterpolator((self.polar, around), rows)
 
-    def depth(self, directions: Numbers) -> Numbers:
+    def _between_points(self, directions: Numbers) -> Numbers:
         x, y, _ = directions
         polar = numpy.clip(polar_angle(directions), self.polar[0], self.polar[-1])
         first = self._between.grid[1][0]
@@ -115,7 +135,7 @@ class DepthTable:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Scan:
+class Scan(_Measured):
     """A bore as it was measured: the sphere that fits it best, and how the surface deviates from that.
 
     Attributes
@@ -142,8 +162,8 @@ class Scan:
     directions: Numbers
     deviation: Numbers
 
-    def depth(self, directions: Numbers) -> Numbers:
-        """In mm, from the nearest points, weighted by the inverse square of their distance; as far as the scan goes."""
+    def _between_points(self, directions: Numbers) -> Numbers:
+        """From the nearest points, weighted by the inverse square of their distance; as far as the scan goes."""
         far, which = self._tree.query(numpy.moveaxis(directions, 0, -1), k=_NEAREST)
         weights = 1 / (far**2 + (_BLUNT * self._spacing) ** 2)
         depth: Numbers = (weights * self.deviation[which]).sum(axis=-1) / weights.sum(axis=-1)

@@ -89,8 +89,10 @@ class Grid:
 
     @cached_property
     def middles(self) -> Numbers:
-        """Unit vectors to the middles of the cells: (3, rings, meridians)."""
-        return unit_vectors(self.polar[:, None], self.azimuth)
+        """Unit vectors to the middles of the cells: (3, rings, meridians); nobody writes into them."""
+        middles = unit_vectors(self.polar[:, None], self.azimuth)
+        middles.setflags(write=False)
+        return middles
 
     def averaged(self, rings: Numbers) -> Numbers:
         """From what rings do to rings, ∫ u dA for each m, to what cells do to cells: the mean u over each.

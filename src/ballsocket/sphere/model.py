@@ -93,7 +93,7 @@ class Sphere(Model):
     smooth_step: ClassVar[float] = 3e-3
     seconds_a_press: ClassVar[float] = 0.03
     fits: ClassVar[tuple[Range, ...]] = ()
-    reach: ClassVar[str] = "forces along directions in which the bore holds the ball"
+    reach: ClassVar[str] = "forces along directions in which the bore holds the ball, contacts no wider than the bore"
 
     def __post_init__(self) -> None:
         for name, kinds in {"cup": (Cup,), "surface": (RealCup, ClosedShell, Springs)}.items():
@@ -285,7 +285,7 @@ class Sphere(Model):
             load=loads,
             touching=touching,
             state=state,
-            reached=numpy.ones(int(touching.sum()), dtype=bool),
+            reached=state.reached,
             error=state.errors(kind),
         )
 

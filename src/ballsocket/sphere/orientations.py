@@ -72,7 +72,7 @@ class Orientations:
 
     @cached_property
     def edge_distance(self) -> Numbers:
-        """The arc in mm from the contact to the rim; below 0 the contact is cut off."""
+        """The arc in mm from the contact to the rim; below 0 the load is so far beyond where it just reaches that."""
         return self._each(lambda contact: contact.edge_distance)
 
     @cached_property

@@ -152,14 +152,10 @@ class Patch:
 
     @cached_property
     def edge_margin(self) -> float:
-        """The angle (rad) from the outline to the end of the bore; below 0 what the contact would reach beyond it.
-
-        Beyond, its extent towards the dome stands for the one that the rim cuts off.
-        """
+        """The angle (rad) from the outline to the end of the bore where that is nearest; 0 where it is reached."""
         if self.edge_loaded:
-            dome = float(self._edges[_RAYS // 2])
-            return min(self.grid.reach - float(polar_angle(self.axis)) - dome, 0.0)
-        return float(self.grid.reach - numpy.arccos(numpy.clip(self.outline[:, 2], -1, 1)).max())
+            return 0.0
+        return max(float(self.grid.reach - numpy.arccos(numpy.clip(self.outline[:, 2], -1, 1)).max()), 0.0)
 
 
 def _angles(directions: Numbers) -> Numbers:

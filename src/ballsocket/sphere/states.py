@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,6 +11,7 @@ import numpy
 from ..arrays import Numbers
 from ..model.per_joint import QUANTITIES
 from .patch import Patch
+from .rim import edge_margins
 from .search import Bed, Rest
 
 _AREAS = {
@@ -44,6 +46,10 @@ class Edges:
     bounded: bool
 
 
+Loaded = Callable[["Bed", Numbers, Numbers, "Edges"], "States"]
+"""From a bed, loads (contacts,), their directions (contacts, 3) in the cup's frame, and what edges are like."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class States:
     """Contacts of one joint.
@@ -57,6 +63,12 @@ class States:
     edges : Edges
     dislocated : array of bool (contacts,)
         Whether the bore does not hold the ball.
+    load : array (contacts,)
+        What was asked for along the axes.
+    press : function
+        From a bed, other loads of that kind, their axes and what edges are like, to their contacts.
+    too_wide : array of bool (contacts,)
+        Whether no contact in this bore is as wide as asked for.
     """
 
     bed: Bed
@@ -64,6 +76,9 @@ class States:
     axes: Numbers
     edges: Edges
     dislocated: Numbers
+    load: Numbers
+    press: Loaded
+    too_wide: Numbers | bool = False
 
     @property
     def lost(self) -> Numbers:
@@ -74,6 +89,11 @@ class States:
     def unsettled(self) -> Numbers:
         """1 where the iteration did not end."""
         return (~self.rest.found & ~self.dislocated).astype(float)
+
+    @property
+    def reached(self) -> Numbers:
+        """Whether a contact can be as wide as asked for."""
+        return ~(self.too_wide & ~self.dislocated)
 
     @cached_property
     def patches(self) -> tuple[Patch, ...]:
@@ -151,10 +171,10 @@ class States:
         """1 where there is pressure at the end of the bore."""
         return self._each("edge_loaded").astype(float)
 
-    @property
+    @cached_property
     def edge_margin(self) -> Numbers:
-        """The angle in rad from the contact to the end of the bore."""
-        return self._each("edge_margin")
+        """The angle in rad from the contact to the end of the bore, below 0 where it is reached: see `edge_margins`."""
+        return edge_margins(self)
 
     @property
     def unbounded(self) -> Numbers:
@@ -195,8 +215,19 @@ class States:
         share = grid.width**2 * numpy.pi / numpy.maximum(area, grid.areas.min())  # of a flat circle of that area
         errors = {name: _SHARPEST + factor * share for name, factor in _AREAS.items()}
         errors |= {name: _SHARPEST + factor * numpy.sqrt(share) for name, factor in _EDGES.items()}
+        if kind == "half_angle":
+            return {name: errors[name] + power * errors[kind] for name, power in self._powers().items()}
         errors[kind] = 0.0 * share
         return {name: errors[name] for name in QUANTITIES}
+
+    def _powers(self) -> dict[str, Numbers]:
+        """By which powers of the half angle the quantities grow: in springs, d as 1/cos ε - 1, the others with d."""
+        angle = numpy.minimum(self.half_angle, 1.5)
+        x = numpy.cos(angle)
+        growth = angle / numpy.tan(angle / 2) / x
+        powers = dict.fromkeys(QUANTITIES, growth)
+        powers |= {"force": (2 - 2 * (1 - x) * (1 + x) / (2 + x)) * growth, "energy": (2 + x) * growth}
+        return powers | {"pressure_integral": (1 + x) * growth, "half_angle": 0.0 * x}
 
 
 def _unit(vectors: Numbers) -> Numbers:
