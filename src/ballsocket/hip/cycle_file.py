@@ -1,199 +1,153 @@
-"""A cycle of one's own, from a table: time, force and angles, each with its unit."""
+"""A cycle of one's own, from tables: of text, of OpenSim, or as OrthoLoad has them."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any
 
 import numpy
 
 from ..arrays import Numbers
-from ..checks import check_names, require, shown
-from .cycle import INSTANTS, Course, Cycle
+from ..checks import known_name, require
+from ..cup import Side
+from .cycle import INSTANTS, Course, Cycle, Frame
+from .measured import ANGLES, FORCES, Measured, measured, together
+from .resampled import CLOSED, check_closed, clock_of, course, cut, phases_of
+from .sliding import rotation_matrices
+from .tables import read_table
 
-_LARGEST = 10_000_000
-_ROWS = 5, 100_000
-_HEAD = re.compile(r"\s*\"?\s*([A-Za-z_]+)\s*(?:[\[(]\s*([^\])]+?)\s*[\])])?\s*\"?\s*")
-_FORCES = ("force_x", "force_y", "force_z")
-_ANGLES = ("flexion", "adduction", "rotation")
-_NEWTON: Mapping[str, float] = MappingProxyType({"n": 1.0, "kn": 1e3, "%bw": 0.01, "bw": 1.0})
-_RADIAN: Mapping[str, float] = MappingProxyType({"deg": pi / 180, "°": pi / 180, "rad": 1.0})
-_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
-    {
-        "time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
-        "phase": {"%": 0.01, "1": 1.0},
-        **dict.fromkeys(("force", *_FORCES), _NEWTON),
-        **dict.fromkeys(_ANGLES, _RADIAN),
-    }
-)
-_CLOSED = 0.01
-"""Of what a column spans: so much its end may differ from its beginning."""
-
-_GAP = 3.0
-"""Usual steps of time: a longer one is a gap."""
+FRAMES = ("body", "femur", "cup")
+BODIES = ("socket", "ball")
 
 
-def read_cycle(
-    path: str | Path, instants: int = INSTANTS, order: str = "xyz", body_weight: float | None = None
-) -> Cycle:
-    """Read a cycle from a table of text.
-
-    The first line names the columns with their units: `time [s]` or `phase [%]`; `force [N]` along z, or `force_x [N]`,
-    `force_y [N]`, `force_z [N]`, of the ball on the socket; `flexion [deg]`, `adduction [deg]`, `rotation [deg]`, of
-    which those that are missing are zero. Forces may be in kN, or in %BW, which needs the body's weight. Columns are
-    parted by commas, semicolons or tabs; lines that begin with # are passed over. The last line is the first again,
-    one cycle later. Between the lines the course is monotone and smooth.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reading:
+    """How a table is to be read, beyond what its columns say.
 
     Parameters
     ----------
-    path : str or Path
+    side : Side
+        Of the hip in the table: on the left, `force_x` to the right is to the middle. Default RIGHT.
+    frame : str, optional
+        "body", "femur" (it turns with the ball) or "cup": whose directions the force has, where columns do not say it.
+    force_on : str, optional
+        "socket" or "ball", where columns do not say it.
+    begin, end : float, optional
+        Times in s, or phases from 0 to 1, of the one cycle that is cut out.
+    closing : float
+        Of its span: so much a column may end elsewhere than it begins, which is spread over the cycle. Default 0.01.
+    motion : Cycle, optional
+        Whose angles are taken where a table has none.
+
+    Raises
+    ------
+    ValueError
+        A word or a number that is not allowed.
+    """
+
+    side: Side = Side.RIGHT
+    frame: str | None = None
+    force_on: str | None = None
+    begin: float | None = None
+    end: float | None = None
+    closing: float = CLOSED
+    motion: Cycle | None = None
+
+    def __post_init__(self) -> None:
+        for name, known in (("frame", FRAMES), ("force_on", BODIES)):
+            if (given := getattr(self, name)) is not None:
+                known_name(name, given, known)
+        require("closing", self.closing, 0 <= self.closing <= 0.5, "it is 0 to 0.5 of what a column spans")
+
+
+def read_cycle(
+    path: str | Path | Sequence[str | Path],
+    instants: int = INSTANTS,
+    order: str = "xyz",
+    body_weight: float | None = None,
+    reading: Reading = Reading(),
+) -> Cycle:
+    """Read a cycle from a table, or from several of one walk.
+
+    In a table of text a line names the columns with their units: `time [s]` or `phase [%]`; `force [N]` along z, or
+    `force_x [N]`, `force_y [N]`, `force_z [N]`; `flexion [deg]`, `adduction [deg]`, `rotation [deg]`, of which those
+    that are missing are zero. Forces may be in kN, or in %BW, which needs the body's weight. Columns are parted by
+    commas, semicolons, tabs or blanks; lines that begin with # are passed over. As OrthoLoad has it, `Fx`, `Fy`, `Fz`
+    are forces on the ball in the femur's frame. Of OpenSim's storages (.mot, .sto) are read the coordinates
+    `hip_flexion_r`, `hip_adduction_r`, `hip_rotation_r` and the joint's reaction, as
+    `hip_r_on_femur_r_in_pelvis_fx`, or those of the left hip. The last line is the first again, one cycle later.
+    Between the lines the course is monotone and smooth.
+
+    Parameters
+    ----------
+    path : str or Path, or several
     instants, order
         As of `Cycle`.
     body_weight : float, optional
         In N.
+    reading : Reading
+        Side, frame, what is cut out, and the like.
 
     Raises
     ------
     ValueError
         One sentence: a column without its unit, a gap, what is no number, a cycle that does not close.
     OSError
-        The file cannot be read.
+        A file cannot be read.
     """
-    path = Path(path)
+    paths = [Path(path)] if isinstance(path, str | Path) else [Path(each) for each in path]
     try:
-        heads, rows = _rows(path)
-        columns = _columns(heads, rows, body_weight)
-        phase, duration = _phase(columns)
-        force = [columns[name] for name in (_FORCES if "force" not in columns else ("force",)) if name in columns]
-        angles = numpy.stack([columns.get(name, 0.0 * phase) for name in _ANGLES])
-        return Cycle(
-            name=path.stem,
-            force=_course(phase, force[0] if len(force) == 1 else numpy.stack(force)),
-            angles=_course(phase, angles),
-            instants=instants,
-            order=order,
-            duration=duration,
-        )
+        parts = [measured(read_table(each), body_weight, reading.side) for each in paths]
+        found = together([replace(part, columns=cut(part.columns, reading.begin, reading.end)) for part in parts])
+        return replace(_cycle(found, order, reading), name=paths[0].stem, instants=instants)
     except ValueError as error:
-        raise ValueError(f"{path.name}: {error}") from error
+        raise ValueError(f"{', '.join(each.name for each in paths)}: {error}") from error
 
 
-def _rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """The heads of the columns, and the other lines with their numbers."""
-    with path.open("rb") as stream:
-        raw = stream.read(_LARGEST + 1)
-    if len(raw) > _LARGEST:
-        raise ValueError(f"the table is larger than {_LARGEST} bytes")
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise ValueError(f"not text in UTF-8: {error.reason} at byte {error.start}") from error
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
-    if len(lines) < _ROWS[0] + 1 or len(lines) > _ROWS[1]:
-        raise ValueError(f"{max(len(lines) - 1, 0)} lines below the heads; a cycle has {_ROWS[0]} to {_ROWS[1]}")
-    parting = max(",;\t", key=lines[0][1].count)
-    return lines[0][1].split(parting), [(number, line.split(parting)) for number, line in lines[1:]]
-
-
-def _columns(
-    heads: Sequence[str], rows: Sequence[tuple[int, list[str]]], body_weight: float | None
-) -> dict[str, Numbers]:
-    """Columns by name, in s, N and rad."""
-    found: dict[str, Numbers] = {}
-    for place, head in enumerate(heads):
-        name, factor = _head(head, body_weight)
-        if name in found:
-            raise ValueError(f"the column {name} is there twice")
-        found[name] = factor * numpy.array([_number(name, number, row, place) for number, row in rows])
-    if ("time" in found) == ("phase" in found):
-        raise ValueError("a column time [s] or phase [%] is needed, and not both")
-    whole = all(name in found for name in _FORCES)
-    if ("force" in found) == whole or (not whole and any(name in found for name in _FORCES)):
-        raise ValueError("a column force [N], or force_x, force_y and force_z, is needed")
-    return found
-
-
-def _head(head: str, body_weight: float | None) -> tuple[str, float]:
-    """A column's name, and the factor to s, N or rad."""
-    match = _HEAD.fullmatch(head)
-    if match is None:
-        raise ValueError(f"the head {shown(head)} is not a name with a unit, such as 'force [N]'")
-    name, unit = match[1].lower(), match[2]
-    check_names([name], _UNITS, "as a column")
-    known = _UNITS[name]
-    if unit is None:
-        raise ValueError(f"the column {name} has no unit: write '{name} [{_first(known)}]' as its head")
-    unit = unit.replace(" ", "").lower().replace("degrees", "deg")
-    if unit not in known:
-        raise ValueError(f"the unit {shown(match[2])} of the column {name} is not known; known: {', '.join(known)}")
-    if "bw" not in unit:
-        return name, known[unit]
-    if body_weight is None:
-        raise ValueError(f"the column {name} is in {match[2]}, and no body_weight is given")
-    return name, known[unit] * body_weight
-
-
-def _first(units: Mapping[str, float]) -> str:
-    unit = next(iter(units))
-    return {"n": "N"}.get(unit, unit)
-
-
-def _number(name: str, number: int, row: Sequence[str], place: int) -> float:
-    text = row[place].strip() if place < len(row) else ""
-    try:
-        value = float(text)
-    except ValueError:
-        value = numpy.nan
-    if not numpy.isfinite(value):
-        what = shown(text) if text else "nothing"
-        raise ValueError(f"line {number} has {what} for {name}: each line needs a finite number in each column")
-    return value
-
-
-def _phase(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
-    """Phases from 0 to 1 and the duration in s, of a cycle without gaps that closes."""
-    name = "time" if "time" in columns else "phase"
-    time = columns.pop(name)
-    steps = numpy.diff(time)
-    if not (steps > 0).all():
-        at = int((steps <= 0).argmax())
-        raise ValueError(f"{name} does not rise from row {at + 1} to row {at + 2}")
-    usual = float(numpy.median(steps))
-    if steps.max() > _GAP * usual:
-        at = int(steps.argmax())
-        raise ValueError(
-            f"{name} has a gap from {time[at]:g} to {time[at + 1]:g}, {steps.max() / usual:.3g} usual steps long"
-        )
+def _cycle(found: Measured, order: str, reading: Reading) -> Cycle:
+    columns, motion = found.columns, reading.motion
+    phase, duration = phases_of(columns)
     for title, values in columns.items():
-        _check_closed(title, values)
-    return (time - time[0]) / (time[-1] - time[0]), float(time[-1] - time[0]) if name == "time" else 1.0
+        if title != clock_of(columns):
+            check_closed(title, values, reading.closing, *(("°", 180 / pi) if title in ANGLES else (" N", 1.0)))
+    angles = _angles(phase, columns, motion)
+    frame = known_name("frame", reading.frame or found.frame or FRAMES[0], FRAMES)
+    on = known_name("force_on", reading.force_on or found.force_on or BODIES[0], BODIES)
+    force = course(phase, _force(columns, reading.side, on))
+    return Cycle(
+        name="",
+        force=_turning(force, angles, order) if frame == "femur" and "force" not in columns else force,
+        angles=angles,
+        order=order,
+        duration=duration,
+        frame=Frame.CUP if frame == "cup" else Frame.BODY,
+        notes=() if motion is None else (f"the motion is that of {motion.name}",),
+    )
 
 
-def _check_closed(name: str, values: Numbers) -> None:
-    missing, span = abs(values[-1] - values[0]), float(numpy.ptp(values))
-    if missing > _CLOSED * span:
-        unit, factor = ("°", 180 / pi) if name in _ANGLES else (" N", 1.0)
-        begin, end = (f"{factor * values[at]:.4g}{unit}" for at in (0, -1))
-        raise ValueError(
-            f"the cycle does not close: {name} begins with {begin} and ends with {end}; "
-            "the last line is the first again, one cycle later"
-        )
-    require(name, span, span < numpy.inf, "it is finite")
+def _angles(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> Course:
+    given = any(name in columns for name in ANGLES)
+    if motion is None:
+        return course(phase, numpy.stack([columns.get(name, 0.0 * phase) for name in ANGLES]))
+    if given:
+        raise ValueError(f"angles are there, and the motion of {motion.name} is one too many")
+    return motion.angles
 
 
-def _course(phase: Numbers, values: Numbers) -> Course:
-    """Monotone between the lines, and smooth over the end of the cycle."""
-    from scipy.interpolate import PchipInterpolator
+def _force(columns: dict[str, Numbers], side: Side, on: str) -> Numbers:
+    """The force on the socket, to the side, to the front and upwards, or its size alone."""
+    whole = all(name in columns for name in FORCES)
+    if ("force" in columns) == whole or (not whole and any(name in columns for name in FORCES)):
+        raise ValueError("a column force [N], or force_x, force_y and force_z, is needed")
+    if "force" in columns:
+        return columns["force"]
+    force = numpy.stack([columns[name] for name in FORCES])
+    force[0] *= 1.0 if side is Side.RIGHT else -1.0
+    return force if on == "socket" else -force
 
-    around: Any = values.copy()
-    around[..., -1] = around[..., 0] = (values[..., 0] + values[..., -1]) / 2
-    before, after = slice(-4, -1), slice(1, 4)
-    times = numpy.concatenate([phase[before] - 1, phase, phase[after] + 1])
-    every = numpy.concatenate([around[..., before], around, around[..., after]], axis=-1)
-    made = PchipInterpolator(times, every, axis=-1)
-    return lambda phases: numpy.asarray(made(phases))
+
+def _turning(force: Course, angles: Course, order: str) -> Course:
+    """A force that is told in directions that turn with the ball."""
+    return lambda phases: numpy.einsum("nij,jn->in", rotation_matrices(angles(phases).T, order), force(phases))

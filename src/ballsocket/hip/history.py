@@ -10,6 +10,7 @@ import numpy
 from ..arrays import Numbers
 from .edge import Edge, Worst
 from .film import Lubricant
+from .mix import Mix
 
 if TYPE_CHECKING:
     from .use import InUse
@@ -203,10 +204,16 @@ class History:
             },
             "film": self.use.film(self.lubricant).summary(),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
-            "history": [{**each.summary(), "edge": _told(each.edge.worst(self.use))} for each in self.reports],
+            "history": [self._seen(report) for report in self.reports],
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
             "notes": list(self.notes),
         }
+
+    def _seen(self, report: Report) -> dict[str, Any]:
+        """A report for JSON, with years where the activities are counted by them."""
+        mix = self.use.cycle
+        years = {"years": report.cycles / mix.per_year} if isinstance(mix, Mix) else {}
+        return {**report.summary(), **years, "edge": _told(report.edge.worst(self.use))}
 
 
 _THIN = 0.25

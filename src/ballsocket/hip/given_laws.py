@@ -1,0 +1,106 @@
+"""What a file says of wear, creep and the film."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from ..catalogue import catalogue
+from ..checks import known_name, shown
+from ..io.toml import table_of
+from ..io.units import parse
+from ..kinds import Kind
+from ..models.foundation import RadialFoundation
+from ..sphere.surfaces import ClosedShell, RealCup, Springs
+from .coefficients import share_of_slide, wear_factor
+from .creep import Ladder, logarithmic
+from .film import Lubricant
+from .laws import Archard, AreaLaw, CrossShear, Law
+
+_LAWS = ("archard", "area", "cross-shear")
+_OF_CROSS_SHEAR = ("circular", "exponent", "reference")
+
+
+def given_law(table: Mapping[str, Any]) -> Law:
+    """The law of [wear]."""
+    name = known_name("law", table.get("law", "archard"), _LAWS)
+    if "coefficient" not in table:
+        raise ValueError("[wear] needs a coefficient, such as '1.066e-6 mm^3/(N m)'")
+    if name != "cross-shear":
+        for each in _OF_CROSS_SHEAR:
+            if each in table:
+                raise ValueError(f"{each} belongs to the law 'cross-shear', and the law is {name!r}")
+    if name == "area":
+        return AreaLaw(coefficient=share_of_slide("coefficient", table["coefficient"]))
+    straight = wear_factor("coefficient", table["coefficient"])
+    if name == "archard":
+        return Archard(coefficient=straight)
+    if "circular" not in table:
+        raise ValueError("the law 'cross-shear' needs circular, its coefficient on a circle, beside that on a line")
+    return CrossShear(
+        straight=straight,
+        circular=wear_factor("circular", table["circular"]),
+        exponent=parse("exponent", table.get("exponent", 0.0), Kind.NUMBER),
+        reference=parse("reference", table.get("reference", 1.0), Kind.MODULUS),
+    )
+
+
+_CREEPS = ("logarithmic", "kelvin-voigt")
+_ELEMENTS = ("compliances", "times")
+
+
+def given_creep(content: Mapping[str, Any]) -> Ladder | None:
+    """The creep of [creep]; none without that table."""
+    if "creep" not in content:
+        return None
+    table = table_of(content, "creep")
+    given = [name for name in _ELEMENTS if name in table]
+    name = known_name("creep law", table.get("law", "kelvin-voigt" if given else "logarithmic"), _CREEPS)
+    if name == "logarithmic":
+        if given:
+            raise ValueError(f"{given[0]} belongs to the law 'kelvin-voigt', and the law is {name!r}")
+        return logarithmic()
+    compliances, times = (_numbers(each, table.get(each)) for each in _ELEMENTS)
+    return Ladder(compliances=compliances, times=times)
+
+
+def _numbers(name: str, value: Any) -> tuple[float, ...]:
+    if not isinstance(value, list) or not value:
+        raise ValueError(f"{name} = {shown(value)} must be a list of numbers, in 1/MPa and in s")
+    return tuple(parse(name, each, Kind.NUMBER) for each in value)
+
+
+def given_seconds(table: Mapping[str, Any]) -> float | None:
+    """How long a cycle of creep stands for, where [creep] says it."""
+    value = table.get("seconds_per_cycle")
+    return None if value is None else parse("seconds_per_cycle", value, Kind.NUMBER)
+
+
+def given_lubricant(table: Mapping[str, Any]) -> Lubricant:
+    """The lubricant of [film]."""
+    words = {name: parse(name, table[name], Kind.NUMBER) for name in ("viscosity", "friction") if name in table}
+    words |= {
+        name: parse(name, table[name], Kind.LENGTH) for name in ("ball_roughness", "cup_roughness") if name in table
+    }
+    return Lubricant(**words)
+
+
+_CONTACTS: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType(
+    {"springs": None, "shell": ClosedShell(), "cup": RealCup()}
+)
+
+
+def given_surface(table: Mapping[str, Any]) -> Springs | ClosedShell | RealCup:
+    """The contact of [wear]."""
+    contact = known_name("contact", table.get("contact", "springs"), _CONTACTS)
+    elastic = _CONTACTS[contact]
+    if elastic is not None:
+        if "model" in table:
+            raise ValueError(f"a model has springs, and the contact is {contact!r}: leave one of them out")
+        return elastic
+    model = catalogue[known_name("model", table.get("model", "hess-forsbach"), catalogue)]
+    if not isinstance(model, RadialFoundation):
+        names = ", ".join(name for name, each in catalogue.items() if isinstance(each, RadialFoundation))
+        raise ValueError(f"the model {model.name!r} has no radial springs; those that have: {names}")
+    return Springs(modulus=model.modulus)
