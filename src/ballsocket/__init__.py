@@ -13,6 +13,7 @@ from .catalogue import catalogue
 from .compare import compare
 from .contact import Contact
 from .cup import Cup, Interface, Side
+from .dynamics.element import ForceElement
 from .elastic.exact import Exact
 from .elastic.tabulated.model import Tabulated
 from .fem.model import FiniteElement
@@ -102,6 +103,7 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "catalogue",
     "cite",
     "compare",
+    "ForceElement",
     "Orientations",
     "orient",
     "studies",

@@ -90,6 +90,8 @@ def power(x: Array, exponent: float) -> Array:
 
 
 def atan2(y: Array, x: Array) -> Array:
+    if type(y) is float and type(x) is float:
+        return math.atan2(y, x)
     return namespace(y, x).atan2(y, x)
 
 

@@ -1,0 +1,197 @@
+"""The force element: a model, a joint, what it loses, bound once and asked at one state after the other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy
+
+from .. import arrays
+from ..answer import check_joint
+from ..arrays import Array
+from ..checks import require, shown, vectors
+from ..cup import Cup
+from ..joint import Joint
+from ..law import CurveLaw
+from ..model import Model
+from .damping import Damping, one_number
+from .friction import Friction
+from .load import Load
+from .matrices import vector
+from .potential import Potential, potential_of
+from .reaction import APART, Constants, Three, elastic, place_of, reaction
+from .side_curves import curve_of, read
+from .watch import Watch
+
+_REST = (0.0, 0.0, 0.0)
+_LISTS = (tuple, list)
+
+
+@dataclass(frozen=True, eq=False)
+class ForceElement:
+    """A ball joint as a force element for programs that step through time.
+
+    Parameters
+    ----------
+    model : Model
+        Any that has a law: closed forms, `Tabulated`, `Refined`, `Exact`, ...
+    joint : Joint
+        Of plain numbers.
+    damping : Damping, optional
+        `Flores(restitution=..., impact_speed=...)` and its kin, or `Damping(...)`. None, the default, loses nothing.
+    friction : Friction, optional
+        None, the default, is a socket without friction.
+    cup : Cup, optional
+        With a rim, over which the force dies out. None, the default, is a whole sphere.
+    smoothing : float
+        In mm: the touch-down is rounded off over this depth on both sides of first touch, so that the force is twice
+        continuously differentiable, as optimal control needs it. 0, the default, is the model's own law.
+
+    Raises
+    ------
+    ValueError
+        A joint outside the model's domain; a smoothing that is negative, or wider than the clearance.
+    TypeError
+        A model without a law, arrays in the joint, or what is no damping, friction or cup.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.dynamics import Flores, Friction
+    >>> damping = Flores(restitution=0.8, impact_speed=100.0)
+    >>> friction = Friction(coefficient=0.05)
+    >>> element = bs.ForceElement(bs.HessForsbach(), bs.joints["hip-28"], damping=damping, friction=friction)
+    >>> load = element((0.0, 0.0, 0.12), velocity=(0.0, 0.0, 20.0), spin=(0.0, 1.0, 0.0))
+    >>> [round(part, 1) for part in load.force[::2]], [round(part, 1) for part in load.moment]
+    ([-40.7, -789.8], [0.0, -569.3, 0.0])
+    """
+
+    model: Model
+    joint: Joint
+    damping: Damping | None = None
+    friction: Friction | None = None
+    cup: Cup | None = None
+    smoothing: float = 0.0
+    potential: Potential = field(init=False, repr=False)
+    constants: Constants = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        check_joint(self.joint)
+        for name, kind in (("model", Model), ("damping", Damping), ("friction", Friction), ("cup", Cup)):
+            given = getattr(self, name)
+            if not (isinstance(given, kind) or (given is None and name != "model")):
+                raise TypeError(f"{name} must be a {kind.__name__}, got {shown(given)}")
+        smoothing = one_number("smoothing", self.smoothing)
+        potential = potential_of(self.model, self.joint)
+        clearance = float(self.joint.clearance)
+        good = 0.0 <= smoothing <= clearance
+        require("smoothing", smoothing, good, f"it is 0 or more, and at most the clearance, {clearance:g} mm")
+        object.__setattr__(self, "potential", potential)
+        object.__setattr__(self, "constants", self._constants(smoothing))
+
+    def _constants(self, smoothing: float) -> Constants:
+        joint, cup = self.joint.with_floats(), self.cup
+        damping = self.damping or Damping()
+        friction = self.friction or Friction(coefficient=0.0)
+        return Constants(
+            ball_radius=joint.ball_radius,
+            socket_radius=joint.socket_radius,
+            clearance=joint.clearance,
+            wall=min(joint.liner_thickness, joint.socket_radius, self.potential.deepest),
+            smoothing=smoothing,
+            hysteresis=damping.hysteresis,
+            time=damping.time,
+            sliding=friction.coefficient,
+            static=friction.static,
+            transition_speed=friction.transition_speed,
+            stribeck_speed=friction.stribeck_speed,
+            viscous=friction.viscous,
+            rim=0.0 if cup is None else cup.rim,
+            **dict(zip(("dome_x", "dome_y", "dome_z"), (Cup() if cup is None else cup).dome, strict=True)),
+        )
+
+    def __call__(self, position: Any, velocity: Any = _REST, spin: Any = _REST) -> Load:
+        """The load at a state, in axes that are fixed to the socket.
+
+        Parameters
+        ----------
+        position : (3,) or array (..., 3)
+            Of the ball's centre from the socket's, in mm. Tuples and lists of numbers are answered in tuples, and
+            quickest; arrays of any library in arrays, all states at once.
+        velocity : (3,) or array (..., 3)
+            Of the ball's centre as it is seen from the socket, in mm/s.
+        spin : (3,) or array (..., 3)
+            Angular velocity of the ball less that of the socket, in rad/s.
+
+        Raises
+        ------
+        ValueError
+            What does not have three components.
+        """
+        if type(position) in _LISTS:
+            return self._of_numbers(_three(position), _three(velocity), _three(spin))
+        return self._of_arrays(position, velocity, spin)
+
+    def _of_numbers(self, position: Three, velocity: Three, spin: Three) -> Load:
+        given = self.constants
+        place = place_of(*position, given.clearance)
+        if place.indentation <= -given.smoothing and place.distance > 0.0:
+            return Load(_REST, _REST, 0.0, self, place, APART, position, velocity, spin)
+        if place.indentation > self._watch.limit:
+            self._watch.at(place.indentation)
+        contact = elastic(self.potential, place, given)
+        fx, fy, fz, mx, my, mz = reaction(place, contact, velocity, spin, given)
+        return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, place, contact, position, velocity, spin)
+
+    def _of_arrays(self, *state: Any) -> Load:
+        names = ("position", "velocity", "spin")
+        axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
+        checked = map(vectors, names, map(_listed, state), axes)
+        position, velocity, spin = (_components(each) for each in arrays.common(*checked))
+        with numpy.errstate(all="ignore"):  # a state without an answer has a status
+            place = place_of(*position, self.constants.clearance)
+            self._watch.look(place.indentation)
+            contact = elastic(self.potential, place, self.constants)
+            parts = reaction(place, contact, velocity, spin, self.constants)
+        force, moment = vector(object, *parts[:3]), vector(object, *parts[3:])
+        return Load(force, moment, contact.energy, self, place, contact, position, velocity, spin)
+
+    @property
+    def wall(self) -> float:
+        """The deepest indentation that the socket's wall and the model leave room for, in mm."""
+        return self.constants.wall
+
+    @cached_property
+    def _watch(self) -> Watch:
+        return Watch(model=self.model, joint=self.joint.with_floats(), wall=self.wall)
+
+    @cached_property
+    def curves(self) -> tuple[CurveLaw, CurveLaw]:
+        """Half angle (rad) and largest pressure (MPa) over the indentation, as curves of ln over ln."""
+        return curve_of(self.model, self.joint, "half_angle"), curve_of(self.model, self.joint, "max_pressure")
+
+    def half_angle(self, indentation: Array) -> Array:
+        """ε in rad of an indentation in mm; 0 where nothing touches."""
+        return read(self.curves[0], indentation)
+
+    def max_pressure(self, indentation: Array) -> Array:
+        """In MPa of an indentation in mm; 0 where nothing touches."""
+        return read(self.curves[1], indentation)
+
+
+def _three(value: Any) -> Three:
+    try:
+        x, y, z = value
+        return x + 0.0, y + 0.0, z + 0.0
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"a state has three components, x, y and z, all numbers, got {shown(value)}") from error
+
+
+def _listed(value: Any) -> Any:
+    return numpy.asarray(value, dtype=float) if type(value) in _LISTS else value
+
+
+def _components(value: Any) -> Three:
+    return value[..., 0], value[..., 1], value[..., 2]

@@ -1,0 +1,106 @@
+"""What a force element answers: force and moment on both bodies, the energy, and how they change."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .. import arrays
+from ..arrays import Array
+from . import reaction as formulas
+from .matrices import damping_matrix, symmetric, vector
+from .reaction import Elastic, Place, Three
+from .touch import Touch, status_of, told
+
+if TYPE_CHECKING:
+    from .element import ForceElement
+
+
+class Load(NamedTuple):
+    """The load of a force element at a state: a number, a triple of numbers, or arrays as the state was given.
+
+    Attributes
+    ----------
+    force : (3,)
+        On the ball, in N, at its centre.
+    moment : (3,)
+        On the ball about its centre, in N mm.
+    energy : float or array
+        Stored, in N mm.
+    """
+
+    force: Any
+    moment: Any
+    energy: Array
+    element: ForceElement
+    place: Place
+    contact: Elastic
+    position: Three
+    velocity: Three
+    spin: Three
+
+    @property
+    def socket_force(self) -> Any:
+        """On the socket, in N."""
+        return self._packed(*(-part for part in self._parts(self.force)))
+
+    @property
+    def socket_moment(self) -> Any:
+        """On the socket about its own centre, in N mm: less the moment on the ball, less r x F."""
+        (fx, fy, fz), (mx, my, mz) = self._parts(self.force), self._parts(self.moment)
+        x, y, z = self.position
+        return self._packed(-mx - y * fz + z * fy, -my - z * fx + x * fz, -mz - x * fy + y * fx)
+
+    @property
+    def indentation(self) -> Array:
+        """d in mm; below 0 it is the way to the touch-down."""
+        return self.place.indentation
+
+    @property
+    def half_angle(self) -> Array:
+        """ε of the contact in rad, 0 where nothing touches."""
+        return self.element.half_angle(self.indentation)
+
+    @property
+    def max_pressure(self) -> Array:
+        """In MPa, of the elastic contact away from a rim."""
+        return self.element.max_pressure(self.indentation)
+
+    @property
+    def tangent(self) -> Any:
+        """∂²U/∂r² in N/mm, (3, 3) and symmetric: less the slope of the elastic force."""
+        return symmetric(formulas.tangent(self.place, self.contact, self.element.constants), self._packed)
+
+    @property
+    def damping_matrix(self) -> Any:
+        """Less the slope of (force, moment) over (velocity, spin) at this normal force, (6, 6) and symmetric."""
+        return damping_matrix(self.place, self.contact, self.velocity, self.spin, self.element.constants)
+
+    @property
+    def dissipation(self) -> Array:
+        """What is lost in N mm/s: never below 0."""
+        return formulas.dissipation(self.place, self.contact, self.velocity, self.spin, self.element.constants)
+
+    @property
+    def status(self) -> Touch | Array:
+        """A `Touch`, or an array of its codes."""
+        return status_of(self.place, self.contact, self._known, self.element.constants)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be said of the state: failures with where they are; empty where all is well."""
+        return told(self)
+
+    @property
+    def _known(self) -> Array:
+        total = sum((*self.position, *self.velocity, *self.spin), 0.0)
+        return arrays.isfinite(total)
+
+    @property
+    def _packed(self) -> Any:
+        return partial(vector, type(self.force))
+
+    @staticmethod
+    def _parts(packed: Any) -> Three:
+        x, y, z = packed if type(packed) is tuple else (packed[..., axis] for axis in range(3))
+        return x, y, z

@@ -1,0 +1,177 @@
+"""The energy of a joint over the indentation, with its two slopes: what a force element is made of."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy
+
+from .. import arrays
+from ..arrays import Array, Numbers, clip, exp, log, where
+from ..joint import Joint
+from ..law import CurveLaw, Law, Pieces, curve_law
+from ..model import Model
+from ..models.closed_form import ClosedForm, ClosedLaw
+from ..models.foundation import Springs
+
+Slopes = tuple[Array, Array, Array]
+"""U in N mm, F = dU/dd in N, k = dF/dd in N/mm."""
+
+
+class Potential(Protocol):
+    """The energy of one joint and its slopes, of a Python number or an array of indentations (mm), 0 or more.
+
+    `deepest` is the last indentation that has an answer, in mm.
+    """
+
+    @property
+    def deepest(self) -> float: ...
+
+    def __call__(self, indentation: Array) -> Slopes: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpringPotential:
+    """The energy of radial springs, by their formulas."""
+
+    springs: Springs
+    deepest: float = math.inf
+
+    def __call__(self, indentation: Array) -> Slopes:
+        springs = self.springs
+        motion, numbers = springs.kinematics, (springs.socket_radius, springs.clearance, springs.modulus, indentation)
+        return motion.energy(*numbers), motion.force(*numbers), motion.stiffness(*numbers)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FormulaPotential:
+    """The energy of a closed form, by its formulas."""
+
+    model: ClosedForm
+    joint: Joint
+    deepest: float = math.inf
+
+    def __call__(self, indentation: Array) -> Slopes:
+        given = self.joint, indentation
+        return self.model.energy(*given), self.model.force(*given), self.model.stiffness(*given)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CurvePotential:
+    """The energy as polynomials of ln d, piece by piece: ln U is kept, so that F and k are its exact slopes.
+
+    Below the curve's `shallowest` indentation U is a power of d, beyond its `deepest` there is none.
+    """
+
+    curve: CurveLaw
+
+    @property
+    def deepest(self) -> float:
+        return self.curve.deepest
+
+    @cached_property
+    def _pieces(self) -> Pieces:
+        return tuple(map(tuple, self.curve.pieces.tolist()))
+
+    def __call__(self, indentation: Array) -> Slopes:
+        curve = self.curve
+        ends = curve.shallowest, curve.deepest, curve.first, curve.density
+        if type(indentation) is float:
+            return slopes_of_number(indentation, *ends, self._pieces)
+        return slopes_of_array(indentation, *ends, curve.pieces)
+
+
+def slopes_of_number(
+    indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: Pieces
+) -> tuple[float, float, float]:
+    """A `CurvePotential` as a function of its numbers: U, F and k of one indentation."""
+    if indentation <= 0.0:
+        return 0.0, 0.0, 0.0
+    if not indentation <= deepest:
+        return math.nan, math.nan, math.nan
+    along = (math.log(max(indentation, shallowest)) - first) * density
+    number = min(max(int(along), 0), len(pieces) - 1)
+    place = 2.0 * (along - number) - 1.0
+    value, slope, bend = 0.0, 0.0, 0.0
+    for coefficient in pieces[number]:
+        bend = bend * place + slope
+        slope = slope * place + value
+        value = value * place + coefficient
+    power, curvature = 2.0 * density * slope, 8.0 * density * density * bend
+    energy = math.exp(value)
+    if indentation < shallowest:
+        energy, curvature = energy * (indentation / shallowest) ** power, 0.0
+    force = energy * power / indentation
+    return energy, force, (force * (power - 1.0) + energy * curvature / indentation) / indentation
+
+
+_TINY = 1e-150
+
+
+def slopes_of_array(
+    indentation: Array, shallowest: float, deepest: float, first: float, density: float, pieces: Numbers
+) -> Slopes:
+    """`slopes_of_number` of an array of any library."""
+    xp = arrays.namespace(indentation)
+    rows = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
+    d = clip(indentation, _TINY, deepest)
+    along = (log(clip(d, shallowest, deepest)) - first) * density
+    number = xp.astype(clip(xp.floor(arrays.frozen(along)), 0.0, rows.shape[0] - 1.0), xp.int64)
+    place = 2.0 * (along - xp.astype(number, d.dtype)) - 1.0
+    flat = xp.reshape(number, (-1,))
+    value, slope, bend = 0.0 * place, 0.0 * place, 0.0 * place
+    for term in range(rows.shape[1]):
+        bend = bend * place + slope
+        slope = slope * place + value
+        value = value * place + xp.reshape(xp.take(rows[:, term], flat), tuple(d.shape))
+    power, curvature = 2.0 * density * slope, 8.0 * density * density * bend
+    below = d < shallowest
+    energy = exp(value + where(below, power * log(where(below, d, shallowest) / shallowest), 0.0))
+    force = energy / d * power
+    stiffness = force / d * (power - 1.0) + where(below, 0.0, energy / d / d * curvature)
+    inside, nothing = indentation <= deepest, indentation * xp.nan
+    return where(inside, energy, nothing), where(inside, force, nothing), where(inside, stiffness, nothing)
+
+
+def potential_of(model: Model, joint: Joint) -> Potential:
+    """The energy of any model that has a law.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As `model.law(joint)`.
+    """
+    law = model.law(joint)
+    if isinstance(law, Springs):
+        return SpringPotential(springs=law)
+    if isinstance(law, ClosedLaw):
+        return FormulaPotential(model=law.model, joint=law.joint)
+    return CurvePotential(curve=energy_curve(law, *_ends(law, joint)))
+
+
+def _ends(law: Law, joint: Joint) -> tuple[float, float]:
+    if isinstance(law, CurveLaw):
+        return law.shallowest, law.deepest
+    return 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius
+
+
+def energy_curve(law: Law, shallowest: float, deepest: float) -> CurveLaw:
+    """ln U over ln d of a law, which is integrated."""
+    return curve_law(lambda depths: _work(law, depths, shallowest), shallowest, deepest)
+
+
+def _work(law: Law, depths: Numbers, shallowest: float) -> Numbers:
+    """∫ F dd up to each of some indentations that grow: of a power below the shallowest, then by Gauss over ln d."""
+    force, stiffness = law(shallowest)
+    begun = force * shallowest / (1.0 + stiffness * shallowest / force)
+    logs = numpy.log(numpy.concatenate([[shallowest], depths]))
+    nodes, weights = map(numpy.array, arrays.gauss_legendre(_NODES))
+    places = numpy.exp(logs[:-1, None] + numpy.diff(logs)[:, None] * nodes)
+    forces = numpy.array([law(float(place))[0] for place in places.ravel()]).reshape(places.shape)
+    return begun + numpy.cumsum(numpy.diff(logs) * ((forces * places) @ weights))
+
+
+_NODES = 16

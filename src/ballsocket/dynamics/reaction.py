@@ -1,0 +1,248 @@
+"""The formulas of the force element, on components: numbers or arrays alike, and what a compiler or C is taught.
+
+The ball's centre sits at r = (x, y, z) from the socket's, in axes fixed to the socket; e = |r|, n = r/e, d = e - c.
+All forces act on the ball, moments about its centre; the socket is met by the same with the other sign, see `Load`.
+"""
+
+from __future__ import annotations
+
+from math import nan
+from typing import NamedTuple
+
+from ..arrays import Array, atan2, divisor, sqrt, where
+from . import friction
+from .rim import share
+from .smooth import positive, ramp
+
+Three = tuple[Array, Array, Array]
+
+
+class Constants(NamedTuple):
+    """The numbers of a force element besides those of its potential: lengths in mm, speeds in mm/s, times in s.
+
+    `rim` is the polar angle of the cup's rim in rad, 0 where there is none; `dome` points to the pole of its bore.
+    """
+
+    ball_radius: float
+    socket_radius: float
+    clearance: float
+    wall: float
+    smoothing: float
+    hysteresis: float
+    time: float
+    sliding: float
+    static: float
+    transition_speed: float
+    stribeck_speed: float
+    viscous: float
+    rim: float
+    dome_x: float
+    dome_y: float
+    dome_z: float
+
+
+class Place(NamedTuple):
+    """Where the ball is: the distance of the centres, the unit vector from socket to ball, and the indentation."""
+
+    distance: Array
+    x: Array
+    y: Array
+    z: Array
+    indentation: Array
+
+
+class Elastic(NamedTuple):
+    """The elastic contact there.
+
+    `energy` U; `normal`, the force back to the socket's centre, dU/de; `stiffness`, d²U/de²; force and stiffness that
+    the damping is measured by, those without the rim's own part. `covered` is the distance of the rim over the half
+    angle, at least 1 away from it. Along (`px`, `py`, `pz`), where the rim is nearest: the force `polar`, and the
+    parts `mixed`, `along` and `around` of the tangent.
+    """
+
+    energy: Array
+    normal: Array
+    stiffness: Array
+    damped_force: Array
+    damped_stiffness: Array
+    covered: Array
+    polar: Array
+    mixed: Array
+    along: Array
+    around: Array
+    px: Array
+    py: Array
+    pz: Array
+
+
+APART = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""Where nothing touches."""
+
+
+def place_of(x: Array, y: Array, z: Array, clearance: float) -> Place:
+    """Of the ball's centre."""
+    distance = sqrt(x * x + y * y + z * z)
+    over = 1.0 / divisor(distance)
+    return Place(distance, x * over, y * over, z * over, distance - clearance)
+
+
+def elastic(potential, place: Place, given: Constants) -> Elastic:  # type: ignore[no-untyped-def]
+    """The elastic contact at a place; its touch-down is rounded off over ± `smoothing`."""
+    d = place.indentation
+    depth, slope, bend = ramp(where(d > given.wall, given.wall, d), given.smoothing)
+    missing = where(d > given.wall, nan, 0.0 * d)
+    energy, force, stiffness = (part + missing for part in potential(depth))
+    stiffness = where(d >= -given.smoothing, stiffness, 0.0)
+    if given.rim > 0.0:
+        return covered(place, depth, slope, bend, energy, force, stiffness, given)
+    none, normal = 0.0 * energy, force * slope
+    k = stiffness * slope * slope + force * bend
+    return Elastic(energy, normal, k, normal, k, none + 1.0, none, none, none, none, none, none, none)
+
+
+def covered(
+    place: Place, depth: Array, slope: Array, bend: Array, U: Array, F: Array, k: Array, given: Constants
+) -> Elastic:
+    """The contact in a cup: its energy is U W(s), s = (rim - γ)/ε, with cos ε = c/(c + d): what overlaps."""
+    lean, across, ax, ay, az = leaning(place, given)
+    gamma = atan2(across, lean)
+    touching = depth > 0.0
+    # ε = acos(c/g), g = c + d: ε' = c/(g w), ε'' = -c (2 g² - c²)/(g² w³), w = sqrt(g² - c²)
+    c, g = given.clearance, divisor(given.clearance + depth)
+    w = where(touching, sqrt(where(touching, depth * (g + c), 1.0)), 1.0)
+    epsilon = where(touching, atan2(w, c + 0.0 * w), 1.0)
+    first, second = c / (g * w), -c * (2.0 * g * g - c * c) / (g * g * w * w * w)
+    s = (given.rim - gamma) / epsilon
+    W, W1, W2 = share(s)
+    U, F, k = where(s > -1.0, U, 0.0), where(s > -1.0, F, 0.0), where(s > -1.0, k, 0.0)
+    s1, s2 = -s * first / epsilon, s * (2.0 * first * first / epsilon - second) / epsilon
+    # slopes of U W(s) over the depth and γ, over which s falls by 1/ε
+    by_depth = F * W + U * W1 * s1
+    by_both = (U * W1 * first / epsilon - F * W1 - U * W2 * s1) / epsilon
+    by_angle = -U * W1 / epsilon
+    over, e = 1.0 / divisor(across), divisor(place.distance)
+    return Elastic(
+        energy=U * W,
+        normal=by_depth * slope,
+        stiffness=(k * W + 2.0 * F * W1 * s1 + U * (W2 * s1 * s1 + W1 * s2)) * slope * slope + by_depth * bend,
+        damped_force=F * W * slope,
+        damped_stiffness=W * (k * slope * slope + F * bend),
+        covered=s,
+        polar=-by_angle / e,
+        mixed=(by_both * slope - by_angle / e) / e,
+        along=U * W2 / (epsilon * epsilon * e * e),
+        around=by_angle * lean * over / (e * e),
+        px=ax * over,
+        py=ay * over,
+        pz=az * over,
+    )
+
+
+def leaning(place: Place, given: Constants) -> tuple[Array, Array, Array, Array, Array]:
+    """cos γ and sin γ of the angle between the ball's way and the dome's axis, and where γ grows, times sin γ."""
+    lean = given.dome_x * place.x + given.dome_y * place.y + given.dome_z * place.z
+    ax, ay, az = lean * place.x - given.dome_x, lean * place.y - given.dome_y, lean * place.z - given.dome_z
+    return lean, sqrt(ax * ax + ay * ay + az * az), ax, ay, az
+
+
+def pressed(elastic: Elastic, speed: Array, given: Constants) -> Array:
+    """The normal force on the ball, towards the socket's centre: F + (χ F + τ k) ḋ, never below 0."""
+    lossy = given.hysteresis * elastic.damped_force + given.time * elastic.damped_stiffness
+    force = elastic.normal + lossy * speed
+    if given.smoothing > 0.0:
+        return positive(force, ROUNDED * elastic.damped_force)
+    return where(force > 0.0, force, 0.0)
+
+
+ROUNDED = 0.1
+"""Of the force: over what share of it, on both sides of 0, a smooth element rounds off a contact that lets go."""
+
+
+class Sliding(NamedTuple):
+    """How the ball slides: slip at the pole (mm/s), spin about the load (rad/s), lever² (mm²), N, and f over slip."""
+
+    x: Array
+    y: Array
+    z: Array
+    spin: Array
+    lever_squared: Array
+    normal: Array
+    rate: Array
+
+
+def sliding(place: Place, force: Array, velocity: Three, spin: Three, given: Constants) -> Sliding:
+    """The slip of the ball's surface at the pole of the contact, v + ω x R1 n across n, and friction's rate."""
+    (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, given.ball_radius
+    nx, ny, nz = place.x, place.y, place.z
+    speed, turning = vx * nx + vy * ny + vz * nz, wx * nx + wy * ny + wz * nz
+    sx = vx - speed * nx + R1 * (wy * nz - wz * ny)
+    sy = vy - speed * ny + R1 * (wz * nx - wx * nz)
+    sz = vz - speed * nz + R1 * (wx * ny - wy * nx)
+    m = versine(place)
+    lever = given.socket_radius * friction.drill_lever(m)
+    squared = lever * lever * m * (2.0 - m)
+    q = friction.combined(sx * sx + sy * sy + sz * sz, squared * turning * turning, given.transition_speed)
+    mu = friction.coefficient_at(q, given.sliding, given.static, given.stribeck_speed)
+    N = force * friction.grip(m)
+    return Sliding(sx, sy, sz, turning, squared, N, N * (mu / q + given.viscous))
+
+
+def versine(place: Place) -> Array:
+    """1 - cos ε of what overlaps, d/e."""
+    return where(place.indentation > 0.0, place.indentation / divisor(place.distance), 0.0)
+
+
+def reaction(place: Place, contact: Elastic, velocity: Three, spin: Three, given: Constants) -> tuple[Array, ...]:
+    """Force (N) and moment (N mm) on the ball about its centre, six components."""
+    (vx, vy, vz), nx, ny, nz = velocity, place.x, place.y, place.z
+    speed = vx * nx + vy * ny + vz * nz
+    normal = pressed(contact, speed, given)
+    fx, fy, fz = -normal * nx, -normal * ny, -normal * nz
+    if given.rim > 0.0:
+        P = contact.polar
+        fx, fy, fz = fx + P * contact.px, fy + P * contact.py, fz + P * contact.pz
+    if given.time > 0.0:
+        drag = given.time * contact.damped_force / divisor(place.distance)
+        fx, fy, fz = fx - drag * (vx - speed * nx), fy - drag * (vy - speed * ny), fz - drag * (vz - speed * nz)
+    if given.static + given.viscous == 0.0:
+        none = 0.0 * normal
+        return fx, fy, fz, none, none, none
+    slip = sliding(place, normal, velocity, spin, given)
+    tx, ty, tz = -slip.rate * slip.x, -slip.rate * slip.y, -slip.rate * slip.z
+    R1, drill = given.ball_radius, -slip.rate * slip.lever_squared * slip.spin
+    mx = R1 * (ny * tz - nz * ty) + drill * nx
+    my = R1 * (nz * tx - nx * tz) + drill * ny
+    mz = R1 * (nx * ty - ny * tx) + drill * nz
+    return fx + tx, fy + ty, fz + tz, mx, my, mz
+
+
+def dissipation(place: Place, contact: Elastic, velocity: Three, spin: Three, given: Constants) -> Array:
+    """What damping, liner and friction take, in N mm/s."""
+    vx, vy, vz = velocity
+    speed = vx * place.x + vy * place.y + vz * place.z
+    normal = pressed(contact, speed, given)
+    slip = sliding(place, normal, velocity, spin, given)
+    tx, ty, tz = vx - speed * place.x, vy - speed * place.y, vz - speed * place.z
+    drag = given.time * contact.damped_force / divisor(place.distance)
+    rubbed = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z + slip.lever_squared * slip.spin * slip.spin
+    return (normal - contact.normal) * speed + drag * (tx * tx + ty * ty + tz * tz) + slip.rate * rubbed
+
+
+def tangent(place: Place, contact: Elastic, given: Constants) -> tuple[Array, ...]:
+    """∂²U/∂r² in N/mm: xx, yy, zz, xy, yz, zx."""
+    nx, ny, nz, px, py, pz = place.x, place.y, place.z, contact.px, contact.py, contact.pz
+    # at the very centre of a socket without clearance all directions are alike
+    across = where(place.distance > 0.0, contact.normal / divisor(place.distance), contact.stiffness)
+    radial = contact.stiffness - across
+    xx, yy, zz = across + radial * nx * nx, across + radial * ny * ny, across + radial * nz * nz
+    xy, yz, zx = radial * nx * ny, radial * ny * nz, radial * nz * nx
+    if given.rim > 0.0:
+        A, B = contact.mixed, contact.around
+        C = contact.along - B
+        xx = xx + B + 2.0 * A * nx * px - B * nx * nx + C * px * px
+        yy = yy + B + 2.0 * A * ny * py - B * ny * ny + C * py * py
+        zz = zz + B + 2.0 * A * nz * pz - B * nz * nz + C * pz * pz
+        xy = xy + A * (nx * py + ny * px) - B * nx * ny + C * px * py
+        yz = yz + A * (ny * pz + nz * py) - B * ny * nz + C * py * pz
+        zx = zx + A * (nz * px + nx * pz) - B * nz * nx + C * pz * px
+    return xx, yy, zz, xy, yz, zx
