@@ -9,12 +9,12 @@ from typing import Any
 import numpy
 
 from .. import arrays
-from ..answer import check_joint
+from ..model.answer import check_joint
 from ..arrays import Array
 from ..checks import require, shown, vectors
 from ..cup import Cup
 from ..joint import Joint
-from ..law import CurveLaw
+from ..model.law import CurveLaw
 from ..model import Model
 from .damping import Damping, one_number
 from .friction import Friction

@@ -12,7 +12,7 @@ import numpy
 from .. import arrays
 from ..arrays import Array, Numbers, clip, exp, log, where
 from ..joint import Joint
-from ..law import CurveLaw, Law, Pieces, curve_law
+from ..model.law import CurveLaw, Law, Pieces, curve_law
 from ..model import Model
 from ..models.closed_form import ClosedForm, ClosedLaw
 from ..models.foundation import Springs

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..arrays import Array, where
 from ..joint import Joint
-from ..law import CurveLaw, curve_law
+from ..model.law import CurveLaw, curve_law
 from ..model import Model
 from .potential import slopes_of_array
 
