@@ -9,13 +9,13 @@ from typing import Any
 import numpy
 
 from .. import arrays
-from ..model.answer import check_joint
 from ..arrays import Array
 from ..checks import require, shown, vectors
 from ..cup import Cup
 from ..joint import Joint
-from ..model.law import CurveLaw
 from ..model import Model
+from ..model.answer import check_joint
+from ..model.law import CurveLaw
 from .damping import Damping, one_number
 from .friction import Friction
 from .load import Load

@@ -12,8 +12,8 @@ import numpy
 from .. import arrays
 from ..arrays import Array, Numbers, clip, exp, log, where
 from ..joint import Joint
-from ..model.law import CurveLaw, Law, Pieces, curve_law
 from ..model import Model
+from ..model.law import CurveLaw, Law, Pieces, curve_law
 from ..models.closed_form import ClosedForm, ClosedLaw
 from ..models.foundation import Springs
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ..arrays import Array, where
 from ..joint import Joint
-from ..model.law import CurveLaw, curve_law
 from ..model import Model
+from ..model.law import CurveLaw, curve_law
 from .potential import slopes_of_array
 
 
