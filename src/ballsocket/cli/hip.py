@@ -1,7 +1,9 @@
-"""`hip`: a hip in use over millions of cycles."""
+"""`hip`: a hip in use over millions of cycles, of one patient or of many."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -11,10 +13,16 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 import ballsocket as bs
 
-from ..hip.file import read_hip
+from ..engines.local import Engine, Serial
+from ..hip.file import HipFile, read_hip
+from ..hip.history import History
+from ..hip.lives import kept, write_csv
+from ..hip.uncertainty import Bands, population, uncertainty
+from ..output.hip_bands import print_bands, print_notes
 from ..output.hip_report import check_page, write_hip_report
 from ..output.hip_terminal import print_hip
-from .root import FAILURE, app
+from .engine import Scheduler, Workers, engine_of
+from .root import FAILURE, app, echo_path
 from .words import AsJson, echo_json
 
 
@@ -26,6 +34,11 @@ def hip(
     store: Annotated[
         Path | None, typer.Option(help="A folder to keep the run in: one that was stopped goes on from there.")
     ] = None,
+    patients: Annotated[
+        int | None, typer.Option(help="Wear so many patients' hips, who differ as the file's [uncertainty] says.")
+    ] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
 ) -> None:
     """Wear a hip over millions of cycles of load and motion, as its file tells.
 
@@ -33,24 +46,77 @@ def hip(
     """
     if report is not None:
         check_page(report)
-    given = read_hip(file)
-    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:,.0f} cycles")
-    console = Console(stderr=True)
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("wearing", total=given.cycles)
-        history = given.use.after(
-            given.cycles,
-            given.report_at,
-            listen=lambda done: progress.update(task, completed=done),
-            lubricant=given.lubricant,
-            store=store,
-        )
+    given, engine = read_hip(file), engine_of(workers, scheduler, Serial())
+    if patients is not None:
+        if report is not None:
+            raise ValueError("a report shows one hip: leave out --report or --patients")
+        _many(given, patients, engine, store, as_json)
+        return
+    history = _worn(given, store)
+    bands = _bands(given, history, engine)
     if report is not None:
-        write_hip_report(history, report)
+        write_hip_report(history, report, bands)
     if as_json:
-        echo_json({"version": bs.__version__, **history.summary()})
+        _echo(history, bands)
     else:
         print_hip(history)
+        if bands is not None:
+            print_bands(bands)
     if not history.settled:
         typer.echo("ballsocket: a contact did not balance its load (see the notes)", err=True)
         raise typer.Exit(FAILURE)
+
+
+def _worn(given: HipFile, store: Path | None) -> History:
+    with _bar("wearing", given.cycles, "cycles") as listen:
+        return given.use.after(given.cycles, given.report_at, listen=listen, lubricant=given.lubricant, store=store)
+
+
+def _bands(given: HipFile, history: History, engine: Engine) -> Bands | None:
+    """How sure it is, where the file says what scatters."""
+    said = given.uncertain
+    if said is None:
+        return None
+    patients = said.count * (len(said.scatter.distributions) + 2)
+    with _bar("other patients", patients, "patients") as listen:
+        return uncertainty(said.scatter, history, count=said.count, seed=said.seed, engine=engine, listen=listen)
+
+
+def _echo(history: History, bands: Bands | None) -> None:
+    answer = {"version": bs.__version__, **history.summary()}
+    if bands is not None:
+        answer |= bands.summary()
+        answer["notes"] = [*answer["notes"], *bands.notes]
+    echo_json(answer)
+
+
+def _many(given: HipFile, patients: int, engine: Engine, store: Path | None, as_json: bool) -> None:
+    said = given.uncertain
+    if said is None:
+        raise ValueError("--patients needs a table [uncertainty] that says what differs between them")
+    counts = tuple(sorted({*given.report_at, given.cycles}))
+    where = None if store is None else kept(store, said.scatter, counts, said.seed)
+    with _bar("patients", patients, "patients") as listen:
+        lives, bands = population(
+            said.scatter, counts, patients=patients, seed=said.seed, engine=engine, store=where, listen=listen
+        )
+    if as_json:
+        told = [*said.scatter.use.notes, *bands.notes]
+        echo_json({"version": bs.__version__, **bands.summary(), "notes": told})
+    else:
+        print_bands(bands)
+        print_notes(said.scatter.use.notes)
+    if store is not None:
+        path = write_csv(store / "patients.csv", lives, bands.lived)
+        if not as_json:
+            echo_path(path)
+
+
+@contextmanager
+def _bar(what: str, total: float, unit: str) -> Iterator[Callable[[float], None]]:
+    """A bar where somebody looks."""
+    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:,.0f} " + unit)
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(what, total=total)
+        yield lambda done: progress.update(task, completed=done)

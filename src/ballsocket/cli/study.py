@@ -15,14 +15,13 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 import ballsocket as bs
 
-from ..engines.dask import Distributed
-from ..engines.local import Engine, Processes
 from ..output import study_plots, study_terminal
 from ..output.save import check_format, save
 from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
 from ..studies.run import Listener
 from ..studies.run import Progress as Reached
+from .engine import Scheduler, Workers, engine_of
 from .root import app, complain, echo_path
 
 if TYPE_CHECKING:
@@ -34,8 +33,8 @@ def study(
     file: Annotated[Path, typer.Argument(help="A study file (TOML).")],
     store: Annotated[Path | None, typer.Option(help="The folder of the store, in place of the file's.")] = None,
     out: Annotated[Path | None, typer.Option(help="Also write all numbers as NetCDF (.nc) or CSV (.csv).")] = None,
-    workers: Annotated[int | None, typer.Option(help="So many processes on this machine.")] = None,
-    scheduler: Annotated[str | None, typer.Option(help="The address of a Dask scheduler, 'tcp://host:8786'.")] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
     figure: Annotated[
         Path | None, typer.Option(help="A map of two axes, or bands of samples over one (.png, .svg, .pdf).")
     ] = None,
@@ -53,7 +52,7 @@ def study(
             given.design,
             quantities=given.quantities,
             store=kept,
-            engine=_engine(given, workers, scheduler),
+            engine=engine_of(workers, scheduler, given.engine),
             listen=listen,
         )
     study_terminal.print_study(found)
@@ -74,12 +73,6 @@ def _drawing(given: StudyFile, path: Path) -> Callable[[Any], Figure]:
     if len(long) != 2:
         raise ValueError(f"a figure needs two axes, or samples and an axis; this study has {', '.join(long) or 'none'}")
     return study_plots.band_figure if "sample" in long else study_plots.design_map
-
-
-def _engine(given: StudyFile, workers: int | None, scheduler: str | None) -> Engine:
-    if scheduler is not None:
-        return Distributed(address=scheduler, workers=workers)
-    return given.engine if workers is None else Processes(workers=workers)
 
 
 @contextmanager

@@ -9,12 +9,15 @@ from .in_vivo import in_vivo
 from .laws import Archard, AreaLaw, CrossShear, OwnLaw
 from .mix import Activity, Mix
 from .named_cycles import named_cycle
+from .patients import Scatter
+from .uncertainty import Bands, population, uncertainty
 from .use import InUse
 
 __all__ = [
     "Activity",
     "Archard",
     "AreaLaw",
+    "Bands",
     "CrossShear",
     "Cycle",
     "Film",
@@ -25,6 +28,7 @@ __all__ = [
     "Lubricant",
     "Mix",
     "OwnLaw",
+    "Scatter",
     "Spring",
     "constant_load",
     "flexion",
@@ -34,6 +38,8 @@ __all__ = [
     "iso_14242_4",
     "logarithmic",
     "named_cycle",
+    "population",
     "rocking",
     "two_axis",
+    "uncertainty",
 ]

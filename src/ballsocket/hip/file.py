@@ -20,11 +20,13 @@ from .given_cycle import KEYS as CYCLE_KEYS
 from .given_cycle import given_cycle
 from .given_laws import given_creep, given_law, given_lubricant, given_seconds, given_surface
 from .mix import Mix
+from .scatter_file import KEYS as SCATTER_KEYS
+from .scatter_file import Uncertain, uncertain
 from .use import InUse, check_cycles
 
 _TABLES: Mapping[str, tuple[str, ...]] = {
     "": (
-        *("name", "source", *PARTS, "cycle", "activity", "wear", "creep", "film"),
+        *("name", "source", *PARTS, "cycle", "activity", "wear", "creep", "film", "uncertainty"),
         *("body_weight", "cycles_per_year", "cycles", "report_at", "years", "report_years"),
     ),
     "cup": (*KEYS["cup"], "tilt"),
@@ -32,6 +34,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
     "creep": ("law", "compliances", "times", "seconds_per_cycle"),
     "film": ("viscosity", "ball_roughness", "cup_roughness", "friction"),
     "wear": ("law", "coefficient", "circular", "exponent", "reference", "contact", "model", "ring_width"),
+    "uncertainty": SCATTER_KEYS,
 }
 _KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
 _MILLION = 1e6
@@ -39,12 +42,16 @@ _MILLION = 1e6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HipFile:
-    """What a file about a hip in use says: the hip, how many cycles it goes through, and when it is looked at."""
+    """What a file about a hip in use says: the hip, how many cycles it goes through, and when it is looked at.
+
+    `uncertain` is what differs between patients, where it says so.
+    """
 
     use: InUse
     cycles: float
     report_at: tuple[float, ...]
     lubricant: Lubricant
+    uncertain: Uncertain | None = None
 
 
 def read_hip(path: str | Path) -> HipFile:
@@ -59,8 +66,11 @@ def read_hip(path: str | Path) -> HipFile:
     `cycles_per_year`. `wear` has a `law` ("archard", "area", "cross-shear"), its `coefficient` in mm³/(N m), `contact`
     ("springs", "shell", "cup"), the `model` whose springs they are, `ring_width`. `creep`, which may be empty, has a
     `law` ("logarithmic", unverified, or "kelvin-voigt" with `compliances` in 1/MPa and `times` in s) and
-    `seconds_per_cycle`. `film` has `viscosity` in Pa s, `ball_roughness`, `cup_roughness`, `friction`. At the top:
-    `cycles`, `report_at` (a list), or of activities `years` and `report_years`; `body_weight`.
+    `seconds_per_cycle`. `film` has `viscosity` in Pa s, `ball_roughness`, `cup_roughness`, `friction`. `uncertainty`
+    says what differs between patients (`coefficient`, `clearance`, `inclination`, `anteversion` or `tilt`,
+    `body_weight`, `cycles_per_year`), each by a distribution as in study files, with `count` (of samples, a power of
+    two) and `seed`. At the top: `cycles`, `report_at` (a list), or of activities `years` and `report_years`;
+    `body_weight`.
 
     Raises
     ------
@@ -75,7 +85,7 @@ def read_hip(path: str | Path) -> HipFile:
 
 def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     check_keys(content, "", "at the top", _KEYS)
-    for name in ("cup", "cycle", "wear", "creep", "film"):
+    for name in ("cup", "cycle", "wear", "creep", "film", "uncertainty"):
         check_keys(table_of(content, name), name, f"in [{name}]", _KEYS)
     given = _joint(content, folder)
     cycle, wear = given_cycle(content, folder), table_of(content, "wear")
@@ -91,7 +101,13 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     )
     cycles, at = _years(content, cycle) if isinstance(cycle, Mix) and "years" in content else _counts(content)
     check_cycles(cycles, at)
-    return HipFile(use=use, cycles=cycles, report_at=at, lubricant=given_lubricant(table_of(content, "film")))
+    return HipFile(
+        use=use,
+        cycles=cycles,
+        report_at=at,
+        lubricant=given_lubricant(table_of(content, "film")),
+        uncertain=uncertain(content, use) if "uncertainty" in content else None,
+    )
 
 
 def _counts(content: Mapping[str, Any]) -> tuple[float, tuple[float, ...]]:
@@ -104,7 +120,7 @@ def _counts(content: Mapping[str, Any]) -> tuple[float, tuple[float, ...]]:
 
 
 def _years(content: Mapping[str, Any], mix: Mix) -> tuple[float, tuple[float, ...]]:
-    """The same in years of a mix."""
+    """How many cycles, and when it is looked at, by the years of a mix."""
     for name in ("cycles", "report_at"):
         if name in content:
             raise ValueError(f"{name} and years are one too many: either says how long the hip is in use")

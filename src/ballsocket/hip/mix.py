@@ -78,7 +78,7 @@ class Mix:
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Of each activity in the cycles."""
+        """Shares of the activities in the cycles."""
         return tuple(each.per_year / self.per_year for each in self.activities)
 
     @property
@@ -92,7 +92,7 @@ class Mix:
 
     @property
     def cup_tilt(self) -> float | None:
-        """That of a standard, if all activities have the same."""
+        """The tilt of a standard, if all activities have the same."""
         found = {each.cup_tilt for each in self._cycles}
         return found.pop() if len(found) == 1 else None
 
@@ -115,7 +115,7 @@ class Mix:
 
     @property
     def duration(self) -> float:
-        """Of the mean cycle, in s."""
+        """Seconds that the mean cycle lasts."""
         return float(self.seconds.sum())
 
     @cached_property
@@ -143,12 +143,12 @@ class Mix:
 
     @property
     def rotations(self) -> Numbers:
-        """Of the ball in what is done most often: (n, 3, 3)."""
+        """Rotations of the ball in what is done most often: (n, 3, 3)."""
         return max(self.activities, key=lambda each: each.per_year).cycle.rotations
 
     @property
     def largest_force(self) -> float:
-        """Of all activities, in N."""
+        """The largest force of all activities, in N."""
         return max(each.largest_force for each in self._cycles)
 
     def told(self, instant: int) -> str:

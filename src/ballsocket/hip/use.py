@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import degrees, inf, radians
 from pathlib import Path
+from typing import Any
 
 import numpy
 
@@ -100,6 +101,10 @@ class InUse:
         require("seconds_per_cycle", self.seconds, 0 < self.seconds < inf, "a time (s) is positive and finite")
         self._check_held()
 
+    def __getstate__(self) -> dict[str, Any]:
+        """For other processes: the hip itself, without what was found of it."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
+
     @property
     def seconds(self) -> float:
         """That a cycle stands for in the life of the liner."""
@@ -124,13 +129,13 @@ class InUse:
 
     @cached_property
     def forces(self) -> Numbers:
-        """Of the ball on the socket in N, in the cup's frame: (instants, 3)."""
+        """Forces of the ball on the socket in N, in the cup's frame: (instants, 3)."""
         given = self.moved.forces
         return given if self.cycle.frame is Frame.CUP else _in_cup(self.placed, given)
 
     @property
     def _tilts(self) -> Numbers:
-        """Of the forces from the dome's pole, in rad: (instants,)."""
+        """Angles of the forces from the dome's pole, in rad: (instants,)."""
         return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
 
     @cached_property

@@ -9,6 +9,7 @@ import numpy
 
 from ..hip.history import History, Report
 from ..hip.sliding import tracks
+from ..hip.uncertainty import Bands
 from ..sphere.directions import polar_angle
 
 if TYPE_CHECKING:
@@ -54,13 +55,18 @@ def wear_map(history: History, report: Report | None = None) -> Figure:
     return figure
 
 
-def penetration_curve(history: History) -> Figure:
-    """How far the ball has sunk in, and how much of it wear and creep alone would make, with the band of the error."""
+def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
+    """How far the ball has sunk in, and how much of it wear and creep alone would make.
+
+    With the band of patients who differ where there is one, and that of the error else.
+    """
     figure, axes = _figure()
     count = numpy.array([0.0, *(report.cycles / 1e6 for report in history.reports)])
     whole = numpy.array([0.0, *(report.penetration for report in history.reports)])
     off = history.error.depth * whole
-    axes.fill_between(count, whole - off, whole + off, color=_INK, alpha=0.2, linewidth=0)
+    low, high = (whole - off, whole + off) if bands is None else ([0.0, *ends] for ends in bands.band("penetration"))
+    label = None if bands is None else f"{100 * bands.level:g} % of the patients"
+    axes.fill_between(count, low, high, color=_INK, alpha=0.2, linewidth=0, label=label)
     axes.plot(count, whole, "o-", color=_INK, ms=4, label="penetration")
     if any(report.creep_depth > 0 for report in history.reports):
         parts = {"worn_in": ("wear alone", _SECOND, "--"), "crept_in": ("creep alone", _THIRD, ":")}

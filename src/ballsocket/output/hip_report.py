@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 from ..atomic import write_text
 from ..hip.film import CONFORMING
 from ..hip.history import History
+from ..hip.uncertainty import Bands
 from . import hip_plots
+from .hip_bands import band_sections
 from .html import drawn, page, picture, table
 
 if TYPE_CHECKING:
@@ -54,8 +56,8 @@ def check_page(path: Path) -> None:
         raise ValueError(f"{str(path.parent)!r} is no folder to write {path.name} into")
 
 
-def write_hip_report(history: History, path: Path) -> Path:
-    """Write the page; returns its path.
+def write_hip_report(history: History, path: Path, bands: Bands | None = None) -> Path:
+    """Write the page, with the bands of patients who differ where there are any; returns its path.
 
     Raises
     ------
@@ -69,6 +71,8 @@ def write_hip_report(history: History, path: Path) -> Path:
     if len(history.use.loaded):
         for name, (title, draw, caption) in _FIGURES.items():
             sections[name] = (title, picture(drawn(draw(history)), title, escape(caption)))
+    if bands is not None:
+        sections |= band_sections(history, bands)
     return write_text(path, page("A hip in use", _lede(history), sections))
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ..checks import nearest
 from .axes import Method, Span
 from .design import Design, grid, sample
-from .distributions import Normal, Rectangular, tolerance
+from .distributions import LogNormal, Normal, Rectangular, tolerance
 from .export import export
 from .file import read_study
 from .limits import Limit, allowed
@@ -30,6 +30,7 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     # which points
     "PARAMETERS",
     "Design",
+    "LogNormal",
     "Method",
     "Normal",
     "Rectangular",

@@ -166,7 +166,7 @@ def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distri
     seed : int
         The same seed gives the same samples.
     method : Method
-    **distributions : Rectangular or Normal
+    **distributions : Rectangular, Normal or LogNormal
         By name of a parameter.
 
     Raises

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, log
 from typing import Any
 
 from ..checks import require
@@ -71,7 +71,44 @@ class Normal:
         return truncnorm(*ends, loc=self.mean, scale=self.deviation)
 
 
-Distribution = Rectangular | Normal
+@dataclass(frozen=True, kw_only=True)
+class LogNormal:
+    """A number whose logarithm is normal: it scatters by a factor, as wear coefficients do.
+
+    Parameters
+    ----------
+    median : float
+        Positive.
+    factor : float
+        Of one standard deviation, above 1: 68 % lie between median / factor and median · factor.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+
+    Examples
+    --------
+    >>> round(float(LogNormal(median=1e-6, factor=1.5).frozen.ppf(0.975)), 9)
+    2.214e-06
+    """
+
+    median: float
+    factor: float
+
+    def __post_init__(self) -> None:
+        require("median", self.median, 0 < self.median < inf, "it is positive and finite")
+        require("factor", self.factor, 1 < self.factor < inf, "that of one standard deviation is above 1, and finite")
+
+    @property
+    def frozen(self) -> Any:
+        """The distribution of `scipy.stats`."""
+        from scipy.stats import lognorm
+
+        return lognorm(log(self.factor), scale=self.median)
+
+
+Distribution = Rectangular | Normal | LogNormal
 
 
 def tolerance(nominal: float, plus_minus: float) -> Normal:

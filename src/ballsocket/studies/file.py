@@ -14,14 +14,14 @@ from ..engines.local import Engine, Processes, Serial
 from ..io.joint_file import KEYS, check_keys, named_material
 from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of
-from ..io.units import as_given, parse
+from ..io.units import parse
 from ..joint import Joint
 from ..model import Model
 from .axes import Method, Span
 from .design import Design, grid, sample
-from .distributions import Distribution, Normal, Rectangular, tolerance
 from .parameters import PARAMETERS, PARTS_OF
 from .rows import table
+from .scatter import Read, distribution_of
 
 _TOP = (
     "model",
@@ -58,7 +58,8 @@ def read_study(path: str | Path) -> StudyFile:
     Tables: `axes`, a parameter each, with a number, a list, or `{from, to, count}`, and `liner` or `ball` with a list
     of materials by name; `samples`, with `count`, `seed`,
     `method` ("sobol", "latin-hypercube") and for each parameter that scatters `{low, high}`, `{mean, deviation}` (with
-    `low` and `high` where it is cut off) or `{nominal, plus_minus}`; `table`, with the `path` of a CSV or Parquet file.
+    `low` and `high` where it is cut off), `{median, factor}` (a factor of one standard deviation) or
+    `{nominal, plus_minus}`; `table`, with the `path` of a CSV or Parquet file.
     At the top: `model` (by name), `joint` (a joint file or a preset by name, or a table as in joint files, with
     `liner`, `ball`, `backing`), `quantities`, `store` (a folder), and a table `engine` with `kind` ("serial",
     "processes", "dask"), `workers`, `address`. Numbers are text with a unit or bare in mm, N, MPa, degrees. Paths are
@@ -162,40 +163,14 @@ def _samples(content: Mapping[str, Any]) -> Design:
     known = [one.value for one in Method]
     if method not in known:
         raise ValueError(f"method {shown(method)} is not known{nearest(method, known)}")
-    scattered = {name: distribution_of(name, value) for name, value in content.items() if name not in own}
+    scattered = {name: distribution_of(name, value, _read(name)) for name, value in content.items() if name not in own}
     count, seed = _whole("count", content["count"]), _whole("seed", content.get("seed", 0))
     return sample(count, seed=seed, method=Method(method), **scattered)
 
 
-_KINDS: tuple[tuple[tuple[str, ...], Any], ...] = (
-    (("low", "high"), Rectangular),
-    (("mean", "deviation"), Normal),
-    (("mean", "deviation", "low"), Normal),
-    (("mean", "deviation", "high"), Normal),
-    (("mean", "deviation", "low", "high"), Normal),
-    (("nominal", "plus_minus"), tolerance),
-)
-
-
-def distribution_of(name: str, content: Any) -> Distribution:
-    """A distribution from `{low, high}`, `{mean, deviation}` or `{nominal, plus_minus}`.
-
-    Raises
-    ------
-    ValueError
-        Other keys, or numbers that are not allowed.
-    """
+def _read(name: str) -> Read:
     kind = PARAMETERS[name].kind
-    for keys, make in _KINDS:
-        if isinstance(content, Mapping) and set(content) == set(keys):
-            numbers = {key: parse(f"{name}.{key}", content[key], kind) for key in keys}
-            with as_given(content, f"{name}."):
-                made: Distribution = make(**numbers)
-                return made
-    raise ValueError(
-        f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, or "
-        "{nominal, plus_minus}"
-    )
+    return lambda key, value: parse(key, value, kind)
 
 
 def _whole(name: str, value: Any) -> int:

@@ -41,7 +41,7 @@ def sensitivity(
     ----------
     model, joint
         What is pressed; numbers that are not in `distributions` stay.
-    distributions : mapping of str to Rectangular or Normal
+    distributions : mapping of str to Rectangular, Normal or LogNormal
         Independent of each other.
     quantities : iterable of str
     count : int

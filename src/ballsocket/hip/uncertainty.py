@@ -1,0 +1,262 @@
+"""How sure a prediction is: bands over patients who differ, and which of the differences matter."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy
+
+from ..arrays import Numbers
+from ..checks import require
+from ..engines.local import Engine, Serial
+from ..sphere.surfaces import Springs
+from ..studies.room import check_samples
+from ..studies.sobol import sobol
+from .history import History
+from .lives import Kept, Listener, Lived, Lives, drawn, joined, summary_of
+from .patients import ANSWERS, Scatter, answers_of
+
+LEVEL = 0.95
+COUNT = 64
+"""Samples of each of as many sets as numbers scatter, and two."""
+
+SHARED = ("volume", "depth", "penetration")
+"""Whose scatter is shared out among what scatters."""
+
+_HERE = Serial()
+
+
+def _nothing(done: int) -> None:
+    pass
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bands:
+    """What many patients' hips come to.
+
+    Attributes
+    ----------
+    scatter : Scatter
+    counts : tuple of float
+        Cycles of the usual patient at which was looked.
+    lived : Lived
+    seed : int
+    level : float
+        The share of the patients within a band.
+    indices : mapping of str to array (answers of `SHARED`, what scatters), optional
+        Sobol's: `first_order`, `total_order`, and the ends of their intervals, `_low` and `_high`.
+    off : mapping of str to float
+        How far the usual patient's quick run is from the full one, relative to it.
+    """
+
+    scatter: Scatter
+    counts: tuple[float, ...]
+    lived: Lived
+    seed: int = 0
+    level: float = LEVEL
+    indices: Mapping[str, Numbers] | None = None
+    off: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def patients(self) -> int:
+        return len(self.lived.refused)
+
+    @property
+    def without(self) -> int:
+        """Patients without an answer."""
+        return int((self.lived.refused != "").sum())
+
+    def quantile(self, name: str, share: float) -> Numbers:
+        """The number of `ANSWERS` below which this share of the patients is, at each look."""
+        if self.without == self.patients:
+            return numpy.full(len(self.counts), numpy.nan)
+        return numpy.nanquantile(self.lived.table[:, :, list(ANSWERS).index(name)], share, axis=0)
+
+    def band(self, name: str) -> tuple[Numbers, Numbers]:
+        """The ends of the band of a number of `ANSWERS` at each look."""
+        rest = (1 - self.level) / 2
+        return self.quantile(name, rest), self.quantile(name, 1 - rest)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be said of it."""
+        assumed = f"what scatters, and how, is as given: {', '.join(self.scatter.distributions)}, independently"
+        elastic = () if isinstance(self.scatter.use.surface, Springs) else (_SPRINGS,)
+        return (assumed, *elastic, *self._refusals, *self._through)
+
+    @property
+    def _refusals(self) -> tuple[str, ...]:
+        if not self.without:
+            return ()
+        why = Counter(str(each).split(":")[0] for each in self.lived.refused if each).most_common(1)[0][0]
+        told = f"{self.without} of {self.patients} patients have no answer, most often: {why}"
+        return (f"{told}; bands are of the others",)
+
+    @property
+    def _through(self) -> tuple[str, ...]:
+        depth, liner = self.lived.table[:, -1, list(ANSWERS).index("depth")], self.scatter.use.joint.liner_thickness
+        through = int((depth > liner).sum())
+        return (f"{through} of {self.patients} patients wear their liner through",) if through else ()
+
+    def summary(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "bands": [self._at(look) for look in range(len(self.counts))],
+            "sobol": self._shares(),
+            "uncertainty": {
+                "patients": self.patients,
+                "without_answer": self.without,
+                "seed": self.seed,
+                "level": self.level,
+                "scatter": summary_of(self.scatter),
+                "quick_run_off": dict(self.off),
+            },
+        }
+
+    def edge_loading(self, look: int) -> float:
+        """The share of the patients whose contact reaches the rim in some instant then."""
+        least = self.lived.table[self.lived.refused == "", look, list(ANSWERS).index("edge_distance")]
+        return float((least <= 0).mean()) if len(least) else numpy.nan
+
+    def _at(self, look: int) -> dict[str, Any]:
+        year = self.scatter.cycles_per_year
+        ends = {name: (*self.band(name), self.quantile(name, 0.5)) for name in ANSWERS}
+        found = {
+            name: {"low": _plain(low[look]), "median": _plain(middle[look]), "high": _plain(high[look])}
+            for name, (low, high, middle) in ends.items()
+        }
+        when = {} if year is None else {"years": self.counts[look] / year}
+        return {"cycles": self.counts[look], **when, **found, "edge_loading": _plain(self.edge_loading(look))}
+
+    def _shares(self) -> dict[str, Any] | None:
+        if self.indices is None:
+            return None
+        return {
+            answer: {
+                name: {order: _plain(values[row, column]) for order, values in self.indices.items()}
+                for column, name in enumerate(self.scatter.distributions)
+            }
+            for row, answer in enumerate(SHARED)
+        }
+
+
+_SPRINGS = "bands are those of radial springs"
+
+
+def _plain(value: float) -> float | None:
+    return float(value) if numpy.isfinite(value) else None
+
+
+def uncertainty(
+    scatter: Scatter,
+    history: History,
+    *,
+    count: int = COUNT,
+    seed: int = 0,
+    engine: Engine = _HERE,
+    listen: Listener = _nothing,
+) -> Bands:
+    """The bands of a hip in use, and what matters.
+
+    Parameters
+    ----------
+    scatter : Scatter
+    history : History
+        Of the usual patient; looks are taken where it has them.
+    count : int
+        Samples, a power of two: patients are as many, times the numbers that scatter and two. Bands are those of the
+        first two sets.
+    seed : int
+        The same seed gives the same numbers.
+    engine : Engine
+        Who wears the patients' hips.
+    listen : function
+        Told how many patients are done.
+
+    Raises
+    ------
+    ValueError
+        A count that is no power of two, a seed below 0.
+    """
+    require("count", count, count >= 2 and count & (count - 1) == 0, "a power of two of samples")
+    require("seed", seed, seed >= 0, "a seed is 0 or more")
+    check_samples(count)
+    counts = tuple(report.cycles for report in history.reports)
+    answers = _Answers(scatter, counts, engine, listen)
+    indices: Mapping[str, Numbers] | None = sobol(answers, list(scatter.distributions.values()), count, seed, LEVEL)
+    if any((one.refused != "").any() for one in answers.seen):
+        indices = None
+    plain = joined(answers.seen[:2])
+    return Bands(scatter=scatter, counts=counts, lived=plain, seed=seed, indices=indices, off=_off(scatter, history))
+
+
+def population(
+    scatter: Scatter,
+    counts: Sequence[float],
+    *,
+    patients: int,
+    seed: int = 0,
+    engine: Engine = _HERE,
+    store: Kept | None = None,
+    listen: Listener = _nothing,
+) -> tuple[Lives, Bands]:
+    """Many patients, and what their hips come to.
+
+    Parameters
+    ----------
+    scatter : Scatter
+    counts : sequence of float
+        Cycles of the usual patient at which to look.
+    patients : int
+        With more of them the first ones stay the same.
+    seed : int
+    engine : Engine
+        `Serial()`, `Processes()`, `Distributed()`: a piece of sixteen patients is a task.
+    store : Kept, optional
+        What lies there is not worn anew.
+    listen : function
+        Told how many patients are done.
+
+    Raises
+    ------
+    ValueError
+        No number of patients; a seed below 0.
+    """
+    lives = Lives(scatter=scatter, counts=tuple(sorted(counts)), values=drawn(scatter, patients, seed))
+    lived = lives.all(engine, store, listen)
+    return lives, Bands(scatter=scatter, counts=lives.counts, lived=lived, seed=seed)
+
+
+@dataclass
+class _Answers:
+    """The numbers of `SHARED` at the end (answers, points) of samples (numbers, points), which it has `seen` whole."""
+
+    scatter: Scatter
+    counts: tuple[float, ...]
+    engine: Engine
+    listen: Listener
+    seen: list[Lived] = field(default_factory=list)
+    done: int = 0
+
+    def __call__(self, values: Numbers) -> Numbers:
+        named = dict(zip(self.scatter.distributions, values.reshape(len(values), -1), strict=True))
+        lives = Lives(scatter=self.scatter, counts=self.counts, values=named)
+        lived = lives.all(self.engine, None, lambda done: self.listen(self.done + done))
+        self.done += len(lives)
+        self.seen.append(lived)
+        last = lived.table[:, -1, [list(ANSWERS).index(name) for name in SHARED]]
+        return last.T.reshape(len(SHARED), *values.shape[1:]).copy()
+
+
+def _off(scatter: Scatter, history: History) -> dict[str, float]:
+    quick = answers_of(scatter.patient({}).seen([report.cycles for report in history.reports]))
+    full = answers_of(history.reports)
+    found = {}
+    for name in SHARED:
+        place = list(ANSWERS).index(name)
+        one, other = quick[:, place], full[:, place]
+        found[name] = float(abs(numpy.divide(one, other, out=numpy.ones_like(one), where=other > 0) - 1).max())
+    return found
