@@ -1,0 +1,5 @@
+"""The force element for other programs: as sources of C, as an FMU, and in the words of the tools people use."""
+
+from .c_element import CElement
+
+__all__ = ["CElement"]

@@ -1,0 +1,56 @@
+"""The compiler of C on this machine."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+_NAMES = ("cc", "gcc", "clang")
+_ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
+LIBRARY_ENDING = _ENDINGS.get(sys.platform, ".so")
+
+
+class NoCompiler(RuntimeError):  # noqa: N818 - a sentence for people
+    """There is no compiler of C, or it does not do its work."""
+
+
+def compiler() -> list[str]:
+    """The command of the compiler: that of the environment's CC, or the first of cc, gcc and clang.
+
+    Raises
+    ------
+    NoCompiler
+        None of them is there.
+    """
+    chosen = shlex.split(os.environ.get("CC", ""))
+    if chosen and shutil.which(chosen[0]):
+        return chosen
+    found = next(filter(None, map(shutil.which, _NAMES)), None)
+    if chosen or found is None:
+        names = f"CC is {chosen[0]!r}, which is not there" if chosen else f"none of {', '.join(_NAMES)} is there"
+        raise NoCompiler(f"no compiler of C: {names}")
+    return [found]
+
+
+def shared_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Path:
+    """Compile sources of a folder into a library that other programs load.
+
+    Raises
+    ------
+    NoCompiler
+        There is no compiler, or it refuses, with its first complaint.
+    """
+    words = [*compiler(), "-std=c99", "-O2", "-fPIC", "-shared", *options, *sources, "-o", str(library), "-lm"]
+    try:
+        done = subprocess.run(words, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise NoCompiler(f"the compiler {words[0]} could not be run: {error}") from error
+    if done.returncode:
+        said = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines() or [""]
+        raise NoCompiler(f"the compiler {words[0]} ended with {done.returncode}: {said[0]:.200}")
+    return library

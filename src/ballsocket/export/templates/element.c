@@ -1,0 +1,101 @@
+/* Written by ballsocket $version; see the header.
+
+   model: $model
+   joint: $joint */
+#include <math.h>
+
+#include "$name.h"
+
+$along
+$curves
+const ${name}_parameters ${name}_defaults = {$defaults};
+
+const char *${name}_complaint(const ${name}_parameters *p)
+{
+$checks
+    return 0;
+}
+
+const char *${name}_sentence(int status)
+{
+    switch (status) {
+$sentences
+    case ${NAME}_BAD_PARAMETER: return "a parameter is not allowed";
+    }
+    return "an unknown status";
+}
+
+static int finite_numbers(const double *numbers, int count)
+{
+    double none = 0.0;
+    while (count-- > 0)
+        none += 0.0 * *numbers++;
+    return none == 0.0;
+}
+
+static int fill(double *numbers, int count, double value, int status)
+{
+    while (count-- > 0)
+        *numbers++ = value;
+    return status;
+}
+
+/* Whether nothing touches; the very centre is for the formulas. */
+static int apart(const double position[3])
+{
+    const double x = position[0], y = position[1], z = position[2], e = sqrt(x * x + y * y + z * z);
+    return e > 0.0 && e <= $first_touch;
+}
+
+int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3], const double spin[3],
+                 double force[3], double moment[3], double *energy)
+{
+    int status;
+    if (!finite_numbers(position, 3) || !finite_numbers(velocity, 3) || !finite_numbers(spin, 3)) {
+        fill(force, 3, NAN, 0);
+        fill(moment, 3, NAN, 0);
+        return fill(energy, 1, NAN, ${NAME}_NO_NUMBER);
+    }
+    if (apart(position)) {
+        fill(force, 3, 0.0, 0);
+        fill(moment, 3, 0.0, 0);
+        return fill(energy, 1, 0.0, ${NAME}_FREE);
+    }
+$load
+    return status;
+}
+
+int ${name}_contact(const double position[3], double *half_angle, double *max_pressure)
+{
+    int status;
+    if (!finite_numbers(position, 3)) {
+        fill(half_angle, 1, NAN, 0);
+        return fill(max_pressure, 1, NAN, ${NAME}_NO_NUMBER);
+    }
+$pressed
+    return status;
+}
+
+int ${name}_tangent(const double position[3], double tangent[9])
+{
+    int status;
+    if (!finite_numbers(position, 3))
+        return fill(tangent, 9, NAN, ${NAME}_NO_NUMBER);
+    if (apart(position))
+        return fill(tangent, 9, 0.0, ${NAME}_FREE);
+$tangent
+    return status;
+}
+
+int ${name}_slope(const ${name}_parameters *p, const double position[3], const double velocity[3],
+                  const double spin[3], const double way[9], double slope[9])
+{
+    int status;
+    if (!finite_numbers(position, 3) || !finite_numbers(velocity, 3) || !finite_numbers(spin, 3)
+        || !finite_numbers(way, 9))
+        return fill(slope, 9, NAN, ${NAME}_NO_NUMBER);
+    if (apart(position))
+        return fill(slope, 9, 0.0, ${NAME}_FREE);
+$slope
+    return status;
+}

@@ -1,0 +1,126 @@
+"""The element in C: the same numbers as the element in Python."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import ballsocket as bs
+from ballsocket.dynamics import Damping, ForceElement, Friction, Touch
+from ballsocket.export import CElement
+
+from ..joints import HIP
+from .library import Library, needs_compiler
+
+LOSSES = {
+    "damping": Damping(hysteresis=0.004, time=0.002),
+    "friction": Friction(coefficient=0.05, static_coefficient=0.08, viscous=1e-4),
+}
+CUP = bs.Cup(inclination=0.7, anteversion=0.2)
+ELEMENTS = {
+    "springs": lambda: ForceElement(bs.HessForsbach(), HIP, **LOSSES),
+    "springs of a cup": lambda: ForceElement(bs.Bartel(), HIP, **LOSSES, cup=CUP, smoothing=0.02),
+    "formula": lambda: ForceElement(bs.Hertz(), HIP, **LOSSES),
+    "curve": lambda: ForceElement(bs.Tabulated(), HIP, **LOSSES, cup=CUP),
+}
+pytestmark = needs_compiler
+
+
+@pytest.fixture(scope="module", params=list(ELEMENTS))
+def element(request):
+    return ELEMENTS[request.param]()
+
+
+@pytest.fixture(scope="module")
+def library(element, tmp_path_factory):
+    return Library(element, tmp_path_factory.mktemp("library"))
+
+
+def states(count, seed=1):
+    """Apart, touching lightly and deep, at the rim and beyond it; in all directions."""
+    draw = np.random.default_rng(seed)
+    way = draw.normal(size=(count, 3))
+    depth = np.exp(draw.uniform(np.log(1e-6), np.log(1.0), count)) * draw.choice([-0.1, 1.0, 1.0], count)
+    position = way / np.linalg.norm(way, axis=1)[:, None] * (HIP.clearance + depth)[:, None]
+    return position, draw.normal(size=(count, 3)) * 30.0, draw.normal(size=(count, 3)) * 3.0
+
+
+def close(got, wanted, scale):
+    assert_allclose(got, wanted, rtol=1e-12, atol=1e-12 * scale)
+
+
+def test_a_thousand_states_have_the_load_contact_and_tangent_of_the_python_element(element, library):
+    touched = 0
+    for state in zip(*states(1000), strict=True):
+        wanted = element(*(tuple(map(float, part)) for part in state))
+        status, force, moment, energy = library.load(*state)
+        assert status == wanted.status
+        touched += status != Touch.FREE
+        size = np.linalg.norm(wanted.force)
+        close(force, wanted.force, size)
+        close(moment, wanted.moment, np.linalg.norm(wanted.moment))
+        close(energy[0], wanted.energy, 0.0)
+        _, half_angle, max_pressure = library.contact(state[0])
+        close((half_angle[0], max_pressure[0]), (wanted.half_angle, wanted.max_pressure), 0.0)
+        tangent = np.array(wanted.tangent)
+        close(library.tangent(state[0])[1], tangent.ravel(), abs(tangent).max())
+    assert 500 < touched < 990
+
+
+def test_slopes_are_those_of_differences(library):
+    draw = np.random.default_rng(2)
+    for state in zip(*states(30, seed=3), strict=True):
+        if library.load(*state)[0] not in (Touch.CONTACT, Touch.AT_RIM):
+            continue
+        way = draw.normal(size=9) * [1, 1, 1, 100, 100, 100, 10, 10, 10]
+        step = 1e-6 * abs(np.linalg.norm(state[0]) - HIP.clearance)
+
+        def answers(by, state=state, way=way):
+            moved = [part + by * way[3 * n : 3 * n + 3] for n, part in enumerate(state)]
+            return np.concatenate([*library.load(*moved)[1:], *library.contact(moved[0])[1:]])
+
+        difference = (answers(step) - answers(-step)) / (2 * step)
+        rounding = 1e-15 * np.abs(answers(0.0)) / step
+        _, slope = library.slope(*state, way)
+        for part in (slice(0, 3), slice(3, 6), slice(6, 7), slice(7, 8), slice(8, 9)):
+            size = np.linalg.norm(slope[part])
+            assert_allclose(slope[part], difference[part], rtol=2e-6, atol=2e-6 * size + 20 * max(rounding[part]))
+
+
+@pytest.mark.parametrize("place", [0, 4, 8])
+def test_a_state_that_is_no_number_is_a_status(library, place):
+    state = np.full(9, 0.08)
+    state[place] = np.nan
+    status, force, moment, energy = library.load(*state.reshape(3, 3))
+    assert status == Touch.NO_NUMBER
+    assert np.isnan([*force, *moment, *energy]).all()
+
+
+def test_a_ball_through_the_wall_is_a_status(library):
+    status, force, *_ = library.load((0.0, 0.0, HIP.liner_thickness + 1.0), (0, 0, 0), (0, 0, 0))
+    assert status == Touch.THROUGH_WALL
+    assert np.isnan(force).all()
+
+
+def test_losses_can_be_tuned(tmp_path):
+    tuned, plain = ELEMENTS["springs"](), Library(ForceElement(bs.HessForsbach(), HIP), tmp_path)
+    losses = (0.004, 0.002, 0.05, 0.08, 0.1, 10.0, 1e-4)
+    state = (0.0, 0.03, 0.12), (5.0, 1.0, 20.0), (0.0, 1.0, 2.0)
+    plain.parameters[:] = losses
+    close(np.concatenate(plain.load(*state)[1:3]), np.concatenate(tuned(*state)[:2]), 1e3)
+
+
+def test_parameters_that_are_not_allowed_have_a_sentence(tmp_path):
+    import ctypes
+
+    library = Library(ForceElement(bs.HessForsbach(), HIP), tmp_path)
+    complaint = library.functions.joint_complaint
+    complaint.restype = ctypes.c_char_p
+    assert complaint(ctypes.byref(library.parameters)) is None
+    library.parameters[2] = -0.1
+    assert complaint(ctypes.byref(library.parameters)) == b"friction_coefficient must be finite and 0 or more"
+
+
+@pytest.mark.parametrize("name", ["", "two words", "1st", "a-b"])
+def test_names_that_c_does_not_allow_are_refused(name):
+    with pytest.raises(ValueError, match="name must be letters"):
+        CElement(element=ForceElement(bs.HessForsbach(), HIP), name=name)
