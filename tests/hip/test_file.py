@@ -87,6 +87,9 @@ def test_a_preset_in_place_of_a_joint(tmp_path):
         ('law = "archard"', 'law = "archart"', "law 'archart' is not known; did you mean 'archard'"),
         ('law = "archard"', 'law = "area"', "has not the dimension of mm/mm, a depth over a length of sliding"),
         ('law = "archard"', 'law = "cross-shear"', "the law 'cross-shear' needs circular"),
+        ('law = "archard"', 'law = "energy"', "the law 'energy' needs a friction"),
+        ('law = "archard"', 'law = "archard"\nfriction = 0.1', "friction belongs to the law 'energy'"),
+        ('law = "archard"', 'law = "archard"\nball_coefficient = "1 mm^3/(N mm)"', "ball_coefficient = .* is 1000"),
         ('law = "archard"', 'law = "archard"\nexponent = 1', "exponent belongs to the law 'cross-shear'"),
         ('contact = "springs"', 'contact = "spring"', "contact 'spring' is not known; did you mean 'springs'"),
         ('name = "iso-14242-1"', 'name = "iso-14242"', "cycle 'iso-14242' is not known"),
@@ -119,6 +122,13 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path, old, new, refused):
     done = run("hip", str(file))
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
+
+
+def test_the_energy_law_and_a_ball_that_wears(tmp_path):
+    energy = 'law = "energy"\nfriction = 0.05\nball_coefficient = "1e-6 mm^3/J"'
+    use = read_hip(told(tmp_path, ('law = "archard"', energy), ("1.066e-6 mm^3/(N m)", "2e-2 mm^3/kJ"))).use
+    assert (use.wear.coefficient, use.wear.friction) == (pytest.approx(2e-5), 0.05)
+    assert use.ball_wear.coefficient == pytest.approx(1e-6)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Archard, AreaLaw, CrossShear, Cycle, InUse, OwnLaw, flexion, iso_14242_1
+from ballsocket.hip import Archard, AreaLaw, CrossShear, Cycle, EnergyLaw, InUse, OwnLaw, flexion, iso_14242_1
 
 from ..extent import some
 from ..places import DATA
@@ -141,6 +141,12 @@ def test_where_a_straight_track_does_not_wear_flexion_alone_wears_nothing():
     law = CrossShear(straight=0.0, circular=1e-6)
     assert hip(wear=law, cycle=flexion(72)).first.volume < 1e-9
     assert hip(wear=law).first.volume > 1
+
+
+def test_the_energy_law_wears_by_the_work_of_friction():
+    first = hip(wear=EnergyLaw(coefficient=2e-5, friction=0.05)).first
+    assert first.volume == pytest.approx(1e6 * 2e-5 * 0.05 * first.work, rel=1e-12)
+    assert first.volume == pytest.approx(hip(wear=Archard(coefficient=1e-6)).first.volume, rel=1e-12)
 
 
 def test_a_law_of_ones_own():

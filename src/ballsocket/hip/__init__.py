@@ -6,7 +6,7 @@ from .film import Film, Lubricant
 from .gait import constant_load, flexion, iso_14242_1, iso_14242_1_key_points, iso_14242_4, rocking, two_axis
 from .history import History
 from .in_vivo import in_vivo
-from .laws import Archard, AreaLaw, CrossShear, OwnLaw
+from .laws import Archard, AreaLaw, CrossShear, EnergyLaw, OwnLaw
 from .mix import Activity, Mix
 from .named_cycles import named_cycle
 from .patients import Scatter
@@ -20,6 +20,7 @@ __all__ = [
     "Bands",
     "CrossShear",
     "Cycle",
+    "EnergyLaw",
     "Film",
     "Frame",
     "History",

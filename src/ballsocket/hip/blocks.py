@@ -13,10 +13,11 @@ import numpy
 from ..arrays import Numbers
 from .chebyshev import Step, longest, stages_of, step
 from .creep import Ladder
+from .facing import Facing, facing
 from .history import Report
-from .laws import Pass
+from .laws import Law, Pass
 from .sliding import Sliding
-from .springs import CycleBed
+from .springs import CycleBed, Rest
 
 if TYPE_CHECKING:
     from .use import InUse
@@ -32,11 +33,21 @@ _MARGIN = 0.3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Near:
-    """The cells that are in reach of the contacts, and what slides over them."""
+    """The cells that are in reach of the contacts, what slides over them, and the ball's cells where those wear too."""
 
     cells: Numbers
     bed: CycleBed
     sliding: Sliding
+    facing: Facing | None
+
+    @property
+    def ball_cells(self) -> Numbers:
+        return numpy.zeros(0, dtype=int) if self.facing is None else self.facing.cells
+
+    @property
+    def areas(self) -> Numbers:
+        """Of all that wears, socket and ball."""
+        return self.bed.areas if self.facing is None else numpy.concatenate([self.bed.areas, self.facing.areas])
 
 
 @dataclass(kw_only=True, eq=False)
@@ -50,6 +61,8 @@ class Run:
         Done so far.
     depth : array (cells,)
         Worn away, in mm.
+    ball : array (ball's cells,)
+        Worn away of the ball, in mm; empty where it does not wear.
     work : float
         ∫∫ p v dA dt so far, in N mm.
     length : float
@@ -67,6 +80,7 @@ class Run:
     use: InUse
     cycles: float = 0.0
     depth: Numbers = field(default_factory=lambda: numpy.zeros(0))
+    ball: Numbers = field(default_factory=lambda: numpy.zeros(0))
     work: float = 0.0
     length: float = inf
     steps: int = 0
@@ -76,6 +90,7 @@ class Run:
 
     def __post_init__(self) -> None:
         self.depth = numpy.zeros(len(self.use.bed.areas))
+        self.ball = numpy.zeros(0 if self.use.ball_wear is None else len(self.use.ball_areas))
         self.strain = self.use.creep.rested(len(self.depth)) if self.use.creep else numpy.zeros((1, len(self.depth)))
         self._rest = self.use.unworn
         self._look()
@@ -94,42 +109,56 @@ class Run:
         return float(self.depth @ self.use.bed.areas)
 
     @property
+    def ball_volume(self) -> float:
+        """Worn away of the ball, in mm³."""
+        return float(self.ball @ self.use.ball_areas) if len(self.ball) else 0.0
+
+    @property
     def missed(self) -> float:
         """What the blocks missed of the volume, relative to it."""
-        return self.lost / self.volume if self.volume > 0 else 0.0
+        whole = self.volume + self.ball_volume
+        return self.lost / whole if whole > 0 else 0.0
 
     def _look(self) -> None:
         """Which cells are in reach, and what a cycle adds to them."""
         bed = self.use.bed
         cells = numpy.flatnonzero(bed.near(self._rest, self.depth + self.crept, self.margin))
-        self._near = _Near(cells=cells, bed=bed.part(cells), sliding=self.use.sliding.part(cells))
+        faced = None if self.use.ball_wear is None else facing(self.use, cells)
+        self._near = _Near(cells=cells, bed=bed.part(cells), sliding=self.use.sliding.part(cells), facing=faced)
         self._creep = self.crept[cells]
         self._slope = self._rate(self._values)
 
     @property
     def _values(self) -> Numbers:
-        """Depths of the cells in reach, and the work."""
-        return numpy.append(self.depth[self._near.cells], self.work)
+        """Depths of the cells in reach, of socket and ball, and the work."""
+        return numpy.concatenate([self.depth[self._near.cells], self.ball[self._near.ball_cells], [self.work]])
 
     def _rate(self, values: Numbers) -> Numbers:
         """What a cycle adds to the values."""
-        near = self._near
-        rest = near.bed.rest(self.use.loads, values[:-1] + self._creep, self._rest)
+        near, count = self._near, len(self._near.cells)
+        depth = values[:count] + self._creep
+        if near.facing is not None:
+            depth = depth + near.facing.gap(values[count:-1])
+        rest = near.bed.rest(self.use.loads, depth, self._rest)
         self._rest = rest
         self.settled = self.settled and rest.settled
         self._pass = Pass(pressure=rest.pressure, sliding=near.sliding)
-        return numpy.append(near.bed.smoothed(self.use.wear.depth(self._pass)), float(self._pass.work @ near.bed.areas))
+        worn = near.bed.smoothed(self.use.wear.depth(self._pass))
+        return numpy.concatenate([worn, self._ball_rate, [float(self._pass.work @ near.bed.areas)]])
+
+    @property
+    def _ball_rate(self) -> Numbers:
+        """What a cycle wears of the ball."""
+        faced, law = self._near.facing, self.use.ball_wear
+        return numpy.zeros(0) if faced is None or law is None else law.depth(faced.passed(self._pass))
 
     @property
     def _fastest(self) -> float:
         """How fast a wave of the worn depth can decay, per cycle: what a law adds for a pressure, times a stiffness."""
-        done = self._pass
-        nudge = _NUDGE * float(done.pressure.max(initial=0.0))
-        if not nudge > 0:
-            return 0.0
-        more = Pass(pressure=done.pressure + nudge * (done.pressure > 0), sliding=done.sliding)
-        steepest = (self.use.wear.depth(more) - self.use.wear.depth(done)).max() / nudge
-        return _SURE * float(steepest) * self.use.bed.stiffest
+        slope = _steepest(self.use.wear, self._pass)
+        if self._near.facing is not None and self.use.ball_wear is not None:
+            slope += _steepest(self.use.ball_wear, self._near.facing.passed(self._pass))
+        return _SURE * slope * self.use.bed.stiffest
 
     @property
     def state(self) -> dict[str, Any]:
@@ -163,15 +192,19 @@ class Run:
             self.length = length * min(max(_SAFE * max(error, 1e-12) ** (-1 / 3), _LEAST), _MOST)
             if error <= 1:
                 break
-        self.lost += abs(float(taken.error[:-1] @ self._near.bed.areas))
-        self.depth = self.depth.copy()
-        self.depth[self._near.cells], self.work = taken.values[:-1], float(taken.values[-1])
+        self.lost += abs(float(taken.error[:-1] @ self._near.areas))
+        self._keep(taken.values)
         self.steps, self._slope = self.steps + 1, taken.rate
         self.cycles = count if length == left else self.cycles + length
         if self.use.creep is not None:
             self._advance_creep(self.use.creep, length * self.use.seconds)
         if self._spreads or self.use.creep is not None:
             self._look()
+
+    def _keep(self, values: Numbers) -> None:
+        near, count = self._near, len(self._near.cells)
+        self.depth, self.ball, self.work = self.depth.copy(), self.ball.copy(), float(values[-1])
+        self.depth[near.cells], self.ball[near.ball_cells] = values[:count], values[count:-1]
 
     @property
     def _calm(self) -> float:
@@ -207,7 +240,7 @@ class Run:
         """Whether a block has brought the contact to cells that are not looked at."""
         depth = self.crept
         depth += self.depth
-        depth[self._near.cells] = taken.values[:-1] + self._creep
+        depth[self._near.cells] = taken.values[: len(self._near.cells)] + self._creep
         touched = self.use.bed.near(self._rest, depth, 0.0)
         touched[self._near.cells] = False
         return bool(touched.any())
@@ -221,10 +254,13 @@ class Run:
 
     def _report(self) -> Report:
         use, crept, shape = self.use, self.crept, (self.use.grid.rings, -1)
-        rest = use.rest(self.depth + crept, self._rest)
-        only = [use.rest(depth) if depth.any() else use.unworn for depth in (self.depth, crept)]
+        depth = self.depth + crept
+        if use.ball_wear is not None:
+            depth = depth + facing(use, numpy.arange(len(depth))).on_socket.of(self.ball[None])
+        rest = use.rest(depth, self._rest)
+        only = [rest if use.creep is None else self._only(self.depth), self._only(crept)]
         moved = [(each.displacement - use.unworn.displacement)[use.largest].sum(axis=0) for each in (rest, *only)]
-        edge = use.edge(rest, self.depth + crept)
+        edge = use.edge(rest, depth)
         return Report(
             cycles=self.cycles,
             wear=self.depth.reshape(shape),
@@ -239,14 +275,30 @@ class Run:
             edge_place=edge.place,
             crept=crept.reshape(shape),
             creep_depth=float(crept.max()),
+            ball_wear=self.ball,
+            ball_volume=self.ball_volume,
+            ball_depth=float(self.ball.max(initial=0.0)),
             settled=self.settled and all(each.settled for each in (rest, *only)),
         )
+
+    def _only(self, depth: Numbers) -> Rest:
+        return self.use.rest(depth) if depth.any() else self.use.unworn
+
+
+def _steepest(law: Law, done: Pass) -> float:
+    """The most that a law adds to a depth for a larger pressure, in mm/MPa."""
+    nudge = _NUDGE * float(done.pressure.max(initial=0.0))
+    if not nudge > 0:
+        return 0.0
+    more = Pass(pressure=done.pressure + nudge * (done.pressure > 0), sliding=done.sliding)
+    return float((law.depth(more) - law.depth(done)).max() / nudge)
 
 
 _STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(
     {
         "cycles": float,
         "depth": numpy.asarray,
+        "ball": numpy.asarray,
         "strain": numpy.asarray,
         "work": float,
         "length": float,

@@ -88,8 +88,18 @@ def checkpoint(use: InUse, folder: Path) -> Checkpoint:
     ValueError
         A law of one's own, of which nothing tells whether it is still the same.
     """
-    if isinstance(use.wear, OwnLaw):
+    if isinstance(use.wear, OwnLaw) or isinstance(use.ball_wear, OwnLaw):
         raise ValueError("a run with a law of one's own cannot be kept: nothing tells whether it is still the same")
     cycle = sha256(use.loads.tobytes() + use.turns.tobytes() + use.loaded.tobytes()).hexdigest()
-    parts = (use.joint, use.placed, use.wear, use.surface, use.ring_width, use.tolerance, use.creep, use.seconds)
+    parts = (
+        use.joint,
+        use.placed,
+        use.wear,
+        use.ball_wear,
+        use.surface,
+        use.ring_width,
+        use.tolerance,
+        use.creep,
+        use.seconds,
+    )
     return Checkpoint(folder=folder, identity=sha256(f"{_VERSION} {cycle} {parts!r}".encode()).hexdigest())

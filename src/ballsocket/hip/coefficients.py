@@ -19,6 +19,9 @@ WEAR_FACTOR = "mm^3/(N m)"
 _METRES = ("mm**3/(N*m)", "m**3/(N*m)")
 """Units of a wear factor for metres of sliding, of which there is nothing to mistake."""
 
+_JOULES = (*_METRES, "mm**3/J", "mm**3/kJ", "mm**3/MJ", "m**3/J")
+"""The same for work."""
+
 
 def wear_factor(name: str, value: Any) -> float:
     """A wear factor k in mm³/(N m): bare, or text as "1.066e-6 mm^3/(N m)".
@@ -41,6 +44,21 @@ so that this is 1.066e-06 mm^3/(N m); write it so
     if unit:
         number *= _factor(name, value, number, unit)
     require(name, number, 0 <= number < float("inf"), f"a wear coefficient is at least 0 {WEAR_FACTOR}, and finite")
+    return number
+
+
+def wear_per_energy(name: str, value: Any) -> float:
+    """A wear factor in mm³ per joule of friction: bare, or text as "1e-5 mm^3/J".
+
+    Raises
+    ------
+    ValueError
+        As of `wear_factor`.
+    """
+    number, unit = _parts(name, value, "mm^3/J")
+    if unit:
+        number *= _factor(name, value, number, unit, _JOULES)
+    require(name, number, 0 <= number < float("inf"), "a wear coefficient is at least 0 mm^3/J, and finite")
     return number
 
 
@@ -73,11 +91,11 @@ def _parts(name: str, value: Any, example: str) -> tuple[float, str]:
     return float(found[1]), re.sub(r"(?<=[A-Za-z0-9)])\s+(?=[A-Za-z(])", "*", unit)
 
 
-def _factor(name: str, value: Any, number: float, unit: str) -> float:
+def _factor(name: str, value: Any, number: float, unit: str, known: tuple[str, ...] = _METRES) -> float:
     """From a unit to mm³/(N m)."""
     factor = _converted(name, value, unit, _METRES[0], f"{WEAR_FACTOR}, a volume over a force and a length of sliding")
     units = registry()
-    if not any(units.Unit(unit) == units.Unit(good) and _same(unit, good) for good in _METRES):
+    if not any(units.Unit(unit) == units.Unit(good) and _same(unit, good) for good in known):
         written = unit.replace("**", "^").replace("N*m", "N m")
         slid = "for mm of sliding" if abs(factor / 1000 - 1) < 1e-9 else "for another length of sliding"
         raise ValueError(

@@ -145,6 +145,11 @@ class Cycle:
         return numpy.concatenate([turned, turned[:1]])
 
     @cached_property
+    def middles(self) -> Numbers:
+        """Rotation matrices of the ball in the middle of the instants: (instants, 3, 3)."""
+        return rotation_matrices(numpy.asarray(self.angles(self.phases), dtype=float).T, self.order)
+
+    @cached_property
     def turns(self) -> Numbers:
         """How the ball turns during each instant: rotation vectors in rad, (instants, 3)."""
         return rotation_vectors(self.rotations[1:] @ self.rotations[:-1].swapaxes(1, 2))

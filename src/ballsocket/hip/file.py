@@ -18,7 +18,8 @@ from ..kinds import Kind
 from .film import Lubricant
 from .given_cycle import KEYS as CYCLE_KEYS
 from .given_cycle import given_cycle
-from .given_laws import given_creep, given_law, given_lubricant, given_seconds, given_surface
+from .given_laws import KEYS as WEAR_KEYS
+from .given_laws import given_ball_law, given_creep, given_law, given_lubricant, given_seconds, given_surface
 from .mix import Mix
 from .scatter_file import KEYS as SCATTER_KEYS
 from .scatter_file import Uncertain, uncertain
@@ -33,7 +34,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
     "cycle": CYCLE_KEYS,
     "creep": ("law", "compliances", "times", "seconds_per_cycle"),
     "film": ("viscosity", "ball_roughness", "cup_roughness", "friction"),
-    "wear": ("law", "coefficient", "circular", "exponent", "reference", "contact", "model", "ring_width"),
+    "wear": WEAR_KEYS,
     "uncertainty": SCATTER_KEYS,
 }
 _KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
@@ -57,20 +58,20 @@ class HipFile:
 def read_hip(path: str | Path) -> HipFile:
     """Read a file about a hip in use.
 
-    Tables: `joint`, `liner`, `ball`, `backing` and `cup` as in joint files (`joint` may be the name of a preset or of
-    a joint file); in `cup` a `tilt` from the load may take the place of inclination and anteversion. `cycle` has a
-    `name` (see `named_cycle`), with what its machine takes (`force`, `amplitude`, `mismatch`, `stiffness`,
-    `swing_load`), or a `file` or several (see `read_cycle`), with `side`, `frame`, `force_on`, `from`, `to`, `closing`
-    and the name of a `motion`; and `instants`, `rotation_order`, `body_weight`, `times_body_weight`. In its place an
-    array of tables `activity` takes the same, each with how often it is done: `per_year`, or its `share` of
-    `cycles_per_year`. `wear` has a `law` ("archard", "area", "cross-shear"), its `coefficient` in mm³/(N m), `contact`
-    ("springs", "shell", "cup"), the `model` whose springs they are, `ring_width`. `creep`, which may be empty, has a
-    `law` ("logarithmic", unverified, or "kelvin-voigt" with `compliances` in 1/MPa and `times` in s) and
-    `seconds_per_cycle`. `film` has `viscosity` in Pa s, `ball_roughness`, `cup_roughness`, `friction`. `uncertainty`
-    says what differs between patients (`coefficient`, `clearance`, `inclination`, `anteversion` or `tilt`,
-    `body_weight`, `cycles_per_year`), each by a distribution as in study files, with `count` (of samples, a power of
-    two) and `seed`. At the top: `cycles`, `report_at` (a list), or of activities `years` and `report_years`;
-    `body_weight`.
+    Tables: `joint`, `liner`, `ball`, `backing` and `cup` as in joint files (`joint` may be the name of a preset or of a
+    joint file); in `cup` a `tilt` from the load may take the place of inclination and anteversion. `cycle` has a `name`
+    (see `named_cycle`), with what its machine takes (`force`, `amplitude`, `mismatch`, `stiffness`, `swing_load`), or a
+    `file` or several (see `read_cycle`), with `side`, `frame`, `force_on`, `from`, `to`, `closing` and the name of a
+    `motion`; and `instants`, `rotation_order`, `body_weight`, `times_body_weight`. In its place an array of tables
+    `activity` takes the same, each with how often it is done: `per_year`, or its `share` of `cycles_per_year`. `wear`
+    has a `law` ("archard", "energy", "area", "cross-shear"), its `coefficient` in mm³/(N m), the `ball_coefficient` of
+    a ball that wears too, `contact` ("springs", "shell", "cup"), the `model` whose springs they are, `ring_width`.
+    `creep`, which may be empty, has a `law` ("logarithmic", unverified, or "kelvin-voigt" with `compliances` in 1/MPa
+    and `times` in s) and `seconds_per_cycle`. `film` has `viscosity` in Pa s, `ball_roughness`, `cup_roughness`,
+    `friction`. `uncertainty` says what differs between patients (`coefficient`, `clearance`, `inclination`,
+    `anteversion` or `tilt`, `body_weight`, `cycles_per_year`), each by a distribution as in study files, with `count`
+    (of samples, a power of two) and `seed`. At the top: `cycles`, `report_at` (a list), or of activities `years` and
+    `report_years`; `body_weight`.
 
     Raises
     ------
@@ -89,15 +90,17 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         check_keys(table_of(content, name), name, f"in [{name}]", _KEYS)
     given = _joint(content, folder)
     cycle, wear = given_cycle(content, folder), table_of(content, "wear")
+    width = {name: parse(name, wear[name], Kind.ANGLE) for name in ("ring_width",) if name in wear}
     use = InUse(
         joint=given.joint,
         cup=given.cup,
         cycle=cycle,
         wear=given_law(wear),
+        ball_wear=given_ball_law(wear),
         surface=given_surface(wear),
         creep=given_creep(content),
         seconds_per_cycle=given_seconds(table_of(content, "creep")),
-        **({"ring_width": parse("ring_width", wear["ring_width"], Kind.ANGLE)} if "ring_width" in wear else {}),
+        **width,
     )
     cycles, at = _years(content, cycle) if isinstance(cycle, Mix) and "years" in content else _counts(content)
     check_cycles(cycles, at)

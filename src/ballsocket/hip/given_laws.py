@@ -13,13 +13,17 @@ from ..io.units import parse
 from ..kinds import Kind
 from ..models.foundation import RadialFoundation
 from ..sphere.surfaces import ClosedShell, RealCup, Springs
-from .coefficients import share_of_slide, wear_factor
+from .coefficients import share_of_slide, wear_factor, wear_per_energy
 from .creep import Ladder, logarithmic
 from .film import Lubricant
-from .laws import Archard, AreaLaw, CrossShear, Law
+from .laws import Archard, AreaLaw, CrossShear, EnergyLaw, Law
 
-_LAWS = ("archard", "area", "cross-shear")
-_OF_CROSS_SHEAR = ("circular", "exponent", "reference")
+_LAWS = ("archard", "energy", "area", "cross-shear")
+_BELONGS = MappingProxyType(
+    {**dict.fromkeys(("circular", "exponent", "reference"), "cross-shear"), "friction": "energy"}
+)
+KEYS = ("law", "coefficient", "ball_coefficient", *_BELONGS, "contact", "model", "ring_width")
+"""Of [wear]."""
 
 
 def given_law(table: Mapping[str, Any]) -> Law:
@@ -27,19 +31,40 @@ def given_law(table: Mapping[str, Any]) -> Law:
     name = known_name("law", table.get("law", "archard"), _LAWS)
     if "coefficient" not in table:
         raise ValueError("[wear] needs a coefficient, such as '1.066e-6 mm^3/(N m)'")
-    if name != "cross-shear":
-        for each in _OF_CROSS_SHEAR:
-            if each in table:
-                raise ValueError(f"{each} belongs to the law 'cross-shear', and the law is {name!r}")
+    for each, law in _BELONGS.items():
+        if each in table and law != name:
+            raise ValueError(f"{each} belongs to the law {law!r}, and the law is {name!r}")
+    return _cross_shear(table) if name == "cross-shear" else _plain(table, name, "coefficient")
+
+
+def given_ball_law(table: Mapping[str, Any]) -> Law | None:
+    """The law by which the ball wears too; none without its coefficient."""
+    name = known_name("law", table.get("law", "archard"), _LAWS)
+    if "ball_coefficient" not in table:
+        return None
+    if name == "cross-shear":
+        raise ValueError("ball_coefficient belongs to the laws 'archard', 'energy' and 'area', not to 'cross-shear'")
+    return _plain(table, name, "ball_coefficient")
+
+
+def _plain(table: Mapping[str, Any], name: str, key: str) -> Law:
+    """A law of one coefficient."""
     if name == "area":
-        return AreaLaw(coefficient=share_of_slide("coefficient", table["coefficient"]))
-    straight = wear_factor("coefficient", table["coefficient"])
+        return AreaLaw(coefficient=share_of_slide(key, table[key]))
     if name == "archard":
-        return Archard(coefficient=straight)
+        return Archard(coefficient=wear_factor(key, table[key]))
+    if "friction" not in table:
+        raise ValueError("the law 'energy' needs a friction, the coefficient whose work wears")
+    return EnergyLaw(
+        coefficient=wear_per_energy(key, table[key]), friction=parse("friction", table["friction"], Kind.NUMBER)
+    )
+
+
+def _cross_shear(table: Mapping[str, Any]) -> Law:
     if "circular" not in table:
         raise ValueError("the law 'cross-shear' needs circular, its coefficient on a circle, beside that on a line")
     return CrossShear(
-        straight=straight,
+        straight=wear_factor("coefficient", table["coefficient"]),
         circular=wear_factor("circular", table["circular"]),
         exponent=parse("exponent", table.get("exponent", 0.0), Kind.NUMBER),
         reference=parse("reference", table.get("reference", 1.0), Kind.MODULUS),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -70,6 +70,10 @@ class Report:
         Depth of creep in mm.
     creep_depth : float
         At the point that has crept furthest, in mm.
+    ball_wear : array (cells,)
+        Worn depth of the ball in mm, in the cells of `facing.ball_grid`; empty where it does not wear.
+    ball_volume, ball_depth : float
+        Worn away of the ball: mm³, and mm at the deepest point.
     settled : bool
         Whether every contact balanced its load.
     """
@@ -87,6 +91,9 @@ class Report:
     edge_place: Numbers
     crept: Numbers
     creep_depth: float = 0.0
+    ball_wear: Numbers = field(default_factory=lambda: numpy.zeros(0))
+    ball_volume: float = 0.0
+    ball_depth: float = 0.0
     settled: bool = True
 
     @property
@@ -111,6 +118,8 @@ class Report:
             "penetration_of_creep": float(numpy.linalg.norm(self.crept_in)),
             "max_pressure": self.max_pressure,
             "creep_depth": self.creep_depth,
+            "ball_volume": self.ball_volume,
+            "ball_depth": self.ball_depth,
             "edge_distance": float(self.edge_distance.min()) if len(self.edge_distance) else None,
         }
 

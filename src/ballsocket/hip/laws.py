@@ -99,6 +99,33 @@ class Archard:
 
 
 @dataclass(frozen=True, kw_only=True)
+class EnergyLaw:
+    """dh = e μ p v dt: what friction's work wears away.
+
+    Parameters
+    ----------
+    coefficient : float
+        e in mm³ per joule of friction.
+    friction : float
+        μ, the coefficient of friction.
+    """
+
+    coefficient: float
+    friction: float
+
+    def __post_init__(self) -> None:
+        _check_coefficient(self.coefficient)
+        require("friction", self.friction, 0 <= self.friction < 10, "a coefficient of friction is 0 to 10")
+
+    def depth(self, cycle: Pass) -> Numbers:
+        return METRE * self.coefficient * self.friction * cycle.work
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        return _unusual(self.coefficient * self.friction)
+
+
+@dataclass(frozen=True, kw_only=True)
 class AreaLaw:
     """dh = C v dt, v being the speed of sliding, wherever there is contact, whatever the pressure.
 

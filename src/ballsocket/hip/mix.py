@@ -134,6 +134,11 @@ class Mix:
         return numpy.linalg.norm(self.forces, axis=1)
 
     @cached_property
+    def middles(self) -> Numbers:
+        """Rotation matrices of the ball in the middle of the instants: (instants, 3, 3)."""
+        return numpy.concatenate([each.middles for each in self._cycles])
+
+    @cached_property
     def turns(self) -> Numbers:
         """How the ball turns during each instant, as often as that is: rotation vectors in rad, (instants, 3)."""
         return self._shared(lambda cycle: cycle.turns)

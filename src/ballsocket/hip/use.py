@@ -26,6 +26,7 @@ from .creep import Ladder
 from .cycle import Cycle, Frame
 from .edge import Edge, edge_of
 from .elastic_bed import elastic_bed
+from .facing import ball_grid
 from .film import Film, Lubricant, film
 from .history import Error, First, History, Report
 from .laws import Law, Pass
@@ -56,6 +57,8 @@ class InUse:
         How the bore gives way; the paper's springs by default.
     ring_width : float
         Of the rings of the wear map in rad, 3° by default.
+    ball_wear : Law, optional
+        How the ball wears too, as hard ones do, in its own frame; not at all by default.
     creep : Ladder, optional
         How the liner creeps; not at all by default.
     seconds_per_cycle : float, optional
@@ -84,6 +87,7 @@ class InUse:
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
     surface: Springs | ClosedShell | RealCup = Springs()  # noqa: RUF009 (frozen)
     ring_width: float = radians(3.0)
+    ball_wear: Law | None = None
     creep: Ladder | None = None
     seconds_per_cycle: float | None = None
     tolerance: float = 4e-3
@@ -98,6 +102,8 @@ class InUse:
         if self.creep is not None:
             thickness = float(self.joint.liner_thickness)
             require("liner_thickness", thickness, thickness < inf, "creep needs a liner that ends")
+        if self.ball_wear is not None and (self.creep is not None or not isinstance(self.surface, Springs)):
+            raise ValueError("a ball that wears is on springs, in a socket that does not creep")
         require("seconds_per_cycle", self.seconds, 0 < self.seconds < inf, "a time (s) is positive and finite")
         self._check_held()
 
@@ -195,7 +201,8 @@ class InUse:
         placed = () if self.placed == self.cup else (_PLACED.format(degrees(self.cycle.cup_tilt or 0.0)),)
         apart = () if self.separation is None else (self.separation.told(self),)
         crept = self.creep.notes if self.creep else ()
-        return (*self.cycle.notes, *placed, *self._lifted, *apart, *self.wear.notes, *crept)
+        worn = (*self.wear.notes, *(self.ball_wear.notes if self.ball_wear else ()))
+        return (*self.cycle.notes, *placed, *self._lifted, *apart, *worn, *crept)
 
     @property
     def _lifted(self) -> tuple[str, ...]:
@@ -221,6 +228,12 @@ class InUse:
             socket_radius=float(joint.socket_radius),
         )
 
+    @cached_property
+    def ball_areas(self) -> Numbers:
+        """Areas of the ball's own cells in mm²: (cells,)."""
+        own = ball_grid(self.ring_width)
+        return numpy.repeat(own.areas[:, 0], own.meridians) * float(self.joint.ball_radius) ** 2
+
     @property
     def _around(self) -> Cup:
         """The cup, wherever it faces."""
@@ -232,7 +245,7 @@ class InUse:
 
     def edge(self, rest: Rest, depth: Numbers | float = 0.0) -> Edge:
         """How near the edge of each contact comes to the end of the bore, and where."""
-        return edge_of(self, self.bed.edge_field(rest, numpy.broadcast_to(depth, self.bed.areas.shape)))
+        return edge_of(self, self.bed.edge_field(rest, self._everywhere(depth)))
 
     def edge_distance(self, rest: Rest, depth: Numbers | float = 0.0) -> Numbers:
         """The arc in mm from the edge of each contact to the end of the bore where it is nearest: (loaded,).
@@ -243,7 +256,12 @@ class InUse:
 
     def rest(self, depth: Numbers | float = 0.0, start: Rest | None = None) -> Rest:
         """The contacts of a cycle on a bore that is worn by a depth in mm (cells,)."""
-        return self.bed.rest(self.loads, numpy.broadcast_to(depth, self.bed.areas.shape), start)
+        return self.bed.rest(self.loads, self._everywhere(depth), start)
+
+    def _everywhere(self, depth: Numbers | float) -> Numbers:
+        """A depth of each cell, (cells,), or of each in each instant, (loaded, cells)."""
+        field = numpy.asarray(depth)
+        return field if field.ndim == 2 else numpy.broadcast_to(field, self.bed.areas.shape)
 
     def passed(self, rest: Rest) -> Pass:
         """What the points of the socket go through under these contacts."""

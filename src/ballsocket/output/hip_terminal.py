@@ -30,6 +30,10 @@ def print_hip(history: History) -> None:
     )
     print_folded(terminal, f"unworn: {first.volume:.4g} mm³ and {first.depth:.4g} mm a million cycles", "")
     terminal.print(_table(history))
+    if history.use.ball_wear is not None:
+        last = history.last
+        worn = f"{last.ball_volume:.4g} mm³ and {last.ball_depth:.3g} mm"
+        print_folded(terminal, f"the ball: {worn} after {last.cycles / 1e6:g} million cycles", "")
     print_folded(terminal, _film(history), "")
     off = f"volume within {100 * history.error.volume:.2g} % of the same model in the finest steps"
     print_folded(terminal, f"{off}, in {history.steps} blocks", "dim")

@@ -1,0 +1,83 @@
+"""A ball that wears too: what it loses, where, and what that does to the contact."""
+
+from math import pi, radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.hip import Archard, Cycle, OwnLaw, flexion, iso_14242_1, logarithmic
+from ballsocket.hip.facing import ball_directions, ball_grid, facing
+
+from .test_wear import K, hip
+
+BOTH = {"wear": Archard(coefficient=K / 2), "ball_wear": Archard(coefficient=K / 2)}
+
+
+def spinning(count=24):
+    """About the line of the load alone: socket and ball are then worn alike."""
+    return Cycle(
+        name="spin",
+        force=lambda t: 2000.0 + 0 * t,
+        angles=lambda t: radians(30.0) * np.stack([0 * t, 0 * t, np.cos(2 * pi * t)]),
+        instants=count,
+    )
+
+
+def test_what_the_ball_misses_is_what_was_rubbed_off():
+    report = (
+        hip(cycle=iso_14242_1(40), wear=Archard(coefficient=K), ball_wear=Archard(coefficient=3e-7)).after(5e5).last
+    )
+    assert report.volume == pytest.approx(1e-3 * K * report.work, rel=1e-6)
+    assert report.ball_volume == pytest.approx(1e-3 * 3e-7 * report.work, rel=1e-6)
+
+
+def test_a_ball_that_spins_about_its_load_wears_as_its_socket():
+    """And both together leave the contact as twice the wear of the socket alone does."""
+    pair = hip(cycle=spinning(), cup=bs.Cup(), **BOTH).after(2e6).last
+    alone = hip(cycle=spinning(), cup=bs.Cup(), wear=Archard(coefficient=K)).after(2e6).last
+    assert pair.volume == pytest.approx(pair.ball_volume, rel=1e-9)
+    assert pair.ball_depth == pytest.approx(pair.depth, rel=0.02)
+    assert pair.volume + pair.ball_volume == pytest.approx(alone.volume, rel=2e-3)
+    assert pair.penetration == pytest.approx(alone.penetration, rel=1e-2)
+    assert pair.max_pressure == pytest.approx(alone.max_pressure, rel=5e-2)  # a spike where nothing slides
+
+
+def test_flexion_spreads_what_the_ball_loses_over_its_track():
+    """The load stands still on the socket, and goes to and fro on the ball."""
+    use = hip(cycle=flexion(40), **BOTH)
+    report = use.after(1e6).last
+    assert report.ball_volume == pytest.approx(report.volume, rel=1e-9)
+    assert report.ball_depth < 0.95 * report.depth
+    to_front = ball_directions(ball_grid(use.ring_width))[1]
+    share = report.ball_wear * use.ball_areas
+    reach = np.sqrt((share * to_front**2).sum() / share.sum())
+    assert reach > 1.08 * np.sqrt(((report.wear.ravel() * use.bed.areas) @ use.bed.directions[1] ** 2) / report.volume)
+
+
+def test_the_work_of_each_instant_is_that_of_the_socket():
+    use = hip(cycle=iso_14242_1(40), **BOTH)
+    ours = facing(use, np.arange(len(use.bed.areas)))
+    given = (use.unworn.pressure * use.sliding.steps) @ use.bed.areas
+    found = ours.passed(use.passed(use.unworn))
+    assert (found.pressure * found.sliding.steps) @ ours.areas == pytest.approx(given, rel=1e-9)
+    smaller = (use.joint.socket_radius / use.joint.ball_radius) ** 2  # is the ball, under the same force
+    assert found.pressure.max() == pytest.approx(smaller * use.unworn.pressure.max(), rel=2e-3)
+
+
+def test_a_run_with_a_ball_goes_on_from_where_it_stopped(tmp_path):
+    use = hip(cycle=iso_14242_1(20), ring_width=radians(5.0), **BOTH)
+    use.after(1e5, store=tmp_path)
+    assert use.after(2e5, store=tmp_path).last.ball_volume == pytest.approx(use.after(2e5).last.ball_volume, rel=1e-3)
+
+
+@pytest.mark.parametrize("words", [{"surface": bs.ClosedShell()}, {"creep": logarithmic()}])
+def test_a_ball_that_wears_is_on_springs_that_do_not_creep(words):
+    with pytest.raises(ValueError, match="a ball that wears is on springs, in a socket that does not creep"):
+        hip(**words, **BOTH)
+
+
+def test_a_law_of_ones_own_for_the_ball_cannot_be_kept(tmp_path):
+    use = hip(ball_wear=OwnLaw(of=lambda cycle: 1e-9 * cycle.work))
+    with pytest.raises(ValueError, match="a run with a law of one's own cannot be kept"):
+        use.after(1e4, store=tmp_path)
