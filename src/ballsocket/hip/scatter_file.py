@@ -12,8 +12,8 @@ from ..io.toml import table_of
 from ..io.units import parse
 from ..kinds import Kind
 from ..studies.scatter import Read, distribution_of
-from .coefficients import share_of_slide, wear_factor
-from .laws import AreaLaw
+from .coefficients import share_of_slide, wear_factor, wear_per_energy
+from .laws import AreaLaw, EnergyLaw
 from .patients import SCATTERS, Scatter
 from .uncertainty import COUNT
 from .use import InUse
@@ -76,7 +76,8 @@ def _weight(content: Mapping[str, Any]) -> float | None:
 def _read(name: str, use: InUse) -> Read:
     if name != "coefficient":
         return lambda key, value: parse(key, value, _KINDS[name])
-    return share_of_slide if isinstance(use.wear, AreaLaw) else wear_factor
+    readers: dict[type, Read] = {AreaLaw: share_of_slide, EnergyLaw: wear_per_energy}
+    return readers.get(type(use.wear), wear_factor)
 
 
 def _whole(name: str, value: Any) -> int:
