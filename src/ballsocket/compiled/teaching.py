@@ -77,6 +77,16 @@ def _cos(x: Any) -> Callable[..., Any]:
     return lambda x: math.cos(x)
 
 
+@overload(arrays.asin, strict=False)
+def _asin(x: Any) -> Callable[..., Any]:
+    return lambda x: math.asin(x)
+
+
+@overload(arrays.atan2, strict=False)
+def _atan2(y: Any, x: Any) -> Callable[..., Any]:
+    return lambda y, x: math.atan2(y, x)
+
+
 @overload(arrays.where, strict=False)
 def _where(condition: Any, this: Any, that: Any) -> Callable[..., Any]:
     return lambda condition, this, that: this if condition else that

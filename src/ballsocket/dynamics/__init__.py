@@ -5,6 +5,7 @@ from .damping import Damping, Flores, Gonthier, HuntCrossley, LankaraniNikravesh
 from .element import ForceElement
 from .friction import Friction
 from .load import Load
+from .motion import Motion, simulate
 from .touch import Touch
 
 __all__ = [
@@ -16,8 +17,10 @@ __all__ = [
     "HuntCrossley",
     "LankaraniNikravesh",
     "Load",
+    "Motion",
     "Restitution",
     "Touch",
     "of_restitution",
     "relations",
+    "simulate",
 ]

@@ -131,7 +131,7 @@ class ForceElement:
             What does not have three components.
         """
         if type(position) in _LISTS:
-            return self._of_numbers(_three(position), _three(velocity), _three(spin))
+            return self._of_numbers(three(position), three(velocity), three(spin))
         return self._of_arrays(position, velocity, spin)
 
     def _of_numbers(self, position: Three, velocity: Three, spin: Three) -> Load:
@@ -181,7 +181,7 @@ class ForceElement:
         return read(self.curves[1], indentation)
 
 
-def _three(value: Any) -> Three:
+def three(value: Any) -> Three:
     try:
         x, y, z = value
         return x + 0.0, y + 0.0, z + 0.0

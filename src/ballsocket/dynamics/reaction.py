@@ -91,8 +91,9 @@ def elastic(potential, place: Place, given: Constants) -> Elastic:  # type: igno
     d = place.indentation
     depth, slope, bend = ramp(where(d > given.wall, given.wall, d), given.smoothing)
     missing = where(d > given.wall, nan, 0.0 * d)
-    energy, force, stiffness = (part + missing for part in potential(depth))
-    stiffness = where(d >= -given.smoothing, stiffness, 0.0)
+    energy, force, stiffness = potential(depth)
+    energy, force = energy + missing, force + missing
+    stiffness = where(d >= -given.smoothing, stiffness + missing, missing)
     if given.rim > 0.0:
         return covered(place, depth, slope, bend, energy, force, stiffness, given)
     none, normal = 0.0 * energy, force * slope
