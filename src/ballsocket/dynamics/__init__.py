@@ -1,14 +1,18 @@
 """The joint in motion: a force element of any model, what it loses, and what becomes of it over time."""
 
 from . import restitution as relations
+from .bristles import Bristles
 from .damping import Damping, Flores, Gonthier, HuntCrossley, LankaraniNikravesh, Restitution, of_restitution
 from .element import ForceElement
 from .friction import Friction
 from .load import Load
 from .motion import Motion, simulate
+from .prony import Prony
 from .touch import Touch
+from .viscoelastic import Viscoelastic
 
 __all__ = [
+    "Bristles",
     "Damping",
     "Flores",
     "ForceElement",
@@ -18,8 +22,10 @@ __all__ = [
     "LankaraniNikravesh",
     "Load",
     "Motion",
+    "Prony",
     "Restitution",
     "Touch",
+    "Viscoelastic",
     "of_restitution",
     "relations",
     "simulate",

@@ -16,6 +16,8 @@ from ..joint import Joint
 from ..model import Model
 from ..model.answer import check_joint
 from ..model.law import CurveLaw
+from .bristles import Bristles
+from .brushed import brushed
 from .damping import Damping, one_number
 from .friction import Friction
 from .load import Load
@@ -26,6 +28,7 @@ from .side_curves import curve_of, read
 from .watch import Watch
 
 _REST = (0.0, 0.0, 0.0)
+_UNBENT = (0.0, 0.0, 0.0, 0.0)
 _LISTS = (tuple, list)
 
 
@@ -41,8 +44,8 @@ class ForceElement:
         Of plain numbers.
     damping : Damping, optional
         `Flores(restitution=..., impact_speed=...)` and its kin, or `Damping(...)`. None, the default, loses nothing.
-    friction : Friction, optional
-        None, the default, is a socket without friction.
+    friction : Friction or Bristles, optional
+        Bristles have a state, which is asked and answered with the rest. None, the default, rubs nowhere.
     cup : Cup, optional
         With a rim, over which the force dies out. None, the default, is a whole sphere.
     smoothing : float
@@ -71,7 +74,7 @@ class ForceElement:
     model: Model
     joint: Joint
     damping: Damping | None = None
-    friction: Friction | None = None
+    friction: Friction | Bristles | None = None
     cup: Cup | None = None
     smoothing: float = 0.0
     potential: Potential = field(init=False, repr=False)
@@ -79,10 +82,10 @@ class ForceElement:
 
     def __post_init__(self) -> None:
         check_joint(self.joint)
-        for name, kind in (("model", Model), ("damping", Damping), ("friction", Friction), ("cup", Cup)):
+        for name, kind in (("model", Model), ("damping", Damping), ("friction", Friction | Bristles), ("cup", Cup)):
             given = getattr(self, name)
             if not (isinstance(given, kind) or (given is None and name != "model")):
-                raise TypeError(f"{name} must be a {kind.__name__}, got {shown(given)}")
+                raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(given)}")
         smoothing = one_number("smoothing", self.smoothing)
         potential = potential_of(self.model, self.joint)
         clearance = float(self.joint.clearance)
@@ -94,7 +97,7 @@ class ForceElement:
     def _constants(self, smoothing: float) -> Constants:
         joint, cup = self.joint.with_floats(), self.cup
         damping = self.damping or Damping()
-        friction = self.friction or Friction(coefficient=0.0)
+        friction = self.friction if isinstance(self.friction, Friction) else Friction(coefficient=0.0)
         return Constants(
             ball_radius=joint.ball_radius,
             socket_radius=joint.socket_radius,
@@ -112,7 +115,7 @@ class ForceElement:
             **dict(zip(("dome_x", "dome_y", "dome_z"), (Cup() if cup is None else cup).dome, strict=True)),
         )
 
-    def __call__(self, position: Any, velocity: Any = _REST, spin: Any = _REST) -> Load:
+    def __call__(self, position: Any, velocity: Any = _REST, spin: Any = _REST, deflection: Any = _UNBENT) -> Load:
         """The load at a state, in axes that are fixed to the socket.
 
         Parameters
@@ -124,6 +127,8 @@ class ForceElement:
             Of the ball's centre as it is seen from the socket, in mm/s.
         spin : (3,) or array (..., 3)
             Angular velocity of the ball less that of the socket, in rad/s.
+        deflection : (4,) or array (..., 4)
+            Of the bristles in mm, where the friction has such: the integral of the load's `deflection_rate`.
 
         Raises
         ------
@@ -131,8 +136,10 @@ class ForceElement:
             What does not have three components.
         """
         if type(position) in _LISTS:
-            return self._of_numbers(three(position), three(velocity), three(spin))
-        return self._of_arrays(position, velocity, spin)
+            load = self._of_numbers(three(position), three(velocity), three(spin))
+        else:
+            load = self._of_arrays(position, velocity, spin)
+        return load if not isinstance(self.friction, Bristles) else brushed(load, self.friction, deflection)
 
     def _of_numbers(self, position: Three, velocity: Three, spin: Three) -> Load:
         given = self.constants

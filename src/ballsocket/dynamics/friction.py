@@ -49,11 +49,11 @@ class Friction:
 
     def __post_init__(self) -> None:
         for name in ("coefficient", "viscous"):
-            _checked(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
+            checked(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
         for name in ("transition_speed", "stribeck_speed"):
-            _checked(self, name, 5e-324, "a speed (mm/s) is above 0 and finite")
+            checked(self, name, 5e-324, "a speed (mm/s) is above 0 and finite")
         if self.static_coefficient is not None:
-            _checked(self, "static_coefficient", self.coefficient, "static friction is not below that of sliding")
+            checked(self, "static_coefficient", self.coefficient, "static friction is not below that of sliding")
 
     @property
     def static(self) -> float:
@@ -61,7 +61,8 @@ class Friction:
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
 
-def _checked(friction: object, name: str, least: float, allowed: str) -> None:
+def checked(friction: object, name: str, least: float, allowed: str) -> None:
+    """Make a number of a frozen value a float, if it is allowed."""
     value = one_number(name, getattr(friction, name))
     require(name, value, least <= value < math.inf, allowed)
     object.__setattr__(friction, name, value)

@@ -26,7 +26,11 @@ class Load(NamedTuple):
     moment : (3,)
         On the ball about its centre, in N mm.
     energy : float or array
-        Stored, in N mm.
+        Stored in the contact, in N mm.
+    deflection_rate : (4,)
+        Of bristles, in mm/s.
+    rubbed : float or array
+        What bristles lose, in N mm/s.
     """
 
     force: Any
@@ -38,6 +42,8 @@ class Load(NamedTuple):
     position: Three
     velocity: Three
     spin: Three
+    deflection_rate: Any = (0.0, 0.0, 0.0, 0.0)
+    rubbed: Array = 0.0
 
     @property
     def socket_force(self) -> Any:
@@ -79,7 +85,8 @@ class Load(NamedTuple):
     @property
     def dissipation(self) -> Array:
         """What is lost in N mm/s: never below 0."""
-        return formulas.dissipation(self.place, self.contact, self.velocity, self.spin, self.element.constants)
+        state = self.place, self.contact, self.velocity, self.spin
+        return formulas.dissipation(*state, self.element.constants) + self.rubbed
 
     @property
     def status(self) -> Touch | Array:

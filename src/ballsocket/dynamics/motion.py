@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy
 
 from ..arrays import Numbers
 from ..checks import require
+from ..sources import Source
 from . import stepping
+from .bristles import Bristles
 from .damping import one_number
 from .element import ForceElement, three
 from .reaction import Three
@@ -43,6 +45,8 @@ class Motion:
     ended : str
         Why it ended before its time, with the state; empty if it did not.
     """
+
+    sources: ClassVar[tuple[Source, ...]] = (Source("gonzalez1996"),)
 
     element: ForceElement
     mass: float
@@ -121,7 +125,13 @@ def simulate(
     ------
     ValueError
         A number that is not allowed, named with its value.
+    TypeError
+        An element with bristles.
     """
+    if isinstance(getattr(element, "friction", None), Bristles):
+        raise TypeError(
+            "bristles have a state that these steps do not carry: integrate the element's `deflection_rate`"
+        )
     heavy = _above_nothing("mass", mass)
     turning = 0.4 * heavy * element.constants.ball_radius**2 if inertia is None else _above_nothing("inertia", inertia)
     count = int(numpy.ceil(_above_nothing("duration", duration) / _above_nothing("step", step) - 1e-9))

@@ -1,0 +1,100 @@
+"""Friction that gives way before it slides: bristles between ball and socket, with a state of their own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ..arrays import Array, divisor, sqrt, where
+from ..sources import Source
+from .friction import checked, coefficient_at
+from .reaction import Place, Sliding
+
+Four = tuple[Array, Array, Array, Array]
+"""Deflections of the bristles in mm: x, y, z across the load, and about it, as an arc at the lever ρ."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bristles:
+    """The LuGre model: with z the deflection, v the slip and N the normal force,
+
+        z' = v - σ0 |v| z/μ(v),    f = -N (σ0 z + σ1 z' + σ2 v),
+
+    for the slip across the load and the spin about it at once, which share μ. Bristles that slide have f = μ N, those
+    that hold are springs of N σ0. The damping σ1 falls with the slip just enough that none makes energy. A ball that
+    left the socket forgets its deflections within `release` seconds. With σ1 = σ2 = 0 and one coefficient it is Dahl's.
+
+    Parameters
+    ----------
+    coefficient : float
+        Of sliding friction, 0 or more.
+    stiffness : float
+        σ0 in 1/mm, above 0: μ/σ0 is the way before the ball slides.
+    damping : float
+        σ1 in s/mm, 0 or more.
+    viscous : float
+        σ2 in s/mm, 0 or more.
+    static_coefficient : float, optional
+        Of a ball that hardly moves, not below the coefficient. None, the default, is the same.
+    stribeck_speed : float
+        In mm/s, above 0: how fast one goes over into the other.
+    release : float
+        In s, above 0.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+    TypeError
+        What is no number.
+
+    References
+    ----------
+    Canudas de Wit et al. 1995, doi 10.1109/9.376053.
+    """
+
+    sources: ClassVar[tuple[Source, ...]] = (Source("canudas1995"),)
+
+    coefficient: float
+    stiffness: float = 100.0
+    damping: float = 0.0
+    viscous: float = 0.0
+    static_coefficient: float | None = None
+    stribeck_speed: float = 10.0
+    release: float = 1e-3
+
+    def __post_init__(self) -> None:
+        for name in ("coefficient", "damping", "viscous"):
+            checked(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
+        for name in ("stiffness", "stribeck_speed", "release"):
+            checked(self, name, 5e-324, "it is above 0 and finite")
+        if self.static_coefficient is not None:
+            checked(self, "static_coefficient", self.coefficient, "static friction is not below that of sliding")
+
+    @property
+    def static(self) -> float:
+        """The coefficient of a ball that hardly moves."""
+        return self.coefficient if self.static_coefficient is None else self.static_coefficient
+
+
+def bent(place: Place, slip: Sliding, deflection: Four, given: Bristles) -> tuple[Four, Four, Array]:
+    """What a load of 1 N is rubbed by (three components, and about the load over ρ), z', and what is lost of 1 N."""
+    g = slip.x, slip.y, slip.z, sqrt(slip.lever_squared) * slip.spin
+    zx, zy, zz, zr = deflection
+    off = zx * place.x + zy * place.y + zz * place.z
+    z = zx - off * place.x, zy - off * place.y, zz - off * place.z, zr
+    speed = sqrt(_dot(g, g))
+    mu = divisor(coefficient_at(speed, given.coefficient, given.static, given.stribeck_speed))
+    fall = given.stiffness * speed / mu
+    damping = given.damping / (1.0 + given.damping * speed / (4.0 * mu))
+    rate = tuple(way - fall * bend for way, bend in zip(g, z, strict=True))
+    held = zip(z, rate, g, strict=True)
+    force = tuple(given.stiffness * bend + damping * turn + given.viscous * way for bend, turn, way in held)
+    lost = given.stiffness * fall * _dot(z, z) + damping * _dot(rate, g) + given.viscous * _dot(g, g)
+    touching = slip.normal > 0.0
+    forgotten = tuple(where(touching, turn, -bend / given.release) for turn, bend in zip(rate, deflection, strict=True))
+    return force, forgotten, lost
+
+
+def _dot(first: Four, second: Four) -> Array:
+    return sum((a * b for a, b in zip(first[1:], second[1:], strict=True)), first[0] * second[0])

@@ -1,0 +1,102 @@
+"""Friction of a ball in its socket: force, moment and spin, smooth or by bristles."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import ballsocket as bs
+from ballsocket.dynamics import Bristles, Friction, simulate
+
+from ..joints import HIP
+from .test_element import states
+
+DEEP = (0.0, 0.0, HIP.clearance + 0.04)
+SMOOTH = bs.ForceElement(bs.HessForsbach(), HIP, friction=Friction(coefficient=0.1, transition_speed=1e-3))
+HELD = replace(SMOOTH, friction=Bristles(coefficient=0.1, stiffness=20.0, damping=1e-3, static_coefficient=0.15))
+
+
+@pytest.mark.parametrize(
+    ("spin", "axis"), [((0.0, 3.0, 0.0), np.pi / 2), ((0.0, 0.0, 3.0), 0.0)], ids=["turn", "drill"]
+)
+def test_the_moment_of_friction_is_that_of_the_pressure_of_the_contact(spin, axis):
+    for depth, within in ((0.002, 1e-3), (0.04, 1e-3), (0.2, 1e-3)):
+        contact = bs.HessForsbach().press(HIP, indentation=depth)
+        moment = SMOOTH((0.0, 0.0, HIP.clearance + depth), spin=spin).moment
+        radius = HIP.socket_radius if axis == 0.0 else HIP.ball_radius
+        expected = contact.friction_torque(0.1, axis) * radius / HIP.ball_radius
+        assert np.linalg.norm(moment) == pytest.approx(expected, rel=within)
+        assert np.dot(moment, spin) < 0
+    exact = bs.Exact().press(HIP, indentation=0.04)
+    element = replace(SMOOTH, model=bs.Exact())
+    moment = element(DEEP, spin=(0.0, 3.0, 0.0)).moment
+    assert np.linalg.norm(moment) == pytest.approx(exact.friction_torque(0.1), rel=0.01)
+
+
+def test_a_ball_that_spins_is_easily_pushed_aside():
+    still = SMOOTH(DEEP, velocity=(1.0, 0.0, 0.0)).force[0]
+    spinning = SMOOTH(DEEP, velocity=(1.0, 0.0, 0.0), spin=(0.0, 0.0, 10.0)).force[0]
+    assert abs(spinning) < 0.1 * abs(still)
+
+
+def test_static_friction_is_larger_and_viscous_friction_grows():
+    element = replace(SMOOTH, friction=Friction(coefficient=0.1, transition_speed=1e-3, static_coefficient=0.2))
+    slow, fast = (abs(element(DEEP, velocity=(speed, 0.0, 0.0)).force[0]) for speed in (0.1, 100.0))
+    assert slow == pytest.approx(2 * fast, rel=1e-3)
+
+
+def slid(element, speed, duration):
+    def rates(_, z):
+        return element(DEEP, velocity=(speed, 0.0, 0.0), deflection=tuple(z.tolist())).deflection_rate
+
+    z = solve_ivp(rates, (0.0, duration), [0.0] * 4, method="LSODA", rtol=1e-9, atol=1e-14).y[:, -1]
+    return element(DEEP, velocity=(speed, 0.0, 0.0), deflection=tuple(z.tolist()))
+
+
+def test_bristles_are_springs_before_they_slide_and_then_coulombs():
+    normal = abs(replace(SMOOTH, friction=None)(DEEP).force[2])
+    grip = abs(SMOOTH(DEEP, velocity=(1.0, 0.0, 0.0)).force[0]) / (0.1 * normal)
+    bend = HELD(DEEP, deflection=(1e-4, 0.0, 0.0, 0.0))
+    assert bend.force[0] == pytest.approx(-20.0 * 1e-4 * normal * grip, rel=1e-6)
+    assert bend.moment[1] == pytest.approx(HIP.ball_radius * bend.force[0], rel=1e-9)
+    assert slid(HELD, 100.0, 1.0).force[0] == pytest.approx(-0.1 * normal * grip, rel=1e-3)
+    assert slid(HELD, 0.1, 1.0).force[0] == pytest.approx(-0.15 * normal * grip, rel=2e-3)
+
+
+def test_bristles_make_nothing_out_of_nothing():
+    position, velocity, spin = states(10**4)
+    random = np.random.default_rng(1)
+    speeds = 10.0 ** random.uniform(-4, 3, (10**4, 1))
+    deflection = 0.01 * random.normal(size=(10**4, 4))
+    for damping in (0.0, 1e-3, 1.0, 1e3):
+        element = replace(HELD, friction=replace(HELD.friction, damping=damping, viscous=1e-5))
+        load = element(position, speeds * velocity, spin, deflection)
+        assert (load.rubbed >= -1e-12 * np.abs(load.rubbed).max()).all()
+        # power of friction = what is lost and what the bristles store
+        plain = replace(element, friction=None)(position, speeds * velocity, spin)
+        power = -np.sum((load.force - plain.force) * speeds * velocity + load.moment * spin, axis=1)
+        n = position / np.linalg.norm(position, axis=1)[:, None]
+        across = deflection[:, :3] - np.sum(deflection[:, :3] * n, axis=1)[:, None] * n
+        inner = np.sum(across * load.deflection_rate[:, :3], axis=1) + deflection[:, 3] * load.deflection_rate[:, 3]
+        normal = -np.sum(plain.force * n, axis=1)
+        from ballsocket.dynamics.friction import grip
+
+        depth = np.maximum(np.linalg.norm(position, axis=1) - HIP.clearance, 0.0)
+        stored = 20.0 * normal * grip(depth / np.linalg.norm(position, axis=1)) * inner
+        np.testing.assert_allclose(power, stored + load.rubbed, atol=1e-9 * np.abs(power).max())
+
+
+def test_a_ball_that_left_forgets_its_bristles():
+    away = HELD((0.0, 0.0, 0.0), deflection=(1e-3, 0.0, 0.0, 0.0))
+    assert away.deflection_rate[0] == pytest.approx(-1.0)
+    assert away.force == (0.0, 0.0, 0.0)
+
+
+def test_bristles_that_are_none_are_refused():
+    with pytest.raises(ValueError, match="damping = -1 is not allowed"):
+        Bristles(coefficient=0.1, damping=-1.0)
+    with pytest.raises(ValueError, match="four deflections"):
+        HELD(DEEP, deflection=(0.0, 0.0))
+    with pytest.raises(TypeError, match="bristles have a state"):
+        simulate(HELD, mass=1.0, position=DEEP, duration=1e-3, step=1e-5)
