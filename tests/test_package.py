@@ -48,13 +48,18 @@ def test_a_material_is_a_constant_and_a_name():
         assert getattr(bs, name.replace("-", "_").upper()) is material
 
 
-MANY_ELEMENTS = "when_does_the_rim_matter"  # hundreds of contacts of finite elements
+LONG = {
+    "when_does_the_rim_matter",  # hundreds of contacts of finite elements
+    "how_steep_may_a_cup_stand",  # hips in use, of which one is quick enough
+    "what_clearance_lasts_twenty_years",
+    "does_a_cross_linked_liner_last",
+}
 
 
 @pytest.mark.parametrize(
     "path",
     [
-        pytest.param(path, id=path.stem, marks=[pytest.mark.long] if path.stem == MANY_ELEMENTS else [])
+        pytest.param(path, id=path.stem, marks=[pytest.mark.long] if path.stem in LONG else [])
         for path in sorted((ROOT / "examples").glob("*.py"))
     ],
 )

@@ -190,6 +190,14 @@ def test_instants_converge_with_their_square():
     assert off[1] / off[2] > 3
 
 
+def test_rings_converge_with_their_square():
+    volumes = [hip(cycle=iso_14242_1(30), ring_width=radians(width)).first.volume for width in (8.0, 4.0, 2.0, 1.0)]
+    off = [abs(volume / volumes[-1] - 1) for volume in volumes[:-1]]
+    assert off[0] < 1e-3
+    assert off[0] / off[1] > 3
+    assert off[1] / off[2] > 3
+
+
 def test_looking_does_not_change_what_is_seen():
     often = hip().after(1e6, [1e5, 3e5, 7e5])
     assert often.last.volume == pytest.approx(hip().after(1e6).last.volume, rel=5e-4)
