@@ -80,7 +80,7 @@ APART = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def place_of(x: Array, y: Array, z: Array, clearance: float) -> Place:
-    """Of the ball's centre."""
+    """The place of the ball's centre."""
     distance = sqrt(x * x + y * y + z * z)
     over = 1.0 / divisor(distance)
     return Place(distance, x * over, y * over, z * over, distance - clearance)

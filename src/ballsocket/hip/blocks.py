@@ -46,7 +46,7 @@ class _Near:
 
     @property
     def areas(self) -> Numbers:
-        """Of all that wears, socket and ball."""
+        """Areas of all that wears, socket and ball."""
         return self.bed.areas if self.facing is None else numpy.concatenate([self.bed.areas, self.facing.areas])
 
 
