@@ -63,22 +63,21 @@ class CElement:
         """What other programs include."""
         fields = "\n".join(f"    double {each.name}; /* {each.unit}: {each.meaning} */" for each in TUNABLES)
         codes = "\n".join(f"    {self.name.upper()}_{touch.name} = {touch.value}," for touch in Touch)
-        return _template("element.h").substitute(
-            name=self.name, NAME=self.name.upper(), fields=fields, codes=codes, **self._about
-        )
+        words = {"name": self.name, "NAME": self.name.upper(), **self._about}
+        return filled("element.h", fields=fields, codes=codes, **words)
 
     @property
     def source(self) -> str:
         """The program."""
         recording, given = self.recording, self.element.constants
-        return _template("element.c").substitute(
+        return filled(
+            "element.c",
             name=self.name,
             NAME=self.name.upper(),
             along=_text("curve.c"),
             curves="\n".join(_curve(name, curve) for name, curve in sorted(recording.curves.items())),
             defaults=", ".join(c_number(getattr(given, each.constant)) for each in TUNABLES),
             checks="\n".join(_check(each.name, each.above) for each in TUNABLES),
-            clearance=c_number(given.clearance),
             first_touch=c_number(given.clearance - given.smoothing),
             load=c_statements({**recording.status, **recording.load}),
             pressed=c_statements({**recording.status, **recording.pressed}),
@@ -128,5 +127,6 @@ def _text(name: str) -> str:
     return (files(__package__) / "templates" / name).read_text(encoding="utf-8")
 
 
-def _template(name: str) -> Template:
-    return Template(_text(name))
+def filled(template: str, **words: str) -> str:
+    """A text of this package with words put into it."""
+    return Template(_text(template)).substitute(words)

@@ -1,0 +1,229 @@
+"""The element as an FMU: what it holds, that hosts accept it, and that it answers as the element in Python."""
+
+import re
+import zipfile
+from xml.etree.ElementTree import fromstring
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import ballsocket as bs
+from ballsocket.dynamics import Damping, ForceElement, Friction
+from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
+from ballsocket.export.fmu import Fmu, write_cross_check
+from ballsocket.export.fmu.cross_check import answers, in_si, trajectory
+
+from ..cli.command import run
+from ..joints import HIP
+from ..places import EXAMPLES
+from .host import Host
+from .library import needs_compiler
+
+ELEMENT = ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.004), friction=Friction(coefficient=0.05))
+VERSIONS = [2, 3]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("fmu")
+    for version in VERSIONS:
+        Fmu(element=ELEMENT, name="hip", version=version).write(folder / f"hip{version}.fmu")
+        write_cross_check(ELEMENT, folder / f"hip{version}.fmu")
+    return folder
+
+
+def description(path):
+    with zipfile.ZipFile(path) as archive:
+        return fromstring(archive.read("modelDescription.xml"))
+
+
+def table(path):
+    return np.genfromtxt(path, delimiter=",", names=True, deletechars="")
+
+
+def test_the_same_element_is_the_same_archive(folder):
+    same = {"damping": ELEMENT.damping, "friction": ELEMENT.friction}
+    Fmu(element=ForceElement(bs.HessForsbach(), HIP, **same), name="hip").write(folder / "again.fmu")
+    assert (folder / "again.fmu").read_bytes() == (folder / "hip3.fmu").read_bytes()
+    other = Fmu(element=ForceElement(bs.HessForsbach(), HIP), name="hip")
+    assert other.guid != Fmu(element=ELEMENT, name="hip").guid
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", VERSIONS)
+def test_an_archive_holds_sources_and_a_binary(version, folder):
+    with zipfile.ZipFile(folder / f"hip{version}.fmu") as archive:
+        names = archive.namelist()
+    assert {"modelDescription.xml", "sources/hip.c", "sources/hip.h", f"sources/fmi{version}.c"} <= set(names)
+    assert any(re.fullmatch(rf"binaries/[\w-]+/hip\{LIBRARY_ENDING}", name) for name in names)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_compiler_that_is_not_there_is_a_sentence_and_the_sources_are_written(version, tmp_path, monkeypatch):
+    monkeypatch.setenv("CC", "no-such-compiler")
+    done = run("fmu", str(EXAMPLES / "hip.toml"), "--out", str(tmp_path / "my-hip.fmu"), "--fmi", str(version))
+    assert done.returncode == 0
+    assert "CC is 'no-such-compiler', which is not there; the sources are there, the binary is not" in done.stderr
+    with zipfile.ZipFile(tmp_path / "my-hip.fmu") as archive:
+        assert "sources/my_hip.c" in archive.namelist()
+        assert not any(name.startswith("binaries") for name in archive.namelist())
+
+
+def test_variables_have_units_and_parameters_can_be_tuned(folder):
+    for version, tag in ((2, "ScalarVariable"), (3, "Float64")):
+        variables = {each.get("name"): each for each in description(folder / f"hip{version}.fmu").iter(tag)}
+        units = {name: (each.find("Real") if version == 2 else each).get("unit") for name, each in variables.items()}
+        assert {
+            "position[3]": "m",
+            "spin[1]": "rad/s",
+            "moment[2]": "N.m",
+            "max_pressure": "Pa",
+        }.items() <= units.items()
+        friction = variables["friction_coefficient"]
+        assert (friction.get("causality"), friction.get("variability")) == ("parameter", "tunable")
+
+
+def test_the_files_of_the_cross_check_say_what_the_element_answers(folder):
+    given, reference = table(folder / "hip3_in.csv"), table(folder / "hip3_ref.csv")
+    assert (folder / "hip3_in.csv").read_text().startswith('"time","position[1]",')
+    state = trajectory(ELEMENT, given["time"])
+    assert_array_equal(given["velocity[3]"], in_si(state)[:, 5])
+    assert_array_equal(reference["max_pressure"], answers(ELEMENT, state)[:, 8])
+    assert 0 < np.count_nonzero(reference["energy"]) < len(reference)  # it touches and leaves
+    options = (folder / "hip3_ref.opt").read_text()
+    assert [line.split(",")[0] for line in options.splitlines()] == ["StartTime", "StopTime", "StepSize", "RelTol"]
+
+
+def test_the_velocity_of_the_trajectory_is_that_of_its_position():
+    time = np.linspace(0, 0.1, 2001)
+    state = trajectory(ELEMENT, time)
+    assert_allclose(np.gradient(state[:, :3], time, axis=0)[1:-1], state[1:-1, 3:6], atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--out", "hip.zip"), "out 'hip.zip' must end in .fmu"),
+        (("--out", "nowhere/hip.fmu"), "'nowhere' is no folder to write hip.fmu into"),
+        (("--out", "hip.fmu", "--fmi", "4"), "FMI version = 4 is not allowed: 2 and 3 are written"),
+        (("--out", "hip.fmu", "--model", "fem"), "finite elements are too noisy for a law"),
+        (("--out", "hip.fmu", "--hysteresis", "-1"), "hysteresis"),
+        (("--out", "hip.fmu", "--restitution", "0.5"), "a restitution and the speed of its impact belong together"),
+        (("--out", "hip.fmu", "--friction", "-0.1"), "coefficient"),
+    ],
+)
+def test_what_is_not_allowed_is_one_sentence(words, said, tmp_path):
+    done = run("fmu", "hip-28", *words, folder=tmp_path)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.fixture(scope="module")
+def fmpy():
+    return pytest.importorskip("fmpy", reason="fmpy is not installed")
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_fmpy_finds_no_problems(version, folder, fmpy):
+    from fmpy.validation import validate_fmu
+
+    assert validate_fmu(str(folder / f"hip{version}.fmu")) == []
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", VERSIONS)
+def test_the_declarations_are_those_of_the_standard(version, fmpy, tmp_path):
+    from importlib.resources import files
+
+    made = Fmu(element=ELEMENT, name="hip", version=version)
+    for name, text in made.sources.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    official = ("-DFMI_HEADERS", "-isystem", str(files("fmpy") / "c-code"), "-Wall", "-Wextra", "-Werror")
+    for options in (official, ("-pedantic-errors", "-Wall", "-Wextra", "-Werror")):
+        assert shared_library(made.about.sources, tmp_path / "hip.so", tmp_path, options).exists()
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize(("kind", "late"), [("ModelExchange", 0), ("CoSimulation", 1)])
+def test_fmpy_runs_it_to_the_reference(version, kind, late, folder, fmpy):
+    path = str(folder / f"hip{version}.fmu")
+    given, reference = table(folder / f"hip{version}_in.csv"), table(folder / f"hip{version}_ref.csv")
+    found = fmpy.simulate_fmu(path, fmi_type=kind, input=given, stop_time=0.1, output_interval=1e-3)
+    for name in reference.dtype.names[1:]:  # a step of a co-simulation answers to what went in before it
+        wanted = reference[name][: len(reference) - late]
+        assert_allclose(found[name][late:], wanted, rtol=1e-12, atol=1e-12 * abs(wanted).max())
+
+
+GOOD, DISCARD, ERROR = 0, 2, 3
+PRESSED = {"position": (0.0, 1e-5, 1.2e-4), "velocity": (0.001, 0.0, 0.02), "spin": (0.0, 1.0, 2.0)}
+
+
+@pytest.fixture(params=VERSIONS)
+def host(request, folder, tmp_path):
+    return Host(folder / f"hip{request.param}.fmu", tmp_path)
+
+
+@needs_compiler
+def test_a_host_is_given_the_load_and_its_slopes(host):
+    assert host.set(**PRESSED) == GOOD
+    load = ELEMENT((0.0, 0.01, 0.12), (1.0, 0.0, 20.0), PRESSED["spin"])
+    status, (force, moment, pressure) = host.get("force[3]", "moment[1]", "max_pressure")
+    assert status == GOOD
+    assert_allclose(
+        (force, moment, pressure), (load.force[2], 1e-3 * load.moment[0], 1e6 * load.max_pressure), rtol=1e-12
+    )
+    status, slope = host.directional("force[3]", "position[2]")
+    assert status == GOOD
+    step = 1e-8
+    ends = []
+    for by in (-step, step):
+        host.set(position=(0.0, 1e-5 + by, 1.2e-4))
+        ends.append(host.get("force[3]")[1][0])
+    assert_allclose(slope, (ends[1] - ends[0]) / (2 * step), rtol=1e-5)
+
+
+@needs_compiler
+def test_a_parameter_is_tuned_while_it_runs(host):
+    host.set(**PRESSED)
+    _, (before,) = host.get("moment[3]")
+    host.set(friction_coefficient=0.1, static_coefficient=0.1)
+    _, (after,) = host.get("moment[3]")
+    assert_allclose(after, 2 * before, rtol=1e-12)
+    assert host.set(friction_coefficient=-0.1) == GOOD
+    assert host.get("force[1]")[0] == ERROR
+    assert host.said == [(ERROR, "friction_coefficient must be finite and 0 or more")]
+
+
+@needs_compiler
+def test_a_state_that_is_no_number_is_a_status_and_one_message(host):
+    host.set(position=(np.nan, 0.0, 0.0))
+    for _ in range(3):
+        status, (force,) = host.get("force[3]")
+        assert status == ERROR
+        assert np.isnan(force)
+        host.set(position=(np.nan, 0.0, 0.1))
+    assert len(host.said) == 1
+    assert "the state is no finite number; position (nan, 0, 0) mm" in host.said[0][1]
+    host.set(**PRESSED)
+    assert host.get("force[3]")[0] == GOOD  # the host goes on, if it likes to
+
+
+@needs_compiler
+def test_a_step_through_the_wall_is_discarded_and_a_law_beyond_its_validity_is_told_once(host):
+    host.set(position=(0.0, 0.0, 8e-3))
+    assert host.get("energy")[0] == DISCARD
+    host.said.clear()
+    for depth in (1e-3, 2e-3):
+        host.set(position=(0.0, 0.0, depth))
+        assert host.get("energy")[0] == GOOD
+    assert [text.partition(" beyond")[0] for _, text in host.said] == ["hess-forsbach does not trust itself"]
+
+
+@needs_compiler
+def test_outputs_cannot_be_set(host):
+    assert host.set(energy=1.0) == ERROR
+    assert "value reference" in host.said[0][1]
