@@ -18,7 +18,8 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.elastic.exact import _curve
+from ballsocket.elastic.exact import curve_of
+from ballsocket.elastic.exact_curve import fitted_of
 
 from .calculix_rival import Calculix, Mesh, Steps
 from .report import Report, Rows
@@ -27,7 +28,14 @@ from .timing import Spread, Work, apart, interleaved, one_core
 LINER = bs.Material(young=1000.0, poisson=0.4)
 RIGID = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LINER)
 JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LINER, ball=bs.STEEL)
-MODEL = bs.Exact(tolerance=1e-6)
+BACKED = JOINT.replace(
+    backing=(
+        bs.Layer(thickness=3.0, material=bs.TITANIUM),
+        bs.Layer(thickness=2.0, material=bs.BONE_CEMENT),
+        bs.Layer(thickness=numpy.inf, material=bs.CANCELLOUS_BONE),
+    )
+)
+MODEL, MANY = bs.Exact(tolerance=1e-6), 100_000
 POISSON, RATIOS, LOADS = (0.30, 0.35, 0.40, 0.45, 0.49), numpy.linspace(1.2, 6.0, 12), (500.0, 1500.0, 3000.0)
 CURVE = numpy.linspace(100.0, 4000.0, 50)
 REPEATS, RIVAL_REPEATS, FURTHER, TRIM = 9, 3, 20, 65536
@@ -108,10 +116,29 @@ def _new(joint: bs.Joint, **load: Any) -> Work:
     """A press on a joint that was never seen."""
 
     def work() -> bs.Contact:
-        _curve.cache_clear()
+        curve_of.cache_clear()
         return _press(joint, **load)
 
     return work
+
+
+def _curves() -> list[tuple[str, Work, float, float]]:
+    """A backed joint whose curve is found once, and many loads on it."""
+    model, loads = bs.ExactCurve(model=MODEL), numpy.linspace(10.0, 6000.0, MANY)
+
+    def bound() -> None:
+        curve_of.cache_clear()
+        fitted_of.cache_clear()
+        _ = model.press(BACKED, force=3000.0).max_pressure
+
+    def many() -> None:
+        contact = model.press(BACKED, force=loads)
+        _ = contact.max_pressure, contact.half_angle, contact.stiffness, contact.energy
+
+    return [
+        ("curve of a backed joint (titanium, cement, bone), first load, ms", bound, 1e-3, 20.0),
+        (f"each of {MANY} loads on it, µs", many, 1e-6 * MANY, 1.0),
+    ]
 
 
 def _trimmed() -> Rows:
@@ -121,7 +148,7 @@ def _trimmed() -> Rows:
 
 
 def _alone() -> Rows:
-    return _rows("Exact, against its aims", _plan())
+    return _rows("Exact, against its aims", [*_plan(), *_curves()])
 
 
 def _plan() -> list[tuple[str, Work, float, float]]:

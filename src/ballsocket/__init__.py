@@ -15,6 +15,7 @@ from .contact import Contact
 from .cup import Cup, Interface, Side
 from .dynamics.element import ForceElement
 from .elastic.exact import Exact
+from .elastic.exact_curve import ExactCurve
 from .elastic.tabulated.model import Tabulated
 from .fem.model import FiniteElement
 from .fem.spacing import Adapted, Element, Uniform
@@ -115,6 +116,7 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "BondedLayerExact",
     "CosineLimit",
     "Exact",
+    "ExactCurve",
     "FiniteElement",
     "Sphere",
     "RealCup",

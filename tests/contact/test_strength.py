@@ -8,6 +8,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.contact.strength import ELASTIC, share, share_of_ball
+from ballsocket.elastic import subsurface
 
 HIP = bs.joints["hip-36"]
 WEAK = bs.Material(young=1000.0, poisson=0.4, yield_stress=8.0, fatigue_limit=5.0, allowable_pressure=10.0)
@@ -66,6 +67,22 @@ def test_the_share_of_the_pressure_is_that_of_the_exact_answer(poisson, thicknes
         assert share(contact.half_angle, poisson, joint.thickness_ratio) == pytest.approx(known, rel=0.2, abs=0.08)
         least, most = contact.von_mises_between
         assert least <= contact.von_mises <= most
+
+
+def test_the_inside_of_a_soft_backed_socket_is_looked_at_where_yield_is_near(monkeypatch):
+    cement = bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)
+    soft = HIP.replace(backing=(cement, bs.Layer(thickness=inf, material=bs.CANCELLOUS_BONE)))
+    forces = np.array([300.0, 1000.0, 3000.0, 9000.0, 30000.0])
+    known, looks, peak = bs.Exact().press(soft, force=forces), [], subsurface.peak
+    monkeypatch.setattr(subsurface, "peak", lambda *given: looks.append(1) or peak(*given))
+    assert bs.Exact().press(soft, force=forces[:3]).valid.all()
+    assert not looks
+    least, most = known.von_mises_between
+    assert ((least <= known.von_mises) & (known.von_mises <= most)).all()
+    strong = soft.replace(liner=replace(soft.liner, yield_stress=known.von_mises[3] / (1.01 * ELASTIC)))
+    looks.clear()
+    assert bs.Exact().press(strong, force=forces).valid.tolist() == [True, True, True, False, False]
+    assert len(looks) == 1
 
 
 def test_the_share_in_a_ball_is_hertz():

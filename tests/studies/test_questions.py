@@ -11,13 +11,14 @@ import pytest
 import ballsocket as bs
 from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
-from ballsocket.studies.file import read_study
+from ballsocket.studies.file import named_model, read_study
 from ballsocket.studies.limits import Limit, allowed, dimension
 from ballsocket.studies.optimum import optimise
 from ballsocket.studies.pareto import pareto
 from ballsocket.studies.phrases import limit_of, range_of, spread_of
 from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.studies.slopes import differences, elasticities, traced
+from ballsocket.studies.usual import usual
 
 from ..cli.command import run
 from ..extent import some
@@ -379,8 +380,21 @@ def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_p
     assert "tabulated has no answer for layers behind the liner = 1: that is not in the tables" in named.stderr
     best = command(tmp_path, "optimise", backed, "--vary", "liner_thickness=4..6 mm", "--json")
     assert json.loads(best.stdout)["point"]["liner_thickness"] == pytest.approx(6.0)
-    usual = command(tmp_path, "map", "hip-28", "--force", "3 kN", *ranges, "--json")
-    assert json.loads(usual.stdout)["model"] == "tabulated"
+    plain = command(tmp_path, "map", "hip-28", "--force", "3 kN", *ranges, "--json")
+    assert json.loads(plain.stdout)["model"] == "tabulated"
+
+
+def test_loads_alone_are_answered_by_a_curve_of_the_joint(tmp_path):
+    backed = HIP.replace(backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),))
+    assert usual(backed, {"force": [1.0, 9000.0]}) == bs.ExactCurve()
+    assert usual(backed, {"force": [1.0, 9000.0], "clearance": [0.1, 0.2]}) == bs.Exact()
+    assert usual(HIP, {"force": [1.0, 9000.0]}) == bs.Tabulated()
+    assert named_model("exact curve") == bs.ExactCurve()
+    forces = np.linspace(10.0, 6000.0, 300)
+    kept = bs.study(bs.ExactCurve(), backed, force=forces, store=tmp_path / "kept")
+    alone = bs.Exact(tolerance=1e-9).press(backed, force=forces[::60])
+    np.testing.assert_allclose(kept.max_pressure[::60], alone.max_pressure, rtol=1e-7)
+    assert kept.valid.all()
 
 
 def test_a_model_without_an_answer_is_named_by_the_reason():

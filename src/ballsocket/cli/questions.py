@@ -62,7 +62,7 @@ class PressWords:
         """
         if self.model is None:
             model = usual(file.joint, ends)
-            if model is reference:
+            if model.name == reference.name:
                 complain(f"{model.name} answers, since tabulated knows none of these joints")
         else:
             model = named_model(self.model)

@@ -79,13 +79,13 @@ def _functions(angle, curve):  # type: ignore[no-untyped-def]
         force_slope += c[1, k] * rise
         pole_slope += c[2, k] * rise
         U, U_next = U_next, twice * U_next - U
-    widening = formulas._widening(angle, root, curve.ratio)
+    widening = formulas.widening_of(angle, root, curve.ratio)
     return (share, widening * share_slope), (force, widening * force_slope), (pole, widening * pole_slope)
 
 
 for _formula in (
     chebyshev.angle_root,
-    formulas._widening,
+    formulas.widening_of,
     formulas.opening,
     formulas.contact,
     formulas._angle_of,

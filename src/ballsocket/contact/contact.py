@@ -123,8 +123,14 @@ class Contact(Outcome):
         From 1 on the material yields somewhere; a linear answer is not valid beyond 1.38 (`strength.ELASTIC`).
         """
         known = any(part is not None and part.yield_stress is not None for part in (self.joint.liner, self.joint.ball))
-        stress = self.von_mises if known else self.max_pressure
-        return self._plain(strength.utilisation(self.joint, stress, self.max_pressure))
+        return self._utilisation_of(self.von_mises if known else self.max_pressure)
+
+    def utilisation_where(self, asked: Array) -> Array:
+        """`utilisation`, at the least where it is asked for (a mask): for models that take long to know it."""
+        return self.utilisation
+
+    def _utilisation_of(self, von_mises: Array) -> Array:
+        return self._plain(strength.utilisation(self.joint, von_mises, self.max_pressure))
 
     @property
     def von_mises_between(self) -> tuple[Array, Array]:

@@ -95,7 +95,9 @@ class Elastic(Range):
         """Inside the range; what takes long to know is only asked for where an estimate leaves it open."""
         least, most = contact.utilisation_between
         open_ = (most > self.high) & false(least > self.high)
-        return false((least if truth(false(open_)) is not False else contact.utilisation) > self.high)
+        if truth(false(open_)) is not False:
+            return false(least > self.high)
+        return false(where(open_, contact.utilisation_where(open_), least) > self.high)
 
 
 def remarks(contact: Any) -> Iterator[tuple[Array, str]]:

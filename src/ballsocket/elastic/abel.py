@@ -15,7 +15,7 @@ Both equations are of the second kind. They are solved at the points of a `Grid`
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, pi
 
@@ -137,7 +137,7 @@ class State:
         return self._integral(0.5 / numpy.sin(self._places / 2))
 
     @property
-    def _falls(self) -> Numbers:
+    def falls(self) -> Numbers:
         """Whether the pressure is sure to fall from the pole to the edge.
 
         By p = 2 sqrt(Δ)/C ∫ g dz, g = G/sin s (see `pressure`), it does where g sqrt(sin²(ε/2) - sin²(s/2)) falls.
@@ -148,9 +148,9 @@ class State:
 
     @cached_property
     def _largest(self) -> tuple[Numbers, Numbers]:
-        if self._falls.all():
+        if self.falls.all():
             return self.pole_pressure, 0.0 * self.half_angle
-        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _ROUNDING)
+        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, ROUNDING)
 
     @property
     def max_pressure(self) -> Numbers:
@@ -195,7 +195,7 @@ class State:
         return self.half_angle * (weights @ power)
 
     @cached_property
-    def _expansion(self) -> Numbers:
+    def expansion(self) -> Numbers:
         """G/sin s as a series of even Legendre polynomials in y."""
         size = self.grid.points
         y, w = (part[size:] for part in self.grid.nodes)
@@ -203,27 +203,26 @@ class State:
         return (self._G[0] / numpy.sin(self._places)) @ (w[:, None] * P * (4 * numpy.arange(size) + 1))
 
     def pressure(self, angle: Numbers) -> Numbers:
-        """p(φ) in MPa at angles (anything, loads); 0 outside the contact.
+        """p(φ) in MPa at angles (anything, loads); 0 outside the contact."""
+        return pressure_of(self.half_angle, self.expansion.T, angle) / self.kernel.compliance
 
-        With sin²(s/2) = sin²(φ/2) + Δ z², Δ = sin²(ε/2) - sin²(φ/2): p = 2 sqrt(Δ)/C ∫ G/sin s dz over [0, 1].
-        """
-        here, edge = (numpy.sin(part / 2) ** 2 for part in (angle, self.half_angle))
-        inside = (here < edge) & (abs(angle) < pi)
-        room = numpy.where(inside, edge - here, 0.0)
-        total = numpy.zeros_like(room)
-        nodes, weights = gauss_legendre(self.grid.points + 8)
-        for node, weight in zip(nodes, weights, strict=True):
-            z = numpy.sin(pi / 2 * node)  # tames the logarithm at the edge
-            s = 2 * numpy.arcsin(numpy.sqrt(numpy.clip(here + room * z * z, 0.0, 1.0)))
-            y = 2 / pi * numpy.arcsin(numpy.clip(s / self.half_angle, 0.0, 1.0))
-            total += weight * pi / 2 * numpy.cos(pi / 2 * node) * _even_series(self._expansion.T, y)
-        return numpy.where(inside, 2 * numpy.sqrt(room) / self.kernel.compliance * total, 0.0)
+    def alone(self, number: int) -> State:
+        """One of the contacts."""
+        return replace(self, intervals=Intervals(half_angle=self.half_angle[number : number + 1], grid=self.grid))
 
     def modes(self, count: int) -> Numbers:
-        """p_n in MPa for n below count: p = Σ p_n P_n(cos φ). Shape (loads, count).
+        """p_n in MPa for n below count: p = Σ p_n P_n(cos φ). Shape (loads, count)."""
+        if len(self._known) == 0 or self._known[0].shape[1] < count:
+            self._known[:] = [self._modes(count)]
+        return self._known[0][:, :count]
 
-        By Gauss-Legendre points in panels that are short against the waves.
-        """
+    @cached_property
+    def _known(self) -> list[Numbers]:
+        """The modes that were asked for so far: those inside the socket are asked for again and again."""
+        return []
+
+    def _modes(self, count: int) -> Numbers:
+        """By Gauss-Legendre points in panels that are short against the waves."""
         panels = 4 + ceil(count * float(self.half_angle.max(initial=0.0)) / 4)
         x, w = (numpy.array(part) for part in gauss_legendre(12))
         y = ((numpy.arange(panels)[:, None] + x) / panels).ravel()
@@ -231,7 +230,7 @@ class State:
         blocks = -(-count // _BLOCK)
         start, step = numpy.arange(blocks)[:, None] * _BLOCK + 0.5, numpy.arange(_BLOCK)[:, None]
         modes = numpy.empty((len(self.half_angle), blocks, _BLOCK))
-        for modes_here, angle, series in zip(modes, self.half_angle, self._expansion, strict=True):
+        for modes_here, angle, series in zip(modes, self.half_angle, self.expansion, strict=True):
             s = angle * numpy.sin(pi / 2 * y)
             G = angle * weights * numpy.sin(s) * _even_series(series, y)
             # sin((start + step) s) as a sum of products: a sine for each start and each step, not for each mode
@@ -240,7 +239,27 @@ class State:
         return modes.reshape(len(modes), -1)[:, :count] / self.kernel.compliance
 
 
-_ROUNDING = 1e-9  # of a pressure
+def pressure_of(half_angle: Numbers, expansion: Numbers, angle: Numbers) -> Numbers:
+    """C p(φ) at angles (anything, contacts) from G/sin s as series of even Legendre polynomials (terms, contacts).
+
+    With sin²(s/2) = sin²(φ/2) + Δ z², Δ = sin²(ε/2) - sin²(φ/2): C p = 2 sqrt(Δ) ∫ G/sin s dz over [0, 1].
+    """
+    here, edge = (numpy.sin(part / 2) ** 2 for part in (angle, half_angle))
+    inside = (here < edge) & (abs(angle) < pi)
+    room = numpy.where(inside, edge - here, 0.0)
+    total = numpy.zeros_like(room)
+    nodes, weights = gauss_legendre(len(expansion) + 8)
+    for node, weight in zip(nodes, weights, strict=True):
+        z = numpy.sin(pi / 2 * node)  # tames the logarithm at the edge
+        s = 2 * numpy.arcsin(numpy.sqrt(numpy.clip(here + room * z * z, 0.0, 1.0)))
+        y = 2 / pi * numpy.arcsin(numpy.clip(s / half_angle, 0.0, 1.0))
+        total += weight * pi / 2 * numpy.cos(pi / 2 * node) * _even_series(expansion, y)
+    return numpy.where(inside, 2 * numpy.sqrt(room) * total, 0.0)
+
+
+ROUNDING = 1e-9
+"""Of a pressure."""
+
 _BLOCK = 64  # modes
 
 

@@ -14,7 +14,8 @@ from ..model.per_joint import Piece, SolvedContact
 from ..quantities import QUANTITIES
 from ..stress import Peak, Stress
 from .abel import State
-from .subsurface import NARROWEST, largest_von_mises, peak, stress, surface_displacement
+from .fitted_state import FittedState
+from .subsurface import NARROWEST, OFF, about_von_mises, largest_von_mises, peak, stress, surface_displacement
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -67,12 +68,36 @@ class ElasticContact(SolvedContact):
         """
         return peak(self._single, float(self.joint.liner_thickness))
 
+    @cached_property
+    def von_mises_between(self) -> tuple[Array, Array]:
+        least, most = super().von_mises_between
+        if arrays.truth(arrays.isfinite(most) | self._failed) is not False:
+            return least, most
+        about = self._answer(lambda: self.laws.located(lambda place, piece: self._about_von_mises(piece)))
+        return (1 - OFF) * about, (1 + OFF) * about
+
+    def _about_von_mises(self, piece: Piece) -> numpy.ndarray:
+        return about_von_mises(piece.state)
+
     def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
         return largest_von_mises(piece.state, piece.reached)
 
     @property
     def _single(self) -> State:
-        state: State = self.single_state
+        state: State = self.single_state.alone(0)
         width = float(state.half_angle[0])
         require("half_angle", width, width >= NARROWEST, "inside a contact of less than 1 degree ask hertz")
         return state
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class CurveContact(ElasticContact):
+    """An `ElasticContact` whose largest stress in the liner lies on a curve of its joint too, to about 1e-3."""
+
+    def _about_von_mises(self, piece: Piece) -> numpy.ndarray:
+        return self._von_mises_of(numpy.empty(0), piece)
+
+    def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+        if isinstance(piece.state, FittedState):
+            return piece.state.largest_von_mises(piece.reached)
+        return super()._von_mises_of(place, piece)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, radians
+from typing import Protocol
 
 import numpy
 
@@ -31,6 +32,23 @@ _FIRST_LOOK = KeptIntervals(half_angle=_ANGLES, grid=grid(_COARSE))
 _LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
 
 
+class Known(Protocol):
+    """What is known of contacts that were solved, or read from a curve."""
+
+    @property
+    def half_angle(self) -> Numbers: ...
+    @property
+    def indentation(self) -> Numbers: ...
+    @property
+    def force(self) -> Numbers: ...
+    @property
+    def stiffness(self) -> Numbers: ...
+    @property
+    def widening(self) -> Numbers: ...
+    @property
+    def error(self) -> Numbers: ...
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Curve:
     """Force, indentation and half angle of one joint, to a relative tolerance."""
@@ -48,26 +66,27 @@ class Curve:
             state, miss = self._solved(kind, given, self._bounded(angle), points)
             reached = (state.half_angle <= LIMIT) & (state.half_angle < self._end) & _sound(state)
             floor = miss + self.kernel.tolerance
-            error = {name: error + floor for name, error in _errors(kind, state).items()}
+            error = {name: error + floor for name, error in errors(kind, state).items()}
             if not any(numpy.any(part[reached] > self.tolerance) for part in error.values()):
                 break
             angle = numpy.where(angle <= self._end, state.half_angle, angle)
         return Piece(load=load, touching=touching, state=state, reached=reached, error=error)
 
-    def _state(self, angle: Numbers, points: int) -> State:
+    def state(self, angle: Numbers, points: int) -> State:
+        """The contacts of half angles, solved at so many points."""
         return State(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angle, grid=grid(points)))
 
     def _solved(self, kind: str, given: Numbers, angle: Numbers, points: int) -> tuple[State, Numbers]:
         """The state at the half angle that gives the load, by Newton's method in the logarithms, and what it misses."""
-        state = self._state(angle, points)
+        state = self.state(angle, points)
         if kind == "half_angle":
             return state, numpy.zeros_like(given)
         for _ in range(_STEPS):
             miss = numpy.log(_LAWS[kind](state) / given)
             if not numpy.any(abs(miss) > _CLOSE):
                 break
-            step = numpy.clip(miss / _steepness(kind, state), -0.5, 0.5)
-            state = self._state(self._bounded(state.half_angle * numpy.exp(-step)), points)
+            step = numpy.clip(miss / steepness(kind, state), -0.5, 0.5)
+            state = self.state(self._bounded(state.half_angle * numpy.exp(-step)), points)
         return state, abs(miss)
 
     def _bounded(self, angle: Numbers) -> Numbers:
@@ -87,8 +106,18 @@ class Curve:
         low, high = (_ANGLES[first - 1] if first else 0.0), _ANGLES[first]
         for _ in range(16):
             middle = (low + high) / 2
-            low, high = (middle, high) if _sound(self._state(numpy.array([middle]), _GRIDS[0])).all() else (low, middle)
+            low, high = (middle, high) if _sound(self.state(numpy.array([middle]), _GRIDS[0])).all() else (low, middle)
         return float(low)
+
+    @property
+    def ratio(self) -> float:
+        """R2/L"""
+        return self.gap.socket_radius / self.kernel.socket.shells[0].thickness
+
+    @property
+    def widest(self) -> float:
+        """The widest contact that is answered."""
+        return min(LIMIT, self._end)
 
     @cached_property
     def _first_look(self) -> State:
@@ -101,14 +130,14 @@ class Curve:
             return self._first_look
         inside = _ANGLES[self._end > _ANGLES]
         room = self._end - inside.max(initial=0.0)
-        return self._state(numpy.append(inside, self._end - room * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE)
+        return self.state(numpy.append(inside, self._end - room * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE)
 
     @cached_property
     def _knots(self) -> dict[str, tuple[Numbers, Numbers, Numbers]]:
         """ln(load), ln ε and their slope at the coarse contacts."""
         coarse = self._coarse
         y = numpy.log(coarse.half_angle)
-        return {kind: (numpy.log(law(coarse)), y, 1 / _steepness(kind, coarse)) for kind, law in _LAWS.items()}
+        return {kind: (numpy.log(law(coarse)), y, 1 / steepness(kind, coarse)) for kind, law in _LAWS.items()}
 
     def _guess(self, kind: str, given: Numbers) -> Numbers:
         """The half angle by cubics between a few coarse contacts; like a power of the load below the first."""
@@ -132,23 +161,21 @@ def _sound(state: State) -> Numbers:
         return (state.indentation > 0) & (state.pole_pressure > 0) & (work > 0) & (work < inf)
 
 
-def _steepness(kind: str, state: State) -> Numbers:
+def steepness(kind: str, state: Known) -> Numbers:
     """d ln(load)/d ln ε."""
     deepening = state.half_angle * state.widening
     return deepening / state.indentation if kind == "indentation" else deepening * state.stiffness / state.force
 
 
-def _errors(kind: str, state: State) -> dict[str, Numbers]:
+def errors(kind: str, state: Known) -> dict[str, Numbers]:
     """Relative errors of each quantity, at the given load."""
     own = _SAFETY * state.error
-    steepness = {name: _steepness(name, state) for name in _LAWS}
-    shift = own / steepness[kind] if kind in _LAWS else 0.0 * own
-    errors = {name: own + shift * steep for name, steep in steepness.items()}
+    steep = {name: steepness(name, state) for name in _LAWS}
+    shift = own / steep[kind] if kind in _LAWS else 0.0 * own
+    errors = {name: own + shift * each for name, each in steep.items()}
     errors["half_angle"] = shift
     errors.update(
-        dict.fromkeys(
-            ("max_pressure", "pole_pressure", "stiffness", "pressure_integral"), own + shift * steepness["force"]
-        )
+        dict.fromkeys(("max_pressure", "pole_pressure", "stiffness", "pressure_integral"), own + shift * steep["force"])
     )
     errors["energy"] = errors["force"] + errors["indentation"]
     if kind in errors:

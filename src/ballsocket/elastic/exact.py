@@ -15,7 +15,7 @@ from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint, Support
 from ..model import Model
 from ..model.answer import Answer
-from ..model.per_joint import taken_apart
+from ..model.per_joint import PiecedSolution, taken_apart
 from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, bodies
 from .contact import ElasticContact
@@ -108,17 +108,22 @@ class Exact(Model):
     reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        solution = taken_apart(self, joint, load, lambda one, loads: _curve(self, one).press(kind, loads))
-        return Answer(
-            laws=solution,
-            force=solution.force,
-            indentation=solution.indentation,
-            failures={Status.NOT_CONVERGED: ~(solution.worst <= max(self.tolerance, 10 * arrays.rounding(load)))},
-        )
+        solution = taken_apart(self, joint, load, lambda one, loads: curve_of(self, one).press(kind, loads))
+        return answer_of(solution, self.tolerance, load)
+
+
+def answer_of(solution: PiecedSolution, tolerance: float, load: Array) -> Answer:
+    """The answer that a solution is, not converged where its own errors are more than the tolerance."""
+    return Answer(
+        laws=solution,
+        force=solution.force,
+        indentation=solution.indentation,
+        failures={Status.NOT_CONVERGED: ~(solution.worst <= max(tolerance, 10 * arrays.rounding(load)))},
+    )
 
 
 @lru_cache(maxsize=256)
-def _curve(model: Exact, joint: Joint) -> Curve:
+def curve_of(model: Exact, joint: Joint) -> Curve:
     """The curve of a joint of plain numbers; kept, since more loads on it are likely."""
     kernel = Kernel(socket=socket_of(joint), ball=ball_of(joint), tolerance=max(1e-3 * model.tolerance, 1e-14))
     gap = model.gap(clearance=float(joint.clearance), socket_radius=float(joint.socket_radius))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import log1p, radians
+from itertools import pairwise
+from math import inf, log1p, radians
 
 import numpy
 
@@ -11,7 +11,6 @@ from ..arrays import Numbers
 from ..contact.strength import share_of_ball
 from ..stress import Peak, Stress
 from .abel import State
-from .intervals import Intervals
 
 NARROWEST = radians(1.0)
 """The narrowest contact whose inside is summed."""
@@ -29,10 +28,15 @@ def surface_displacement(state: State, angle: Numbers) -> Numbers:
 
 def stress(state: State, angle: Numbers, depth: Numbers) -> Stress:
     """Stresses of one contact at polar angles (rad) and depths below the surface of the socket (mm)."""
+    shallowest = float(numpy.min(depth, initial=inf))
+    return _summed(state, angle, depth, _modes(state, shallowest if shallowest < inf else 0.0))
+
+
+def _summed(state: State, angle: Numbers, depth: Numbers, count: int) -> Stress:
+    """Stresses from so many modes."""
     angle, depth = numpy.broadcast_arrays(angle, depth)
     angles, which = numpy.unique(angle.ravel(), return_inverse=True)
     depths, level = numpy.unique(depth.ravel(), return_inverse=True)
-    count = _modes(state, float(depths[0]) if depths.size else 0.0)
     fields = state.kernel.socket.fields(numpy.arange(count), state.gap.socket_radius + depths)
     P, slope = _legendre(angles, count)
     modes = _tapered(state, count)
@@ -52,10 +56,8 @@ def stress(state: State, angle: Numbers, depth: Numbers) -> Stress:
 
 def peak(state: State, thickness: float) -> Peak:
     """The largest von Mises stress of one contact in a liner of that thickness, at the surface or below."""
-    angles = float(state.half_angle[0]) * numpy.linspace(0.0, 1.3, 27)  # a little beyond the edge
-    deepest = min(thickness, 3 * state.gap.socket_radius * float(numpy.sin(state.half_angle[0])))
-    depths = deepest * numpy.linspace(0.0, 1.0, 26)
-    for _ in range(4):
+    angles, depths = _places(state, thickness)
+    for _ in range(_ROUNDS):
         values = stress(state, angles[:, None], depths).von_mises
         i, j = numpy.unravel_index(numpy.argmax(values), values.shape)
         angles, depths = _around(angles, int(i)), _around(depths, int(j))
@@ -63,21 +65,40 @@ def peak(state: State, thickness: float) -> Peak:
     return best
 
 
+def _places(state: State, thickness: float) -> tuple[Numbers, Numbers]:
+    """Where the largest stress is looked for at first: angles up to a little beyond the edge, and depths."""
+    angles = float(state.half_angle[0]) * numpy.linspace(0.0, 1.3, 27)
+    deepest = min(thickness, 3 * state.gap.socket_radius * float(numpy.sin(state.half_angle[0])))
+    return angles, deepest * numpy.linspace(0.0, 1.0, 26)
+
+
+def about_von_mises(state: State) -> Numbers:
+    """About what `largest_von_mises` says of each contact, within `OFF` of it: from an eighth of the modes."""
+    values = state.max_pressure * share_of_ball(state.kernel.socket.shells[0].poisson)
+    for number in numpy.flatnonzero(state.half_angle >= NARROWEST):
+        alone = state.alone(int(number))
+        angles, depths = _places(alone, alone.kernel.socket.shells[0].thickness)
+        count = _modes(alone, 0.0) // _FEWER
+        values[number] = _summed(alone, angles[::2, None], depths[::2], count).von_mises.max()
+    return values
+
+
+OFF, _FEWER = 0.1, 8
+
+
 def largest_von_mises(state: State, reached: Numbers) -> Numbers:
     """That in the liner of each contact that was reached (a mask), NaN of the others; of a narrow one as in a ball."""
     liner = state.kernel.socket.shells[0]
     values = numpy.full(len(state.half_angle), numpy.nan)
     for number in numpy.flatnonzero(reached):
-        angle = state.half_angle[number : number + 1]
-        if angle[0] < NARROWEST:  # a half-space
+        if state.half_angle[number] < NARROWEST:  # a half-space
             values[number] = state.max_pressure[number] * share_of_ball(liner.poisson)
         else:
-            alone = replace(state, intervals=Intervals(half_angle=angle, grid=state.grid))
-            values[number] = peak(alone, liner.thickness).von_mises
+            values[number] = peak(state.alone(int(number)), liner.thickness).von_mises
     return values
 
 
-_HALF = 4
+_HALF, _ROUNDS = 4, 4
 
 
 def _around(values: Numbers, i: int) -> Numbers:
@@ -103,10 +124,15 @@ def _tapered(state: State, count: int) -> Numbers:
 
 def _legendre(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
     """P_n(cos φ) and dP_n/d(cos φ) for n below count, shape (count, angles)."""
-    x = numpy.cos(angle)
-    P, slope = numpy.empty((count, len(x))), numpy.empty((count, len(x)))
-    P[0], P[1], slope[0], slope[1] = 1.0, x, 0.0, 1.0
-    for n in range(2, count):
-        P[n] = ((2 * n - 1) * x * P[n - 1] - (n - 1) * P[n - 2]) / n
-        slope[n] = slope[n - 2] + (2 * n - 1) * P[n - 1]
+    x, n = numpy.cos(angle), numpy.arange(count)[:, None]
+    P, slope = numpy.empty((count, len(x))), numpy.zeros((count, len(x)))
+    P[0], P[1] = 1.0, x
+    ahead, back, dropped = list((2 * n - 1) * x / numpy.maximum(n, 1)), P[0], numpy.empty(len(x))
+    for k, (here, there) in enumerate(pairwise(P[1:]), start=2):
+        numpy.multiply(ahead[k], here, out=there)
+        there -= numpy.multiply(back, 1 - 1 / k, out=dropped)
+        back = here
+    growth = (2 * n[1:] - 1) * P[:-1]
+    for parity in (0, 1):  # each slope is that two degrees before, and (2n - 1) P_n-1
+        slope[1 + parity :: 2] = numpy.cumsum(growth[parity::2], axis=0)
     return P, slope

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, prod
 from types import SimpleNamespace
@@ -204,6 +204,15 @@ class SolvedContact(Contact):
 
     def _largest_von_mises(self) -> Array:
         return self.laws.located(self._von_mises_of)
+
+    def utilisation_where(self, asked: Array) -> Array:
+        wanted = numpy.broadcast_to(arrays.to_numpy(asked), self.laws.shape).ravel()
+
+        def there(place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+            some = replace(piece, reached=piece.reached & wanted[place][piece.touching])
+            return self._von_mises_of(place, some)
+
+        return self._utilisation_of(self._plain(self.laws.located(there)))
 
     @abstractmethod
     def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:

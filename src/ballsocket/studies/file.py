@@ -9,6 +9,7 @@ from typing import Any
 
 from ..catalogue import catalogue, judge, off_axis
 from ..checks import check_names, check_text, known_name, nearest, shown
+from ..elastic.exact_curve import ExactCurve
 from ..engines.dask import Distributed
 from ..engines.local import Engine, Processes, Serial
 from ..io.joint_file import KEYS, check_keys, named_material
@@ -36,7 +37,7 @@ _TOP = (
 _KEYS = {"": _TOP, **{name: KEYS[name] for name in PARTS}, "axes": tuple(PARAMETERS)}
 _ENGINES = ("serial", "processes", "dask")
 _LARGEST = 1 << 53
-models: dict[str, Model] = {**catalogue, judge.name: judge, off_axis.name: off_axis}
+models: dict[str, Model] = {**catalogue, "exact-curve": ExactCurve(), judge.name: judge, off_axis.name: off_axis}
 """By the names that files and the command line use."""
 
 

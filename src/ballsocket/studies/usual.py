@@ -1,4 +1,4 @@
-"""The model of a study for which none is named: from tables, or solved where these know none of the joints."""
+"""The model of a study for which none is named: from tables, or exact where these know none of the joints."""
 
 from __future__ import annotations
 
@@ -6,18 +6,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..catalogue import reference
+from ..elastic.exact_curve import ExactCurve
 from ..elastic.tabulated.model import Tabulated
 from ..joint import Joint
 from ..model import Model
 from ..validity import OutsideDomainError, inside
 from .design import check_values, grid
-from .parameters import pressable
+from .parameters import LOADS, pressable
 
-_QUICK = Tabulated()
+_QUICK, _CURVE = Tabulated(), ExactCurve()
 
 
 def usual(joint: Joint, ends: Mapping[str, Any]) -> Model:
-    """`tabulated`, or `exact` where that has no answer for any of the joints.
+    """`tabulated`, or where that has no answer for any of the joints `exact`, on a curve if it is one joint.
 
     Parameters
     ----------
@@ -29,7 +30,7 @@ def usual(joint: Joint, ends: Mapping[str, Any]) -> Model:
     try:
         check_known(_QUICK, joint, ends)
     except OutsideDomainError:
-        return reference
+        return _CURVE if all(name in LOADS for name in ends) else reference
     return _QUICK
 
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from errno import EISDIR
 from functools import partial
-from math import degrees, pi
+from math import degrees
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -118,11 +118,6 @@ def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 # What is sampled: each takes ν, R2/L and answers with (places of the ball ..., functions, angles)
 
 
-def places(count: int) -> Numbers:
-    """Chebyshev points from -1 to 1."""
-    return -numpy.cos(pi * (numpy.arange(count) + 0.5) / count)
-
-
 def _poisson_at(place: Numbers) -> Numbers:
     near, far = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
     return (1 - numpy.exp((far + near - place * (far - near)) / 2)) / 2
@@ -158,27 +153,27 @@ def _three(state: State) -> Numbers:
 
 def _profile(state: State) -> Numbers:
     """Chebyshev coefficients of p/(p0 sqrt(1 - v)) in 2v - 1."""
-    v = (1 + places(_PROFILE)[:, None]) / 2
+    v = (1 + chebyshev.places(_PROFILE)[:, None]) / 2
     angle = 2 * numpy.arcsin(numpy.sqrt(v) * numpy.sin(state.half_angle / 2))
-    return _chebyshev(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
+    return chebyshev.coefficients(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
 
 
 def _rigid(liner: _Liner, *, what: Callable[[State], Numbers], angles: int, points: int) -> Numbers:
-    return what(_state(liner, chebyshev.angle_at(places(angles), liner[1]), points))
+    return what(_state(liner, chebyshev.angle_at(chebyshev.places(angles), liner[1]), points))
 
 
 def _ball(
     liner: _Liner, *, what: Callable[[State], Numbers], angles: int, points: int, shares: int, balls: Sequence[float]
 ) -> Numbers:
     """What a ball of each softness and ν adds, over how soft it is."""
-    angle = chebyshev.angle_at(places(angles), liner[1])
+    angle = chebyshev.angle_at(chebyshev.places(angles), liner[1])
     rigid = what(_state(liner, angle, points))
 
     def added(place: float, ball_poisson: float) -> Numbers:
         state = _state(liner, angle, points, _share_at(place, *liner), ball_poisson)
         return (what(state) - rigid) * (2 / (1 + place))
 
-    return numpy.array([[added(float(place), nu) for nu in balls] for place in places(shares)])
+    return numpy.array([[added(float(place), nu) for nu in balls] for place in chebyshev.places(shares)])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,12 +188,12 @@ class _Kind:
 
     def fitted(self, spread: Callable[..., Any]) -> Numbers:
         """Coefficients (ν, R2/L, share, roundness, function, angle)."""
-        poisson, ratio = _poisson_at(places(self.counts[0])), _ratio_at(places(self.counts[1]))
+        poisson, ratio = _poisson_at(chebyshev.places(self.counts[0])), _ratio_at(chebyshev.places(self.counts[1]))
         liners = [(float(nu), float(z)) for nu in poisson for z in ratio]
         sampled = numpy.array(list(spread(self.sample, liners, chunksize=4)))
         values = sampled.reshape(*self.counts, *((1, 1) if not self.balls else ()), *sampled.shape[1:])
         for axis in (0, 1, 2, 5):
-            values = _chebyshev(values, axis)
+            values = chebyshev.coefficients(values, axis)
         if self.balls:
             values = numpy.moveaxis(_in_roundness(self.balls, numpy.moveaxis(values, 3, 0)), 0, 3)
         orders = numpy.ogrid[tuple(slice(n) for n in values.shape[:4])]
@@ -211,15 +206,6 @@ def _in_roundness(balls: tuple[float, ...], values: Numbers) -> Numbers:
     """Chebyshev coefficients in the roundness of the ball, from values (balls, ...)."""
     basis = numpy.polynomial.chebyshev.chebvander(chebyshev.roundness(numpy.array(balls)), len(balls) - 1)
     return numpy.tensordot(numpy.linalg.inv(basis), values, 1)
-
-
-def _chebyshev(values: Numbers, axis: int) -> Numbers:
-    """Coefficients of the polynomial through values at `places`."""
-    count = values.shape[axis]
-    turn = pi * (numpy.arange(count) + 0.5) / count
-    matrix = numpy.cos(numpy.arange(count)[:, None] * (pi - turn)) * (2 / count)
-    matrix[0] /= 2
-    return numpy.moveaxis(numpy.tensordot(matrix, values, (1, axis)), 0, axis)
 
 
 _KINDS = {

@@ -6,14 +6,14 @@ import math
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from math import log, prod, radians
+from math import log, pi, prod, radians
 from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy
 
 from ... import arrays
-from ...arrays import Array, cos, exp, log1p, sqrt
+from ...arrays import Array, Numbers, cos, exp, log1p, sqrt
 from ...arrays import log as ln
 
 LIMIT = radians(85.0)
@@ -145,6 +145,20 @@ def polynomials(place: Array, count: int) -> Array:
         numpy.multiply(twice, rows[k - 1], out=rows[k])
         rows[k] -= rows[k - 2]
     return rows
+
+
+def places(count: int) -> Numbers:
+    """Chebyshev points from -1 to 1."""
+    return -numpy.cos(pi * (numpy.arange(count) + 0.5) / count)
+
+
+def coefficients(values: Numbers, axis: int) -> Numbers:
+    """Coefficients of the polynomial through values at `places`."""
+    count = values.shape[axis]
+    turn = pi * (numpy.arange(count) + 0.5) / count
+    matrix = numpy.cos(numpy.arange(count)[:, None] * (pi - turn)) * (2 / count)
+    matrix[0] /= 2
+    return numpy.moveaxis(numpy.tensordot(matrix, values, (1, axis)), 0, axis)
 
 
 def waves_at(place: float, count: int) -> numpy.ndarray:

@@ -57,7 +57,7 @@ class Scale(NamedTuple):
 def at(angle: Array, curve: Curve, rows: tuple[int, ...]) -> tuple[Pair, ...]:
     """The functions in `rows` at ε > 0, and their slopes."""
     root = angle_root(angle, curve.ratio)
-    place, widening = 2 * root - 1, _widening(angle, root, curve.ratio)
+    place, widening = 2 * root - 1, widening_of(angle, root, curve.ratio)
     if type(angle) is float:
         both = (curve.functions @ waves_at(place, curve.functions.shape[1])).tolist()
         return tuple((both[k], widening * both[k + 3]) for k in rows)
@@ -73,7 +73,7 @@ def summed(coefficients: Array, waves: Array) -> Array:
     return numpy.einsum("ij,ij->j", coefficients, waves) if xp is numpy else xp.sum(coefficients * waves, axis=0)
 
 
-def _widening(angle: Array, root: Array, ratio: Array) -> Array:
+def widening_of(angle: Array, root: Array, ratio: Array) -> Array:
     """d(place)/d(ln ε)."""
     near = NEAR * (1 + ratio)
     return near * angle / ((1 + near * angle) * log1p(near * LIMIT) * root)
