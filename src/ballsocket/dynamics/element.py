@@ -9,13 +9,14 @@ from typing import Any
 import numpy
 
 from .. import arrays
-from ..arrays import Array
+from ..arrays import Array, where
 from ..checks import require, shown, vectors
 from ..cup import Cup
 from ..joint import Joint
 from ..model import Model
 from ..model.answer import check_joint
 from ..model.law import CurveLaw
+from ..models.adhesion import AdhesiveSocket
 from .bristles import Bristles
 from .brushed import brushed
 from .damping import Damping, one_number
@@ -23,8 +24,9 @@ from .friction import Friction
 from .load import Load
 from .matrices import vector
 from .potential import Potential, potential_of
-from .reaction import APART, Constants, Three, elastic, place_of, reaction
+from .reaction import APART, Constants, Elastic, Place, Three, elastic, place_of, reaction
 from .side_curves import curve_of, read
+from .sticking import sticking_potential, undamped_pull
 from .watch import Watch
 
 _REST = (0.0, 0.0, 0.0)
@@ -87,12 +89,24 @@ class ForceElement:
             if not (isinstance(given, kind) or (given is None and name != "model")):
                 raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(given)}")
         smoothing = one_number("smoothing", self.smoothing)
-        potential = potential_of(self.model, self.joint)
+        potential = self._potential()
         clearance = float(self.joint.clearance)
         good = 0.0 <= smoothing <= clearance
         require("smoothing", smoothing, good, f"it is 0 or more, and at most the clearance, {clearance:g} mm")
         object.__setattr__(self, "potential", potential)
         object.__setattr__(self, "constants", self._constants(smoothing))
+
+    def _potential(self) -> Potential:
+        if not isinstance(self.model, AdhesiveSocket):
+            return potential_of(self.model, self.joint)
+        if self.friction or self.cup or self.smoothing:
+            raise TypeError("an adhesive socket takes a damping, but no friction, cup or smoothing: nobody knows those")
+        return sticking_potential(self.model, self.joint)
+
+    @cached_property
+    def stretch(self) -> float:
+        """How far a ball that sticks is pulled back before it is free, in mm: u_c; 0 for all other models."""
+        return getattr(self.potential, "stretch", 0.0)
 
     def _constants(self, smoothing: float) -> Constants:
         joint, cup = self.joint.with_floats(), self.cup
@@ -101,8 +115,8 @@ class ForceElement:
         return Constants(
             ball_radius=joint.ball_radius,
             socket_radius=joint.socket_radius,
-            clearance=joint.clearance,
-            wall=min(joint.liner_thickness, joint.socket_radius, self.potential.deepest),
+            clearance=joint.clearance - self.stretch,
+            wall=min(joint.liner_thickness, joint.socket_radius, self.potential.deepest) + self.stretch,
             smoothing=smoothing,
             hysteresis=damping.hysteresis,
             time=damping.time,
@@ -115,7 +129,14 @@ class ForceElement:
             **dict(zip(("dome_x", "dome_y", "dome_z"), (Cup() if cup is None else cup).dome, strict=True)),
         )
 
-    def __call__(self, position: Any, velocity: Any = _REST, spin: Any = _REST, deflection: Any = _UNBENT) -> Load:
+    def __call__(
+        self,
+        position: Any,
+        velocity: Any = _REST,
+        spin: Any = _REST,
+        deflection: Any = _UNBENT,
+        attached: Any = False,
+    ) -> Load:
         """The load at a state, in axes that are fixed to the socket.
 
         Parameters
@@ -129,6 +150,8 @@ class ForceElement:
             Angular velocity of the ball less that of the socket, in rad/s.
         deflection : (4,) or array (..., 4)
             Of the bristles in mm, where the friction has such: the integral of the load's `deflection_rate`.
+        attached : bool or array
+            Whether a ball that sticks already did: the `attached` of the load before.
 
         Raises
         ------
@@ -136,39 +159,52 @@ class ForceElement:
             What does not have three components.
         """
         if type(position) in _LISTS:
-            load = self._of_numbers(three(position), three(velocity), three(spin))
+            load = self._of_numbers(three(position), three(velocity), three(spin), attached)
         else:
-            load = self._of_arrays(position, velocity, spin)
+            load = self._of_arrays(position, velocity, spin, attached)
         return load if not isinstance(self.friction, Bristles) else brushed(load, self.friction, deflection)
 
-    def _of_numbers(self, position: Three, velocity: Three, spin: Three) -> Load:
+    def _of_numbers(self, position: Three, velocity: Three, spin: Three, attached: bool) -> Load:
         given = self.constants
         place = place_of(*position, given.clearance)
+        if self.stretch > 0.0:
+            place = self._held(place, attached)
         if place.indentation <= -given.smoothing and place.distance > 0.0:
             return Load(_REST, _REST, 0.0, self, place, APART, position, velocity, spin)
         if place.indentation > self._watch.limit:
             self._watch.at(place.indentation)
-        contact = elastic(self.potential, place, given)
+        contact = self._elastic(place)
         fx, fy, fz, mx, my, mz = reaction(place, contact, velocity, spin, given)
         return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, place, contact, position, velocity, spin)
 
-    def _of_arrays(self, *state: Any) -> Load:
+    def _of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
-        checked = map(vectors, names, map(_listed, state), axes)
-        position, velocity, spin = (_components(each) for each in arrays.common(*checked))
+        checked = map(vectors, names, map(_listed, (position, velocity, spin)), axes)
+        r, v, w = (_components(each) for each in arrays.common(*checked))
         with numpy.errstate(all="ignore"):  # a state without an answer has a status
-            place = place_of(*position, self.constants.clearance)
+            place = self._held(place_of(*r, self.constants.clearance), attached)
             self._watch.look(place.indentation)
-            contact = elastic(self.potential, place, self.constants)
-            parts = reaction(place, contact, velocity, spin, self.constants)
+            contact = self._elastic(place)
+            parts = reaction(place, contact, v, w, self.constants)
         force, moment = vector(object, *parts[:3]), vector(object, *parts[3:])
-        return Load(force, moment, contact.energy, self, place, contact, position, velocity, spin)
+        return Load(force, moment, contact.energy, self, place, contact, r, v, w)
+
+    def _elastic(self, place: Place) -> Elastic:
+        contact = elastic(self.potential, place, self.constants)
+        return undamped_pull(contact) if self.stretch > 0.0 else contact
+
+    def _held(self, place: Place, attached: Any) -> Place:
+        """The place of a ball that sticks: apart before first touch, unless it is attached."""
+        if self.stretch == 0.0:
+            return place
+        held = attached | (place.indentation >= self.stretch)
+        return place._replace(indentation=where(held, place.indentation, 0.0 * place.indentation - 1.0))
 
     @property
     def wall(self) -> float:
         """The deepest indentation that the socket's wall and the model leave room for, in mm."""
-        return self.constants.wall
+        return self.constants.wall - self.stretch
 
     @cached_property
     def _watch(self) -> Watch:

@@ -60,7 +60,12 @@ class Load(NamedTuple):
     @property
     def indentation(self) -> Array:
         """d in mm; below 0 it is the way to the touch-down."""
-        return self.place.indentation
+        return self.place.distance - (self.element.constants.clearance + self.element.stretch)
+
+    @property
+    def attached(self) -> Array:
+        """Whether the ball touches, which one that sticks is asked with next."""
+        return self.place.indentation > 0.0
 
     @property
     def half_angle(self) -> Array:

@@ -126,12 +126,14 @@ def simulate(
     ValueError
         A number that is not allowed, named with its value.
     TypeError
-        An element with bristles.
+        An element with bristles, or one that sticks.
     """
     if isinstance(getattr(element, "friction", None), Bristles):
         raise TypeError(
             "bristles have a state that these steps do not carry: integrate the element's `deflection_rate`"
         )
+    if getattr(element, "stretch", 0.0) > 0.0:
+        raise TypeError("a ball that sticks has a state that these steps do not carry: integrate the element's force")
     heavy = _above_nothing("mass", mass)
     turning = 0.4 * heavy * element.constants.ball_radius**2 if inertia is None else _above_nothing("inertia", inertia)
     count = int(numpy.ceil(_above_nothing("duration", duration) / _above_nothing("step", step) - 1e-9))

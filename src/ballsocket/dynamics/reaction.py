@@ -152,7 +152,8 @@ def pressed(elastic: Elastic, speed: Array, given: Constants) -> Array:
     force = elastic.normal + lossy * speed
     if given.smoothing > 0.0:
         return positive(force, ROUNDED * elastic.damped_force)
-    return where(force > 0.0, force, 0.0)
+    least = where(elastic.normal < 0.0, elastic.normal, 0.0)  # below 0 where a ball sticks
+    return where(force > least, force, least)
 
 
 ROUNDED = 0.1

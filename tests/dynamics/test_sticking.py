@@ -1,0 +1,81 @@
+"""A ball that sticks: it snaps in, holds on, lets go at the force of the theory, and loses the area in between."""
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.dynamics import Damping, Friction, Touch, simulate
+
+from ..joints import HIP
+
+STICKY = bs.AdhesiveSocket(work_of_adhesion=2e-3)
+ELEMENT = bs.ForceElement(STICKY, HIP)
+C, STRETCH = HIP.clearance, ELEMENT.stretch
+
+
+def at(depth, attached):
+    depth = np.asarray(depth)
+    zero = np.zeros_like(depth)
+    return ELEMENT(np.stack([zero, zero, C + depth], axis=-1), attached=attached)
+
+
+def test_it_snaps_in_at_first_touch_and_lets_go_a_stretch_before():
+    assert pytest.approx(STICKY.critical_stretch(HIP)) == STRETCH
+    coming, leaving = (at(np.array([-0.5 * STRETCH, -1e-9, 0.0, 0.01]), attached) for attached in (False, True))
+    assert (coming.force[:2] == 0).all()
+    pull = -STICKY.force(HIP, 0.0)
+    assert coming.force[2, 2] == pytest.approx(pull)  # towards the wall
+    assert pull > 0
+    np.testing.assert_array_equal(leaving.force[2:], coming.force[2:])
+    assert leaving.force[0, 2] > 0
+    assert leaving.attached.all()
+    assert coming.attached.tolist() == [False, False, True, True]
+    free = at(np.array([-1.001 * STRETCH]), True)
+    assert free.force[0, 2] == 0
+    assert free.status[0] == Touch.FREE
+    assert abs(at(np.array([-0.99999 * STRETCH]), True).force[0, 2]) < 1e-3 * pull
+
+
+def test_the_largest_pull_is_that_of_the_theory():
+    depth = np.linspace(-STRETCH, 0.05, 200_001)
+    assert at(depth, True).force[:, 2].max() == pytest.approx(STICKY.pull_off(HIP), rel=1e-8)
+
+
+def test_what_a_cycle_loses_is_what_it_fell_by_when_it_snapped_in():
+    depth = np.linspace(-1.5 * STRETCH, 0.02, 100_001)
+    coming, leaving = at(depth, False), at(depth, True)
+    lost = np.trapezoid(leaving.force[:, 2] - coming.force[:, 2], depth)
+    fallen = at(np.array([-1e-12]), False).energy - at(np.array([1e-12]), False).energy
+    assert lost == pytest.approx(float(fallen[0]), rel=1e-3)
+    # and that has a closed form: springs less surfaces, between -u_c and 0
+    energy = STICKY.energy(HIP, np.array([0.0, -STRETCH]))
+    assert float(fallen[0]) == pytest.approx(energy[1] - energy[0], rel=1e-6)
+    assert lost > 0
+
+
+def test_the_energy_is_that_of_the_force_on_the_branch_that_holds():
+    depth, step = np.linspace(-0.95 * STRETCH, 0.05, 60), 1e-6
+    slope = (at(depth + step, True).energy - at(depth - step, True).energy) / (2 * step)
+    force = at(depth, True).force[:, 2]
+    np.testing.assert_allclose(-slope, force, atol=1e-6 * np.abs(force).max())
+    single = ELEMENT((0.0, 0.0, C - 0.5 * STRETCH), attached=True)
+    assert single.force[2] == pytest.approx(float(at(-0.5 * STRETCH, True).force[2]), rel=1e-12)
+    assert single.indentation == pytest.approx(-0.5 * STRETCH)
+
+
+def test_damping_makes_no_energy_where_it_pulls():
+    element = bs.ForceElement(STICKY, HIP, damping=Damping(hysteresis=0.05, time=1e-3))
+    random = np.random.default_rng(1)
+    way = random.normal(size=(5000, 3))
+    position = way / np.linalg.norm(way, axis=1)[:, None] * (C + random.uniform(-STRETCH, 0.02, 5000))[:, None]
+    load = element(position, 100 * random.normal(size=(5000, 3)), attached=True)
+    assert (load.dissipation >= 0).all()
+
+
+def test_what_nobody_knows_of_it_is_refused():
+    with pytest.raises(TypeError, match="an adhesive socket takes a damping"):
+        bs.ForceElement(STICKY, HIP, friction=Friction(coefficient=0.1))
+    with pytest.raises(ValueError, match="the adhesion number = .* is not allowed: from 1 on"):
+        bs.ForceElement(bs.AdhesiveSocket(work_of_adhesion=10.0), HIP)
+    with pytest.raises(TypeError, match="a ball that sticks has a state"):
+        simulate(ELEMENT, mass=1.0, position=(0.0, 0.0, 0.0), duration=1e-3, step=1e-5)
