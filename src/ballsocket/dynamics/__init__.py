@@ -3,6 +3,7 @@
 from . import restitution as relations
 from .bristles import Bristles
 from .damping import Damping, Flores, Gonthier, HuntCrossley, LankaraniNikravesh, Restitution, of_restitution
+from .drop_test import Identified, from_bounces, from_restitution
 from .element import ForceElement
 from .friction import Friction
 from .load import Load
@@ -19,6 +20,7 @@ __all__ = [
     "Friction",
     "Gonthier",
     "HuntCrossley",
+    "Identified",
     "LankaraniNikravesh",
     "Load",
     "Motion",
@@ -26,6 +28,8 @@ __all__ = [
     "Restitution",
     "Touch",
     "Viscoelastic",
+    "from_bounces",
+    "from_restitution",
     "of_restitution",
     "relations",
     "simulate",
