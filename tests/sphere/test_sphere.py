@@ -2,12 +2,13 @@
 
 import json
 from dataclasses import replace
-from math import cos, degrees, pi, radians, sin
+from math import cos, pi, radians, sin
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.sphere.solver import pressed
 
 from ..extent import either, some
 from ..joints import HIP
@@ -125,10 +126,11 @@ def test_the_load_is_the_slope_of_the_energy_and_the_tangent_that_of_the_load(ti
     less, here, more = (model.press(RIGID, indentation=each, tilt=tilt) for each in (d - h, d, d + h))
     way = tilted(tilt)
     assert (more.energy - less.energy) / (2 * h) == pytest.approx(here.force_vector @ way, rel=1e-4)
-    close = 1e-7  # the same cells touch
-    one, other = (model.press(RIGID, indentation=each, tilt=tilt) for each in (d, d + close))
-    slope = (other.force_vector - one.force_vector) / close
-    assert slope == pytest.approx(here.stiffness_matrix @ way, rel=2e-3, abs=1e-3 * np.linalg.norm(slope))
+    bed, close = here.single_state.bed, 1e-6  # the same cells touch
+    places = here.displacement + close * np.array([way, -way])
+    force = bed.force(pressed(bed.compliance, bed.separation.overlap(places), tolerance=1e-10).pressure)
+    slope = (force[0] - force[1]) / (2 * close)
+    assert slope == pytest.approx(here.stiffness_matrix @ way, abs=1e-4 * np.linalg.norm(slope))
     assert here.stiffness_matrix == pytest.approx(here.stiffness_matrix.T, abs=1e-6 * here.stiffness_matrix.max())
     assert np.linalg.eigvalsh(here.stiffness_matrix).min() > 0
 
@@ -270,41 +272,6 @@ def test_settings_that_make_no_sense_are_refused():
         bs.Sphere(worn=0.1)
     with pytest.raises(ValueError, match="depth"):
         bs.Sphere(worn=bs.Worn(of=lambda n: np.nan * n[2])).press(RIGID, force=1.0)
-
-
-def test_random_cups_loads_and_directions_end_in_an_answer_or_a_status():
-    random = np.random.default_rng(3)
-    for _ in range(either(quick=8, long=150)):
-        radius, poisson = random.uniform(8.0, 30.0), random.choice([0.0, 0.3, 0.45, 0.49, 0.4999])
-        joint = bs.Joint(
-            ball_radius=radius,
-            clearance=radius * 10 ** random.uniform(-4.0, -1.7),
-            liner_thickness=random.uniform(2.0, 15.0),
-            liner=bs.Material(young=10 ** random.uniform(2.0, 5.0), poisson=poisson),
-            ball=random.choice([None, bs.STEEL]),
-        )
-        cup = bs.Cup(
-            arc_of_cover=radians(random.uniform(60.0, 340.0)),
-            inclination=radians(random.uniform(0.0, 90.0)),
-            anteversion=radians(random.uniform(-60.0, 60.0)),
-        )
-        direction = random.normal(size=(6, 3)) * 0.5 + np.array(cup.dome)
-        model = bs.Sphere(cup=cup, ring_width=radians(4.0), gap=random.choice([bs.LinearGap, bs.CircularGap]))
-        load = (
-            {"force": 10 ** random.uniform(0.0, 4.5, 6)}
-            if random.random() < 0.5
-            else {"indentation": joint.clearance * 10 ** random.uniform(-1.5, 0.8, 6)}
-        )
-        contact = model.press(joint, direction=direction, **load)
-        good = contact.status == 0
-        along = (contact.force_vector @ np.array(cup.frame) * direction).sum(axis=1)
-        assert (along[good] >= 0).all()
-        for name in ("force", "indentation", "half_angle", "energy", "stiffness", "edge_distance"):
-            value = getattr(contact, name)
-            assert np.isfinite(value[good]).all()
-            assert np.isnan(value[~good]).all() or name in load
-        assert (contact.max_pressure[good] >= 0).all()
-        assert degrees(contact.max_pressure_angle[good].max(initial=0.0)) < 180
 
 
 # --- many cups ---

@@ -73,10 +73,13 @@ def between(contact: Any, von_mises: Array) -> tuple[Array, Array]:
 
 def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
     """Von Mises stress over yield stress of liner or ball, whichever is more, for so much of it in the liner."""
-    stresses = ((joint.liner, von_mises), (joint.ball, pressure * _share_of_ball(joint)))
-    known = ((stress, material.yield_stress) for material, stress in stresses if material is not None)
-    ratios = [stress / strength for stress, strength in known if strength is not None]
-    return reduce(larger, ratios) if ratios else nan + 0.0 * von_mises
+    shares = ((joint.liner, von_mises, 1.0), (joint.ball, pressure, _share_of_ball(joint)))
+    ratios = [
+        stress * share / material.yield_stress
+        for material, stress, share in shares
+        if material is not None and material.yield_stress is not None
+    ]
+    return reduce(larger, ratios) if ratios else nan * von_mises  # which may be infinite
 
 
 def _share_of_ball(joint: Joint) -> Array:

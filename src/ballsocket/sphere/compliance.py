@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from threading import Lock
 
@@ -38,9 +38,30 @@ class Compliance:
         """How far the surfaces give way (mm) under pressures (MPa): both (batch, rings, meridians)."""
         return self.softness(pressure)
 
+    def roughly(self, pressure: Numbers) -> Numbers:
+        """That in single precision, where a cell does not stand for itself."""
+        return self._rough(pressure)
+
+    @cached_property
+    def _rough(self) -> Turning | Local:
+        return self.softness.rough()
+
     def pressure(self, displacement: Numbers) -> Numbers:
         """The pressures (MPa, of either sign) under which they give way so far (mm) all over the bore."""
         return self.stiffness(displacement)
+
+    @cached_property
+    def coarser(self) -> Compliance | None:
+        """The same in cells twice as wide; None where these are wide already."""
+        cells = self.grid.coarser
+        if cells is None:
+            return None
+        if isinstance(self.softness, Local):
+            return replace(self, grid=cells)
+        matrices = self.grid.gathered_matrices(self.softness.matrices)
+        return Compliance(
+            grid=cells, softness=Turning(matrices=matrices), stiffness=Turning(matrices=_inverse(matrices))
+        )
 
     @cached_property
     def evenly(self) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy
@@ -33,6 +33,10 @@ class Separation:
     socket_radius: float
     depth: Numbers
     kind: type[LinearGap] | type[CircularGap]
+
+    def on(self, coarser: Grid) -> Separation:
+        """The same gap on the coarser grid."""
+        return replace(self, grid=coarser, depth=self.grid.gathered(self.depth))
 
     def overlap(self, displacement: Numbers) -> Numbers:
         """How far the ball would stand in the bore's surface: (batch, rings, meridians) in mm, below 0 where apart.

@@ -21,6 +21,8 @@ from .directions import unit_vectors
 _FINER = numpy.array([0.5, 0.25, 0.25])
 """Of the last ring, which is cut towards the rim."""
 
+_FEW = 24  # rings: to ask fewer first gains nothing
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Grid:
@@ -102,9 +104,37 @@ class Grid:
         share = numpy.sinc(numpy.arange(self.degrees + 1) / self.meridians) ** 2
         return rings * share[:, None, None] / self.ring_areas[:, None]
 
+    @cached_property
+    def coarser(self) -> Grid | None:
+        """Two rings and two meridians to a cell, the last ring alone where it is odd; None where few are left."""
+        if self.meridians % 4 or self.rings < _FEW:
+            return None
+        return Grid(edges=numpy.unique(numpy.append(self.edges[::2], self.edges[-1])), meridians=self.meridians // 2)
+
+    def gathered(self, fields: Numbers) -> Numbers:
+        """The means of fields (..., rings, meridians) over the coarser cells."""
+        pairs = fields.reshape(*fields.shape[:-1], -1, 2).mean(axis=-1) * self.ring_areas[:, None]
+        starts = numpy.arange(0, self.rings, 2)
+        means: Numbers = numpy.add.reduceat(pairs, starts, axis=-2)
+        return means / numpy.add.reduceat(self.ring_areas, starts)[:, None]
+
+    def spread(self, fields: Numbers) -> Numbers:
+        """Fields (..., rings, meridians) of the coarser cells in these."""
+        return numpy.repeat(numpy.repeat(fields, 2, axis=-2)[..., : self.rings, :], 2, axis=-1)
+
+    def gathered_matrices(self, matrices: Numbers) -> Numbers:
+        """Means over coarser cells under pressures on such, for each m, from what cells do to cells."""
+        starts = numpy.arange(0, self.rings, 2)
+        m = numpy.arange(self.meridians // 4 + 1)
+        rows = numpy.add.reduceat(matrices[: len(m)] * self.ring_areas[:, None], starts, axis=1)
+        both = numpy.add.reduceat(rows, starts, axis=2) / numpy.add.reduceat(self.ring_areas, starts)[:, None]
+        share = numpy.sinc(2 * m / self.meridians) / numpy.sinc(m / self.meridians)
+        return both * (share**2)[:, None, None]
+
     def total(self, one: Numbers, other: Numbers) -> Numbers:
         """∫ one · other over a sphere of radius 1, of fields (..., rings, meridians)."""
-        return numpy.einsum("...ij,...ij,i->...", one, other, self.areas[:, 0], optimize=False)
+        rings: Numbers = numpy.vecdot(one, other)
+        return rings @ self.areas[:, 0].astype(rings.dtype)
 
 
 def grid(reach: float, width: float) -> Grid:
@@ -147,6 +177,10 @@ class Turning:
         back = moved.reshape(len(self.matrices), rings, 2 * batch).view(waves.dtype).transpose(2, 1, 0)
         return scipy.fft.irfft(back, n=meridians)
 
+    def rough(self) -> Turning:
+        """The same in single precision."""
+        return Turning(matrices=self.matrices.astype(numpy.float32))
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Local:
@@ -157,3 +191,7 @@ class Local:
     def __call__(self, fields: Numbers) -> Numbers:
         """What becomes of fields (batch, rings, meridians)."""
         return fields * self.scale
+
+    def rough(self) -> Local:
+        """Itself: it costs nothing."""
+        return self

@@ -67,7 +67,7 @@ class Patch:
 
     def along(self, angle: Numbers) -> Numbers:
         """The pressure in MPa at angles from the load, in the plane of load and cup's axis towards the rim."""
-        return self.at(self._ray(angle, 0.0 * angle))
+        return self.at(_ray(self.axis, angle, 0.0 * angle))
 
     @cached_property
     def largest(self) -> tuple[float, Numbers]:
@@ -94,45 +94,37 @@ class Patch:
 
     @cached_property
     def outline(self) -> Numbers:
-        """Unit vectors (rays, 3) to the edge of the contact, around the load, where rays from there leave it."""
+        """Unit vectors (rays, 3) to the edge of the contact, where rays from its middle leave it."""
         turns = numpy.arange(_RAYS) * (2 * pi / _RAYS)
-        return self._ray(self._edges, turns)
+        return _ray(self._middle, self._edges, turns)
+
+    @cached_property
+    def _middle(self) -> Numbers:
+        """Where the load points; of a contact that lies beside it the cell of the largest pressure."""
+        if self.at(self.axis) > 0:
+            return self.axis
+        return self.grid.middles.reshape(3, -1)[:, self.pressure.argmax()]
 
     @cached_property
     def _edges(self) -> Numbers:
-        """Angles from the load to the edge along each ray."""
-        step = self.grid.width / 2
-        turns = numpy.arange(_RAYS) * (2 * pi / _RAYS)
-        out = numpy.arange(1, int(pi / step))[:, None] * step
-        points = self._ray(out + 0 * turns, turns)
+        """Angles from the middle to the edge along each ray: where the bore ends, or where the power falls to 0."""
+        step, turns = self.grid.width / 2, numpy.arange(_RAYS) * (2 * pi / _RAYS)
+        out = numpy.arange(1, int(pi / step)) * step
+        points = _ray(self._middle, out[:, None] + 0 * turns, turns)
         values = self._powers(_angles(points))
         inside = points[..., 2] >= numpy.cos(self.grid.reach)
-        ends = numpy.argmax(~((values > 0) & inside), axis=0)  # the first step outside
-        return numpy.array([self._edge(int(end), out[:, 0], values[:, i], inside[:, i]) for i, end in enumerate(ends)])
+        end = numpy.argmax(~((values > 0) & inside), axis=0)  # the first step outside
+        rim, each = self._rims(turns), numpy.arange(_RAYS)
+        edge = numpy.where(inside[end, each], _fallen(values, out, end), rim)
+        return numpy.minimum(numpy.where(end > 0, edge, 0.0), rim)
 
-    def _edge(self, end: int, out: Numbers, values: Numbers, inside: Numbers) -> float:
-        """Where the power, which falls with the square of the angle, is 0; or where the bore ends."""
-        if not inside[end] and end > 0:
-            return self._to_rim(float(out[end - 1]), float(out[end]), end, values)
-        last = max(end - 3, 0)  # the cells at the edge are only partly under pressure
-        first = max(last - 3, 0)
-        if first == last:
-            return float(out[end] - (out[1] - out[0]) / 2) if end else 0.0
-        one, other = values[first], values[last]
-        if not one > other:
-            return float(out[end])
-        edge = out[first] ** 2 + one * (out[last] ** 2 - out[first] ** 2) / (one - other)
-        return float(min(max(numpy.sqrt(edge), out[last]), out[end] + (out[1] - out[0]) * 2))
-
-    def _to_rim(self, low: float, high: float, end: int, values: Numbers) -> float:
-        """Between the last step inside of the bore and the first outside."""
-        return (low + high) / 2
-
-    def _ray(self, out: Numbers, turns: Numbers) -> Numbers:
-        """Unit vectors at angles from the load, on rays that turn around it from the plane of load and cup's axis."""
-        first, second = _across(self.axis)
-        side = numpy.cos(turns)[..., None] * first + numpy.sin(turns)[..., None] * second
-        return numpy.cos(out)[..., None] * self.axis + numpy.sin(out)[..., None] * side
+    def _rims(self, turns: Numbers) -> Numbers:
+        """Angles from the middle to where the bore ends along each ray; infinite where it does not."""
+        # z = cos out z(0) + sin out z(90°) = A cos(out - a)
+        start, side = (_ray(self._middle, numpy.full(_RAYS, each), turns)[:, 2] for each in (0.0, pi / 2))
+        share = numpy.cos(self.grid.reach) / numpy.hypot(start, side)
+        ends = numpy.arctan2(side, start) + numpy.arccos(numpy.clip(share, -1, 1))
+        return numpy.where(abs(share) < 1, ends, numpy.inf)
 
     @cached_property
     def half_angle(self) -> float:
@@ -155,7 +147,8 @@ class Patch:
         """The angle (rad) from the outline to the end of the bore where that is nearest; 0 where it is reached."""
         if self.edge_loaded:
             return 0.0
-        return max(float(self.grid.reach - numpy.arccos(numpy.clip(self.outline[:, 2], -1, 1)).max()), 0.0)
+        ends = numpy.arccos(numpy.clip(self.outline[:, 2].min(), -1, 1))
+        return float(max(self.grid.reach - ends, numpy.diff(self.grid.edges)[-1]))  # the last ring is free
 
 
 def _angles(directions: Numbers) -> Numbers:
@@ -164,11 +157,31 @@ def _angles(directions: Numbers) -> Numbers:
     return numpy.stack([polar_angle(first), numpy.arctan2(first[1], first[0]) % (2 * pi)], axis=-1)
 
 
+def _ray(middle: Numbers, out: Numbers, turns: Numbers) -> Numbers:
+    """Unit vectors at angles from another, on rays that turn around it from its plane with the cup's axis."""
+    first, second = _across(middle)
+    side = numpy.cos(turns)[..., None] * first + numpy.sin(turns)[..., None] * second
+    ray: Numbers = numpy.cos(out)[..., None] * middle + numpy.sin(out)[..., None] * side
+    return ray
+
+
 def _across(axis: Numbers) -> tuple[Numbers, Numbers]:
     """Two unit vectors across an axis: away from the pole in its meridian, and around it."""
     polar, azimuth = float(polar_angle(axis)), float(numpy.arctan2(axis[1], axis[0]))
     around = numpy.array([-numpy.sin(azimuth), numpy.cos(azimuth), 0.0])
     return unit_vectors(numpy.asarray(polar + pi / 2), numpy.asarray(azimuth)), around
+
+
+def _fallen(values: Numbers, out: Numbers, end: Numbers) -> Numbers:
+    """Where powers (steps, rays) that fall with the square of the angle are 0, from before the first step outside."""
+    step, each = out[1] - out[0], numpy.arange(len(end))
+    last = numpy.maximum(end - 3, 0)  # the cells at the edge are only partly under pressure
+    first = numpy.maximum(last - 3, 0)
+    one, other = values[first, each], values[last, each]
+    fall = numpy.where(one > other, one - other, 1.0)
+    square = out[first] ** 2 + one * (out[last] ** 2 - out[first] ** 2) / fall
+    edge = numpy.clip(numpy.sqrt(square), out[last], out[end] + 2 * step)
+    return numpy.where(first == last, out[end] - step / 2, numpy.where(one > other, edge, out[end]))
 
 
 def _terms(s: Numbers, t: Numbers) -> Numbers:

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy
 
 from ..arrays import Numbers
+from .balance import balanced
 from .compliance import Compliance
 from .gap import Separation
-from .solver import TOLERANCE, answers, pressed
-
-_ROUNDS = 40
-_LOOSE = 1e-2
-_CLOSE = 1e-6  # of the load: where the balance is good
+from .solver import answers, pressed
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -45,6 +43,16 @@ class Bed:
     def area(self) -> float:
         """Area on the bore over that on a sphere of radius 1, in mm²."""
         return self.separation.socket_radius**2
+
+    @cached_property
+    def coarser(self) -> Bed | None:
+        """The same in cells twice as wide; None where these are wide already."""
+        soft = self.compliance.coarser
+        return None if soft is None else Bed(compliance=soft, separation=self.separation.on(soft.grid))
+
+    def spread(self, fields: Numbers) -> Numbers:
+        """Fields (..., rings, meridians) of the coarser cells in these."""
+        return self.compliance.grid.spread(fields)
 
     def force(self, pressure: Numbers) -> Numbers:
         """The load in N that pressures (batch, rings, meridians) carry: (batch, 3)."""
@@ -87,49 +95,12 @@ class Bed:
         """
         rest = Rest(displacement=start.copy(), pressure=self._empty(len(load)), found=held & False)
         if held.any():
-            some = self._under(load[held], start[held], None if pressure is None else pressure[held])
-            for whole, part in zip((rest.displacement, rest.pressure, rest.found), some, strict=True):
-                whole[held] = part
+            preload = self.area * self.compliance.evenly * max(-self.separation.clearance, 0.0)
+            size = numpy.maximum(numpy.linalg.norm(load[held], axis=1), preload)
+            some = balanced(self, load[held], size, start[held], None if pressure is None else pressure[held])
+            rest.displacement[held], rest.pressure[held], rest.found[held] = some.place, some.pressure, some.found
         return rest
 
     def _empty(self, count: int) -> Numbers:
         grid = self.compliance.grid
         return numpy.zeros((count, grid.rings, grid.meridians))
-
-    def _under(self, load: Numbers, start: Numbers, pressure: Numbers | None) -> tuple[Numbers, Numbers, Numbers]:
-        preload = self.area * self.compliance.evenly * max(-self.separation.clearance, 0.0)
-        size = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
-        e, p, q = start.copy(), pressure, None
-        misses, found = numpy.full(len(load), numpy.inf), numpy.zeros(len(load), dtype=bool)
-        tolerance = numpy.full(len(load), _LOOSE)
-        for _ in range(_ROUNDS):
-            overlap = self.separation.overlap(e)
-            made = pressed(self.compliance, overlap, p, tolerance)
-            missing, before = load - self.force(made.pressure), misses
-            misses = numpy.linalg.norm(missing, axis=1) / size
-            found = made.settled & (misses <= _CLOSE) & (tolerance <= TOLERANCE)
-            if found.all():
-                break
-            q = self.stretched(e, made.pressure, q)
-            step = self._step(q, missing, e) * numpy.where(misses > 0.9 * before, 0.5, 1.0)[:, None]
-            apart = numpy.minimum(overlap.max(axis=(1, 2)), 0.0) / size  # a ball that has lost its bore goes back to it
-            step = numpy.where(apart[:, None] < 0, -1.1 * apart[:, None] * load, step)
-            e = numpy.where(found[:, None], e, e + step)
-            p = numpy.maximum(made.pressure + numpy.einsum("bk,bkij->bij", step, q), 0.0)
-            tolerance = numpy.clip(misses**2, TOLERANCE, _LOOSE)
-        return e, made.pressure, found
-
-    def _step(self, stretched: Numbers, missing: Numbers, displacement: Numbers) -> Numbers:
-        """Newton's step, shorter where it would lose the contact."""
-        tangent = self.tangent(stretched)
-        trace = numpy.trace(tangent, axis1=1, axis2=2)[:, None, None]
-        solid = numpy.where(trace > 0, _SOLID * trace, 1.0) * numpy.eye(3)
-        step: Numbers = numpy.linalg.solve(tangent + solid, missing[:, :, None])[:, :, 0]
-        depth = numpy.linalg.norm(displacement, axis=1) - self.separation.clearance
-        moved = numpy.linalg.norm(displacement + step, axis=1) - self.separation.clearance
-        share = numpy.where(moved < depth / 4, 0.75 * depth / numpy.maximum(depth - moved, 1e-300), 1.0)
-        return step * share[:, None]
-
-
-_SOLID = 1e-12
-"""Of the trace of a stiffness, added to each direction: one in which nothing pushes back stays solvable."""
