@@ -2,7 +2,10 @@
 
 import csv
 import json
+import sys
 import time
+from contextlib import contextmanager
+from subprocess import DEVNULL, Popen
 
 import numpy as np
 import pytest
@@ -22,6 +25,7 @@ from ballsocket.studies.limits import Limit
 from ballsocket.studies.rows import table
 from ballsocket.studies.run import read
 
+from ..cli.command import run
 from ..extent import either, some
 
 HIP = bs.joints["hess-forsbach"]
@@ -413,6 +417,44 @@ def test_a_scheduler_is_asked_by_its_address():
     assert same(found, bs.study(bs.HessForsbach(), HIP, **AXES))
     with pytest.raises(ValueError, match="give an address or a number of workers"):
         Distributed(address="tcp://127.0.0.1:1", workers=2)
+
+
+@contextmanager
+def dask(*words, folder):
+    """A command of Dask's that runs until it is no longer needed."""
+    with Popen([sys.executable, "-m", "dask", *words], cwd=folder, stdout=DEVNULL, stderr=DEVNULL) as running:
+        try:
+            yield
+        finally:
+            running.terminate()
+
+
+@pytest.mark.long
+def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(tmp_path):
+    """`dask scheduler` and two of `dask worker`, which share the blocks: the CSV is that of one process."""
+    from distributed import Client
+
+    several = "force = { from = '0.1 kN', to = '3 kN', count = 20 }"  # exact presses: several blocks
+    text = f"model = 'exact'\n{ORDERED.replace('force = 3000', several)}"
+    where, mark = tmp_path / "scheduler.json", ("--no-dashboard", "--host", "127.0.0.1")
+    worker = ("worker", *mark, "--no-nanny", "--nthreads", "1", "--scheduler-file", str(where))
+    with (
+        dask("scheduler", *mark, "--port", "0", "--scheduler-file", str(where), folder=tmp_path),
+        dask(*worker, folder=tmp_path),
+        dask(*worker, folder=tmp_path),
+    ):
+        while not where.exists():
+            time.sleep(0.1)
+        address = json.loads(where.read_text(encoding="utf-8"))["address"]
+        with Client(address) as client:
+            client.wait_for_workers(2, timeout=60)
+        for name, engine in (("here", ""), ("there", f"[engine]\nkind = 'dask'\naddress = '{address}'\n")):
+            (tmp_path / f"{name}.toml").write_text(text.replace("[axes]", f"{engine}[axes]"), encoding="utf-8")
+            told = run("study", f"{name}.toml", "--store", f"{name}.zarr", "--out", f"{name}.csv", folder=tmp_path)
+            assert told.returncode == 0, told.stderr
+    here, there = ((tmp_path / f"{name}.csv").read_bytes() for name in ("here", "there"))
+    assert here.startswith(b"ball_radius_mm,outer_radius_mm,liner,")
+    assert here == there
 
 
 def test_progress_is_told():
