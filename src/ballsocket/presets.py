@@ -43,7 +43,7 @@ STRUCTURAL_STEEL = Material(
     young=210000.0,
     poisson=0.3,
     name="structural steel",
-    source="CEN 2005, EN 1993-1-1, 3.2.6; yield: S235 up to 16 mm thick, the least of its grades, EN 10025-2:2004, Table 7",
+    source="CEN 2005, EN 1993-1-1, 3.2.6; yield: S235, the least grade, to 16 mm thick, EN 10025-2:2004, Table 7",
     yield_stress=235.0,
 )
 COCR = Material(
