@@ -1,0 +1,63 @@
+"""Hips of patients who differ, to a million cycles: what one takes, how far it is off, and ten thousand on paper."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import radians
+from pathlib import Path
+from time import process_time
+
+import numpy
+
+from ballsocket.hip import InUse, Scatter, logarithmic, population
+from ballsocket.hip.file import read_hip
+from ballsocket.hip.lives import drawn
+from ballsocket.hip.patients import ANSWERS, Patient, answers_of
+
+from .report import Report, Rows
+from .timing import Work, interleaved, one_core
+
+REPEATS, SAMPLE, WHOLE, MILLION, PATIENTS = 3, 48, 16, 1e6, 10_000
+FILE = Path(__file__).parents[1] / "examples" / "hip_of_many.toml"
+
+
+def measure() -> Report:
+    said = read_hip(FILE).uncertain
+    assert said is not None
+    plain = said.scatter
+    crept = replace(plain, use=replace(plain.use, creep=logarithmic()))
+    runs: dict[str, Work] = {"wear": _sample(plain), "wear and creep": _sample(crept)}
+    with one_core() as pinned:
+        _, seconds = interleaved(REPEATS, runs, process_time)
+    rows = Rows("To a million cycles, on springs", ("what", "ms a patient", f"{PATIENTS} patients on two cores, min"))
+    for name, spread in seconds.items():
+        one = spread.median / SAMPLE
+        rows.add(name, f"{1e3 * one:.3g}", f"{PATIENTS * one / 2 / 60:.2g}")
+    off = Rows(f"Quick runs beside rings of 3° and 100 instants, {WHOLE} patients", ("what", "median %", "most %"))
+    for name, values in _off(plain).items():
+        off.add(name, f"{numpy.median(values):.2g}", f"{values.max():.2g}")
+    return Report([rows, off], ["On one core." if pinned else "Not held to one core.", "The aim is 240 minutes."])
+
+
+def _sample(scatter: Scatter) -> Callable[[], object]:
+    return lambda: population(scatter, [MILLION], patients=SAMPLE)
+
+
+def _off(scatter: Scatter) -> dict[str, numpy.ndarray]:
+    """How far quick runs are from whole ones, in %."""
+    each = drawn(scatter, WHOLE, 3)
+    found = []
+    for number in range(WHOLE):
+        values = {name: float(column[number]) for name, column in each.items()}
+        quick = scatter.patient(values)
+        one, other = (answers_of(run.seen([MILLION]))[0] for run in (quick, _whole(scatter, quick, values)))
+        found.append(100 * abs(one / numpy.where(other > 0, other, numpy.nan) - 1))
+    names = [name for name in ANSWERS if name in ("volume", "depth", "penetration", "max_pressure")]
+    return {name: numpy.array(found)[:, list(ANSWERS).index(name)] for name in names}
+
+
+def _whole(scatter: Scatter, quick: Patient, values: dict[str, float]) -> Patient:
+    heavier = values["body_weight"] / float(scatter.distributions["body_weight"].frozen.median())
+    use: InUse = replace(quick.use, ring_width=radians(3.0), cycle=scatter.use.cycle.scaled(heavier))
+    return replace(quick, use=use)
