@@ -47,7 +47,7 @@ def test_a_worn_bore_pressed_again_balances_its_load():
     report = use.after(2e5).last
     rest = use.rest(report.wear.ravel())
     carried = np.einsum("tp,kp,p->tk", rest.pressure, use.bed.normals, use.bed.areas)
-    assert np.linalg.norm(carried - use.loads, axis=1) == pytest.approx(0.0, abs=2e-6 * 3000)
+    assert (np.linalg.norm(carried - use.loads, axis=1) <= 1e-6 * np.linalg.norm(use.loads, axis=1)).all()
 
 
 def test_elasticity_changes_volume_and_depth_by_little():

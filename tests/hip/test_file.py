@@ -31,6 +31,8 @@ def test_the_command_answers_in_json():
     assert answer["cycle"]["pressure_slide_integral_Nm"] == pytest.approx(30.09, rel=3e-3)
     assert answer["cycle"]["cross_shear_mean"] == pytest.approx(0.107, abs=1e-3)
     assert answer["cycle"]["peaks"]["force_N"] == pytest.approx(3000.0, rel=1e-6)
+    assert 0 < answer["cycle"]["crossing_angle_mean_deg"] < 45
+    assert answer["cycle"]["peaks"]["speed_mm_s"] == pytest.approx(14.0 * 2 * 3.1416 * 0.375, rel=0.1)  # R ω of flexion
     assert answer["initial"]["wear_mm3_per_Mc"] == pytest.approx(32.1, rel=5e-3)
     assert answer["initial"]["depth_mm_per_Mc"] == pytest.approx(0.192, rel=5e-3)
     seen = {report["cycles"]: report for report in answer["history"]}

@@ -77,7 +77,8 @@ def test_the_page_of_a_run(tmp_path):
     done = run("hip", str(file), "--report", str(tmp_path / "hip.html"), "--store", str(tmp_path / "kept"))
     assert done.returncode == 0, done.stderr
     page = (tmp_path / "hip.html").read_text(encoding="utf-8")
-    assert page.count("data:image/png;base64") == 5
+    assert page.count("data:image/png;base64") == 6
+    assert "Cross-shear" in page
     assert "mm³ worn and a penetration of" in page
     assert not re.search(r"(src|href)='http", page)
     assert (tmp_path / "kept" / "hip_in_use.npz").exists()

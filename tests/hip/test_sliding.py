@@ -44,6 +44,25 @@ def test_what_slides_over_the_socket_has_the_cross_shear_of_its_track():
     assert sliding.cross_shear(pressure)[0] == pytest.approx(cross_shear_of(steps[:, :2], pressure[:, 0]), rel=1e-9)
 
 
+def test_velocities_are_what_the_steps_are_over_time():
+    cycle = iso_14242_1(50)
+    sliding = Sliding(radius=14.0, turns=cycle.turns, directions=POLE)
+    velocity = sliding.velocities(cycle.seconds)
+    assert velocity.shape == (50, 1, 3)
+    assert np.linalg.norm(velocity, axis=2) == pytest.approx(sliding.steps / cycle.seconds[:, None], rel=1e-9)
+    assert velocity[:, 0, 2] == pytest.approx(0.0, abs=1e-9)  # along the surface
+
+
+def test_crossing_angles_of_tracks_that_are_known():
+    """0 on a line; on an ellipse of turns that becomes a circle, π/4; on a rectangle of a by b, π/2 b/(a + b)."""
+    around = 2 * pi * (np.arange(400) + 0.5) / 400
+    circle = 1e-3 * np.column_stack([np.cos(around), np.sin(around), 0 * around])
+    rectangle = np.array([[3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-3.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    for turns, angle in ((flexion(40).turns, 0.0), (circle, pi / 4), (rectangle, pi / 8)):
+        sliding = Sliding(radius=1.0, turns=turns, directions=POLE)
+        assert sliding.crossing_angle(np.ones((len(turns), 1)))[0] == pytest.approx(angle, abs=1e-7)
+
+
 def test_flexion_alone_has_no_cross_shear_anywhere():
     rng = np.random.default_rng(1)
     directions = rng.normal(size=(3, 40))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -28,6 +29,10 @@ class First:
         ∫∫ p v dA dt in N m.
     cross_shear : float
         Its mean over the socket, weighted by p v.
+    crossing_angle : float
+        Between sliding and its principal direction, its mean weighted by p v, in rad.
+    speed : float
+        The largest of sliding in contact, in mm/s.
     volume, depth : float
         What a million such cycles would wear: mm³, and mm at the deepest point.
     max_pressure, max_force : float
@@ -37,6 +42,8 @@ class First:
     slide: float
     work: float
     cross_shear: float
+    crossing_angle: float
+    speed: float
     volume: float
     depth: float
     max_pressure: float
@@ -207,9 +214,14 @@ class History:
                 "slide_mm": first.slide,
                 "pressure_slide_integral_Nm": first.work,
                 "cross_shear_mean": first.cross_shear,
+                "crossing_angle_mean_deg": degrees(first.crossing_angle),
                 "edge": _told(self.worst),
                 "microseparation": None if apart is None else apart.summary(self.use),
-                "peaks": {"force_N": first.max_force, "max_pressure_MPa": first.max_pressure},
+                "peaks": {
+                    "force_N": first.max_force,
+                    "max_pressure_MPa": first.max_pressure,
+                    "speed_mm_s": first.speed,
+                },
             },
             "film": self.use.film(self.lubricant).summary(),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},

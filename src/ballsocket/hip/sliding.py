@@ -109,17 +109,39 @@ class Sliding:
         vars(chosen)["steps"] = self.steps[:, points]
         return chosen
 
+    def velocities(self, seconds: Numbers) -> Numbers:
+        """Of the ball over each point in mm/s, R ω × n, in instants that last so long: (instants, points, 3)."""
+        omega = self.turns / seconds[:, None]
+        return self.radius * numpy.cross(omega[:, None], self.directions.T[None])
+
+    @cached_property
+    def _turned(self) -> tuple[Numbers, Numbers]:
+        """The two parts of each step in the tangent plane, turned by 90°: each (instants, points)."""
+        one, other = tangents(self.directions)
+        return self.radius * (self.turns @ one), self.radius * (self.turns @ other)
+
     @cached_property
     def _moments(self) -> tuple[Numbers, ...]:
         """ds dsᵀ/|ds| of each step in the tangent plane, turned by 90°: xx, yy, xy, each (instants, points)."""
-        one, other = tangents(self.directions)
-        a, b = self.radius * (self.turns @ one), self.radius * (self.turns @ other)
+        a, b = self._turned
         share = numpy.divide(1.0, self.steps, out=numpy.zeros_like(self.steps), where=self.steps > 0)
         return a * a * share, b * b * share, a * b * share
 
     def cross_shear(self, pressure: Numbers) -> Numbers:
         """Cross-shear of each point of the socket, weighted by pressures (instants, points): (points,)."""
         return cross_shear(*(numpy.einsum("tp,tp->p", pressure, part) for part in self._moments))
+
+    def crossing_angle(self, pressure: Numbers) -> Numbers:
+        """The mean angle in rad between sliding and its principal direction at each point of the socket: (points,).
+
+        Weighted by pressures (instants, points) and slides: 0 on a straight track, π/4 on a circle.
+        """
+        xx, yy, xy = (numpy.einsum("tp,tp->p", pressure, part) for part in self._moments)
+        principal, (a, b) = numpy.arctan2(2 * xy, xx - yy) / 2, self._turned
+        off = numpy.arccos(numpy.clip(abs(numpy.cos(numpy.arctan2(b, a) - principal)), 0.0, 1.0))
+        weight = pressure * self.steps
+        whole, summed = weight.sum(axis=0), numpy.einsum("tp,tp->p", weight, off)
+        return numpy.divide(summed, whole, out=numpy.zeros_like(whole), where=whole > 0)
 
 
 def slide(radius: float, turns: Numbers, direction: Numbers) -> float:

@@ -289,10 +289,15 @@ class InUse:
         done, areas = self.passed(self.unworn), self.bed.areas
         depth, work = self.wear.depth(done), done.work * areas
         whole = float(work.sum())
+        touched = numpy.flatnonzero(work > 0)
+        crossing = self.sliding.part(touched).crossing_angle(done.pressure[:, touched])
+        speeds = numpy.where(done.pressure > 0, self.sliding.steps, 0.0) / self.cycle.seconds[self.loaded][:, None]
         return First(
             slide=self.slide,
             work=whole / 1e3,
             cross_shear=float(done.cross_shear @ work) / whole if whole > 0 else 0.0,
+            crossing_angle=float(crossing @ work[touched]) / whole if whole > 0 else 0.0,
+            speed=float(speeds.max(initial=0.0)),
             volume=1e6 * float(depth @ areas),
             depth=1e6 * float(depth.max(initial=0.0)),
             max_pressure=float(done.pressure.max(initial=0.0)),

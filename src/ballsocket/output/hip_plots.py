@@ -10,12 +10,12 @@ import numpy
 from ..hip.history import History, Report
 from ..hip.sliding import tracks
 from ..hip.uncertainty import Bands
-from ..sphere.directions import polar_angle
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..arrays import Numbers
+    from ..hip.use import InUse
 
 _INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"
 _SIZE = (6.4, 4.2)
@@ -35,23 +35,34 @@ def _figure(size: tuple[float, float] = _SIZE, polar: bool = False) -> tuple[Fig
 def wear_map(history: History, report: Report | None = None) -> Figure:
     """The worn depth over the bore, seen along the cup's axis: the dome's pole in the middle, the rim outside."""
     seen = history.last if report is None else report
-    grid = history.use.grid
+    title = f"{seen.volume:.4g} mm³ after {seen.cycles / 1e6:g} million cycles; the load leans to the right"
+    return _map(history.use, 1e3 * seen.wear, "worn depth [µm]", title)
+
+
+def cross_shear_map(history: History) -> Figure:
+    """The cross-shear of the first cycle over the bore, seen as the worn depth."""
+    use = history.use
+    done = use.passed(use.unworn)
+    field = done.cross_shear.reshape(use.grid.rings, -1)
+    return _map(use, field, "cross-shear", "0 on a straight track, 0.5 where no direction is preferred")
+
+
+def _map(use: InUse, field: Numbers, label: str, title: str) -> Figure:
+    """A field (rings, meridians) over the bore, with a cross where the largest load points."""
     figure, axes = _figure((5.6, 4.8), polar=True)
-    around = numpy.append(grid.azimuth, grid.azimuth[0] + 2 * pi)
-    depth = 1e3 * numpy.hstack([seen.wear, seen.wear[:, :1]])
-    shown = axes.contourf(around, numpy.degrees(grid.polar), depth, levels=20, cmap="cividis")
-    sizes = numpy.linalg.norm(history.use.loads, axis=1)
+    around = numpy.append(use.grid.azimuth, use.grid.azimuth[0] + 2 * pi)
+    closed = numpy.hstack([field, field[:, :1]])
+    shown = axes.contourf(around, numpy.degrees(use.grid.polar), closed, levels=20, cmap="cividis")
+    sizes = numpy.linalg.norm(use.loads, axis=1)
     if len(sizes):
-        largest = history.use.loads[sizes.argmax()]
-        axes.plot(numpy.arctan2(largest[1], largest[0]), degrees(polar_angle(largest)), "+", color="white", ms=12)
-    axes.set_ylim(0, degrees(history.use.reach))
+        x, y, z = use.loads[sizes.argmax()] / sizes.max()
+        axes.plot(numpy.arctan2(y, x), degrees(numpy.arctan2(numpy.hypot(x, y), z)), "+", color="white", ms=12)
+    axes.set_ylim(0, degrees(use.reach))
     axes.set_rgrids([30, 60], ["30°", "60°"], angle=100, color="0.85")
     axes.set_xticks([0, pi / 2, pi, 3 * pi / 2], [""] * 4)
     axes.grid(color="0.6", linewidth=0.4)
-    figure.colorbar(shown, ax=axes, label="worn depth [µm]", shrink=0.8)
-    axes.set_title(
-        f"{seen.volume:.4g} mm³ after {seen.cycles / 1e6:g} million cycles; the load leans to the right", fontsize=10
-    )
+    figure.colorbar(shown, ax=axes, label=label, shrink=0.8)
+    axes.set_title(title, fontsize=10)
     return figure
 
 

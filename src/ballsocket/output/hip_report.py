@@ -33,6 +33,11 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
             "not what the law does.",
         ),
         "tracks": ("Tracks", hip_plots.track_map, "Of points of the ball on the socket, in one cycle."),
+        "cross_shear": (
+            "Cross-shear",
+            hip_plots.cross_shear_map,
+            "Of the first cycle, each slide weighted by its pressure.",
+        ),
         "film": ("Film and friction", hip_plots.film_figure, f"{CONFORMING}."),
         "edge": ("Edge distance", hip_plots.edge_figure, "0 is edge loading; a dot where the contact comes nearest."),
     }
