@@ -20,7 +20,7 @@ from .elastic.tabulated.model import Tabulated
 from .fem.model import FiniteElement
 from .fem.spacing import Adapted, Element, Uniform
 from .gaps import CircularGap, LinearGap
-from .identify.modulus import as_constant, as_corrected_vessel, as_polynomial, calibrate
+from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
 from .io.joint_file import read_joint
 from .joint import Joint, Layer, Material, Support
 from .model import Model
@@ -105,6 +105,7 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "cite",
     "compare",
     "ForceElement",
+    "identify",
     "Orientations",
     "orient",
     "studies",

@@ -32,6 +32,7 @@ class Kind(StrEnum):
     STIFFNESS = "stiffness"
     ENERGY = "energy"
     FOUNDATION = "foundation modulus"
+    COMPLIANCE = "compliance"
 
     @property
     def unit(self) -> str:
@@ -69,6 +70,7 @@ _KINDS = {
     Kind.STIFFNESS: ("N/mm", "a stiffness, such as '60 kN/mm'"),
     Kind.ENERGY: ("N mm", "an energy, such as '50 N*mm'"),
     Kind.FOUNDATION: ("MPa/mm", "a foundation modulus, such as '280 MPa/mm'"),
+    Kind.COMPLIANCE: ("mm/N", "a compliance, such as '5 um/kN'"),
 }
 _WRITTEN = {Kind.ANGLE: Unit("°", degrees(1.0)), Kind.NUMBER: Unit(""), Kind.AREA: Unit("mm²")}
 _SUFFIXES = {
@@ -77,5 +79,6 @@ _SUFFIXES = {
     Kind.STIFFNESS: "N_per_mm",
     Kind.ENERGY: "N_mm",
     Kind.FOUNDATION: "MPa_per_mm",
+    Kind.COMPLIANCE: "mm_per_N",
 }
 _TYPED = {Kind.ANGLE: "deg", Kind.NUMBER: ""}

@@ -54,11 +54,14 @@ def _read_csv(path: Path, check: Check) -> dict[str, Numbers]:
 
 
 def _lines(stream: IO[str]) -> Iterator[str]:
-    """The lines of a text, one of which could be as long as the memory."""
+    """The lines of a text, one of which could be as long as the memory; remarks before the heads are passed over."""
+    heads = False
     while line := stream.readline(_LONGEST_LINE):
         if len(line) == _LONGEST_LINE:
             raise ValueError(f"{Path(stream.name).name} has a line of more than {_LONGEST_LINE} characters")
-        yield line
+        heads = heads or not line.startswith("#")
+        if heads:
+            yield line
 
 
 def _rows(reader: Iterator[list[str]], title: str, width: int) -> list[Numbers]:

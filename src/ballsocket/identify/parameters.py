@@ -1,0 +1,345 @@
+"""From measurements to the numbers of a joint: what fits best, how well the data tell it, and what they cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..arrays import Numbers
+from ..joint import Joint
+from ..model import Model
+from ..model.answer import check_joint
+from ..studies.parameters import varied
+from .answers import Answers
+from .information import WIDE, Information
+from .measured import Measured
+from .misfit import Misfit, Slopes, by_differences
+from .scatter import NormalScatter, Scatter
+from .search import Found, found
+from .unknowns import Given, Scales, unknowns_of
+
+if TYPE_CHECKING:
+    from .experiment import Experiment
+    from .posterior import Posterior
+
+_NORMAL = NormalScatter()
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One number as the data tell it.
+
+    Attributes
+    ----------
+    name, unit : str
+    value : float
+        NaN where the data do not tell it and no more than two ends were known.
+    low, high : float
+        Its band of 95 %; the two ends where it is not told.
+    left : float
+        What is left of the width that was known.
+    """
+
+    name: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    left: float
+
+    @property
+    def told(self) -> bool:
+        return self.value == self.value
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON; a value that is not told is None."""
+        value = self.value if self.told else None
+        return {
+            "name": self.name,
+            "unit": self.unit,
+            "value": value,
+            "low": self.low,
+            "high": self.high,
+            "told": self.told,
+        }
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Identified:
+    """What measurements tell of a joint.
+
+    Attributes
+    ----------
+    misfit : Misfit
+        Data, model and unknowns.
+    best : Found
+        Where the search ended.
+    """
+
+    misfit: Misfit
+    best: Found
+
+    @property
+    def model(self) -> Model:
+        return self.misfit.answers.model
+
+    @property
+    def data(self) -> tuple[Measured, ...]:
+        return self.misfit.answers.data
+
+    @property
+    def scales(self) -> Scales:
+        return self.misfit.scales
+
+    @property
+    def point(self) -> dict[str, float]:
+        """Numbers that fit best, in mm, N, MPa, rad; where some are not told these are one choice among many."""
+        values = self.scales.values(self.best.places).tolist()
+        return dict(zip(self.scales.names, values, strict=True))
+
+    @property
+    def joint(self) -> Joint:
+        """The joint of the best point."""
+        own = {name: value for name, value in self.point.items() if "." not in name}
+        return varied(self.misfit.answers.joint, own)[0]
+
+    @cached_property
+    def information(self) -> Information:
+        """What the data can tell there."""
+        places = self.best.places
+        return Information(self.scales, places, self.misfit.information(places))
+
+    @cached_property
+    def estimates(self) -> dict[str, Estimate]:
+        """Each unknown with its band of 95 %; one that the data do not tell has no value."""
+        left, untold = self.information.deviations, self.information.untold
+        half = WIDE * numpy.sqrt(numpy.diagonal(self.information.covariance))
+        ends = [numpy.clip(self.best.places + side * half, self.scales.low, self.scales.high) for side in (-1, 1)]
+        low, high = (self.scales.values(end).tolist() for end in ends)
+        return {
+            each.name: Estimate(each.name, each.quantity.unit, float("nan"), each.low, each.high, left[each.name])
+            if each.name in untold
+            else Estimate(
+                each.name, each.quantity.unit, self.point[each.name], low[place], high[place], left[each.name]
+            )
+            for place, each in enumerate(self.scales.unknowns)
+        }
+
+    def __getitem__(self, name: str) -> Estimate:
+        return self.estimates[name.replace(".", "_") if name.replace(".", "_") in self.estimates else name]
+
+    @cached_property
+    def answers(self) -> tuple[Numbers, ...]:
+        """What the model says at the best point, a row for each set of data."""
+        found = self.misfit.answers.at(self.scales.values(self.best.places[None]))[0]
+        return tuple(numpy.split(found, numpy.cumsum([len(each) for each in self.data])[:-1]))
+
+    def curve(self, place: int, count: int = 60) -> tuple[Numbers, Numbers]:
+        """Loads from the least to the largest of a set of data that has no angles, and what the model says there."""
+        each = self.data[place]
+        loads = numpy.linspace(each.loads.min(), each.loads.max(), count)
+        words: dict[str, Any] = {each.load: loads, "values": numpy.ones(count), "saturation": inf}
+        row = replace(each, uncertainty=1.0, load_uncertainty=0.0, **words)
+        answers = replace(self.misfit.answers, data=(row,))
+        return loads, answers.at(self.scales.values(self.best.places[None]))[0]
+
+    @property
+    def residuals(self) -> tuple[Numbers, ...]:
+        """Values less answers in uncertainties, a row for each set; of one that was cut off what it falls short."""
+        z = self.misfit.standard(numpy.concatenate(self.answers))
+        short = numpy.where(self.misfit.cut_off, numpy.maximum(-z, 0.0), -z)
+        return tuple(numpy.split(short, numpy.cumsum([len(each) for each in self.data])[:-1]))
+
+    @property
+    def freedom(self) -> int:
+        """Data beyond what is found."""
+        return len(self.misfit.value) - self.information.rank
+
+    @property
+    def spread(self) -> float:
+        """Root of χ² over the degrees of freedom: 1 where data scatter as their uncertainties say; NaN of none."""
+        total = sum(float(numpy.sum(row**2)) for row in self.residuals)
+        return (total / self.freedom) ** 0.5 if self.freedom > 0 else float("nan")
+
+    @property
+    def told(self) -> bool:
+        """Whether the data tell every unknown of which no more than two ends were known."""
+        return not self.information.untold
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """What the data cannot tell, what would; data that do not fit; ends that are touched; models beyond trust."""
+        from .remarks import remarks
+
+        return remarks(self)
+
+    @cached_property
+    def next(self) -> Experiment:
+        """What to measure next: the usual quantities over the loads of the data; see `experiment`."""
+        from .experiment import experiment
+
+        return experiment(self)
+
+    def posterior(self, samples: int = 4000, seed: int = 0) -> Posterior:
+        """The distribution of the unknowns by Markov chains; see `ballsocket.identify.posterior.posterior`."""
+        from .posterior import posterior
+
+        return posterior(self, samples, seed)
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON in mm, N, MPa, rad."""
+        return {
+            "model": self.model.name,
+            "valid": self.told and self.best.converged,
+            "converged": self.best.converged,
+            "estimates": [each.summary() for each in self.estimates.values()],
+            "products": [each.summary() for each in self.information.products],
+            "information": {
+                "rank": self.information.rank,
+                "unknowns": len(self.scales.names),
+                "condition": _finite(self.information.condition),
+                "eigenvalues": self.information.eigenvalues.tolist(),
+            },
+            "spread": _finite(self.spread),
+            "degrees_of_freedom": self.freedom,
+            "data": [
+                {"name": each.name, "quantity": each.quantity, "residuals": row.tolist()}
+                for each, row in zip(self.data, self.residuals, strict=True)
+            ],
+            "notes": list(self.notes),
+            "sources": [source.key for source in self.model.sources],
+        }
+
+    def __repr__(self) -> str:
+        rows = [f"{each.name} {_told(each)}" for each in self.estimates.values()]
+        products = [
+            f"{each.name} = {each.value:.4g} {each.unit} ({each.low:.4g} to {each.high:.4g})"
+            for each in self.information.products
+        ]
+        return "\n".join([*rows, *products, *self.notes])
+
+
+def _told(each: Estimate) -> str:
+    unit = f" {each.unit}" if each.unit != "1" else ""
+    band = f"{each.low:.4g} to {each.high:.4g}{unit}"
+    return f"= {each.value:.4g}{unit} ({band})" if each.told else f"is not told: {band}"
+
+
+def _finite(number: float) -> float | None:
+    return number if abs(number) < float("inf") else None
+
+
+def identify(
+    model: Model,
+    joint: Joint,
+    data: Measured | Sequence[Measured],
+    free: Mapping[str, Given],
+    *,
+    scatter: Scatter = _NORMAL,
+    slopes: Slopes = by_differences,
+    seed: int = 0,
+) -> Identified:
+    """Find the numbers of a joint that fit measurements best, and tell how well those tell them.
+
+    Maximum likelihood (with what was known of an unknown, where that is a distribution) by least squares from the best
+    of a search; bands from the information of the data there.
+
+    Parameters
+    ----------
+    model : Model
+        What answers for the joint.
+    joint : Joint
+        Plain numbers; those that are not free stay.
+    data : Measured, or several
+        Sets of measurements; together they need at least as many values as there are unknowns.
+    free : mapping of str to (low, high) or Normal or Rectangular
+        The unknowns by their names in studies ("clearance", "liner_young" or "liner.young"), with their ends in mm,
+        MPa, or with the distribution that is known of them.
+    scatter : Scatter
+        `NormalScatter()`, or `HeavyTailed()` where outliers are to be expected.
+    slopes : callable
+        Where derivatives come from: `by_differences`, or `by_tracing` with JAX (`ballsocket.identify.tracing`).
+    seed : int
+        Of the search for a start.
+
+    Returns
+    -------
+    Identified
+
+    Raises
+    ------
+    ValueError
+        A name that is not known, an empty range, fewer values than unknowns, data that no contact can give, or no
+        point between the ends at which the model answers all data.
+    TypeError
+        What is no joint.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.identify import Measured
+    >>> press = Measured(quantity="indentation", force=[500.0, 1500.0, 3000.0], values=[0.0130, 0.0261, 0.0408],
+    ...     uncertainty=0.0002)
+    >>> found = bs.identify(bs.HessForsbach(), bs.joints["hess-forsbach"], press, {"clearance": (0.02, 0.3)})
+    >>> round(found["clearance"].value, 2)
+    0.1
+    """
+    check_joint(joint)
+    sets = (data,) if isinstance(data, Measured) else tuple(data)
+    unknowns = unknowns_of(free, sets)
+    _check(sets, joint, unknowns)
+    answers = Answers(model, joint, sets, tuple(each.name for each in unknowns))
+    misfit = Misfit(answers, Scales(unknowns), scatter, slopes, _concatenated(each.uncertainty for each in sets))
+    best = found(misfit, seed)
+    for _ in range(_ROUNDS if any(each.load and each.load_uncertainty.any() for each in sets) else 0):
+        misfit = replace(misfit, uncertainty=_with_loads(misfit, best))
+        best = found(misfit, seed)
+    return Identified(misfit, best)
+
+
+_ROUNDS = 2  # of weights that depend on where the best point is
+_LOUDER = 1e-3
+
+
+def _with_loads(misfit: Misfit, best: Found) -> Numbers:
+    """Uncertainties of the values, and what those of the loads make of them, by the slope of the answers there."""
+    data, values = misfit.answers.data, misfit.scales.values(best.places[None])
+    more, less = (misfit.answers.at(values, louder=side * _LOUDER)[0] for side in (1, -1))
+    slope = (more - less) / (2 * _LOUDER)  # by ln of the load
+    shares = _concatenated(_share(each) for each in data)
+    own = _concatenated(each.uncertainty for each in data)
+    return numpy.hypot(own, numpy.where(shares > 0, slope * shares, 0.0))
+
+
+def _share(each: Measured) -> Numbers:
+    """How uncertain the loads are, relative to themselves."""
+    if not each.load:
+        return numpy.zeros(len(each))
+    loads = each.loads
+    return numpy.where(loads > 0, each.load_uncertainty / numpy.where(loads > 0, loads, 1.0), 0.0)
+
+
+def _concatenated(rows: Iterable[Numbers]) -> Numbers:
+    return numpy.concatenate(list(rows))
+
+
+def _check(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Any]) -> None:
+    if not data:
+        raise ValueError("no data are given: a set of measurements is needed")
+    if not unknowns:
+        raise ValueError("nothing is free: name an unknown, such as clearance, with its two ends")
+    for each in data:
+        if not isinstance(each, Measured):
+            raise TypeError(f"data must be sets of Measured, got {each!r}")
+        each.check_within(joint)
+    count = sum(map(len, data))
+    wanted = [each.name for each in unknowns if not each.known]
+    if count < len(wanted):
+        raise ValueError(
+            f"{count} values cannot tell {len(wanted)} unknowns ({', '.join(wanted)}): measure more, or free fewer"
+        )

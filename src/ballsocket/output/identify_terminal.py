@@ -1,0 +1,98 @@
+"""What measurements tell of a joint, in a terminal."""
+
+from __future__ import annotations
+
+from rich.table import Table
+
+from ..identify.measured import MEASURED
+from ..identify.parameters import Identified
+from ..identify.posterior import CONVERGED, Posterior
+from ..kinds import Unit
+from .terminal import console, print_folded
+
+_ROWS = 5
+
+
+def print_identified(found: Identified, drawn: Posterior | None) -> None:
+    """Unknowns with their bands, products where these are all that is told, how well it fits, and what to do next."""
+    terminal, information = console(), found.information
+    print_folded(terminal, f"{found.model.name} through {_counted(found)}", "bold")
+    terminal.print(_table(found, drawn))
+    rank = f"rank {information.rank} of {len(found.scales.names)}, condition {information.condition:.2g}"
+    print_folded(terminal, f"information of {rank}; {_scatter(found)}", "")
+    if drawn is not None:
+        print_folded(terminal, _chains(drawn), "")
+    terminal.print(_next(found))
+    for note in found.notes:
+        print_folded(terminal, note, "dim")
+
+
+def _counted(found: Identified) -> str:
+    sets = ", ".join(f"{len(each)} x {each.quantity}" for each in found.data)
+    return f"{len(found.misfit.value)} values ({sets})"
+
+
+def _scatter(found: Identified) -> str:
+    if found.freedom <= 0:
+        return "as many values as unknowns, so that nothing is left to tell how well they fit"
+    return f"the data scatter {found.spread:.2f} times as far as their uncertainties say"
+
+
+def _chains(drawn: Posterior) -> str:
+    worst, fewest = max(drawn.r_hat.values()), min(drawn.effective.values())
+    verdict = "converged" if drawn.converged else f"not converged, which is up to {CONVERGED}"
+    return (
+        f"{len(drawn.samples)} samples, as good as {fewest:.0f} independent ones; acceptance {drawn.acceptance:.2f}, "
+        f"R-hat {worst:.4f}: {verdict}"
+    )
+
+
+def _table(found: Identified, drawn: Posterior | None) -> Table:
+    table = _plain_table("", "best", "95 %", "unit", *(("posterior",) if drawn else ()))
+    for unknown, each in zip(found.scales.unknowns, found.estimates.values(), strict=True):
+        unit = unknown.quantity.shown
+        best = _numbers(unit.factor, each.value) if each.told else "not told"
+        band = _band(unit.factor, each.low, each.high)
+        table.add_row(each.name, best, band, unit.text, *_drawn(drawn, each.name, unit))
+    for product in found.information.products:
+        table.add_row(product.name, _numbers(1.0, product.value), _band(1.0, product.low, product.high), product.unit)
+    return table
+
+
+def _plain_table(*heads: str) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for place, head in enumerate(heads):
+        table.add_column(head, justify="left" if place == 0 or head == "unit" else "right", no_wrap=place == 0)
+    return table
+
+
+def _drawn(drawn: Posterior | None, name: str, unit: Unit) -> tuple[str, ...]:
+    return () if drawn is None else (_band(unit.factor, *drawn.band(name)),)
+
+
+def _band(factor: float, low: float, high: float) -> str:
+    return f"{_numbers(factor, low)} to {_numbers(factor, high)}"
+
+
+def _numbers(factor: float, number: float) -> str:
+    return f"{factor * number:.4g}"
+
+
+def _next(found: Identified) -> Table:
+    """The best load of each quantity."""
+    unknowns = found.scales.unknowns
+    table = _plain_table(
+        "measure next", "at", "to within", "bits", *(f"{each.quantity.symbol} left" for each in unknowns)
+    )
+    for gain in found.next.each_quantity[:_ROWS]:
+        candidate, quantity = gain.candidate, MEASURED[gain.candidate.quantity]
+        within = f"{_short(candidate.uncertainty * quantity.shown.factor)} {quantity.shown.text}"
+        load = "-" if candidate.force is None else f"{candidate.force:.4g} N"
+        left = [f"{100 * gain.left[each.name]:.0f} %" for each in unknowns]
+        table.add_row(quantity.title, load, within, f"{gain.bits:.2f}", *left)
+    return table
+
+
+def _short(number: float) -> str:
+    """Two digits, without an exponent where they are few."""
+    return f"{float(f'{number:.2g}'):g}"

@@ -1,0 +1,78 @@
+"""`ballsocket identify`: tables, JSON, figures, refusals."""
+
+import json
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from ..joints import HIP
+from .command import run
+
+FORCE = np.array([250.0, 500.0, 1000.0, 1500.0, 2000.0, 3000.0])
+CONTACT = bs.HessForsbach().press(HIP, force=FORCE)
+COLUMNS = {"indentation": "indentation_mm", "area": "area_mm2"}
+QUESTION = """
+model = "hess-forsbach"
+joint = "joint.toml"
+[free]
+clearance = "0.02..0.3 mm"
+liner.young = "0.4..2 GPa"
+[[data]]
+file = "{name}.csv"
+uncertainty = "2 %"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name, column in COLUMNS.items():
+        rows = "\n".join(f"{force:g},{value:.8g}" for force, value in zip(FORCE, getattr(CONTACT, name), strict=True))
+        (tmp_path / f"{name}.csv").write_text(f"# synthetic\nforce_N,{column}\n{rows}\n", "utf-8")
+        (tmp_path / f"{name}.toml").write_text(QUESTION.format(name=name), "utf-8")
+    liner = f'[liner]\nyoung = "{HIP.liner.young} MPa"\npoisson = {HIP.liner.poisson}\n'
+    lengths = "".join(f"{name} = {getattr(HIP, name)}\n" for name in ("ball_radius", "clearance", "liner_thickness"))
+    (tmp_path / "joint.toml").write_text(f"[joint]\n{lengths}{liner}", "utf-8")
+    return tmp_path
+
+
+def test_what_is_told_has_a_value_and_a_band(folder):
+    done = run("identify", "indentation.toml", "--json", folder=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    said = json.loads(done.stdout)
+    values = {each["name"]: each["value"] for each in said["estimates"]}
+    assert values == pytest.approx({"clearance": HIP.clearance, "liner_young": HIP.liner.young}, rel=1e-4)
+    assert all(each["low"] < each["value"] < each["high"] for each in said["estimates"])
+    assert said["valid"] is True
+    assert said["information"]["rank"] == 2
+    assert said["next"][0]["bits"] > 0
+
+
+def test_areas_alone_are_answered_by_the_product(folder):
+    done = run("identify", "area.toml", folder=folder)
+    assert done.returncode == 0
+    assert "not told" in done.stdout
+    assert "clearance · liner_young" in done.stdout
+    assert "measure indentation or free play" in " ".join(done.stdout.split())
+    said = json.loads(run("identify", "area.toml", "--json", folder=folder).stdout)
+    assert said["valid"] is False
+    assert said["products"][0]["value"] == pytest.approx(HIP.clearance * HIP.liner.young, rel=1e-2)
+
+
+def test_figures_and_samples(folder):
+    pytest.importorskip("emcee")
+    pictures = ("--figure", "fit.png", "--corner", "corner.png", "--experiment", "next.png")
+    done = run("identify", "indentation.toml", "--samples", "200", *pictures, folder=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "R-hat 1.0" in done.stdout
+    assert all((folder / name).stat().st_size > 10_000 for name in pictures[1::2])
+
+
+def test_one_sentence_for_what_is_wrong(folder):
+    (folder / "area.csv").write_text("force,area_mm2\n100,20\n", "utf-8")
+    done = run("identify", "area.toml", folder=folder)
+    assert done.returncode == 2
+    assert (
+        done.stderr == "ballsocket: area.toml: area.csv: column 'force' has no unit: write force_N, or another unit\n"
+    )

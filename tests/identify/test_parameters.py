@@ -1,0 +1,237 @@
+"""From measurements to the numbers of a joint."""
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.identify import HeavyTailed, Machine, Measured
+from ballsocket.identify.experiment import Candidate, experiment
+from ballsocket.identify.synthetic import trials
+from ballsocket.studies import Normal
+
+RIGID = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
+FREE = {"clearance": (0.02, 0.3), "liner.young": (400.0, 2000.0)}
+FORCE = np.linspace(150.0, 3000.0, 20)
+MODEL = bs.HessForsbach()
+TRUTH = MODEL.press(RIGID, force=FORCE)
+
+
+def measured(quantity, values=None, share=0.02, random=None, force=FORCE, **words):
+    values = getattr(TRUTH, quantity) if values is None else values
+    uncertainty = share * np.max(values)
+    scattered = values if random is None else values + uncertainty * random.standard_normal(len(values))
+    return Measured(quantity=quantity, values=scattered, uncertainty=uncertainty, force=force, **words)
+
+
+def identified(*data, free=FREE, model=MODEL, **words):
+    return bs.identify(model, RIGID, data, free, **words)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        [measured("indentation")],
+        [measured("half_angle"), measured("indentation")],
+        [measured("area"), measured("stiffness")],
+        [
+            Measured(quantity="force", values=FORCE, uncertainty=20.0, indentation=TRUTH.indentation),
+            measured("max_pressure"),
+        ],
+        [measured("area"), Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.004)],
+        [measured("pressure", TRUTH.pressure(0.2), angle=0.2), measured("indentation")],
+    ],
+    ids=lambda data: "+".join(each.quantity for each in data),
+)
+def test_data_without_error_give_the_truth(data):
+    found = identified(*data)
+    assert found.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
+    assert found.told
+    assert found.spread == pytest.approx(0.0, abs=1e-4)
+    assert found.joint.clearance == pytest.approx(0.1, rel=1e-5)
+
+
+def test_what_the_machine_adds_is_found_beside_the_joint():
+    machine = Machine(compliance=(0.0, 2e-5), offset=(-0.02, 0.02))
+    read = TRUTH.indentation + 8e-6 * FORCE - 0.007
+    by_force = measured("indentation", read, share=1e-3, machine=machine)
+    by_depth = Measured(quantity="force", values=FORCE, uncertainty=2.0, indentation=read, machine=machine)
+    truth = {"clearance": 0.1, "liner_young": 1000.0, "machine.compliance": 8e-6, "machine.offset": -0.007}
+    for each in (by_force, by_depth):
+        assert identified(each, measured("area", share=1e-3)).point == pytest.approx(truth, rel=1e-4)
+
+
+def test_a_machine_whose_numbers_are_known_is_taken_off():
+    machine = Machine(compliance=8e-6, offset=0.002)
+    read = measured("indentation", TRUTH.indentation + 8e-6 * FORCE + 0.002, machine=machine)
+    assert identified(read).point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
+
+
+def test_a_film_that_saturates_says_at_least():
+    """The values at its limit pull the answer down where they are taken at their word."""
+    film = np.minimum(TRUTH.max_pressure, 7.0)
+    free = {"liner.young": (400.0, 2000.0)}
+    honest = identified(measured("max_pressure", film, saturation=7.0), free=free)
+    taken = identified(measured("max_pressure", film), free=free)
+    assert honest["liner.young"].value == pytest.approx(1000.0, rel=0.01)
+    assert taken["liner.young"].value < 900.0
+
+
+def test_a_heavy_tail_bears_outliers():
+    random = np.random.default_rng(3)
+    values = TRUTH.indentation * (1 + 0.01 * random.standard_normal(20))
+    values[[4, 11, 17]] *= 1.5
+    data = measured("indentation", values, share=0.01)
+    normal, heavy = identified(data), identified(data, scatter=HeavyTailed())
+    errors = [abs(np.log(found.point["clearance"] / 0.1)) for found in (normal, heavy)]
+    assert errors[1] < 0.5 * errors[0]
+    assert "value 18 of indentation is" in normal.notes[0]
+    assert any("there are outliers" in note for note in normal.notes)
+
+
+@pytest.mark.parametrize("quantities", [("area",), ("max_pressure",), ("half_angle", "max_pressure")])
+def test_areas_and_pressures_tell_the_product_alone(quantities):
+    """Theory, 3g: of a rigid ball they depend on E c; only the socket's radius, R1 + c, hints at c."""
+    random = np.random.default_rng(5)
+    data = [measured(quantity, share=0.04, random=random) for quantity in quantities]
+    found = identified(*data, free={"clearance": (0.05, 0.2), "liner.young": (400.0, 2000.0)})
+    assert found.information.rank == 1
+    assert found.information.condition > 1e3
+    assert not found.told
+    assert np.isnan(found["clearance"].value)
+    assert np.isnan(found["liner.young"].value)
+    (product,) = found.information.products
+    assert product.exponents == {"clearance": 1.0, "liner_young": 1.0}
+    assert product.low < 100.0 < product.high < 1.2 * product.low
+    assert found.notes[0] == (
+        "the data tell clearance · liner_young, but not clearance and liner_young apart: "
+        "measure indentation or free play"
+    )
+    assert found.summary()["valid"] is False
+    assert found.summary()["estimates"][0]["value"] is None
+
+
+def test_the_next_measurement_tells_as_much_as_it_was_expected_to():
+    areas = measured("area")
+    found = identified(areas)
+    gain = next(each for each in found.next.gains if each.candidate.quantity == "indentation")
+    more = identified(areas, gain.candidate.measured(MODEL.press(found.joint, force=gain.candidate.force).indentation))
+    grown = (
+        np.linalg.slogdet(more.information.matrix + np.eye(2))[1]
+        - np.linalg.slogdet(found.information.matrix + np.eye(2))[1]
+    )
+    assert gain.bits == pytest.approx(grown / np.log(4.0), rel=0.1)
+    assert more.told
+    assert gain.settles == ("clearance", "liner_young")
+    assert "area" not in found.next.settling
+
+
+def test_a_candidate_that_tells_nothing_new_gains_nothing():
+    found = identified(measured("indentation", share=1e-4))
+    (gain,) = experiment(found, [Candidate("max_pressure", 1e6, 1000.0)]).gains
+    assert gain.bits < 1e-6
+    assert gain.left["clearance"] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_what_was_known_before_counts():
+    known = {"clearance": Normal(mean=0.1, deviation=0.01), "liner.young": (400.0, 2000.0)}
+    found = identified(measured("area"), free=known)
+    assert found.told
+    assert found["clearance"].value == pytest.approx(0.1, abs=1e-3)
+    assert found["clearance"].high - found["clearance"].low == pytest.approx(2 * 1.96 * 0.01, rel=0.02)
+    assert found["liner.young"].value == pytest.approx(1000.0, rel=0.01)
+
+
+def test_uncertain_loads_widen_the_band():
+    sure = identified(measured("indentation", share=1e-3))
+    unsure = identified(measured("indentation", share=1e-3, load_uncertainty=60.0))
+    wide, narrow = (each["clearance"].high / each["clearance"].low for each in (unsure, sure))
+    assert np.log(wide) > 2 * np.log(narrow)
+
+
+def test_bands_hold_the_truth_as_often_as_they_say():
+    """40 sets of data: fewer than 33 held of 40 bands of 95 % would be a chance of one in ten thousand."""
+    found = identified(measured("indentation", share=0.01), measured("max_pressure", saturation=8.0))
+    tried = trials(found, 40)
+    assert min(tried.coverage.values()) >= 33 / 40
+    assert max(map(abs, tried.bias.values())) < 0.15
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("model", [MODEL, bs.Tabulated()], ids=lambda model: model.name)
+def test_coverage_and_bias_over_two_hundred_synthetic_sets(model):
+    contact = model.press(RIGID, force=FORCE)
+    data = [measured("indentation", contact.indentation, share=0.01), measured("area", contact.area)]
+    tried = trials(identified(*data, model=model), 200)
+    for name in ("clearance", "liner_young"):
+        assert 0.92 <= tried.coverage[name] <= 0.98
+        assert abs(tried.bias[name]) < 0.1
+
+
+def test_the_posterior_agrees_with_the_bands_and_tells_how_it_converged():
+    pytest.importorskip("emcee")
+    found = identified(measured("indentation", share=0.003, random=np.random.default_rng(8)))
+    drawn = found.posterior(1000)
+    assert drawn.converged
+    assert min(drawn.effective.values()) >= 1000
+    assert 0.2 < drawn.acceptance < 0.9
+    for name, each in found.estimates.items():
+        np.testing.assert_allclose(drawn.band(name), (each.low, each.high), rtol=0.05)
+    assert drawn.samples.shape == (1000, 2)
+
+
+def test_the_posterior_of_what_is_not_told_runs_along_the_product():
+    pytest.importorskip("emcee")
+    found = identified(measured("area"))
+    clearance, young = found.posterior(500).samples.T
+    assert clearance.max() > 2 * clearance.min()
+    np.testing.assert_allclose(clearance * young, 100.0, rtol=0.06)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (
+            {"uncertainty": -1e-3},
+            r"indentation_uncertainty\[0\] = -0.001 (and .*)?is not allowed: an uncertainty is above",
+        ),
+        ({"uncertainty": [1e-3, 0.0]}, r"indentation_uncertainty\[1\] = 0 is not allowed"),
+        ({"uncertainty": [1e-3] * 3}, "indentation_uncertainty has 3 numbers beside 2 values"),
+        ({"values": [0.01, np.nan]}, "indentation has no number in row 2"),
+        ({"force": [0.0, 100.0]}, r"force\[0\] = 0 is not allowed: at first touch there is no indentation"),
+        ({"force": [-1.0, 100.0]}, r"force\[0\] = -1 is not allowed"),
+        ({"indentation": 0.1}, "exactly one of force, indentation, half_angle is needed, got force, indentation"),
+        ({"quantity": "indentations"}, "quantity 'indentations' is not known; did you mean 'indentation'?"),
+        ({"quantity": "area", "values": [10.0, 5000.0]}, r"area\[1\] = 5000 is not allowed: half of this ball has 2π"),
+        ({"quantity": "half_angle", "values": [0.1, 30.0]}, r"half_angle\[1\] = 30 is not allowed: a half angle"),
+        ({"quantity": "area", "machine": Machine()}, "area has a machine, which belongs to an indentation"),
+        ({"quantity": "pressure"}, "pressure needs an angle"),
+    ],
+)
+def test_data_that_cannot_be_are_refused(words, said):
+    given = {"quantity": "indentation", "values": [0.01, 0.02], "uncertainty": 1e-3, "force": [100.0, 200.0]}
+    with pytest.raises(ValueError, match=said.replace("(and .*)?", ".*")):
+        identified(Measured(**{**given, **words}))
+
+
+@pytest.mark.parametrize(
+    ("free", "said"),
+    [
+        ({"clearence": (0.1, 0.2)}, "'clearence' among what can be found is not known; did you mean 'clearance'?"),
+        ({"clearance": (0.2, 0.1)}, r"clearance = \(0.2, 0.1\) is not allowed: two finite ends that go upwards"),
+        ({"clearance": 0.1}, "clearance = 0.1 must be two ends"),
+        ({"clearance": (-0.1, 0.1)}, "clearance = -0.1 is not allowed: a radial clearance"),
+        ({}, "nothing is free"),
+        ({**FREE, "liner.poisson": (0.3, 0.4), "ball_radius": (15.0, 17.0)}, "3 values cannot tell 4 unknowns"),
+        ({"clearance": (0.1, 0.2), "diametral_clearance": (0.1, 0.2)}, "clearance"),
+    ],
+)
+def test_unknowns_that_cannot_be_found_are_refused(free, said):
+    data = Measured(quantity="indentation", values=[0.01, 0.02, 0.03], uncertainty=1e-3, force=[100.0, 400.0, 900.0])
+    with pytest.raises(ValueError, match=said):
+        identified(data, free=free)
+
+
+def test_data_that_no_model_answers_are_told():
+    data = Measured(quantity="indentation", values=0.01, uncertainty=1e-3, force=100.0)
+    with pytest.raises(ValueError, match="tabulated has no answer for all the data anywhere between the ends"):
+        identified(data, free={"liner_thickness": (0.05, 0.1)}, model=bs.Tabulated())
