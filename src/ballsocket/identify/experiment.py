@@ -161,7 +161,7 @@ def _machine(found: Identified, quantity: str) -> Machine:
 
 
 def _uncertainty(found: Identified, quantity: str, value: float) -> float:
-    """A standard uncertainty as it was so far, in its unit or relative to the values, whichever varied less; 2 % of what is new."""
+    """An uncertainty as it was so far, in its unit or relative, whichever varied less; 2 % of what is new."""
     rows = [(each.uncertainty, abs(each.values)) for each in found.data if each.quantity == quantity]
     if not rows:
         return _SHARE * value
