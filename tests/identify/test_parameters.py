@@ -7,7 +7,7 @@ import ballsocket as bs
 from ballsocket.identify import HeavyTailed, Machine, Measured
 from ballsocket.identify.experiment import Candidate, experiment
 from ballsocket.identify.synthetic import trials
-from ballsocket.studies import Normal
+from ballsocket.studies import LogNormal, Normal
 
 RIGID = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
 FREE = {"clearance": (0.02, 0.3), "liner.young": (400.0, 2000.0)}
@@ -139,6 +139,12 @@ def test_what_was_known_before_counts():
     assert found["clearance"].value == pytest.approx(0.1, abs=1e-3)
     assert found["clearance"].high - found["clearance"].low == pytest.approx(2 * 1.96 * 0.01, rel=0.02)
     assert found["liner.young"].value == pytest.approx(1000.0, rel=0.01)
+
+
+def test_what_was_known_by_a_factor_counts_on_a_scale_of_ratios():
+    found = identified(measured("area"), free={**FREE, "clearance": LogNormal(median=0.1, factor=1.1)})
+    each = found["clearance"]
+    assert (each.low, each.high) == pytest.approx((0.1 / 1.1**1.96, 0.1 * 1.1**1.96), rel=0.01)
 
 
 def test_uncertain_loads_widen_the_band():

@@ -18,9 +18,10 @@ from ..joint import Joint
 from ..kinds import Kind
 from ..model import Model
 from ..quantities import LOADS
-from ..studies.file import distribution_of, named_model
+from ..studies.file import named_model
 from ..studies.parameters import PARAMETERS
 from ..studies.phrases import ends_of
+from ..studies.scatter import distribution_of
 from .columns import Gaps, read_measured, uncertainty_of
 from .measured import MACHINE, MEASURED, PERFECT, Machine, Measured
 from .parameters import Identified, identify
@@ -58,7 +59,7 @@ def read_identify(path: str | Path) -> IdentifyFile:
 
     At the top: `model` (by name; "tabulated" without a word), `scatter` ("normal", or "heavy-tailed" against
     outliers), and the joint as in study files. `free` has the unknowns: text with two ends, "0.02..0.3 mm", or what was
-    known, `{mean, deviation}`. Each `[[data]]` has a `file` (CSV, heads with units) with which of its columns are
+    known, `{mean, deviation}`, `{median, factor}`. Each `[[data]]` has a `file` (CSV, heads with units), its columns that are
     `quantities` and which is the `load`, and `gaps` ("refuse" or "leave-out"); or a `quantity` with `values` (one or a
     list) and its load; and for either `uncertainty` ("1 um", "2 %"), `load_uncertainty`, `saturation`, `machine`.
     `[machine.NAME]` has `compliance` and `offset`, numbers or two ends. Paths are taken from the file's own folder.
@@ -106,7 +107,7 @@ def _given(name: str, value: Any) -> Given:
         return ends_of(name, value, PARAMETERS[name].kind)
     if not isinstance(value, Mapping):
         raise ValueError(f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}")
-    return distribution_of(name, value)
+    return distribution_of(name, value, lambda key, number: parse(key, number, PARAMETERS[name].kind))
 
 
 def _machine(name: str, table: Any) -> Machine:

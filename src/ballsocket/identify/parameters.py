@@ -257,7 +257,7 @@ def identify(
         Plain numbers; those that are not free stay.
     data : Measured, or several
         Sets of measurements; together they need at least as many values as there are unknowns.
-    free : mapping of str to (low, high) or Normal or Rectangular
+    free : mapping of str to (low, high), or Normal, LogNormal, Rectangular
         The unknowns by their names in studies ("clearance", "liner_young" or "liner.young"), with their ends in mm,
         MPa, or with the distribution that is known of them.
     scatter : Scatter

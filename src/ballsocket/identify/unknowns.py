@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import inf, log, sqrt
 from typing import Any
 
 import numpy
@@ -13,7 +13,7 @@ from ..arrays import Array, Numbers
 from ..checks import check_names, require, shown
 from ..kinds import Kind
 from ..quantities import Quantity
-from ..studies.distributions import Distribution, Normal, Rectangular
+from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 from ..studies.parameters import AIMS, LOADS, PARAMETERS
 from .measured import MACHINE, Measured
 
@@ -33,12 +33,12 @@ class Unknown:
         "clearance", "liner_young", "machine.offset".
     quantity : Quantity
         Its title and unit.
-    prior : Rectangular or Normal
+    prior : Rectangular, Normal or LogNormal
         What was known before.
     low, high : float
         Where it is sought.
     logarithmic : bool
-        Whether it is sought on a scale of ratios: where both ends are above 0 and nothing nearer was known.
+        Whether it is sought on a scale of ratios: where both ends are above 0, or a logarithm was known.
     """
 
     name: str
@@ -51,13 +51,22 @@ class Unknown:
     @property
     def known(self) -> bool:
         """Whether more than two ends were known."""
-        return isinstance(self.prior, Normal)
+        return not isinstance(self.prior, Rectangular)
+
+    @property
+    def middle(self) -> float:
+        """The mean that was known, in deviations on the scale; 0 of two ends."""
+        if isinstance(self.prior, Rectangular):
+            return 0.0
+        return (self.prior.mean if isinstance(self.prior, Normal) else log(self.prior.median)) / self.span
 
     @property
     def span(self) -> float:
         """The deviation of what was known, on the scale it is sought on."""
         if isinstance(self.prior, Normal):
             return self.prior.deviation
+        if isinstance(self.prior, LogNormal):
+            return log(self.prior.factor)
         return (self.to_scale(self.high) - self.to_scale(self.low)) / sqrt(12)
 
     def to_scale(self, value: Array) -> Array:
@@ -105,12 +114,13 @@ def _unknown(name: str, quantity: Quantity, given: Given) -> Unknown:
     low, high = _ends(prior, quantity)
     for end in (low, high):
         require(name, end, quantity.allows(end), quantity.allowed)
-    logarithmic = isinstance(prior, Rectangular) and low > 0 and quantity.kind is not Kind.NUMBER
+    ratios = isinstance(prior, Rectangular) and low > 0 and quantity.kind is not Kind.NUMBER
+    logarithmic = ratios or isinstance(prior, LogNormal)
     return Unknown(name=name, quantity=quantity, prior=prior, low=low, high=high, logarithmic=logarithmic)
 
 
 def _prior(name: str, given: Given) -> Distribution:
-    if isinstance(given, Rectangular | Normal):
+    if isinstance(given, Distribution):
         return given
     try:
         low, high = map(float, given)
@@ -125,6 +135,8 @@ def _ends(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
     """Where it is sought: between the ends, or a few deviations about a mean, as far as that is allowed."""
     if isinstance(prior, Rectangular):
         return prior.low, prior.high
+    if isinstance(prior, LogNormal):
+        return prior.median / prior.factor**_FAR, prior.median * prior.factor**_FAR
     low, high = (prior.mean + side * _FAR * prior.deviation for side in (-1, 1))
     low, high = max(low, prior.low), min(high, prior.high)
     if not quantity.allows(low):
@@ -168,10 +180,8 @@ class Scales:
 
     def surprise(self, places: Numbers) -> Numbers:
         """How many deviations each number is from a mean that was known, 0 of the others; (..., unknowns)."""
-        values = self.values(places)
-        means = [each.prior.mean if isinstance(each.prior, Normal) else 0.0 for each in self.unknowns]
         known = numpy.array([each.known for each in self.unknowns])
-        return numpy.where(known, (values - means) / [each.span for each in self.unknowns], 0.0)
+        return numpy.where(known, places - [each.middle for each in self.unknowns], 0.0)
 
 
 def log_prior(scales: Scales, places: Numbers) -> Numbers:
