@@ -328,6 +328,17 @@ def test_an_empty_file_is_told_so(tmp_path, command):
     assert run(command, str(tmp_path / "it.toml")).stderr == said
 
 
+def test_what_is_not_known_says_where_to_look():
+    unknown = run("sensitivity", "hip-36", "--vary", "clearance=0.1..0.2 mm")
+    assert (unknown.returncode, unknown.stderr) == (
+        2,
+        "ballsocket: No such option: --vary; ballsocket sensitivity -h lists them\n",
+    )
+    assert "--clearance" in run("press", "hip-36", "--clearence", "0.1", "--force", "1").stderr
+    several = run("press", "hip-36", "--liner", "uhmwpe,pom", "--force", "1")
+    assert "'uhmwpe,pom' are several, and one is needed: optimise and studies choose" in several.stderr
+
+
 def test_help_begins_with_what_is_asked_first():
     text = run("-h").stdout
     assert text == run("--help").stdout

@@ -254,6 +254,11 @@ def test_stress_at_the_surface_is_the_pressure():
     np.testing.assert_allclose(inside.von_mises, np.sqrt(spread), rtol=1e-12)
 
 
+def test_stress_at_one_place_is_plain_numbers():
+    stress = bs.Exact().press(HIP, force=3000.0).stress(angle=0.1, depth=1.0)
+    assert {type(part) for part in vars(stress).values()} == {float}
+
+
 def test_stress_below_a_small_contact_is_hertz():
     """Below a Hertz contact the von Mises stress is highest at 0.48 a, 0.62 p0 (ν 0.3)."""
     deep = bs.Joint(

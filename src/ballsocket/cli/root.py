@@ -100,7 +100,7 @@ def _status() -> int:
     except typer.Abort:
         return STOPPED
     except UsageError as error:
-        message = error.format_message()
+        message = _said(error)
     except OSError as error:
         if error.filename is None:
             _write_no_more()  # what is still to be written would fail again at the very end
@@ -115,6 +115,14 @@ def _status() -> int:
         message, status = f"these numbers are too large or too small to calculate with ({error})", FAILURE
     complain(message)
     return status
+
+
+def _said(error: Any) -> str:
+    """What is wrong with a command line; where an option is not known, and none is like it, who lists them."""
+    message: str = error.format_message()
+    if not hasattr(error, "option_name") or error.ctx is None or set(error.possibilities or ()) - {"--help"}:
+        return message
+    return f"No such option: {error.option_name}; ballsocket {error.ctx.info_name} -h lists them"
 
 
 def complain(message: str) -> None:

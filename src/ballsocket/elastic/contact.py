@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy
 
@@ -55,7 +56,11 @@ class ElasticContact(SolvedContact):
         thickness = sum(shell.thickness for shell in self._single.kernel.socket.shells)
         good = (depths >= 0) & (depths <= thickness * (1 + 1e-9))
         require("depth", depths, good, f"a depth (mm) lies between 0 and {thickness:g}, where the socket ends")
-        return stress(self._single, angles, depths)
+        found = stress(self._single, angles, depths)
+        if angles.ndim or depths.ndim:
+            return found
+        numbers: Any = {name: float(part) for name, part in vars(found).items()}
+        return Stress(**numbers)
 
     @cached_property
     def peak_stress(self) -> Peak:

@@ -226,4 +226,6 @@ def _material(name: str, table: Mapping[str, Any], standing: Material | None = N
 
 def named_material(name: str, chosen: Any) -> Material:
     """The preset material called `chosen`, in any spelling of capitals."""
+    if isinstance(chosen, str) and "," in chosen:
+        raise ValueError(f"{name} material {shown(chosen)} are several, and one is needed: optimise and studies choose")
     return materials[known_name(f"{name} material", check_text(f"{name}.material", chosen), materials)]
