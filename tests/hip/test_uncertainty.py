@@ -239,6 +239,7 @@ def test_every_patient_has_a_row(tmp_path):
     volumes = [float(row.split(",")[2]) for row in rows]
     band = json.loads(done.stdout)["bands"][0]["volume"]
     assert band["median"] == pytest.approx(np.median(volumes), rel=1e-6)
+    assert 0 < json.loads(done.stdout)["uncertainty"]["quick_run_off"]["volume"] < 0.01
     assert UNVERIFIED in json.loads(done.stdout)["notes"]
 
 

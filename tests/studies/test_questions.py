@@ -293,6 +293,7 @@ count = 8
 seed = 3
 clearance = {nominal = "0.1 mm", plus_minus = "50 um"}
 liner_poisson = {low = 0.38, high = 0.46}
+liner_young = {median = "1 GPa", factor = 1.1}
 """
 FILE = """
 [joint]
@@ -330,6 +331,7 @@ def test_a_study_file_says_all(tmp_path):
         ('"1 kN"', '"1 kg"', r"force\[0\] = '1 kg' is not a force"),
         ("seed = 3", "sead = 3", "'sead' in .samples. is not known"),
         ("plus_minus", "plusminus", "must be {low, high}"),
+        ("factor = 1.1", "factor = 0.9", "liner_young.factor = 0.9 is not allowed: that of one standard deviation"),
         ("low = 0.38", "low = 0.58", "low = 0.58 is not allowed"),
         ("[axes]", "[axis]", "'axis' at the top is not known; did you mean 'axes'"),
         ("count = 5}", "count = 5", "is not TOML"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from hashlib import sha256
 from math import ceil, degrees, isfinite
 from pathlib import Path
@@ -26,7 +26,7 @@ from .patients import ANSWERS, Scatter, answers_of
 _PIECE = 16
 """Patients: about half a second of work."""
 
-_MOST = 10_000_000
+_MOST = 1_000_000
 _LABEL = "patients.json"
 _HERE = Serial()
 
@@ -69,11 +69,14 @@ class Lives:
         Cycles of the usual patient at which to look, in order.
     values : mapping of str to array (patients,)
         By name of `SCATTERS`.
+    code : str
+        Which code is to wear them.
     """
 
     scatter: Scatter
     counts: tuple[float, ...]
     values: Mapping[str, Numbers]
+    code: str = field(default_factory=fingerprint)
 
     def __len__(self) -> int:
         """Patients."""
@@ -88,6 +91,15 @@ class Lives:
         return range(piece * _PIECE, min((piece + 1) * _PIECE, len(self)))
 
     def __call__(self, piece: int) -> Lived:
+        """What is seen of the patients in a piece.
+
+        Raises
+        ------
+        RuntimeError
+            Another version of this package than that which asks.
+        """
+        if fingerprint() != self.code:
+            raise RuntimeError(f"this worker has ballsocket {fingerprint()}, and {self.code} asks")
         found = [self._lived(number) for number in self.patients(piece)]
         return Lived(table=numpy.stack([one for one, _ in found]), refused=numpy.array([why for _, why in found]))
 
@@ -182,7 +194,7 @@ def kept(folder: Path, scatter: Scatter, counts: Sequence[float], seed: int) -> 
     """Where the patients of a sample are kept; see `Kept`."""
     whose = checkpoint(scatter.quick, folder).identity
     drawn = (fingerprint(), whose, dict(scatter.distributions), scatter.body_weight, tuple(counts), seed)
-    store = Kept(folder=folder, identity=sha256(repr(drawn).encode()).hexdigest())
+    store = Kept(folder=folder.absolute(), identity=sha256(repr(drawn).encode()).hexdigest())
     store.prepare()
     return store
 

@@ -15,9 +15,9 @@ from ..engines.local import Engine, Serial
 from ..sphere.surfaces import Springs
 from ..studies.room import check_samples
 from ..studies.sobol import sobol
-from .history import History
+from .history import History, Report
 from .lives import Kept, Listener, Lived, Lives, drawn, joined, summary_of
-from .patients import ANSWERS, Scatter, answers_of
+from .patients import ANSWERS, Patient, Scatter, answers_of
 
 LEVEL = 0.95
 COUNT = 64
@@ -190,7 +190,9 @@ def uncertainty(
     if any((one.refused != "").any() for one in answers.seen):
         indices = None
     plain = joined(answers.seen[:2])
-    return Bands(scatter=scatter, counts=counts, lived=plain, seed=seed, indices=indices, off=_off(scatter, history))
+    return Bands(
+        scatter=scatter, counts=counts, lived=plain, seed=seed, indices=indices, off=_off(scatter, history.reports)
+    )
 
 
 def population(
@@ -227,7 +229,8 @@ def population(
     """
     lives = Lives(scatter=scatter, counts=tuple(sorted(counts)), values=drawn(scatter, patients, seed))
     lived = lives.all(engine, store, listen)
-    return lives, Bands(scatter=scatter, counts=lives.counts, lived=lived, seed=seed)
+    whole = Patient(use=scatter.use, pace=1.0).seen(lives.counts)
+    return lives, Bands(scatter=scatter, counts=lives.counts, lived=lived, seed=seed, off=_off(scatter, whole))
 
 
 @dataclass
@@ -251,9 +254,10 @@ class _Answers:
         return last.T.reshape(len(SHARED), *values.shape[1:]).copy()
 
 
-def _off(scatter: Scatter, history: History) -> dict[str, float]:
-    quick = answers_of(scatter.patient({}).seen([report.cycles for report in history.reports]))
-    full = answers_of(history.reports)
+def _off(scatter: Scatter, whole: Sequence[Report]) -> dict[str, float]:
+    """How far the usual patient's quick run is from the whole one."""
+    quick = answers_of(scatter.patient({}).seen([report.cycles for report in whole]))
+    full = answers_of(whole)
     found = {}
     for name in SHARED:
         place = list(ANSWERS).index(name)
