@@ -39,6 +39,16 @@ def test_what_the_moment_does_is_what_friction_takes():
     assert film.power.mean() * use.cycle.duration == pytest.approx(film.heat, rel=1e-12)
 
 
+def test_json_has_the_largest_moment_with_its_direction():
+    """Flexion turns about the side: so does its moment, in the cup's frame across the tilt."""
+    use = hip(cycle=flexion(72))
+    told = use.film(Lubricant()).summary()
+    vector = np.array(told["moment_on_cup_Nmm"])
+    assert np.linalg.norm(vector) == pytest.approx(told["moment_Nmm"], rel=1e-12)
+    aside = np.array(use.placed.frame) @ [1.0, 0.0, 0.0]
+    assert abs(vector @ aside) == pytest.approx(told["moment_Nmm"], rel=0.02)
+
+
 def test_the_moment_lies_between_those_of_force_and_pressure():
     """μ R F for a contact that is a point, and less than μ R ∫ p dA."""
     use = hip()

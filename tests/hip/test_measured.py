@@ -1,5 +1,6 @@
 """Tables as OpenSim and OrthoLoad write them: sides, frames, units, what is cut out; and files with activities."""
 
+import re
 from math import radians
 
 import numpy as np
@@ -11,6 +12,7 @@ from ballsocket.hip.cycle_file import Reading, read_cycle
 from ballsocket.hip.file import read_hip
 from ballsocket.hip.sliding import rotation_matrices, slide
 
+from ..cli.command import run
 from .test_file import TEXT, told
 
 PHASES = np.linspace(0.0, 1.0, 201)
@@ -189,6 +191,9 @@ def test_activities_in_a_file(tmp_path):
     assert (given.cycles, given.report_at) == (2.1e6, (1.05e6, 2.1e6))
     seen = given.use.after(given.cycles, given.report_at).summary()["history"]
     assert [each["years"] for each in seen] == pytest.approx([1.0, 2.0])
+    shown = run("hip", str(told(tmp_path, text=text))).stdout
+    assert "walking + stairs-up: slide" in shown
+    assert re.search(r"^ +1 +1\.05 .*\n +2 +2\.1 ", shown, flags=re.MULTILINE)
     shares = text.replace("per_year = 1e6", "share = 0.9").replace("per_year = 5e4", "share = 0.1")
     mix = read_hip(told(tmp_path, text="cycles_per_year = 2e6\n" + shares)).use.cycle
     assert mix.shares == pytest.approx((0.9, 0.1))

@@ -137,7 +137,8 @@ class Film:
             "heat_J_per_cycle": self.heat,
         }
         numbers = {name: float(each) if numpy.isfinite(each) else None for name, each in told.items()}
-        return {**numbers, "regime": self.regime, "note": CONFORMING}
+        most = [float(part) for part in self.moment[size.argmax()]]
+        return {**numbers, "moment_on_cup_Nmm": most, "regime": self.regime, "note": CONFORMING}
 
 
 def film(use: InUse, rest: Rest, lubricant: Lubricant) -> Film:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich.table import Table
 
 from ..hip.history import History
+from ..hip.mix import Mix
 from .terminal import console, print_folded
 
 _HEADS = {
@@ -42,14 +43,17 @@ def print_hip(history: History) -> None:
 
 
 def _table(history: History) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in _HEADS:
+    table, mix = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0)), history.use.cycle
+    years = mix.per_year if isinstance(mix, Mix) else None
+    heads = _HEADS if years is None else {"time": "years", **_HEADS}
+    for head in heads:
         table.add_column(head, justify="right", no_wrap=True)
-    table.add_row(*_HEADS.values(), style="dim")
+    table.add_row(*heads.values(), style="dim")
     for each in history.reports:
         rim = each.edge_distance.min(initial=float("inf"))
         numbers = (each.volume, each.depth, each.penetration, each.max_pressure, each.creep_depth, rim)
-        table.add_row(f"{each.cycles / 1e6:g}", *(f"{number:.4g}" for number in numbers))
+        time = () if years is None else (f"{each.cycles / years:.4g}",)
+        table.add_row(*time, f"{each.cycles / 1e6:.6g}", *(f"{number:.4g}" for number in numbers))
     return table
 
 
