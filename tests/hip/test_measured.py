@@ -236,6 +236,9 @@ def test_a_machine_with_a_spring_in_a_file(tmp_path):
         ([(CYCLE, "[[activity]]\nname = 'flexion'\n")], "needs per_year, how many cycles, or its share"),
         ([(CYCLE, "[[activity]]\nname = 'flexion'\nshare = 1\n")], "share is one of cycles_per_year, which is missing"),
         ([(CYCLE, "[[activity]]\nname = 'flexion'\nper_yaer = 1\n")], "'per_yaer' in ..activity.. is not known"),
+        ([('name = "iso-14242-1"', "file = []")], r"file = \[\] names no table"),
+        ([('name = "iso-14242-1"', 'name = "iso-14242-4"\nswing_load = 0')], "swing = 0 is not allowed"),
+        ([("instants = 100", 'instants = 100\nbody_weight = "1 MN"')], "body_weight = 1e.06 is not allowed"),
         ([(COUNTS, "years = 3\n")], "years needs activities with counts a year"),
     ],
 )

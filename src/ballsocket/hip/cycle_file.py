@@ -98,6 +98,8 @@ def read_cycle(
         A file cannot be read.
     """
     paths = [Path(path)] if isinstance(path, str | Path) else [Path(each) for each in path]
+    if not paths:
+        raise ValueError("no table is named")
     try:
         parts = [measured(read_table(each), body_weight, reading.side) for each in paths]
         found = together([replace(part, columns=cut(part.columns, reading.begin, reading.end)) for part in parts])

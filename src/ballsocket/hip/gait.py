@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi, radians
+from math import inf, pi, radians
 
 import numpy
 
 from ..arrays import Numbers
+from ..checks import require
 from .cycle import INSTANTS, Course, Cycle, Spring, order_of
 
 
@@ -111,6 +112,7 @@ def iso_14242_4(
     swing : float
         The load in the swing phase, in N.
     """
+    require("swing", swing, 0 < swing < inf, "a load (N) of the swing phase is positive and finite")
     knots, values = _ISO_FORCE
     return replace(
         iso_14242_1(instants, order),

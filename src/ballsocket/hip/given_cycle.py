@@ -7,14 +7,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..checks import check_names, check_text, known_name, shown
+from ..checks import check_names, check_text, known_name, require, shown
 from ..cup import Side
 from ..io.toml import table_of
 from ..io.units import parse
 from ..kinds import Kind
 from .cycle import INSTANTS, Cycle, order_of
 from .cycle_file import Reading, read_cycle
-from .in_vivo import IN_VIVO
+from .in_vivo import IN_VIVO, check_weight
 from .mix import Activity, Mix
 from .named_cycles import CYCLES, named_cycle
 
@@ -75,7 +75,7 @@ def _activity(table: Mapping[str, Any], folder: Path, weight: float | None, cont
 
 
 def _weight(table: Mapping[str, Any]) -> float | None:
-    return parse("body_weight", table["body_weight"], Kind.FORCE) if "body_weight" in table else None
+    return check_weight(parse("body_weight", table["body_weight"], Kind.FORCE)) if "body_weight" in table else None
 
 
 def _cycle(table: Mapping[str, Any], folder: Path, weight: float | None, where: str) -> Cycle:
@@ -90,6 +90,7 @@ def _cycle(table: Mapping[str, Any], folder: Path, weight: float | None, where: 
     if weight is None:
         raise ValueError("times_body_weight needs a body_weight")
     times = parse("times_body_weight", table["times_body_weight"], Kind.NUMBER)
+    require("times_body_weight", times, 0 < times <= 100, "a load is above 0 and at most 100 times the body's weight")
     return made.scaled(times * weight / made.largest_force)
 
 
@@ -110,6 +111,8 @@ def _of_file(
 ) -> Cycle:
     check_names(table, ("file", "body_weight", *_OF_ALL, *_OF_FILES), f"beside a file in {where}")
     files = table["file"] if isinstance(table["file"], list) else [table["file"]]
+    if not files or not all(files):
+        raise ValueError(f"file = {shown(table['file'])} names no table")
     paths = [folder / check_text("file", each) for each in files]
     return read_cycle(paths, instants, order, weight, _reading(table, weight, order))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import inf, pi, radians
+from math import pi, radians
 from types import MappingProxyType
 
 import numpy
@@ -16,6 +16,7 @@ from .gait import iso_14242_1
 
 _WALK = iso_14242_1()
 _STEP = "course and motion are those of ISO 14242-1"
+_HEAVIEST = 1e4
 _REST = 0.1
 """Of the peak: what the muscles keep up while a leg is not loaded."""
 
@@ -108,6 +109,12 @@ IN_VIVO: Mapping[str, InVivo] = MappingProxyType(
 )
 
 
+def check_weight(weight: float) -> float:
+    """A body's weight in N, if it is one; ValueError elsewhere."""
+    require("body_weight", weight, 0 < weight <= _HEAVIEST, f"a body weighs more than 0 and at most {_HEAVIEST:g} N")
+    return weight
+
+
 def in_vivo(name: str, body_weight: float, instants: int = INSTANTS, order: str = "xyz") -> Cycle:
     """A load that was measured in patients, upwards in the body: walking, stairs, jogging, stumbling and others.
 
@@ -132,7 +139,7 @@ def in_vivo(name: str, body_weight: float, instants: int = INSTANTS, order: str 
     >>> round(in_vivo("walking", body_weight=880.0).largest_force)
     2174
     """
-    require("body_weight", body_weight, 0 < body_weight < inf, "a weight (N) is positive and finite")
+    check_weight(body_weight)
     key = known_name("load", name, IN_VIVO)
     load = IN_VIVO[key]
     peak = load.percent / 100 * body_weight
