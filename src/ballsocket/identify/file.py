@@ -59,9 +59,9 @@ def read_identify(path: str | Path) -> IdentifyFile:
 
     At the top: `model` (by name; "tabulated" without a word), `scatter` ("normal", or "heavy-tailed" against
     outliers), and the joint as in study files. `free` has the unknowns: text with two ends, "0.02..0.3 mm", or what was
-    known, `{mean, deviation}`, `{median, factor}`. Each `[[data]]` has a `file` (CSV, heads with units), its columns that are
-    `quantities` and which is the `load`, and `gaps` ("refuse" or "leave-out"); or a `quantity` with `values` (one or a
-    list) and its load; and for either `uncertainty` ("1 um", "2 %"), `load_uncertainty`, `saturation`, `machine`.
+    known, `{mean, deviation}`, `{median, factor}`. Each `[[data]]` has a `file` (CSV, heads with units), and which of
+    its columns are `quantities` and which the `load`, and `gaps` ("refuse", "leave-out"); or a `quantity` with `values`
+    (one or a list) and its load; for either `uncertainty` ("1 um", "2 %"), `load_uncertainty`, `saturation`, `machine`.
     `[machine.NAME]` has `compliance` and `offset`, numbers or two ends. Paths are taken from the file's own folder.
 
     Raises
