@@ -13,6 +13,9 @@ from .compliance import Compliance
 from .gap import Separation
 from .solver import answers, pressed
 
+_NEAR = 150_000
+"""Cells of contacts that are solved side by side: more do not stay in the processor's cache."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Rest:
@@ -45,6 +48,12 @@ class Bed:
         return self.separation.socket_radius**2
 
     @cached_property
+    def _outward(self) -> Numbers:
+        """From pressures of cells to forces in N: (cells, 3)."""
+        grid = self.compliance.grid
+        return numpy.ascontiguousarray((self.area * grid.normals * grid.areas).reshape(3, -1).T)
+
+    @cached_property
     def coarser(self) -> Bed | None:
         """The same in cells twice as wide; None where these are wide already."""
         soft = self.compliance.coarser
@@ -56,13 +65,16 @@ class Bed:
 
     def force(self, pressure: Numbers) -> Numbers:
         """The load in N that pressures (batch, rings, meridians) carry: (batch, 3)."""
-        grid = self.compliance.grid
-        return self.area * numpy.einsum("bij,kij,i->bk", pressure, grid.normals, grid.areas[:, 0], optimize=True)
+        force: Numbers = pressure.reshape(len(pressure), len(self._outward)) @ self._outward
+        return force
 
     def at(self, displacement: Numbers) -> Rest:
         """The contacts of displaced balls."""
-        made = pressed(self.compliance, self.separation.overlap(displacement))
-        return Rest(displacement=displacement, pressure=made.pressure, found=made.settled)
+        pressure, found = self._empty(len(displacement)), numpy.zeros(len(displacement), dtype=bool)
+        for some in self._blocks(numpy.arange(len(displacement))):
+            made = pressed(self.compliance, self.separation.overlap(displacement[some]))
+            pressure[some], found[some] = made.pressure, made.settled
+        return Rest(displacement=displacement, pressure=pressure, found=found)
 
     def stretched(
         self, displacement: Numbers, pressure: Numbers, start: Numbers | None = None, tolerance: float = 0.1
@@ -76,8 +88,8 @@ class Bed:
 
     def tangent(self, stretched: Numbers) -> Numbers:
         """The stiffness in N/mm: (batch, 3, 3)."""
-        grid = self.compliance.grid
-        return self.area * numpy.einsum("blij,kij,i->bkl", stretched, grid.normals, grid.areas[:, 0], optimize=True)
+        tangent = stretched.reshape(len(stretched), 3, len(self._outward)) @ self._outward
+        return tangent.swapaxes(1, 2)
 
     def under(self, load: Numbers, start: Numbers, held: Numbers, pressure: Numbers | None = None) -> Rest:
         """Balls at rest under loads.
@@ -94,12 +106,19 @@ class Bed:
             Pressures to begin with, none of them negative.
         """
         rest = Rest(displacement=start.copy(), pressure=self._empty(len(load)), found=held & False)
-        if held.any():
-            preload = self.area * self.compliance.evenly * max(-self.separation.clearance, 0.0)
-            size = numpy.maximum(numpy.linalg.norm(load[held], axis=1), preload)
-            some = balanced(self, load[held], size, start[held], None if pressure is None else pressure[held])
-            rest.displacement[held], rest.pressure[held], rest.found[held] = some.place, some.pressure, some.found
+        preload = self.area * self.compliance.evenly * max(-self.separation.clearance, 0.0)
+        size = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
+        for some in self._blocks(numpy.flatnonzero(held)):
+            begin = None if pressure is None else pressure[some]
+            found = balanced(self, load[some], size[some], start[some], begin)
+            rest.displacement[some], rest.pressure[some], rest.found[some] = found.place, found.pressure, found.found
         return rest
+
+    def _blocks(self, places: Numbers) -> list[Numbers]:
+        """Places cut so that what is computed side by side stays near the processor."""
+        grid = self.compliance.grid
+        size = max(_NEAR // (grid.rings * grid.meridians), 1)
+        return [places[i : i + size] for i in range(0, len(places), size)]
 
     def _empty(self, count: int) -> Numbers:
         grid = self.compliance.grid
