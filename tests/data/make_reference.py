@@ -1,6 +1,6 @@
 """Make `closed_forms.csv`: the closed-form laws to 25 digits, from their definitions and not from our safe forms.
 
-    python tests/data/make_reference.py > tests/data/closed_forms.csv
+    python tests/data/make_reference.py > src/ballsocket/data/closed_forms.csv
 
 mpmath with 80 digits. Force: the published formula (Eq. 13 of Heß & Forsbach 2021 for linear kinematics) or the
 pressure integrated over the contact; both where both exist, which must agree to 40 digits. Stiffness: its derivative.

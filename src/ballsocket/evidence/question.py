@@ -1,0 +1,223 @@
+"""The question that evidence is gathered for: a file with its context of use, inputs, limits and worst cases."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
+from pathlib import Path
+from typing import Any
+
+from ..catalogue import off_axis, reference
+from ..checks import check_text, nearest, require, shown
+from ..io.joint_file import KEYS, JointFile, check_keys
+from ..io.named_joint import PARTS, joint_in
+from ..io.toml import read_toml, table_of
+from ..io.units import parse
+from ..model import Model
+from ..quantities import QUANTITIES
+from ..studies.design import check_values, grid
+from ..studies.distributions import Distribution
+from ..studies.limits import Limit
+from ..studies.parameters import AIMS, LOADS, PARAMETERS, contradiction
+from ..studies.phrases import limit_of, spread_of
+from .named_files import files_of
+
+LEVELS = ("low", "medium", "high")
+MOST = 2000
+"""Cases of a matrix."""
+
+_ASIDE = ("tolerances", "sources", "friction", "wear")
+_KEYS = {
+    "": ("question", "context_of_use", "finite_elements", "risk", "required", "matrix", *PARTS, *_ASIDE),
+    **{name: KEYS[name] for name in PARTS},
+    "risk": ("influence", "consequence"),
+    "required": ("accuracy", "limits"),
+    "matrix": tuple(PARAMETERS),
+    "tolerances": tuple(PARAMETERS),
+    "friction": ("coefficient",),
+    "wear": ("file",),
+}
+_PERCENT = re.compile(r"\s*([\d.]+(?:[eE][-+]?\d+)?)\s*%\s*")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Question:
+    """What is asked, of which joint, how exactly it must be known, and where it may become worst.
+
+    Attributes
+    ----------
+    text, context : str
+        The question and its context of use, in words.
+    influence, consequence : str
+        Of the model on the decision, and of a wrong decision: "low", "medium" or "high".
+    accuracy : float
+        Relative: how far off the numbers may be.
+    file : JointFile
+        The joint as it is usually, and its cup.
+    axes : mapping of str to tuple of float
+        What the matrix of cases varies, in mm, N, MPa, rad; a load is among it.
+    limits : tuple of Limit
+        What must be kept.
+    tolerances : mapping of str to Distribution
+        What scatters.
+    sources : mapping of str to str
+        Where inputs come from, by their names.
+    friction : float, optional
+        A coefficient.
+    hip : Path, optional
+        A file about a hip in use, whose wear belongs to the evidence.
+    finite_elements : bool
+        Whether they judge the worst cases.
+    path : Path
+        The file.
+    files : tuple of Path
+        It, and the files that it names, which a pack takes along.
+    """
+
+    text: str
+    context: str
+    influence: str
+    consequence: str
+    accuracy: float
+    file: JointFile
+    axes: Mapping[str, tuple[float, ...]]
+    limits: tuple[Limit, ...]
+    tolerances: Mapping[str, Distribution]
+    sources: Mapping[str, str]
+    friction: float | None
+    hip: Path | None
+    finite_elements: bool
+    path: Path
+    files: tuple[Path, ...]
+
+    @property
+    def model(self) -> Model:
+        """The one that answers: exact, and off the axis where the matrix turns load or cup."""
+        chosen = off_axis if any(name in AIMS for name in self.axes) else reference
+        return chosen.in_cup(self.file.cup)
+
+
+def read_question(path: str | Path) -> Question:
+    """Read a question file.
+
+    At the top: `question` and `context_of_use` in words; a joint as in study files; `finite_elements` (true or false,
+    the default). Tables: `risk` with `influence` and `consequence`, each "low", "medium" or "high"; `required` with
+    `accuracy` ("10 %") and `limits` (a list, as "max_pressure <= 20 MPa"); `matrix`, with a number or a list for each
+    parameter of a study, a load among them; `tolerances`, as `clearance = "0.1 +- 0.05 mm"`; `sources`, a text for
+    inputs by name; `friction` with a `coefficient`; `wear` with the `file` of a hip in use. Numbers are text with a
+    unit or bare in mm, N, MPa, degrees. Paths are taken from the file's own folder.
+
+    Raises
+    ------
+    ValueError
+        One sentence: what is wrong or missing.
+    OSError
+        A file cannot be read.
+    """
+    path = Path(path)
+    return read_toml(path, "question", lambda content: _question(content, path))
+
+
+def _question(content: Mapping[str, Any], path: Path) -> Question:
+    check_keys(content, "", "at the top", _KEYS)
+    parts = {name: table_of(content, name) for name in ("risk", "required", "matrix", "tolerances", "friction", "wear")}
+    for name, part in parts.items():
+        check_keys(part, name, f"in [{name}]", _KEYS)
+    axes = {name: _several(name, value) for name, value in parts["matrix"].items()}
+    _check_axes(axes)
+    elements = content.get("finite_elements", False)
+    if not isinstance(elements, bool):
+        raise ValueError(f"finite_elements = {shown(elements)} must be true or false")
+    return Question(
+        text=_words(content, "question", "what is to be decided, in a sentence"),
+        context=_words(content, "context_of_use", "what the answer is used for, and for what not"),
+        influence=_level(parts["risk"], "influence", "of the model on the decision"),
+        consequence=_level(parts["risk"], "consequence", "of a wrong decision"),
+        accuracy=_accuracy(parts["required"]),
+        file=joint_in(content, path.parent),
+        axes=axes,
+        limits=_limits(parts["required"].get("limits", [])),
+        tolerances=dict(_scatter(name, value) for name, value in parts["tolerances"].items()),
+        sources=_sources(table_of(content, "sources")),
+        friction=_friction(parts["friction"]),
+        hip=_hip(parts["wear"], path.parent),
+        finite_elements=elements,
+        path=path,
+        files=files_of(path),
+    )
+
+
+def _words(content: Mapping[str, Any], name: str, meaning: str) -> str:
+    if name not in content:
+        raise ValueError(f"{name} is missing: {meaning}")
+    return check_text(name, content[name])
+
+
+def _level(part: Mapping[str, Any], name: str, meaning: str) -> str:
+    if name not in part:
+        raise ValueError(f"[risk] {name} is missing: that {meaning}, {', '.join(LEVELS)}")
+    if part[name] not in LEVELS:
+        raise ValueError(f"{name} = {shown(part[name])} is not known{nearest(part[name], LEVELS)}")
+    return str(part[name])
+
+
+def _accuracy(part: Mapping[str, Any]) -> float:
+    if "accuracy" not in part:
+        raise ValueError('[required] accuracy is missing: how far off the numbers may be, such as "10 %"')
+    given = part["accuracy"]
+    percent = _PERCENT.fullmatch(given) if isinstance(given, str) and len(given) < 40 else None
+    share = float(percent[1]) / 100 if percent else parse("accuracy", given, "number")
+    require("accuracy", share, 0 < share <= 1, "above 0, at most 100 %")
+    return share
+
+
+def _several(name: str, value: Any) -> tuple[float, ...]:
+    listed = value if isinstance(value, list) else [value]
+    if not listed:
+        raise ValueError(f"[matrix] {name} is an empty list")
+    return tuple(parse(f"{name}[{place}]", each, PARAMETERS[name].kind) for place, each in enumerate(listed))
+
+
+def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
+    contradiction(axes)
+    if not any(name in axes for name in LOADS):
+        raise ValueError(f"[matrix] needs a load: {', '.join(LOADS)}")
+    count = prod(map(len, axes.values()))
+    require("cases of the matrix", count, count <= MOST, f"at most {MOST}; a study takes more")
+    check_values(grid(**{name: list(values) for name, values in axes.items()}))
+
+
+def _limits(given: Any) -> tuple[Limit, ...]:
+    if not (isinstance(given, list) and all(isinstance(each, str) for each in given)):
+        raise ValueError(f"limits = {shown(given)} must be a list of texts, such as 'max_pressure <= 20 MPa'")
+    return tuple(map(limit_of, given))
+
+
+def _scatter(name: str, value: Any) -> tuple[str, Distribution]:
+    return spread_of(f"{name} = {check_text(name, value)}")
+
+
+def _sources(part: Mapping[str, Any]) -> Mapping[str, str]:
+    for name in part:
+        if name not in QUANTITIES and name not in PARTS and name not in LOADS:
+            raise ValueError(f"{shown(name)} in [sources] is not known{nearest(name, (*QUANTITIES, *PARTS))}")
+    return {name: check_text(name, text) for name, text in part.items()}
+
+
+def _friction(part: Mapping[str, Any]) -> float | None:
+    if "coefficient" not in part:
+        return None
+    coefficient = parse("coefficient", part["coefficient"], "number")
+    require("coefficient", coefficient, 0 <= coefficient <= 2, "a coefficient of friction is 0 to 2")
+    return coefficient
+
+
+def _hip(part: Mapping[str, Any], folder: Path) -> Path | None:
+    if "file" not in part:
+        return None
+    path = folder / check_text("file", part["file"])
+    if not path.is_file():
+        raise ValueError(f"[wear] file = {shown(part['file'])} is not there")
+    return path

@@ -1,0 +1,73 @@
+"""Propagated uncertainty at the worst case: bands of 95 % over the tolerances, and which of them matter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy
+
+from ..arrays import Numbers, to_numpy
+from ..catalogue import reference
+from ..quantities import QUANTITIES
+from ..studies.axes import Method
+from ..studies.design import sample
+from ..studies.parameters import AIMS, LOADS, pressable
+from ..studies.sensitivity import sensitivity
+from ..studies.usual import usual
+from .matrix import Case
+from .question import Question
+
+ANSWERS = ("max_pressure", "half_angle", "area", "indentation")
+BAND = (2.5, 50.0, 97.5)
+"""Percentiles."""
+
+_QUICK, _SOLVED = 1024, 64
+"""Samples from tables, and of the exact answer."""
+
+_SEED = 1
+
+
+def scattered(question: Question, case: Case) -> dict[str, Any]:
+    """Bands of a case's answers over the tolerances, and the shares that each has in their variance.
+
+    What the matrix varies and a tolerance is given for scatters as that says; loads off the axis are taken along it.
+    """
+    spreads = question.tolerances
+    load = {name: value for name, value in case.items() if name in LOADS and name not in spreads}
+    fixed = {name: value for name, value in case.items() if name not in (*AIMS, *load, *spreads)}
+    joint, _, _ = pressable(question.file.joint, fixed)
+    ends = {name: [float(spread.frozen.ppf(share)) for share in (0.001, 0.999)] for name, spread in spreads.items()}
+    model = usual(joint, {name: each for name, each in ends.items() if name not in LOADS})
+    count = _SOLVED if model is reference else _QUICK
+    drawn = sample(count, seed=_SEED, method=Method.SOBOL, **spreads).part([slice(None)])
+    made, loads, possible = pressable(joint, {**drawn, **load})
+    contact = model.press(made, **loads)
+    good = to_numpy(possible)
+    values = {name: _known(getattr(contact, name), good, count) for name in ANSWERS}
+    shares = sensitivity(model, joint, spreads, quantities=("max_pressure", "half_angle"), count=count // 4, load=load)
+    return {
+        "model": model.name,
+        "samples": count,
+        "seed": _SEED,
+        "bands": {QUANTITIES[name].key: _band(name, found) for name, found in values.items()},
+        "sobol": {
+            QUANTITIES[name].key: {
+                each: float(shares.total_order.sel(quantity=name, parameter=each)) for each in spreads
+            }
+            for name in ("max_pressure", "half_angle")
+        },
+        "aligned": any(name in AIMS for name in case),
+        "call": "ballsocket.evidence.scatter.scattered(question, case)",
+    }
+
+
+def _known(values: Any, good: Numbers, count: int) -> Numbers:
+    found: Numbers = numpy.where(good, numpy.broadcast_to(to_numpy(values), count), numpy.nan)
+    return found[numpy.isfinite(found)]
+
+
+def _band(name: str, values: Numbers) -> Mapping[str, float]:
+    factor = QUANTITIES[name].written.factor
+    ends = numpy.percentile(values, BAND) * factor
+    return {"low": float(ends[0]), "median": float(ends[1]), "high": float(ends[2]), "answered": len(values)}
