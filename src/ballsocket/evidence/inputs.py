@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from ..joint import Joint, Material
+from ..joint.dimensions import DIAMETERS
 from ..quantities import JOINT, MATERIAL, STRENGTH
 from .question import Question
 
@@ -52,7 +53,8 @@ def _material(part: str, material: Material | None) -> list[tuple[str, Any, str]
 def _tolerance(question: Question, name: str) -> str:
     spread = question.tolerances.get(name)
     if spread is None:
-        return "varied in the matrix" if name in question.axes else ""
+        varied = {DIAMETERS.get(each, each) for each in question.axes}
+        return "varied in the matrix" if name in varied else ""
     low, high = (float(spread.frozen.ppf(share)) for share in (0.0, 1.0))
     return f"{low:g} to {high:g}"
 

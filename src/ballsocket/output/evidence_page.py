@@ -28,7 +28,9 @@ _LIMITS = (
 _PRINT = """<style>@media print { @page { margin: 18mm 15mm; } body { max-width: none; font-size: 10pt; }
 nav { display: none; } h2 { break-after: avoid; } table { font-size: 8pt; } tr, figure { break-inside: avoid; }
 .wide { overflow: visible; } .sign td { height: 2.5rem; } }
-.sign td { min-width: 14rem; } .call { font-family: monospace; font-size: 0.8rem; color: #555; }</style>"""
+.sign td { min-width: 14rem; }
+.words td, .words th { text-align: left; vertical-align: top; }
+.call { font-family: monospace; font-size: 0.8rem; color: #555; }</style>"""
 
 
 def evidence_page(record: Record, day: date | None = None) -> str:
@@ -72,7 +74,7 @@ def _risk(record: Record) -> str:
         ("required accuracy", _percent(record["required"]["accuracy"])),
         *(("limit", text) for text in record["required"]["limits"]),
     ]
-    return html.table(("", ""), rows)
+    return _words(("", ""), rows)
 
 
 def _inputs(record: Record) -> str:
@@ -80,7 +82,7 @@ def _inputs(record: Record) -> str:
         (each["name"], _number(each["value"]), each["unit"], each["tolerance"], each["source"] or "none given")
         for each in record["inputs"]
     ]
-    return html.table(("input", "value", "unit", "tolerance", "source"), rows)
+    return _words(("input", "value", "unit", "tolerance", "source"), rows)
 
 
 def _matrix(record: Record) -> str:
@@ -154,8 +156,8 @@ def _with_bar(method: Record, key: str) -> str:
 
 def _validation(record: Record) -> str:
     claims = [(each["sentence"], each["where"], each["text"], _ours(each["numbers"])) for each in record["claims"]]
-    told = html.table(("published", "where", "verdict", "ours"), claims)
-    return f"<div class='text'>{told}</div>" + "".join(map(_comparator, record["comparators"]))
+    told = _words(("published", "where", "verdict", "ours"), claims)
+    return told + "".join(map(_comparator, record["comparators"]))
 
 
 def _ours(numbers: Mapping[str, Any]) -> str:
@@ -168,7 +170,7 @@ def _comparator(each: Record) -> str:
     said += [("published", name, text) for name, text in each["published"].items()]
     said += [("ours", name, f"{_number(low)} to {_number(high)}") for name, (low, high) in each["ours"].items()]
     told = f"<p>{escape(each['agreement'])} <small>({escape(each['source'])})</small></p>"
-    return f"<h3>{escape(each['title'])}</h3>{html.table(('', '', ''), said)}{told}{_call(each['call'])}"
+    return f"<h3>{escape(each['title'])}</h3>{_words(('', '', ''), said)}{told}{_call(each['call'])}"
 
 
 def _uncertainty(record: Record) -> str:
@@ -200,13 +202,14 @@ def _wear(record: Record) -> str:
 
 def _credibility(record: Record) -> str:
     rows = [(each["activity"], each["factor"], each["supported_by"], each["missing"]) for each in record["credibility"]]
-    return html.table(("activity", "factor", "supported by", "missing"), rows)
+    return _words(("activity", "factor", "supported by", "missing"), rows)
 
 
 def _signed(record: Record, day: date) -> str:
     told = (
         f"<p>Made on {day.isoformat()} by ballsocket {escape(record['version'])}. The SHA-256 sums of this page and of "
-        "what lies beside it are in checksums.txt; <code>ballsocket evidence --check FOLDER</code> computes it again.</p>"
+        "what lies beside it are in checksums.txt; <code>ballsocket evidence --check FOLDER</code> computes it "
+        "again.</p>"
     )
     rows = "".join(f"<tr><td>{name}</td><td></td><td></td></tr>" for name in ("prepared", "reviewed", "approved"))
     return f"{told}<table class='sign'><tr><th></th><th>name, date</th><th>signature</th></tr>{rows}</table>"
@@ -245,6 +248,11 @@ def _percent(share: float) -> str:
 
 def _call(text: str) -> str:
     return f"<p class='call'>{escape(text)}</p>"
+
+
+def _words(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of words, all of which begin on the left."""
+    return f"<div class='words'>{html.table(heads, rows)}</div>"
 
 
 def _list(texts: Iterable[str]) -> str:
