@@ -7,11 +7,10 @@ import pytest
 
 import ballsocket as bs
 
-from ..places import DATA
+from ..places import ROOT
 
-ROWS = list(
-    csv.DictReader(line for line in (DATA / "closed_forms.csv").read_text().splitlines() if not line.startswith("#"))
-)
+TABLE = ROOT / "src" / "ballsocket" / "data" / "closed_forms.csv"
+ROWS = list(csv.DictReader(line for line in TABLE.read_text(encoding="utf-8").splitlines() if not line.startswith("#")))
 K = bs.constant(276.5)
 STRETCH_SHARE = 0.25
 
