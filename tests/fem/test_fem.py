@@ -10,6 +10,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.arrays import gauss_legendre
 from ballsocket.fem.shapes import Resolution
+from ballsocket.output.section_plot import section_figure
 
 from ..extent import either, some
 from ..joints import HIP
@@ -530,6 +531,17 @@ def test_the_size_of_a_mesh_is_known_without_it():
     assert contact.mesh.elements == sum(part.elements.shape[1] for part in parts)
     assert contact.mesh.nodes == sum(part.place.shape[1] for part in parts)
     assert isinstance(contact.laws.pieces[0][1].state.solved[0].pair.resolution, Resolution)
+
+
+def test_a_section_names_its_parts_and_has_a_scale_for_each_kind():
+    joint = bs.joints["hip-28"].replace(backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),))
+    figure = section_figure(bs.FiniteElement(spacing=bs.Adapted(elements=24), meshes=1).press(joint, force=3000.0))
+    section, _, *bars = figure.axes
+    assert {text.get_text() for text in section.texts} == {"liner: UHMWPE", "backing 1: titanium", "ball: CoCr"}
+    labels = [f"von Mises stress in the {kind} [MPa]" for kind in ("backing", "liner", "ball")]
+    assert [bar.get_ylabel() for bar in bars] == labels
+    assert len({bar.get_ylim()[1] for bar in bars}) == 3
+    assert section.get_title() == "arc of cover 180°, outside fixed"
 
 
 def test_vtk(tmp_path):

@@ -22,10 +22,12 @@ _RIM = {4: (0, 1, 2, 3), 9: (0, 4, 1, 5, 2, 6, 3, 7)}
 """The nodes around an element, one after the other."""
 
 _LEVELS = 14
+_SCALES = {"backing": "magma", "liner": "viridis", "ball": "cividis"}
+"""Stresses of a shell and of a liner differ by orders of magnitude: each kind of part has a scale of its own."""
 
 
 def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figure:
-    """Half mesh, half von Mises stress, to scale; beside it the pressure with its error bar.
+    """Half mesh, half von Mises stress, to scale, each part named; beside it the pressure with its error bar.
 
     Parameters
     ----------
@@ -52,18 +54,23 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
 
 def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
     section = contact.section
-    extent = 1.12 * (float(contact.joint.socket_radius) + min(float(contact.joint.liner_thickness), 40.0))
-    highest = section.peak_stress.von_mises
+    outermost = max(float(part.place[0].max()) for part in section.parts)
+    extent = 1.03 * min(outermost, float(contact.joint.socket_radius) + 40.0)
     for part in section.parts:
         _draw_mesh(axes, part)
-        filled = _draw_stress(axes, part, highest)
-    bar = figure.colorbar(filled, ax=axes, shrink=0.75, pad=0.01, extend="max")
-    bar.set_label("von Mises stress [MPa], in liner and ball")
+    for kind, colours in _SCALES.items():
+        parts = [part for part in section.parts if part.name.startswith(kind)]
+        if parts:
+            highest = section.peak_stress.von_mises if kind == "liner" else max(map(_highest, parts))
+            filled = [_draw_stress(axes, part, highest, colours) for part in parts][-1]
+            bar = figure.colorbar(filled, ax=axes, shrink=0.75, pad=0.01, extend="max")
+            bar.set_label(f"von Mises stress in the {kind} [MPa]", fontsize=8)
+    _name_parts(axes, contact, extent)
     axes.set_aspect("equal")
     low = min(part.place[1].min() for part in section.parts)
     high = max(part.place[1].max() for part in section.parts)
     axes.set_xlim(-extent, extent)
-    axes.set_ylim(max(low, -extent) - 1.0, min(high, extent) + 1.0)
+    axes.set_ylim(max(low, -extent) - 1.0, min(high, extent) + 0.1 * extent * (len(section.parts) + 1))
     axes.set_xlabel("distance from the load axis [mm]")
     axes.set_ylabel("height [mm]")
     axes.spines[["top", "right"]].set_visible(False)
@@ -79,7 +86,32 @@ def _draw_mesh(axes: Axes, part: Part) -> None:
     axes.add_collection(PolyCollection(list(outlines), facecolors="white", edgecolors=colour, linewidths=0.25))
 
 
-def _draw_stress(axes: Axes, part: Part, highest: float) -> Any:
+def _highest(part: Part) -> float:
+    """The largest stress but for the sharpest corners."""
+    return float(numpy.percentile(part.stress.von_mises, 99.5))
+
+
+def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
+    """What each part is, on the side of the meshes, and how far the cup reaches around its ball."""
+    joint = contact.joint
+    of = {"ball": joint.ball, "liner": joint.liner}
+    of |= {f"backing {number}": layer.material for number, layer in enumerate(joint.backing, start=1)}
+    for number, part in enumerate(sorted(contact.section.parts, key=lambda part: part.name != "ball")):
+        angle, middle = (
+            0.9 * float(part.angle.max()),
+            (float(part.radius.min()) + min(float(part.radius.max()), extent)) / 2,
+        )
+        nearest = numpy.argmin((part.angle - angle) ** 2 * middle**2 + (part.radius - middle) ** 2)
+        text = f"{part.name}: {of[part.name].name}" if of[part.name] and of[part.name].name else part.name
+        x, y = part.place[:, nearest]
+        arrow = {"arrowstyle": "-", "lw": 0.6, "color": "0.2", "relpos": (1.0, 0.5)}
+        where = (0.02, 0.98 - 0.07 * number)
+        axes.annotate(text, (-x, y), where, textcoords="axes fraction", fontsize=7, va="top", arrowprops=arrow)
+    arc = numpy.degrees(contact.model.cup.arc_of_cover)
+    axes.set_title(f"arc of cover {arc:.4g}°, outside {joint.support.value}", fontsize=8)
+
+
+def _draw_stress(axes: Axes, part: Part, highest: float, colours: str) -> Any:
     """Contours of the von Mises stress, on the right."""
     from matplotlib.ticker import MaxNLocator
     from matplotlib.tri import Triangulation
@@ -88,7 +120,7 @@ def _draw_stress(axes: Axes, part: Part, highest: float) -> Any:
     triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
     levels = MaxNLocator(_LEVELS).tick_values(0.0, highest)
     mesh = Triangulation(part.place[0], part.place[1], triangles)
-    return axes.tricontourf(mesh, part.stress.von_mises, levels=levels, cmap="viridis", extend="max")
+    return axes.tricontourf(mesh, part.stress.von_mises, levels=levels, cmap=colours, extend="max")
 
 
 def _draw_pressure(axes: Axes, contact: MeshedContact, exact: Contact | None) -> None:
