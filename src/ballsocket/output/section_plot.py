@@ -102,7 +102,8 @@ def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
             (float(part.radius.min()) + min(float(part.radius.max()), extent)) / 2,
         )
         nearest = numpy.argmin((part.angle - angle) ** 2 * middle**2 + (part.radius - middle) ** 2)
-        text = f"{part.name}: {of[part.name].name}" if of[part.name] and of[part.name].name else part.name
+        material = of[part.name]
+        text = f"{part.name}: {material.name}" if material is not None and material.name else part.name
         x, y = part.place[:, nearest]
         arrow = {"arrowstyle": "-", "lw": 0.6, "color": "0.2", "relpos": (1.0, 0.5)}
         where = (0.02, 0.98 - 0.07 * number)
