@@ -11,7 +11,7 @@ from string import Template
 
 from ..arrays import Numbers
 from ..atomic import write_text
-from ..dynamics import ForceElement, Touch
+from ..dynamics import Bristles, ForceElement, Touch
 from ..model.law import CurveLaw
 from ..version import __version__
 from .c_text import c_number, c_statements
@@ -35,7 +35,7 @@ class CElement:
     Raises
     ------
     ValueError
-        A name that C does not allow.
+        A name that C does not allow; friction that has a state.
 
     Examples
     --------
@@ -52,6 +52,8 @@ class CElement:
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]{0,40}", self.name):
             raise ValueError(f"name must be letters, digits and _ that C can begin a name with, got {self.name!r:.60}")
+        if isinstance(self.element.friction, Bristles):
+            raise ValueError("bristles have a state, and what is exported has none: Friction is taken")
 
     @cached_property
     def recording(self) -> Recording:
@@ -63,7 +65,7 @@ class CElement:
         """What other programs include."""
         fields = "\n".join(f"    double {each.name}; /* {each.unit}: {each.meaning} */" for each in TUNABLES)
         codes = "\n".join(f"    {self.name.upper()}_{touch.name} = {touch.value}," for touch in Touch)
-        words = {"name": self.name, "NAME": self.name.upper(), **self._about}
+        words = {"name": self.name, "NAME": self.name.upper(), **self.about}
         return filled("element.h", fields=fields, codes=codes, **words)
 
     @property
@@ -84,7 +86,7 @@ class CElement:
             tangent=c_statements({**recording.status, **recording.tangent}),
             slope=c_statements({**recording.status, **recording.slope}),
             sentences="\n".join(f'    case {touch.value}: return "{touch.sentence}";' for touch in Touch),
-            **self._about,
+            **self.about,
         )
 
     def write(self, folder: Path) -> tuple[Path, Path]:
@@ -100,8 +102,8 @@ class CElement:
         return header, write_text(folder / f"{self.name}.c", self.source)
 
     @property
-    def _about(self) -> dict[str, str]:
-        joint = re.sub(r"[^\x20-\x7e]|\*/|\\", "?", repr(self.element.joint.with_floats()))
+    def about(self) -> dict[str, str]:
+        joint = re.sub(r"[^\x20-\x7e]|\*/|--|\\", "?", repr(self.element.joint.with_floats()))
         return {"version": __version__, "model": self.element.model.name, "joint": joint}
 
 

@@ -88,10 +88,9 @@ def build_description(about: About) -> bytes:
 
 
 def _root(version: str, about: About, words: dict[str, str]) -> Element:
-    root = Element("fmiModelDescription", fmiVersion=version, modelName=about.name, **words)
-    for name, text in (("description", about.text), ("generationTool", about.tool)):
-        root.set(name, text)
-    root.set("variableNamingConvention", "structured")
+    said = {"description": about.text, "generationTool": about.tool, "variableNamingConvention": "structured"}
+    named = {"fmiVersion": version, "modelName": about.name, **words, **said}
+    root = Element("fmiModelDescription", named)
     abilities = dict.fromkeys(_ABILITIES[version], "true")
     identified = {"modelIdentifier": about.name, **abilities}
     not_needed = (

@@ -1,0 +1,47 @@
+"""`export`: a joint in the words of another program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..atomic import check_folder
+from ..checks import known_name
+from .force_elements import ElementWords, identifier
+from .groups import grouped
+from .root import app, complain, echo_path
+from .words import JointWords
+
+_TARGETS = "c, opensim, mujoco, drake, exudyn, modelica or table"
+
+
+@app.command()
+@grouped
+def export(
+    *,
+    target: Annotated[str, typer.Argument(help=f"The program: {_TARGETS}.")],
+    joint: Annotated[str | None, typer.Argument(help="A joint file (TOML), or the name of a preset.")] = None,
+    words: JointWords,
+    element: ElementWords,
+    out: Annotated[
+        Path, typer.Option(help="The folder to write into, which names the files; made if it is not there.")
+    ],
+) -> None:
+    """Write a joint as a force element for another program, with what that needs around it."""
+    from ..export.law_fit import depth_of
+    from ..export.targets import TARGETS, Job
+
+    chosen = TARGETS[known_name("target", target, TARGETS)]
+    check_folder(out)
+    if out.exists() and not out.is_dir():
+        raise ValueError(f"{str(out)!r} is a file; a folder is needed")
+    file = words.or_named(joint)
+    made = element.element(file)
+    job = Job(element=made, name=identifier(out), depth=depth_of(made, file.load))
+    paths, missing = chosen.write(job, out)
+    for path in paths:
+        echo_path(path)
+    if missing:
+        complain(missing)

@@ -1,0 +1,150 @@
+"""A law as other programs can take it: a power of the indentation, and one expression; with how far it is off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy
+
+from ..arrays import Numbers
+from ..dynamics import ForceElement
+from ..model import Model
+from .trusted import trusted_depth
+
+_POINTS, _DEGREE = 400, 10
+_FROM = 0.05  # of the depth: below, a law of touch-down is a power of its own
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerFit:
+    """F = k d^n, with the largest error over the largest force up to a depth.
+
+    Attributes
+    ----------
+    stiffness : float
+        k in N/mm^n.
+    exponent : float
+    depth : float
+        In mm.
+    error : float
+    """
+
+    stiffness: float
+    exponent: float
+    depth: float
+    error: float
+
+
+def power_fit(element: ForceElement, depth: float) -> PowerFit:
+    """The k and n that come nearest up to a depth: the smallest largest error, over the force there."""
+    d = depth * numpy.linspace(_FROM, 1.0, _POINTS)
+    F = element.potential(d)[1]
+    exponent = _smallest(lambda n: _power(d, F, n)[1])
+    k, error = _power(d, F, exponent)
+    return PowerFit(stiffness=k, exponent=exponent, depth=depth, error=error / float(F[-1]))
+
+
+def _power(d: Numbers, F: Numbers, n: float) -> tuple[float, float]:
+    """The best k of an exponent, and its largest error in N."""
+    shape = (d / d[-1]) ** n
+    k = _smallest(lambda k: float(numpy.max(abs(k * shape - F))), 0.5 * float(F[-1]), 2.0 * float(F[-1]))
+    return k / float(d[-1]) ** n, float(numpy.max(abs(k * shape - F)))
+
+
+def _smallest(of, low: float = 0.5, high: float = 4.0) -> float:  # type: ignore[no-untyped-def]
+    """Where a function that falls and rises again is smallest, by golden section."""
+    share = (5.0**0.5 - 1.0) / 2.0
+    for _ in range(60):
+        left, right = high - share * (high - low), low + share * (high - low)
+        low, high = (low, right) if of(left) < of(right) else (left, high)
+    return (low + high) / 2.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExpressionFit:
+    """A law as one expression, in m and N, of the distance of the centres.
+
+    That of radial springs is F = G d² (3 c + 2 d)/(c + d)²; any other G d^n exp(a1 t + a2 t² + ...), t² = d/(d + h).
+
+    Attributes
+    ----------
+    scale : float
+        G.
+    clearance, length : float
+        c and h in m.
+    power : float
+        n.
+    coefficients : tuple of float
+        a1, a2, ...; none of radial springs.
+    depth : float
+        In m.
+    error : float
+        The largest, over the force at the same depth, from a thousandth of the depth on.
+    """
+
+    scale: float
+    clearance: float
+    length: float
+    power: float
+    coefficients: tuple[float, ...]
+    depth: float
+    error: float = 0.0
+
+    def __call__(self, distance: Numbers) -> Numbers:
+        """F in N at distances of the centres in m."""
+        d = numpy.maximum(distance - self.clearance, 0.0)
+        if not self.coefficients:
+            return self.scale * _springs(d, self.clearance)
+        t = numpy.sqrt(d / (d + self.length))
+        return self.scale * d**self.power * numpy.exp(numpy.polyval((*self.coefficients[::-1], 0.0), t))
+
+    def text(self, distance: str, rate: str, hysteresis: float) -> str:
+        """The force towards the socket's centre as an expression, with Hunt and Crossley's damping (s/m)."""
+        c = repr(self.clearance)
+        u = f"max({distance}-{c},0)"
+        if self.coefficients:
+            nested = "0"
+            for a in reversed(self.coefficients):
+                nested = f"t*({a!r}+{nested})"
+            t = f"sqrt({u}/({u}+{self.length!r}))"
+            force = f"{self.scale!r}*{u}^{self.power!r}*exp({nested.replace('t', t)})"
+        else:
+            force = f"{self.scale!r}*{u}^2*(2*{u}+{3 * self.clearance!r})/max({distance},{c})^2"
+        return f"{force}*max(1+{hysteresis!r}*{rate},0)" if hysteresis else force
+
+
+def _springs(d: Numbers, c: float) -> Numbers:
+    return d * d * (3.0 * c + 2.0 * d) / (c + d) ** 2
+
+
+def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
+    """One expression for a law, up to a depth in mm."""
+    c, R2 = element.constants.clearance, element.constants.socket_radius
+    looked = numpy.geomspace(1e-3 * depth, depth, 997)
+    forces = element.potential(looked)[1]
+    ratio = forces / _springs(looked, c)
+    words = {"clearance": 1e-3 * c, "depth": 1e-3 * depth}
+    if c > 0.0 and numpy.ptp(ratio) < 1e-12 * ratio[0]:
+        made = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **words)
+    else:
+        made = _fitted(element, depth, c or 1e-3 * R2, words)
+    return replace(made, error=float(numpy.max(abs(made(1e-3 * (c + looked)) / forces - 1.0))))
+
+
+def _fitted(element: ForceElement, depth: float, h: float, words: dict[str, float]) -> ExpressionFit:
+    t = numpy.linspace(0.0, 1.0, _POINTS + 1)[1:] * (depth / (depth + h)) ** 0.5
+    d = h * t * t / (1.0 - t * t)
+    _, force, stiffness = element.potential(d)
+    power = round(2.0 * float(stiffness[0] * d[0] / force[0])) / 2.0
+    found = numpy.polynomial.Polynomial.fit(t, numpy.log(force / d**power), _DEGREE).convert().coef
+    scale = float(numpy.exp(found[0])) * 1e3**power
+    coefficients = tuple(map(float, found[1:]))
+    return ExpressionFit(scale=scale, length=1e-3 * h, power=power, coefficients=coefficients, **words)
+
+
+def depth_of(element: ForceElement, load: dict[str, float]) -> float:
+    """How deep a law is asked for: to a load, or without one as far as the model trusts itself; in mm."""
+    if load:
+        model: Model = element.model
+        return float(model.press(element.joint.with_floats(), **load).indentation)
+    return trusted_depth(element) or element.wall

@@ -1,0 +1,197 @@
+"""The element in the words of other programs: files that hold together, and one bounce in all that are installed."""
+
+import ctypes
+import sys
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from math import exp, pi, sqrt
+from xml.etree.ElementTree import fromstring
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import ballsocket as bs
+from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
+from ballsocket.export import TARGETS, CElement, Job
+from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
+from ballsocket.export.law_fit import expression_fit, power_fit
+
+from ..cli.command import run
+from ..joints import HIP
+from ..places import EXAMPLES, ROOT
+from .library import needs_compiler
+
+PLAIN = ForceElement(bs.HessForsbach(), HIP)
+DAMPED = ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.004))
+LOSSY = ForceElement(bs.HessForsbach(), HIP, damping=DAMPED.damping, friction=Friction(coefficient=0.05))
+STATE = (1e-5, 0.0, 1.2e-4), (0.001, 0.0, 0.02), (0.0, 1.0, 2.0)
+IN_MM = (0.01, 0.0, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0)
+
+
+def written(target, element, folder, name="bouncing", depth=0.05):
+    return TARGETS[target].write(Job(element=element, name=name, depth=depth), folder)
+
+
+@pytest.fixture(scope="module")
+def tools():
+    """The benchmark that runs one bounce in every program."""
+    spec = spec_from_file_location("tools", ROOT / "benchmarks" / "tools.py")
+    made = module_from_spec(spec)
+    sys.modules["tools"] = made
+    spec.loader.exec_module(made)
+    yield made
+    del sys.modules["tools"]
+
+
+@needs_compiler
+def test_the_module_in_python_answers_as_the_element_and_needs_no_package(tools, tmp_path):
+    assert written("exudyn", LOSSY, tmp_path)[1] == ""
+    assert "import ballsocket" not in (tmp_path / "bouncing.py").read_text()
+    wanted = LOSSY(*IN_MM)
+    with tools.module(tmp_path, "bouncing") as joint:
+        force, moment, energy = joint.load(*STATE)
+        assert_allclose(force, wanted.force, rtol=1e-12, atol=1e-9)
+        assert_allclose(moment, 1e-3 * np.array(wanted.moment), rtol=1e-12, atol=1e-12)
+        assert_allclose(energy, 1e-3 * wanted.energy, rtol=1e-12)
+        assert_allclose(joint.contact(STATE[0]), (wanted.half_angle, 1e6 * wanted.max_pressure), rtol=1e-12)
+        with pytest.raises(joint.NoForce, match="the ball is deeper than the wall"):
+            joint.load((0.0, 0.0, 0.1))
+
+
+@needs_compiler
+def test_what_modelica_calls_answers_as_the_element(tmp_path):
+    written("modelica", LOSSY, tmp_path)
+    package = (tmp_path / "bouncing" / "package.mo").read_text()
+    assert package.count("end bouncing;") == package.count("package bouncing ") == 1
+    assert 'parameter Real friction_coefficient(unit="1") = 0.05 ' in package
+    folder = tmp_path / "bouncing" / "Resources" / "Include"
+    path = shared_library(["bouncing_modelica.c"], folder / f"called{LIBRARY_ENDING}", folder)
+    load = (ctypes.c_double * 9)()
+    tuned = (ctypes.c_double * 7)(4.0, 0.0, 0.05, 0.05, 1e-4, 1e-2, 0.0)
+    ctypes.CDLL(str(path)).bouncing_modelica(*((ctypes.c_double * 3)(*part) for part in STATE), tuned, load)
+    wanted = LOSSY(*IN_MM)
+    assert_allclose(load[:3], wanted.force, rtol=1e-12, atol=1e-9)
+    assert_allclose(load[3:7], 1e-3 * np.array([*wanted.moment, wanted.energy]), rtol=1e-12, atol=1e-12)
+    assert_allclose(load[7:], (wanted.half_angle, 1e6 * wanted.max_pressure), rtol=1e-12)
+
+
+def test_the_expression_of_a_closed_form_is_the_closed_form():
+    fit = expression_fit(PLAIN, 0.05)
+    assert fit.coefficients == ()
+    assert_allclose(fit.scale, 1e3 * pi / 3 * bs.hess_forsbach(HIP) * HIP.socket_radius**2, rtol=1e-12)
+    assert fit.error < 1e-12
+
+
+def test_one_expression_holds_any_law_and_says_how_far_it_is_off():
+    element = ForceElement(bs.Tabulated(), HIP)
+    fit = expression_fit(element, 0.05)
+    assert fit.error < 1e-4
+    depths = np.array([2e-4, 0.011, 0.049])
+    forces = fit(1e-3 * (HIP.clearance + depths))
+    assert_allclose(forces, element.potential(depths)[1], rtol=2 * fit.error)
+
+
+@pytest.mark.parametrize(("model", "near"), [(bs.HessForsbach(), 1e-12), (bs.Tabulated(), 1e-4)])
+def test_an_expression_in_words_is_the_law_with_its_damping(model, near):
+    element = ForceElement(model, HIP, damping=DAMPED.damping)
+    text = expression_fit(element, 0.05).text("d", "ddot", 4.0)
+    words = {"max": max, "sqrt": sqrt, "exp": exp, "d": 1.3e-4, "ddot": 0.02}
+    force = eval(text.replace("^", "**"), words)
+    assert_allclose(force, -element((0.0, 0.0, 0.13), (0.0, 0.0, 20.0)).force[2], rtol=near)
+    assert eval(text.replace("^", "**"), words | {"d": 5e-5}) == 0.0
+
+
+def test_the_best_power_law_is_balanced_and_no_other_is_better():
+    fit = power_fit(PLAIN, 0.05)
+    depths = np.linspace(0.0025, 0.05, 500)
+    forces = PLAIN.potential(depths)[1]
+
+    def worst(k, n):
+        return max(abs(k * depths**n - forces)) / forces[-1]
+
+    assert_allclose(worst(fit.stiffness, fit.exponent), fit.error, rtol=1e-2)
+    assert 1.0 < fit.exponent < 2.0  # between the limits of a deep contact and of a light one
+    for k, n in ((1.001, 0.0), (0.999, 0.0), (0.05**-0.003, 0.003), (0.05**0.003, -0.003)):
+        assert worst(fit.stiffness * k, fit.exponent + n) > fit.error
+
+
+def test_a_power_law_is_found_as_it_is():
+    fit = power_fit(ForceElement(bs.Hertz(), HIP), 0.02)
+    assert_allclose(fit.exponent, 1.5, atol=1e-6)
+    assert fit.error < 1e-6
+
+
+def test_a_table_says_what_the_model_says_up_to_the_load_of_the_file(tmp_path):
+    done = run("export", "table", str(EXAMPLES / "hip.toml"), "--out", "hip", "--model", "exact", folder=tmp_path)
+    assert (done.returncode, done.stdout) == (0, "hip/hip_law.csv\nhip/hip_power.txt\n")
+    rows = np.genfromtxt(tmp_path / "hip" / "hip_law.csv", delimiter=",", names=True, deletechars="")
+    assert_allclose(rows["force_N"][-1], 3000.0, rtol=1e-6)
+    contact = bs.Exact().press(HIP.replace(liner=bs.Material(young=1000.0, poisson=0.4)), force=3000.0)
+    assert_allclose(rows["max_pressure_MPa"][-1], contact.max_pressure, rtol=1e-6)
+    assert_allclose(np.gradient(rows["energy_N_mm"], rows["indentation_mm"])[50], rows["force_N"][50], rtol=1e-3)
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_every_target_takes_a_joint_without_a_load_and_says_what_is_missing(target, tmp_path, monkeypatch):
+    monkeypatch.setenv("CC", "no-such-compiler")
+    done = run("export", target, "hip-28", "--out", "hip", "--model", "hess-forsbach", folder=tmp_path)
+    assert done.returncode == 0
+    assert all((tmp_path / line).stat().st_size > 100 for line in done.stdout.splitlines())
+    compiled = target in ("mujoco", "drake", "exudyn")
+    assert ("the sources are there" in done.stderr) == compiled
+    for path in (tmp_path / "hip").glob("*.py"):
+        compile(path.read_text(), path.name, "exec")
+    for path in (tmp_path / "hip").glob("*.[ox][sm][il]*"):
+        fromstring(path.read_bytes())
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("adams", "--out", "hip"), "target 'adams' is not known; known: c, opensim, mujoco, drake, exudyn, modelica"),
+        (("mujocoo", "--out", "hip"), "did you mean 'mujoco'?"),
+        (("table", "--out", "nowhere/hip"), "'nowhere' is no folder to write hip into"),
+        (("table", "--out", "file"), "'file' is a file; a folder is needed"),
+        (("table", "--out", "hip", "--model", "fem"), "finite elements are too noisy for a law"),
+    ],
+)
+def test_what_is_not_allowed_is_one_sentence(words, said, tmp_path):
+    (tmp_path / "file").touch()
+    done = run("export", words[0], "hip-28", *words[1:], folder=tmp_path)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "hip").exists()
+
+
+def test_bristles_have_a_state_that_nothing_exported_has():
+    with pytest.raises(ValueError, match="bristles have a state"):
+        CElement(element=ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05)))
+
+
+@pytest.mark.long
+@needs_compiler
+@pytest.mark.parametrize(
+    ("target", "program", "package"),
+    [
+        ("mujoco", "mujoco", "mujoco"),
+        ("mujoco", "mujoco_callback", "mujoco"),
+        ("drake", "drake", "pydrake"),
+        ("exudyn", "exudyn", "exudyn"),
+        ("opensim", "opensim", "opensim"),
+    ],
+)
+def test_a_ball_bounces_as_it_does_here(target, program, package, tools, tmp_path):
+    if find_spec(package) is None:
+        pytest.skip(f"{package} is not installed")
+    element = DAMPED if target == "opensim" else LOSSY
+    bounce = tools.Bounce(element=element, duration=0.005, samples=51)
+    assert written(target, element, tmp_path)[1] == ""
+
+    def load(r, v, w):
+        answer = element(1e3 * r, 1e3 * v, 1.0 * w)
+        return answer.force, 1e-3 * answer.moment
+
+    wanted = tools.by_load(bounce, load)
+    assert np.linalg.norm(wanted, axis=1).max() > HIP.clearance + 0.01
+    assert_allclose(getattr(tools, program)(bounce, tmp_path), wanted, atol=1e-5)
