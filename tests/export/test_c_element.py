@@ -8,6 +8,7 @@ import ballsocket as bs
 from ballsocket.dynamics import Damping, ForceElement, Friction, Touch
 from ballsocket.export import CElement
 
+from ..extent import either, some
 from ..joints import HIP
 from .library import Library, needs_compiler
 
@@ -17,15 +18,15 @@ LOSSES = {
 }
 CUP = bs.Cup(inclination=0.7, anteversion=0.2)
 ELEMENTS = {
-    "springs": lambda: ForceElement(bs.HessForsbach(), HIP, **LOSSES),
     "springs of a cup": lambda: ForceElement(bs.Bartel(), HIP, **LOSSES, cup=CUP, smoothing=0.02),
+    "springs": lambda: ForceElement(bs.HessForsbach(), HIP, **LOSSES),
     "formula": lambda: ForceElement(bs.Hertz(), HIP, **LOSSES),
     "curve": lambda: ForceElement(bs.Tabulated(), HIP, **LOSSES, cup=CUP),
 }
 pytestmark = needs_compiler
 
 
-@pytest.fixture(scope="module", params=list(ELEMENTS))
+@pytest.fixture(scope="module", params=some(reversed(ELEMENTS), 2))
 def element(request):
     return ELEMENTS[request.param]()
 
@@ -48,9 +49,9 @@ def close(got, wanted, scale):
     assert_allclose(got, wanted, rtol=1e-12, atol=1e-12 * scale)
 
 
-def test_a_thousand_states_have_the_load_contact_and_tangent_of_the_python_element(element, library):
+def test_random_states_have_the_load_contact_and_tangent_of_the_python_element(element, library):
     touched = 0
-    for state in zip(*states(1000), strict=True):
+    for state in zip(*states(either(300, 1000)), strict=True):
         wanted = element(*(tuple(map(float, part)) for part in state))
         status, force, moment, energy = library.load(*state)
         assert status == wanted.status
@@ -63,7 +64,7 @@ def test_a_thousand_states_have_the_load_contact_and_tangent_of_the_python_eleme
         close((half_angle[0], max_pressure[0]), (wanted.half_angle, wanted.max_pressure), 0.0)
         tangent = np.array(wanted.tangent)
         close(library.tangent(state[0])[1], tangent.ravel(), abs(tangent).max())
-    assert 500 < touched < 990
+    assert touched > either(150, 500)
 
 
 def test_slopes_are_those_of_differences(library):

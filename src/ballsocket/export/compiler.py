@@ -38,14 +38,15 @@ def compiler() -> list[str]:
 
 
 def shared_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Path:
-    """Compile sources of a folder into a library that other programs load.
+    """Compile sources of a folder into a library that other programs load; the environment's CFLAGS are obeyed.
 
     Raises
     ------
     NoCompiler
         There is no compiler, or it refuses, with its first complaint.
     """
-    words = [*compiler(), "-std=c99", "-O2", "-fPIC", "-shared", *options, *sources, "-o", str(library), "-lm"]
+    chosen = shlex.split(os.environ.get("CFLAGS", ""))
+    words = [*compiler(), "-std=c99", "-O2", *chosen, "-fPIC", "-shared", *options, *sources, "-o", str(library), "-lm"]
     try:
         done = subprocess.run(words, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
     except (OSError, subprocess.TimeoutExpired) as error:
