@@ -29,10 +29,6 @@ class First:
         ∫∫ p v dA dt in N m.
     cross_shear : float
         Its mean over the socket, weighted by p v.
-    crossing_angle : float
-        Between sliding and its principal direction, its mean weighted by p v, in rad.
-    speed : float
-        The largest of sliding in contact, in mm/s.
     volume, depth : float
         What a million such cycles would wear: mm³, and mm at the deepest point.
     max_pressure, max_force : float
@@ -42,8 +38,6 @@ class First:
     slide: float
     work: float
     cross_shear: float
-    crossing_angle: float
-    speed: float
     volume: float
     depth: float
     max_pressure: float
@@ -214,13 +208,13 @@ class History:
                 "slide_mm": first.slide,
                 "pressure_slide_integral_Nm": first.work,
                 "cross_shear_mean": first.cross_shear,
-                "crossing_angle_mean_deg": degrees(first.crossing_angle),
+                "crossing_angle_mean_deg": degrees(self.use.crossing_angle),
                 "edge": _told(self.worst),
                 "microseparation": None if apart is None else apart.summary(self.use),
                 "peaks": {
                     "force_N": first.max_force,
                     "max_pressure_MPa": first.max_pressure,
-                    "speed_mm_s": first.speed,
+                    "speed_mm_s": self.use.largest_speed,
                 },
             },
             "film": self.use.film(self.lubricant).summary(),

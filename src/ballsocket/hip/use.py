@@ -289,20 +289,30 @@ class InUse:
         done, areas = self.passed(self.unworn), self.bed.areas
         depth, work = self.wear.depth(done), done.work * areas
         whole = float(work.sum())
-        touched = numpy.flatnonzero(work > 0)
-        crossing = self.sliding.part(touched).crossing_angle(done.pressure[:, touched])
-        speeds = numpy.where(done.pressure > 0, self.sliding.steps, 0.0) / self.cycle.seconds[self.loaded][:, None]
         return First(
             slide=self.slide,
             work=whole / 1e3,
             cross_shear=float(done.cross_shear @ work) / whole if whole > 0 else 0.0,
-            crossing_angle=float(crossing @ work[touched]) / whole if whole > 0 else 0.0,
-            speed=float(speeds.max(initial=0.0)),
             volume=1e6 * float(depth @ areas),
             depth=1e6 * float(depth.max(initial=0.0)),
             max_pressure=float(done.pressure.max(initial=0.0)),
             max_force=self.cycle.largest_force,
         )
+
+    @property
+    def crossing_angle(self) -> float:
+        """Between sliding and its principal direction in the first cycle, in rad: its mean, weighted by p v."""
+        done = self.passed(self.unworn)
+        touched = numpy.flatnonzero(done.work > 0)
+        weight = (done.work * self.bed.areas)[touched]
+        found = self.sliding.part(touched).crossing_angle(done.pressure[:, touched])
+        return float(found @ weight / weight.sum()) if len(touched) else 0.0
+
+    @property
+    def largest_speed(self) -> float:
+        """Of sliding in contact in the first cycle, in mm/s."""
+        within = numpy.where(self.unworn.pressure > 0, self.sliding.steps, 0.0)
+        return float((within / self.cycle.seconds[self.loaded][:, None]).max(initial=0.0))
 
     def after(
         self,
