@@ -107,10 +107,15 @@ class Harmonics:
         return numpy.concatenate([free[numpy.argsort(of_node[free // 3], kind="stable")], normals]), len(normals)
 
     def _held(self, m: int) -> Numbers:
-        """Unknowns that are zero: on the axis what is not smooth there, and the supports."""
+        """Unknowns that are zero: on the axis what is not smooth there, and the supports.
+
+        A liner that slides can turn about its centre: no pressure on its bore does that, and one unknown forbids it.
+        """
         held = numpy.zeros((self._block.number.size, 3), dtype=bool)
         axis, outside = self._block.number[0], self._block.number[:, -1]
         held[axis] = {0: (True, False, False), 1: (False, True, False)}.get(m, (True, True, True))
+        if m == 1 and self.shape.slides:
+            held[axis[0], 0] = True
         if self.shape.support is Support.FIXED or self.shape.layers[-1][0] == inf:
             held[outside, 1] = True
             if not (self.shape.slides and len(self.shape.layers) == 1):

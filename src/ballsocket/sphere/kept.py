@@ -11,7 +11,7 @@ from pathlib import Path
 from ..arrays import Numbers
 from ..npz import read_arrays, write_arrays
 
-VERSION = 2
+VERSION = 3
 """Of what is kept: a change of the elements or of the rings makes it another."""
 
 _MOST = 2 * 2**30
