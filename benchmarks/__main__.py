@@ -33,6 +33,7 @@ BENCHMARKS = {
     "element-in-c": ("element_in_c", "one evaluation of the force element: exported to C, in Python, in NumPy"),
     "patients": ("patients", "hips of patients who differ, a million cycles each, and ten thousand of them on paper"),
     "bounce": ("bounce", "a ball that bounces in its socket, in every program that a joint is exported to"),
+    "identify": ("identify", "clearance and modulus from twenty points: the best point, 4000 samples of the posterior"),
     "gpu": ("gpu", "presses a second on a GPU through PyTorch, against its memory's bandwidth; skipped without one"),
     "app": ("app", "the explorer in a browser: first view, a slider that moves, fifty sessions at once"),
     "import": ("start", "how long a fresh interpreter takes to import the package and to answer a joint file"),
