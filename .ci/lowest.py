@@ -11,8 +11,11 @@ ROOT = Path(__file__).resolve().parents[1]
 TOOLS = ("array-api-strict", "hypothesis", "mpmath", "pytest", "pytest-xdist")
 TESTS = (
     "catalogue",
+    "contact/test_contact.py",
     "contact/test_largest_pressure.py",
+    "joint",
     "model/test_laws.py",
+    "model/test_models.py",
     "models/test_limits.py",
     "models/test_published.py",
     "io",

@@ -565,6 +565,7 @@ def test_deck_writes_the_model_for_other_programs(tmp_path):
     assert (tmp_path / "ballsocket.inp").read_text(encoding="ascii").count("*END STEP") == 2
     for words, message in (
         (("--steps", "0"), "--steps"),
+        (("--steps", "1000000"), "less than or equal to 1000"),
         (("--scale", "7"), "scale = 7 is not allowed"),
         (("--force", "0"), "need a contact under load"),
     ):

@@ -17,7 +17,7 @@ from ballsocket.paper.accuracy import accuracies, paper_joints
 from ..places import ROOT
 
 FILE = re.search(r"^```python\n(.*?)^```$", (ROOT / "CONTRIBUTING.md").read_text("utf-8"), re.MULTILINE | re.DOTALL)[1]
-CONTRACT = ("catalogue", "evidence", "models/test_limits.py", "test_words.py")
+CONTRACT = ("catalogue", "evidence", "models/test_limits.py", "model/test_models.py")
 
 
 @pytest.fixture(scope="module")
