@@ -64,7 +64,7 @@ def _normal_rates(place: Place, contact: Elastic, velocity: Three, given: Consta
         slope = ramp(force / arrays.divisor(width), 1.0)[1]
     else:
         slope = where(force > 0.0, 0.0 * force + 1.0, 0.0 * force)
-    return lossy * slope, given.time * contact.damped_force / arrays.divisor(place.distance)
+    return lossy * slope, given.time * contact.damped_force * place.over
 
 
 def _friction_fall(slip: Any, given: Constants) -> tuple[Array, Array]:

@@ -42,13 +42,17 @@ class Constants(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where the ball is: the distance of the centres, the unit vector from socket to ball, and the indentation."""
+    """Where the ball is: distance of the centres, the way from socket to ball, indentation, 1 over the distance.
+
+    The way is a unit vector, but at the very centre, where it is none.
+    """
 
     distance: Array
     x: Array
     y: Array
     z: Array
     indentation: Array
+    over: Array
 
 
 class Elastic(NamedTuple):
@@ -83,13 +87,13 @@ def place_of(x: Array, y: Array, z: Array, clearance: float) -> Place:
     """The place of the ball's centre."""
     distance = sqrt(x * x + y * y + z * z)
     over = 1.0 / divisor(distance)
-    return Place(distance, x * over, y * over, z * over, distance - clearance)
+    return Place(distance, x * over, y * over, z * over, distance - clearance, over)
 
 
 def elastic(potential, place: Place, given: Constants) -> Elastic:  # type: ignore[no-untyped-def]
     """The elastic contact at a place; its touch-down is rounded off over ± `smoothing`."""
     d = place.indentation
-    depth, slope, bend = ramp(where(d > given.wall, given.wall, d), given.smoothing)
+    depth, slope, bend = ramp(d, given.smoothing)
     missing = where(d > given.wall, nan, 0.0 * d)
     energy, force, stiffness = potential(depth)
     energy, force = energy + missing, force + missing
@@ -121,7 +125,7 @@ def covered(
     by_depth = F * W + U * W1 * s1
     by_both = (U * W1 * first / epsilon - F * W1 - U * W2 * s1) / epsilon
     by_angle = -U * W1 / epsilon
-    over, e = 1.0 / divisor(across), divisor(place.distance)
+    over, nearer = 1.0 / divisor(across), place.over
     return Elastic(
         energy=U * W,
         normal=by_depth * slope,
@@ -129,10 +133,10 @@ def covered(
         damped_force=F * W * slope,
         damped_stiffness=W * (k * slope * slope + F * bend),
         covered=s,
-        polar=-by_angle / e,
-        mixed=(by_both * slope - by_angle / e) / e,
-        along=U * W2 / (epsilon * epsilon * e * e),
-        around=by_angle * lean * over / (e * e),
+        polar=-by_angle * nearer,
+        mixed=(by_both * slope - by_angle * nearer) * nearer,
+        along=U * W2 * (nearer * nearer / (epsilon * epsilon)),
+        around=by_angle * lean * over * nearer * nearer,
         px=ax * over,
         py=ay * over,
         pz=az * over,
@@ -191,7 +195,7 @@ def sliding(place: Place, force: Array, velocity: Three, spin: Three, given: Con
 
 def versine(place: Place) -> Array:
     """1 - cos ε of what overlaps, d/e."""
-    return where(place.indentation > 0.0, place.indentation / divisor(place.distance), 0.0)
+    return where(place.indentation > 0.0, place.indentation * place.over, 0.0)
 
 
 def reaction(place: Place, contact: Elastic, velocity: Three, spin: Three, given: Constants) -> tuple[Array, ...]:
@@ -204,7 +208,7 @@ def reaction(place: Place, contact: Elastic, velocity: Three, spin: Three, given
         P = contact.polar
         fx, fy, fz = fx + P * contact.px, fy + P * contact.py, fz + P * contact.pz
     if given.time > 0.0:
-        drag = given.time * contact.damped_force / divisor(place.distance)
+        drag = given.time * contact.damped_force * place.over
         fx, fy, fz = fx - drag * (vx - speed * nx), fy - drag * (vy - speed * ny), fz - drag * (vz - speed * nz)
     if given.static + given.viscous == 0.0:
         none = 0.0 * normal
@@ -225,7 +229,7 @@ def dissipation(place: Place, contact: Elastic, velocity: Three, spin: Three, gi
     normal = pressed(contact, speed, given)
     slip = sliding(place, normal, velocity, spin, given)
     tx, ty, tz = vx - speed * place.x, vy - speed * place.y, vz - speed * place.z
-    drag = given.time * contact.damped_force / divisor(place.distance)
+    drag = given.time * contact.damped_force * place.over
     rubbed = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z + slip.lever_squared * slip.spin * slip.spin
     return (normal - contact.normal) * speed + drag * (tx * tx + ty * ty + tz * tz) + slip.rate * rubbed
 
@@ -234,7 +238,7 @@ def tangent(place: Place, contact: Elastic, given: Constants) -> tuple[Array, ..
     """∂²U/∂r² in N/mm: xx, yy, zz, xy, yz, zx."""
     nx, ny, nz, px, py, pz = place.x, place.y, place.z, contact.px, contact.py, contact.pz
     # at the very centre of a socket without clearance all directions are alike
-    across = where(place.distance > 0.0, contact.normal / divisor(place.distance), contact.stiffness)
+    across = where(place.distance > 0.0, contact.normal * place.over, contact.stiffness)
     radial = contact.stiffness - across
     xx, yy, zz = across + radial * nx * nx, across + radial * ny * ny, across + radial * nz * nz
     xy, yz, zx = radial * nx * ny, radial * ny * nz, radial * nz * nx

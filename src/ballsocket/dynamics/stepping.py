@@ -78,7 +78,7 @@ def stepped(potential, given: Constants, ball: Ball, mass: float, inertia: float
         slip = sliding(place, pressed(contact, speed, given), (ax, ay, az), (bx, by, bz), given)
         rate, R1 = slip.rate, given.ball_radius
         lossy = given.hysteresis * contact.damped_force + given.time * contact.damped_stiffness
-        across = (0.5 * h * contact.normal + given.time * contact.damped_force) / divisor(place.distance)
+        across = (0.5 * h * contact.normal + given.time * contact.damped_force) * place.over
         outward = rx * nx + ry * ny + rz * nz
         turning = sx * nx + sy * ny + sz * nz
         dn = -outward / (heavy + lossy + 0.5 * h * abs(contact.stiffness))
