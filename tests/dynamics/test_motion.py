@@ -45,6 +45,9 @@ def test_what_is_lost_is_what_damping_and_friction_took():
 def test_a_weight_falls_by_what_it_gains():
     motion = simulate(FREE, duration=0.02, pull=(0.0, 0.0, 500.0), **THROW)
     assert motion.drift < 1e-12
+    assert motion.work[-1] == pytest.approx(500.0 * (motion.position[-1, 2] - motion.position[0, 2]))
+    shaken = simulate(LOSSY, duration=0.02, pull=lambda t: (0.0, 0.0, 500.0 * np.sin(300.0 * t)), **THROW)
+    assert shaken.drift < 1e-11
 
 
 def test_the_way_is_that_of_a_rival_integrator_and_the_error_falls_with_the_square_of_the_step():

@@ -123,7 +123,7 @@ def _springs(motion: Kinematics) -> Any:
 
 @cache
 def _slopes() -> Any:
-    return njit(error_model="numpy")(potential.slopes_of_number)
+    return njit(error_model="numpy", fastmath={"contract"})(potential.slopes_of_number)
 
 
 def answered(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]

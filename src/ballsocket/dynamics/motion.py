@@ -16,7 +16,6 @@ from . import stepping
 from .bristles import Bristles
 from .damping import one_number
 from .element import ForceElement, three
-from .reaction import Three
 from .stepping import Ball
 
 TONNE = 1e-3
@@ -32,8 +31,6 @@ class Motion:
     element : ForceElement
     mass, inertia : float
         In kg and kg mm².
-    pull : (3,)
-        The constant force on the ball in N.
     time : array (steps,)
         In s.
     position, velocity, spin : array (steps, 3)
@@ -42,6 +39,8 @@ class Motion:
         Stored in the contact, in N mm.
     lost : array (steps,)
         What damping and friction took since the beginning, in N mm.
+    work : array (steps,)
+        What the pull on the ball did since then, in N mm.
     ended : str
         Why it ended before its time, with the state; empty if it did not.
     """
@@ -51,13 +50,13 @@ class Motion:
     element: ForceElement
     mass: float
     inertia: float
-    pull: Three
     time: Numbers
     position: Numbers
     velocity: Numbers
     spin: Numbers
     energy: Numbers
     lost: Numbers
+    work: Numbers
     ended: str = ""
 
     @cached_property
@@ -68,8 +67,8 @@ class Motion:
 
     @cached_property
     def total(self) -> Numbers:
-        """Stored, moving, lost, and what is left to fall, in N mm: constant but for rounding. (steps,)."""
-        return self.energy + self.kinetic + self.lost - self.position @ numpy.array(self.pull)
+        """Stored, moving and lost, less the work of the pull, in N mm: constant but for rounding. (steps,)."""
+        return self.energy + self.kinetic + self.lost - self.work
 
     @property
     def drift(self) -> float:
@@ -109,8 +108,8 @@ def simulate(
         In kg.
     position, velocity, spin : (3,)
         At the beginning, in mm, mm/s and rad/s.
-    pull : (3,)
-        A constant force on the ball in N, its weight for instance.
+    pull : (3,) or function
+        The force on the ball in N: its weight for instance, or a function of the time in s.
     inertia : float, optional
         About any axis through its centre in kg mm²; None is that of a solid ball.
     duration, step : float
@@ -138,26 +137,33 @@ def simulate(
     turning = 0.4 * heavy * element.constants.ball_radius**2 if inertia is None else _above_nothing("inertia", inertia)
     count = int(numpy.ceil(_above_nothing("duration", duration) / _above_nothing("step", step) - 1e-9))
     begun = Ball(*three(position), *three(velocity), *three(spin))
-    pulled = three(pull)
     states, lost = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
     march = getattr(element, "march", stepping.march)
     h = duration / count
-    good = march(element.potential, element.constants, begun, TONNE * heavy, TONNE * turning, pulled, h, states, lost)
+    pulls = _pulls(pull, h * (numpy.arange(count) + 0.5))
+    good = march(element.potential, element.constants, begun, TONNE * heavy, TONNE * turning, pulls, h, states, lost)
     ended = "" if good == count else _why(element, states[good + 1], good * h, h)
     states, lost = states[: good + 1], lost[: good + 1]
     return Motion(
         element=element,
         mass=heavy,
         inertia=turning,
-        pull=pulled,
         time=h * numpy.arange(good + 1),
         position=states[:, :3],
         velocity=states[:, 3:6],
         spin=states[:, 6:],
         energy=element(states[:, :3]).energy,
         lost=lost,
+        work=numpy.append(0.0, numpy.cumsum(numpy.sum(pulls[:good] * numpy.diff(states[:, :3], axis=0), axis=1))),
         ended=ended,
     )
+
+
+def _pulls(pull: Any, time: Numbers) -> Numbers:
+    """The force at times: (times, 3)."""
+    if callable(pull):
+        return numpy.array([three(pull(instant)) for instant in time.tolist()])
+    return numpy.tile(numpy.array(three(pull)), (len(time), 1))
 
 
 def _why(element: ForceElement, state: Numbers, time: float, step: float) -> str:
