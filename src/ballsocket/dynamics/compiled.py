@@ -176,7 +176,10 @@ for _formula in (
     reaction.reaction,
     reaction.dissipation,
     reaction.tangent,
-    stepping.energy_of,
+    stepping.ended,
+    stepping.speed_of,
+    stepping.missing,
+    stepping.corrected,
     stepping.stepped,
     answered,
 ):

@@ -10,7 +10,18 @@ from math import isfinite
 from typing import NamedTuple
 
 from ..arrays import divisor
-from .reaction import Constants, Three, dissipation, elastic, place_of, pressed, reaction, sliding
+from .reaction import (
+    Constants,
+    Elastic,
+    Place,
+    Three,
+    dissipation,
+    elastic,
+    place_of,
+    pressed,
+    reaction,
+    sliding,
+)
 
 ROUNDS = 60
 
@@ -37,78 +48,164 @@ class Step(NamedTuple):
     good: bool
 
 
-def energy_of(potential, ball: Ball, given: Constants) -> float:  # type: ignore[no-untyped-def]
-    """Stored in the contact, in N mm."""
-    return elastic(potential, place_of(ball.x, ball.y, ball.z, given.clearance), given).energy
-
-
-def stepped(potential, given: Constants, ball: Ball, mass: float, inertia: float, pull: Three, h: float) -> Step:  # type: ignore[no-untyped-def]
+def stepped(  # type: ignore[no-untyped-def]
+    potential, given: Constants, ball: Ball, mass: float, inertia: float, pull: Three, h: float
+) -> Step:
     """The ball after h seconds.
 
     `mass` in t (N s²/mm), `inertia` in t mm², `pull` a constant force in N. The unknowns are velocity and spin at the
     middle of the step; each round solves for them as if stiffness and friction's rate were constant.
     """
-    x, y, z, vx, vy, vz, wx, wy, wz = ball
-    before = energy_of(potential, ball, given)
-    # unknown: velocity and spin at the middle
-    ax, ay, az = vx + pull[0] * h / (2.0 * mass), vy + pull[1] * h / (2.0 * mass), vz + pull[2] * h / (2.0 * mass)
-    bx, by, bz = wx, wy, wz
     heavy, slow = 2.0 * mass / h, 2.0 * inertia / h
-    size = 1e-300 + abs(ax) + abs(ay) + abs(az) + given.ball_radius * (abs(bx) + abs(by) + abs(bz))
-    best, moved, lost, held = 1e300, 1e300, 0.0, True
+    begun = place_of(ball.x, ball.y, ball.z, given.clearance)
+    middle = Middle(
+        ball.vx + pull[0] / heavy, ball.vy + pull[1] / heavy, ball.vz + pull[2] / heavy, ball.wx, ball.wy, ball.wz
+    )
+    if begun.indentation + h * (abs(middle.x) + abs(middle.y) + abs(middle.z)) < -given.smoothing:
+        return Step(ended(ball, middle, h), 0.0, True)
+    start = elastic(potential, begun, given)
+    push = start.normal / heavy
+    ax, ay, az, bx, by, bz = middle
+    middle = Middle(ax - push * begun.x, ay - push * begun.y, az - push * begun.z, bx, by, bz)
+    size, best, moved = 1e-300, 1e300, 1e300
     for _ in range(ROUNDS):
-        place = place_of(x + 0.5 * h * ax, y + 0.5 * h * ay, z + 0.5 * h * az, given.clearance)
-        contact = elastic(potential, place, given)
-        fx, fy, fz, mx, my, mz = reaction(place, contact, (ax, ay, az), (bx, by, bz), given)
-        there = place_of(x + h * ax, y + h * ay, z + h * az, given.clearance)
-        end = elastic(potential, there, given)
-        held = end.covered > -1.0 or there.indentation <= -given.smoothing
-        # the part along the way: what the middle's force misses of the energy's fall
-        gx = contact.normal * place.x - contact.polar * contact.px
-        gy = contact.normal * place.y - contact.polar * contact.py
-        gz = contact.normal * place.z - contact.polar * contact.pz
-        square = h * divisor(ax * ax + ay * ay + az * az)
-        missed = (end.energy - before) / square - (gx * ax + gy * ay + gz * az) * h / square
-        rx = heavy * (ax - vx) - fx + missed * ax - pull[0]
-        ry = heavy * (ay - vy) - fy + missed * ay - pull[1]
-        rz = heavy * (az - vz) - fz + missed * az - pull[2]
-        sx, sy, sz = slow * (bx - wx) - mx, slow * (by - wy) - my, slow * (bz - wz) - mz
-        nx, ny, nz = place.x, place.y, place.z
-        speed = ax * nx + ay * ny + az * nz
-        slip = sliding(place, pressed(contact, speed, given), (ax, ay, az), (bx, by, bz), given)
-        rate, R1 = slip.rate, given.ball_radius
-        lossy = given.hysteresis * contact.damped_force + given.time * contact.damped_stiffness
-        across = (0.5 * h * contact.normal + given.time * contact.damped_force) * place.over
-        outward = rx * nx + ry * ny + rz * nz
-        turning = sx * nx + sy * ny + sz * nz
-        dn = -outward / (heavy + lossy + 0.5 * h * abs(contact.stiffness))
-        dw = -turning / (slow + rate * slip.lever_squared)
-        # across the load: slip = v + R1 ω x n ties velocity and u = ω x n
-        A, B, C = heavy + rate + across, slow + rate * R1 * R1, rate * R1
-        over = 1.0 / (A * B - C * C)
-        tx, ty, tz = rx - outward * nx, ry - outward * ny, rz - outward * nz
-        ux, uy, uz = sy * nz - sz * ny, sz * nx - sx * nz, sx * ny - sy * nx
-        dx, dy, dz = (C * ux - B * tx) * over, (C * uy - B * ty) * over, (C * uz - B * tz) * over
-        ex, ey, ez = (C * tx - A * ux) * over, (C * ty - A * uy) * over, (C * tz - A * uz) * over
-        moved = abs(dx) + abs(dy) + abs(dz) + abs(dn) + R1 * (abs(ex) + abs(ey) + abs(ez) + abs(dw))
+        missed = missing(potential, given, ball, middle, start.energy, heavy, slow, pull, h)
+        after, moved = corrected(missed, middle, given, heavy, slow, h)
         if not isfinite(moved):
             break
-        ax, ay, az = ax + dx + dn * nx, ay + dy + dn * ny, az + dz + dn * nz
-        bx, by, bz = (
-            bx + ny * ez - nz * ey + dw * nx,
-            by + nz * ex - nx * ez + dw * ny,
-            bz + nx * ey - ny * ex + dw * nz,
-        )
-        lost = h * dissipation(place, contact, (ax, ay, az), (bx, by, bz), given)
-        if moved <= 1e-16 * size or (moved <= 1e-11 * size and moved >= 0.5 * best):
+        middle = after
+        size = max(size, speed_of(middle, given) + missed.force / heavy)
+        if moved <= _ENOUGH * size or (moved <= _NOISE * size and moved >= 0.5 * best):
             break
         best = min(best, moved)
-    made = Ball(
-        x + h * ax, y + h * ay, z + h * az,
-        2.0 * ax - vx, 2.0 * ay - vy, 2.0 * az - vz,
-        2.0 * bx - wx, 2.0 * by - wy, 2.0 * bz - wz,
+    ax, ay, az, bx, by, bz = middle
+    place = place_of(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, given.clearance)
+    lost = h * dissipation(place, elastic(potential, place, given), (ax, ay, az), (bx, by, bz), given)
+    return Step(ended(ball, middle, h), lost, missed.held and moved <= _NOISE * size)
+
+
+_ENOUGH = 1e-13
+"""Of the speeds in a step: what a last round may move them by; the next would by a hundredth of it."""
+
+_NOISE = 1e-10
+"""Of the speeds in a step: rounds that move them by less, and do not get better, have met rounding."""
+
+
+class Middle(NamedTuple):
+    """Velocity and spin at the middle of a step."""
+
+    x: float
+    y: float
+    z: float
+    wx: float
+    wy: float
+    wz: float
+
+
+class Missing(NamedTuple):
+    """What the balance of a step misses: of force (N) and moment (N mm); the contact it was asked at."""
+
+    x: float
+    y: float
+    z: float
+    wx: float
+    wy: float
+    wz: float
+    place: Place
+    contact: Elastic
+    force: float
+    held: bool
+
+
+def ended(ball: Ball, middle: Middle, h: float) -> Ball:
+    """The ball after a step whose middle is known."""
+    ax, ay, az, bx, by, bz = middle
+    return Ball(
+        ball.x + h * ax, ball.y + h * ay, ball.z + h * az,
+        2.0 * ax - ball.vx, 2.0 * ay - ball.vy, 2.0 * az - ball.vz,
+        2.0 * bx - ball.wx, 2.0 * by - ball.wy, 2.0 * bz - ball.wz,
     )  # fmt: skip
-    return Step(made, lost, held and moved <= 1e-11 * size)
+
+
+def speed_of(middle: Middle, given: Constants) -> float:
+    """How fast the ball moves and its surface turns, in mm/s."""
+    turning = abs(middle.wx) + abs(middle.wy) + abs(middle.wz)
+    return abs(middle.x) + abs(middle.y) + abs(middle.z) + given.ball_radius * turning
+
+
+def missing(  # type: ignore[no-untyped-def]
+    potential,
+    given: Constants,
+    ball: Ball,
+    middle: Middle,
+    before: float,
+    heavy: float,
+    slow: float,
+    pull: Three,
+    h: float,
+) -> Missing:
+    """What is missing at a middle: inertia less forces, the elastic one with its part along the way."""
+    ax, ay, az, bx, by, bz = middle
+    place = place_of(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, given.clearance)
+    contact = elastic(potential, place, given)
+    fx, fy, fz, mx, my, mz = reaction(place, contact, (ax, ay, az), (bx, by, bz), given)
+    there = place_of(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, given.clearance)
+    end = elastic(potential, there, given)
+    # what the middle's force misses of the energy's fall
+    speed = ax * place.x + ay * place.y + az * place.z
+    fall = contact.normal * speed - contact.polar * (ax * contact.px + ay * contact.py + az * contact.pz)
+    along = ((end.energy - before) / h - fall) / divisor(ax * ax + ay * ay + az * az)
+    return Missing(
+        heavy * (ax - ball.vx) - fx + along * ax - pull[0],
+        heavy * (ay - ball.vy) - fy + along * ay - pull[1],
+        heavy * (az - ball.vz) - fz + along * az - pull[2],
+        slow * (bx - ball.wx) - mx,
+        slow * (by - ball.wy) - my,
+        slow * (bz - ball.wz) - mz,
+        place,
+        contact,
+        abs(fx) + abs(fy) + abs(fz),
+        end.covered > -1.0 or there.indentation <= -given.smoothing,
+    )
+
+
+def corrected(
+    missed: Missing, middle: Middle, given: Constants, heavy: float, slow: float, h: float
+) -> tuple[Middle, float]:
+    """The middle that misses nothing if stiffness and friction's rate stay, and how far it moved in mm/s."""
+    place, contact, R1 = missed.place, missed.contact, given.ball_radius
+    nx, ny, nz = place.x, place.y, place.z
+    rate, lever_squared = 0.0, 0.0
+    if given.static + given.viscous > 0.0:
+        speed = middle.x * nx + middle.y * ny + middle.z * nz
+        velocity, spin = (middle.x, middle.y, middle.z), (middle.wx, middle.wy, middle.wz)
+        slip = sliding(place, pressed(contact, speed, given), velocity, spin, given)
+        rate, lever_squared = slip.rate, slip.lever_squared
+    lossy = given.hysteresis * contact.damped_force + given.time * contact.damped_stiffness
+    across = (0.5 * h * contact.normal + given.time * contact.damped_force) * place.over
+    outward = missed.x * nx + missed.y * ny + missed.z * nz
+    turning = missed.wx * nx + missed.wy * ny + missed.wz * nz
+    dn = -outward / (heavy + lossy + 0.5 * h * abs(contact.stiffness))
+    dw = -turning / (slow + rate * lever_squared)
+    # across the load: slip = v + R1 ω x n ties velocity and u = ω x n
+    A, B, C = heavy + rate + across, slow + rate * R1 * R1, rate * R1
+    over = 1.0 / (A * B - C * C)
+    tx, ty, tz = missed.x - outward * nx, missed.y - outward * ny, missed.z - outward * nz
+    ux = missed.wy * nz - missed.wz * ny
+    uy = missed.wz * nx - missed.wx * nz
+    uz = missed.wx * ny - missed.wy * nx
+    dx, dy, dz = (C * ux - B * tx) * over, (C * uy - B * ty) * over, (C * uz - B * tz) * over
+    ex, ey, ez = (C * tx - A * ux) * over, (C * ty - A * uy) * over, (C * tz - A * uz) * over
+    moved = abs(dx) + abs(dy) + abs(dz) + abs(dn) + R1 * (abs(ex) + abs(ey) + abs(ez) + abs(dw))
+    after = Middle(
+        middle.x + dx + dn * nx,
+        middle.y + dy + dn * ny,
+        middle.z + dz + dn * nz,
+        middle.wx + ny * ez - nz * ey + dw * nx,
+        middle.wy + nz * ex - nx * ez + dw * ny,
+        middle.wz + nx * ey - ny * ex + dw * nz,
+    )
+    return after, moved
 
 
 def march(  # type: ignore[no-untyped-def]
