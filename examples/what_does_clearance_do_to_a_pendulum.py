@@ -4,8 +4,8 @@ What does clearance do to a pendulum?
 
 A pendulum hangs from a ball in a socket that is wider than it. Where does the ball sit, and what does friction take?
 
-A bob of 2 kg swings on a rod of 200 mm from a steel ball of 20 mm in a socket lined with UHMWPE, half a millimetre wider
-all round. Without friction the joint has no moment at all, and the contact lies where the rod points, but for the
+A bob of 2 kg swings on a rod of 200 mm from a steel ball of 20 mm in a socket lined with UHMWPE, half a millimetre
+wider all round. Without friction the joint has no moment at all, and the contact lies where the rod points, but for the
 little that the bob's own inertia asks for. With friction the ball rolls up the socket until friction gives way, and
 slides then at a steady angle, on the other side on the way back. The swing loses what friction takes, nothing else.
 """
