@@ -2,12 +2,13 @@
 What does a step cost a hip?
 ============================
 
-The head of a hip turns in its cup under three times the body's weight. How large is the moment of friction, and the heat?
+The head of a hip turns in its cup under three times the body's weight. How large is the moment of friction, and the
+heat?
 
 A cycle of walking as simulators of wear do it (ISO 14242-1): 20 kg of leg hang on the head, which is pushed by the
-load of the cycle and turned as the leg turns. The force element says force and moment at each instant; the work that the
-load and the turning put in is what friction and damping take, and what is stored. The moment is that of the pressure
-of the contact, and with a head of 36 mm it is larger than with one of 28, in proportion to the radius.
+load of the cycle and turned as the leg turns. The force element says force and moment at each instant; the work that
+the load and the turning put in is what friction and damping take, and what is stored. The moment is that of the
+pressure of the contact, and with a head of 36 mm it is larger than with one of 28, in proportion to the radius.
 """
 
 from math import radians
