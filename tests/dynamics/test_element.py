@@ -50,7 +50,7 @@ def test_the_force_is_that_of_a_press_whichever_way_the_ball_lies(model):
     np.testing.assert_allclose(stiffness[touching], pressed.stiffness[touching], rtol=2e-7)
 
 
-@EVERY_LAW
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz(), bs.Tabulated()], ids=lambda model: model.name)
 @EVERY_CUP
 @pytest.mark.parametrize("smoothing", [0.0, 0.02])
 def test_the_force_is_the_slope_of_the_energy_and_the_tangent_that_of_the_force(model, cup, smoothing):
