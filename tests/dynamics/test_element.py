@@ -239,3 +239,18 @@ def test_a_law_outside_its_validity_says_so_once(caplog):
             element(np.array([[0.0, 0.0, C + depth]]))
     (said,) = caplog.messages
     assert said.startswith("hertz at an indentation of 0.05 mm: outside ε")
+
+
+def test_jax_finds_force_and_tangent_as_derivatives_of_the_energy():
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", True)
+    for model in (bs.HessForsbach(), bs.Tabulated()):
+        element = bs.ForceElement(model, HIP, cup=CUPS["leaning cup"], smoothing=0.02)
+        for place in ([0.01, 0.02, C], [0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05], [C + 0.04, 0.0, 0.02]):
+            position = jax.numpy.asarray(place)
+            load = element(position)
+            slope, bend = (way(lambda r, each=element: each(r).energy)(position) for way in (jax.grad, jax.hessian))
+            np.testing.assert_allclose(-slope, load.force, atol=1e-9)
+            np.testing.assert_allclose(bend, load.tangent, atol=1e-8)
+            pushed = jax.jit(lambda r, each=element: each(r, 10.0 * r, r).force)(position)
+            np.testing.assert_allclose(pushed, element(position, 10.0 * position, position).force, atol=1e-9)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 
 from .. import arrays
-from ..arrays import Array, where
+from ..arrays import Array, common, where
 from ..checks import require, shown, vectors
 from ..cup import Cup
 from ..joint import Joint
@@ -180,8 +180,8 @@ class ForceElement:
     def _of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
-        checked = map(vectors, names, map(_listed, (position, velocity, spin)), axes)
-        r, v, w = (_components(each) for each in arrays.common(*checked))
+        checked = map(vectors, names, [_beside(position, each) for each in (position, velocity, spin)], axes)
+        r, v, w = (_components(each) for each in common(*checked))
         with numpy.errstate(all="ignore"):  # a state without an answer has a status
             place = self._held(place_of(*r, self.constants.clearance), attached)
             self._watch.look(place.indentation)
@@ -232,8 +232,12 @@ def three(value: Any) -> Three:
         raise ValueError(f"a state has three components, x, y and z, all numbers, got {shown(value)}") from error
 
 
-def _listed(value: Any) -> Any:
-    return numpy.asarray(value, dtype=float) if type(value) in _LISTS else value
+def _beside(position: Any, value: Any) -> Any:
+    """A list as an array of the position's library."""
+    if type(value) not in _LISTS:
+        return value
+    place = common(position)[0]
+    return arrays.namespace(place).asarray(value, dtype=place.dtype, device=arrays.device(place))
 
 
 def _components(value: Any) -> Three:

@@ -132,8 +132,8 @@ def slopes_of_array(
     energy = exp(value + where(below, power * log(where(below, d, shallowest) / shallowest), 0.0))
     force = energy / d * power
     stiffness = force / d * (power - 1.0) + where(below, 0.0, energy / d / d * curvature)
-    inside, nothing = indentation <= deepest, indentation * xp.nan
-    return where(inside, energy, nothing), where(inside, force, nothing), where(inside, stiffness, nothing)
+    inside = indentation <= deepest
+    return where(inside, energy, math.nan), where(inside, force, math.nan), where(inside, stiffness, math.nan)
 
 
 def potential_of(model: Model, joint: Joint) -> Potential:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..arrays import Array, asin, clip, sqrt
+from ..arrays import Array, atan2, clip, sqrt
 
 
 def share(place: Array) -> tuple[Array, Array, Array]:
@@ -16,6 +16,6 @@ def share(place: Array) -> tuple[Array, Array, Array]:
     s = clip(place, -1.0, 1.0)
     square = clip(1.0 - s * s, 0.0, 1.0)
     root = sqrt(square)
-    W = 0.5 + (asin(s) + s * root * (33.0 + s * s * (8.0 * s * s - 26.0)) / 15.0) / pi
+    W = 0.5 + (atan2(s, root) + s * root * (33.0 + s * s * (8.0 * s * s - 26.0)) / 15.0) / pi
     slope = 16.0 / (5.0 * pi) * square * square * root
     return clip(W, 0.0, 1.0), slope, -16.0 / pi * s * square * root
