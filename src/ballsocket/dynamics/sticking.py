@@ -39,7 +39,7 @@ class StickingPotential:
 
 
 def sticking_potential(model: AdhesiveSocket, joint: Joint) -> StickingPotential:
-    """Of a joint, if the ball can let go of it at all.
+    """The potential of a joint, if the ball can let go of it at all.
 
     Raises
     ------

@@ -42,7 +42,7 @@ class StressCurve:
 
     @property
     def _roots(self) -> tuple[float, float]:
-        """Of the half angles where stresses are known: the first, and the step."""
+        """Roots of the half angles where stresses are known: the first, and the step."""
         first = min(float(angle_root(NARROWEST, self._ratio)), self._widest)
         return first, (self._widest - first) / _STRESSES
 

@@ -60,7 +60,7 @@ def _tolerance(question: Question, name: str) -> str:
 
 
 def _source(question: Question, joint: Joint, name: str) -> str:
-    """As the question says of this number or its part; else of the preset."""
+    """Where a number comes from: as the question says of it or its part, else the preset."""
     part = name.split("_")[0].split("[")[0]
     said = question.sources.get(name) or question.sources.get("joint" if name in _LENGTHS else part, "")
     if said:

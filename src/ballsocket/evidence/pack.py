@@ -89,7 +89,7 @@ def later(question: Question, places: Mapping[str, matrix.Case]) -> Plan:
 
 
 def _digest(question: Question) -> str:
-    """Of what is asked, and of the files that it names."""
+    """A digest of what is asked, and of the files that it names."""
     digest = sha256()
     for path in question.files:
         digest.update(path.read_bytes())

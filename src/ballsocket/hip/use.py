@@ -310,7 +310,7 @@ class InUse:
 
     @property
     def largest_speed(self) -> float:
-        """Of sliding in contact in the first cycle, in mm/s."""
+        """The largest speed of sliding in contact in the first cycle, in mm/s."""
         within = numpy.where(self.unworn.pressure > 0, self.sliding.steps, 0.0)
         return float((within / self.cycle.seconds[self.loaded][:, None]).max(initial=0.0))
 

@@ -52,7 +52,7 @@ class Compliance:
 
     @cached_property
     def coarser(self) -> Compliance | None:
-        """The same in cells twice as wide; None where these are wide already."""
+        """This compliance in cells twice as wide; None where these are wide already."""
         cells = self.grid.coarser
         if cells is None:
             return None

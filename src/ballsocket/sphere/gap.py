@@ -35,7 +35,7 @@ class Separation:
     kind: type[LinearGap] | type[CircularGap]
 
     def on(self, coarser: Grid) -> Separation:
-        """The same gap on the coarser grid."""
+        """This gap on the coarser grid."""
         return replace(self, grid=coarser, depth=self.grid.gathered(self.depth))
 
     def overlap(self, displacement: Numbers) -> Numbers:

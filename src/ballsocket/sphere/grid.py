@@ -178,7 +178,7 @@ class Turning:
         return scipy.fft.irfft(back, n=meridians)
 
     def rough(self) -> Turning:
-        """The same in single precision."""
+        """These matrices in single precision."""
         return Turning(matrices=self.matrices.astype(numpy.float32))
 
 

@@ -55,7 +55,7 @@ class Bed:
 
     @cached_property
     def coarser(self) -> Bed | None:
-        """The same in cells twice as wide; None where these are wide already."""
+        """This bed in cells twice as wide; None where these are wide already."""
         soft = self.compliance.coarser
         return None if soft is None else Bed(compliance=soft, separation=self.separation.on(soft.grid))
 
