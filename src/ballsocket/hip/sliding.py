@@ -110,7 +110,7 @@ class Sliding:
         return chosen
 
     def velocities(self, seconds: Numbers) -> Numbers:
-        """Velocities of the ball over each point, R ω × n, in instants that last so long: (instants, points, 3), mm/s."""
+        """Velocities of the ball over points, R ω × n, in instants that last so long: (instants, points, 3) mm/s."""
         omega = self.turns / seconds[:, None]
         return self.radius * numpy.cross(omega[:, None], self.directions.T[None])
 
