@@ -69,6 +69,15 @@ def test_the_worst_instant_of_a_mix_has_its_activity():
         hip(cycle=mixed((STAIRS, 1.0)), cup=bs.Cup(arc_of_cover=radians(60.0), inclination=radians(45.0)))
 
 
+def test_a_tilt_that_one_standard_has_is_not_that_of_all():
+    use = hip(cycle=mixed((WALK, 1.0), (iso_14242_1(40), 1.0)), cup=bs.Cup())
+    assert use.placed == bs.Cup()
+    assert any("no tilt of a standard in common" in note for note in use.notes)
+    assert hip(cycle=mixed((flexion(40), 1.0), (iso_14242_1(40), 1.0)), cup=bs.Cup()).placed.inclination == radians(
+        30.0
+    )
+
+
 def test_what_cannot_be_mixed_is_refused():
     with pytest.raises(ValueError, match="a mix has at least one activity"):
         Mix(activities=())

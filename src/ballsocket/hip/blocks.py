@@ -13,41 +13,18 @@ import numpy
 from ..arrays import Numbers
 from .chebyshev import Step, longest, stages_of, step
 from .creep import Ladder
-from .facing import Facing, facing
-from .history import Report
-from .laws import Law, Pass
-from .sliding import Sliding
-from .springs import CycleBed, Rest
+from .laws import Pass, steepest
+from .near import near_cells
 
 if TYPE_CHECKING:
     from .use import InUse
 
 _FIRST = 1e-2  # of the time in which what wears fastest would be worn in
 _SAFE, _LEAST, _MOST = 0.8, 0.2, 4.0
-_NUDGE = 1e-6  # of the largest pressure, for the slope of a law
 _SURE = 1.1
 _SOON, _GROWTH = 30.0, 0.25  # s of the first block with creep; of the time before, for the later ones
 _SWEEPS, _MET = 8, 1e-3
 _MARGIN = 0.3
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Near:
-    """The cells that are in reach of the contacts, what slides over them, and the ball's cells where those wear too."""
-
-    cells: Numbers
-    bed: CycleBed
-    sliding: Sliding
-    facing: Facing | None
-
-    @property
-    def ball_cells(self) -> Numbers:
-        return numpy.zeros(0, dtype=int) if self.facing is None else self.facing.cells
-
-    @property
-    def areas(self) -> Numbers:
-        """Areas of all that wears, socket and ball."""
-        return self.bed.areas if self.facing is None else numpy.concatenate([self.bed.areas, self.facing.areas])
 
 
 @dataclass(kw_only=True, eq=False)
@@ -75,6 +52,8 @@ class Run:
         What the blocks missed of the volume, in mm³.
     margin : float
         Of the largest overlap: so far from contact cells are still looked at.
+    rest : Rest
+        The contacts that were found last.
     """
 
     use: InUse
@@ -92,7 +71,7 @@ class Run:
         self.depth = numpy.zeros(len(self.use.bed.areas))
         self.ball = numpy.zeros(0 if self.use.ball_wear is None else len(self.use.ball_areas))
         self.strain = self.use.creep.rested(len(self.depth)) if self.use.creep else numpy.zeros((1, len(self.depth)))
-        self._rest = self.use.unworn
+        self.rest = self.use.unworn
         self._look()
         if self._fastest > 0:
             self.length = _FIRST / self._fastest
@@ -122,9 +101,8 @@ class Run:
     def _look(self) -> None:
         """Which cells are in reach, and what a cycle adds to them."""
         bed = self.use.bed
-        cells = numpy.flatnonzero(bed.near(self._rest, self.depth + self.crept, self.margin))
-        faced = None if self.use.ball_wear is None else facing(self.use, cells)
-        self._near = _Near(cells=cells, bed=bed.part(cells), sliding=self.use.sliding.part(cells), facing=faced)
+        cells = numpy.flatnonzero(bed.near(self.rest, self.depth + self.crept, self.margin))
+        self._near = near_cells(self.use, cells)
         self._creep = self.crept[cells]
         self._slope = self._rate(self._values)
 
@@ -139,8 +117,8 @@ class Run:
         depth = values[:count] + self._creep
         if near.facing is not None:
             depth = depth + near.facing.gap(values[count:-1])
-        rest = near.bed.rest(self.use.loads, depth, self._rest)
-        self._rest = rest
+        rest = near.bed.rest(self.use.loads, depth, self.rest)
+        self.rest = rest
         self.settled = self.settled and rest.settled
         self._pass = Pass(pressure=rest.pressure, sliding=near.sliding)
         worn = near.bed.smoothed(self.use.wear.depth(self._pass))
@@ -155,9 +133,9 @@ class Run:
     @property
     def _fastest(self) -> float:
         """How fast a wave of the worn depth can decay, per cycle: what a law adds for a pressure, times a stiffness."""
-        slope = _steepest(self.use.wear, self._pass)
+        slope = steepest(self.use.wear, self._pass)
         if self._near.facing is not None and self.use.ball_wear is not None:
-            slope += _steepest(self.use.ball_wear, self._near.facing.passed(self._pass))
+            slope += steepest(self.use.ball_wear, self._near.facing.passed(self._pass))
         return _SURE * slope * self.use.bed.stiffest
 
     @property
@@ -171,12 +149,12 @@ class Run:
             setattr(self, name, kind(state[name]))
         self._look()
 
-    def until(self, count: float, listen: Callable[[float], None]) -> Report:
-        """Go on until so many cycles are done, and look."""
+    def until(self, count: float, listen: Callable[[float], None]) -> Run:
+        """This run, gone on until so many cycles are done."""
         while self.cycles < count:
             self._advance(count)
             listen(self.cycles)
-        return self._report()
+        return self
 
     def _advance(self, count: float) -> None:
         """A block, as long as its error allows, and no further than asked for."""
@@ -241,57 +219,16 @@ class Run:
         depth = self.crept
         depth += self.depth
         depth[self._near.cells] = taken.values[: len(self._near.cells)] + self._creep
-        touched = self.use.bed.near(self._rest, depth, 0.0)
+        touched = self.use.bed.near(self.rest, depth, 0.0)
         touched[self._near.cells] = False
         return bool(touched.any())
 
     @property
     def _spreads(self) -> bool:
         """Whether the contact comes near to cells that are not looked at."""
-        close = self.use.bed.near(self._rest, self.depth + self.crept, self.margin / 2)
+        close = self.use.bed.near(self.rest, self.depth + self.crept, self.margin / 2)
         close[self._near.cells] = False
         return bool(close.any())
-
-    def _report(self) -> Report:
-        use, crept, shape = self.use, self.crept, (self.use.grid.rings, -1)
-        depth = self.depth + crept
-        if use.ball_wear is not None:
-            depth = depth + facing(use, numpy.arange(len(depth))).on_socket.of(self.ball[None])
-        rest = use.rest(depth, self._rest)
-        only = [rest if use.creep is None else self._only(self.depth), self._only(crept)]
-        moved = [(each.displacement - use.unworn.displacement)[use.largest].sum(axis=0) for each in (rest, *only)]
-        edge = use.edge(rest, depth)
-        return Report(
-            cycles=self.cycles,
-            wear=self.depth.reshape(shape),
-            volume=self.volume,
-            depth=float(self.depth.max()),
-            work=self.work,
-            displacement=moved[0],
-            worn_in=moved[1],
-            crept_in=moved[2],
-            max_pressure=float(rest.pressure.max(initial=0.0)),
-            edge_distance=edge.distance,
-            edge_place=edge.place,
-            crept=crept.reshape(shape),
-            creep_depth=float(crept.max()),
-            ball_wear=self.ball,
-            ball_volume=self.ball_volume,
-            ball_depth=float(self.ball.max(initial=0.0)),
-            settled=self.settled and all(each.settled for each in (rest, *only)),
-        )
-
-    def _only(self, depth: Numbers) -> Rest:
-        return self.use.rest(depth) if depth.any() else self.use.unworn
-
-
-def _steepest(law: Law, done: Pass) -> float:
-    """The most that a law adds to a depth for a larger pressure, in mm/MPa."""
-    nudge = _NUDGE * float(done.pressure.max(initial=0.0))
-    if not nudge > 0:
-        return 0.0
-    more = Pass(pressure=done.pressure + nudge * (done.pressure > 0), sliding=done.sliding)
-    return float((law.depth(more) - law.depth(done)).max() / nudge)
 
 
 _STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(

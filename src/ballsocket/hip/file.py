@@ -20,10 +20,11 @@ from .given_cycle import KEYS as CYCLE_KEYS
 from .given_cycle import given_cycle
 from .given_laws import KEYS as WEAR_KEYS
 from .given_laws import given_ball_law, given_creep, given_law, given_lubricant, given_seconds, given_surface
+from .looks import check_cycles
 from .mix import Mix
 from .scatter_file import KEYS as SCATTER_KEYS
 from .scatter_file import Uncertain, uncertain
-from .use import InUse, check_cycles
+from .use import InUse
 
 _TABLES: Mapping[str, tuple[str, ...]] = {
     "": (

@@ -13,6 +13,7 @@ from ..arrays import Numbers
 from ..checks import require
 from .sliding import Sliding
 
+_NUDGE = 1e-6  # of the largest pressure, for the slope of a law
 METRE = 1e-3
 """Of a wear factor: per metre of sliding, in mm."""
 
@@ -214,3 +215,12 @@ class OwnLaw:
     @property
     def notes(self) -> tuple[str, ...]:
         return ()
+
+
+def steepest(law: Law, done: Pass) -> float:
+    """The most that a law adds to a depth for a larger pressure, in mm/MPa."""
+    nudge = _NUDGE * float(done.pressure.max(initial=0.0))
+    if not nudge > 0:
+        return 0.0
+    more = Pass(pressure=done.pressure + nudge * (done.pressure > 0), sliding=done.sliding)
+    return float((law.depth(more) - law.depth(done)).max() / nudge)

@@ -88,7 +88,8 @@ class Mix:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be said of the activities, each sentence once."""
-        return tuple(dict.fromkeys(note for each in self._cycles for note in each.notes))
+        said = tuple(dict.fromkeys(note for each in self._cycles for note in each.notes))
+        return said if len({each.cup_tilt for each in self._cycles}) == 1 else (*said, _AS_GIVEN)
 
     @property
     def cup_tilt(self) -> float | None:
@@ -178,3 +179,6 @@ class Mix:
 
     def _of(self, change: Callable[[Cycle], Cycle]) -> Mix:
         return Mix(activities=tuple(replace(each, cycle=change(each.cycle)) for each in self.activities))
+
+
+_AS_GIVEN = "the cup faces as it is given: the activities have no tilt of a standard in common"

@@ -18,6 +18,7 @@ from .blocks import Run
 from .cycle import Cycle
 from .history import Report
 from .laws import CrossShear, Law
+from .looks import report_of
 from .mix import Mix
 from .use import InUse
 
@@ -175,7 +176,7 @@ class Patient:
             A contact that did not balance its load.
         """
         run = Run(use=self.use)
-        found = tuple(run.until(self.pace * count, lambda done: None) for count in counts)
+        found = tuple(report_of(run.until(self.pace * count, lambda done: None)) for count in counts)
         if not all(report.settled for report in found):
             raise ValueError(_UNSETTLED)
         return found

@@ -12,7 +12,7 @@ from ..arrays import Numbers
 from .cycle import Spring
 
 if TYPE_CHECKING:
-    from .use import InUse
+    from .placing import Placed
 
 _HALVINGS = 60
 
@@ -44,12 +44,12 @@ class Separation:
     def _furthest(self) -> int:
         return int(numpy.linalg.norm(self.displacement, axis=1).argmax())
 
-    def summary(self, use: InUse) -> dict[str, Any]:
+    def summary(self, use: Placed) -> dict[str, Any]:
         """For JSON."""
         first, last = (use.cycle.told(int(instant)) for instant in self.instants[[0, -1]])
         return {"from": first, "to": last, "largest_mm": self.largest, "place_deg": degrees(self.place[self._furthest])}
 
-    def told(self, use: InUse) -> str:
+    def told(self, use: Placed) -> str:
         """A sentence: when, where, how far."""
         seen = self.summary(use)
         return (
@@ -59,7 +59,7 @@ class Separation:
         )
 
 
-def on_the_rim(use: InUse, instants: Numbers) -> Separation:
+def on_the_rim(use: Placed, instants: Numbers) -> Separation:
     """Where the ball rests in these instants, rigid and without friction on the edge of a rigid rim.
 
     The load points from the ball's centre to the edge that it rests on: c = R2 r - R1 f, the spring being shorter by
@@ -83,15 +83,15 @@ def on_the_rim(use: InUse, instants: Numbers) -> Separation:
     )
 
 
-def _loads(use: InUse, instants: Numbers, spring: Spring, aside: Numbers, followed: Numbers) -> Numbers:
+def _loads(use: Placed, instants: Numbers, spring: Spring, aside: Numbers, followed: Numbers) -> Numbers:
     """Forces of a ball that has followed its spring so far, in N, in the cup's frame."""
     return use.forces[instants] - spring.stiffness * followed[:, None] * aside
 
 
-def _centre(use: InUse, instants: Numbers, spring: Spring, aside: Numbers, followed: Numbers) -> Numbers:
+def _centre(use: Placed, instants: Numbers, spring: Spring, aside: Numbers, followed: Numbers) -> Numbers:
     """The ball's centre in mm where it rests on the rim under these loads: (n, 3)."""
     loads = _loads(use, instants, spring, aside, followed)
     along = loads / numpy.linalg.norm(loads, axis=1)[:, None]
     across = loads[:, :2] / numpy.linalg.norm(loads[:, :2], axis=1)[:, None]
     edge = numpy.column_stack([numpy.sin(use.reach) * across, numpy.full(len(loads), numpy.cos(use.reach))])
-    return use.bed.socket_radius * edge - float(use.joint.ball_radius) * along
+    return float(use.joint.socket_radius) * edge - float(use.joint.ball_radius) * along

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from math import degrees, inf, radians
+from math import inf, radians
 from pathlib import Path
 from typing import Any
 
@@ -13,34 +13,29 @@ import numpy
 
 from ..arrays import Numbers, is_plain
 from ..checks import require
-from ..cup import Cup, Side
+from ..cup import Cup
 from ..fem.shapes import socket_shape
-from ..joint import Joint
 from ..sphere.grid import Grid, even_grid, grid
 from ..sphere.model import Sphere
 from ..sphere.surfaces import ClosedShell, RealCup, Springs
 from ..validity import inside
 from .blocks import Run
-from .checkpoint import Checkpoint, checkpoint
+from .checkpoint import checkpoint
 from .creep import Ladder
-from .cycle import Cycle, Frame
 from .edge import Edge, edge_of
 from .elastic_bed import elastic_bed
 from .facing import ball_grid
 from .film import Film, Lubricant, film
-from .history import Error, First, History, Report
+from .history import Error, First, History
 from .laws import Law, Pass
-from .mix import Mix
-from .separation import Separation, on_the_rim
-from .sliding import Sliding, slide
+from .looks import check_cycles, looks
+from .placing import Placed
+from .sliding import Sliding
 from .springs import CycleBed, Rest, spring_bed
-
-_LIFTED = 1e-6
-"""Of the largest force: below, the ball is taken to be lifted off."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class InUse:
+class InUse(Placed):
     """A hip in use.
 
     Parameters
@@ -81,10 +76,7 @@ class InUse:
     30.1
     """
 
-    joint: Joint
-    cycle: Cycle | Mix
     wear: Law
-    cup: Cup = Cup()  # noqa: RUF009 (frozen)
     surface: Springs | ClosedShell | RealCup = Springs()  # noqa: RUF009 (frozen)
     ring_width: float = radians(3.0)
     ball_wear: Law | None = None
@@ -116,99 +108,12 @@ class InUse:
         """That a cycle stands for in the life of the liner."""
         return self.cycle.duration if self.seconds_per_cycle is None else self.seconds_per_cycle
 
-    def _check_held(self) -> None:
-        out = self._over
-        if self.separation is not None:
-            out = out[numpy.isnan(self.separation.displacement[:, 0])]
-        if len(out):
-            first = out[0]
-            raise ValueError(
-                f"dislocated at {self.cycle.told(first)}: the load of {numpy.linalg.norm(self.forces[first]):.0f} N "
-                f"points {degrees(self._tilts[first]):.1f}° from the dome's pole, and the bore ends at "
-                f"{degrees(self.reach):.1f}°"
-            )
-
-    @cached_property
-    def moved(self) -> Cycle | Mix:
-        """The cycle on the side of the body that the cup belongs to."""
-        return self.cycle.mirrored() if self.cup.side is Side.LEFT else self.cycle
-
-    @cached_property
-    def forces(self) -> Numbers:
-        """Forces of the ball on the socket in N, in the cup's frame: (instants, 3)."""
-        given = self.moved.forces
-        return given if self.cycle.frame is Frame.CUP else _in_cup(self.placed, given)
-
-    @property
-    def _tilts(self) -> Numbers:
-        """Angles of the forces from the dome's pole, in rad: (instants,)."""
-        return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
-
-    @cached_property
-    def _pressed(self) -> Numbers:
-        """Whether there is a load at all: (instants,)."""
-        sizes = self.cycle.sizes
-        return numpy.asarray(sizes > _LIFTED * max(float(sizes.max()), 1e-300))
-
-    @cached_property
-    def _over(self) -> Numbers:
-        """The instants in which the load points beyond the rim."""
-        return numpy.flatnonzero(self._pressed & (self._tilts >= self.reach))
-
-    @cached_property
-    def separation(self) -> Separation | None:
-        """The instants in which a spring has pushed the ball onto the rim; None where it never does."""
-        return on_the_rim(self, self._over) if self.cycle.spring is not None and len(self._over) else None
-
-    @cached_property
-    def placed(self) -> Cup:
-        """The cup as the cycle finds it: where it faces straight down and a standard has a tilt, it has that tilt."""
-        upright = self.cup.inclination == 0 and self.cup.anteversion == 0
-        tilt = self.cycle.cup_tilt
-        return self.cup.tilted(tilt) if upright and tilt is not None else self.cup
-
-    @property
-    def reach(self) -> float:
-        """Where the bore ends, in rad from the dome's pole."""
-        return float(self.cup.rim - self.cup.chamfer / self.joint.socket_radius)
-
-    @cached_property
-    def loaded(self) -> Numbers:
-        """The instants in which the ball is pressed into the bore."""
-        within = self._pressed.copy()
-        within[self._over] = False
-        return numpy.flatnonzero(within)
-
-    @cached_property
-    def loads(self) -> Numbers:
-        """The forces of those instants in the cup's frame: (loaded, 3)."""
-        return numpy.ascontiguousarray(self.forces[self.loaded])
-
-    @property
-    def largest(self) -> Numbers:
-        """Which of the loads is the largest: one number, or none where there are no loads."""
-        sizes = numpy.linalg.norm(self.loads, axis=1)
-        return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
-
-    @cached_property
-    def turns(self) -> Numbers:
-        """How the ball turns in those instants, in the cup's frame: (loaded, 3)."""
-        return _in_cup(self.placed, self.moved.turns[self.loaded])
-
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be said of the cycle, the cup and the law."""
-        placed = () if self.placed == self.cup else (_PLACED.format(degrees(self.cycle.cup_tilt or 0.0)),)
-        apart = () if self.separation is None else (self.separation.told(self),)
         crept = self.creep.notes if self.creep else ()
         worn = (*self.wear.notes, *(self.ball_wear.notes if self.ball_wear else ()))
-        return (*self.cycle.notes, *placed, *self._lifted, *apart, *worn, *crept)
-
-    @property
-    def _lifted(self) -> tuple[str, ...]:
-        """When the ball is lifted off, in a sentence."""
-        off = numpy.flatnonzero(~self._pressed)
-        return (_LIFTS.format(self.cycle.told(int(off[0])), len(off), self.cycle.instants),) if len(off) else ()
+        return (*self.cycle.notes, *self._placing_notes, *worn, *crept)
 
     @cached_property
     def grid(self) -> Grid:
@@ -276,13 +181,6 @@ class InUse:
         """The film and the friction of a cycle on a bore that is worn by a depth in mm (cells,)."""
         return film(self, self.rest(depth), lubricant)
 
-    @property
-    def slide(self) -> float:
-        """How far the ball slides past the loads' line in a cycle, in mm."""
-        sizes = self.cycle.sizes[:, None]
-        along = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
-        return slide(float(self.joint.ball_radius), _in_cup(self.placed, self.moved.turns), _held(along, self.loaded))
-
     @cached_property
     def first(self) -> First:
         """The first cycle, on a bore that is not worn, a million times over."""
@@ -343,7 +241,7 @@ class InUse:
         """
         counts = check_cycles(cycles, report_at)
         run = Run(use=self)
-        reports = _looks(run, counts, listen, None if store is None else checkpoint(self, store))
+        reports = looks(run, counts, listen, None if store is None else checkpoint(self, store))
         return History(use=self, reports=reports, error=self.error(run.missed), steps=run.steps, lubricant=lubricant)
 
     def error(self, blocks: float) -> Error:
@@ -357,61 +255,4 @@ class InUse:
         return Error(blocks=blocks, volume=blocks + volume, depth=blocks + depth)
 
 
-def _looks(
-    run: Run, counts: Sequence[float], listen: Callable[[float], None], kept: Checkpoint | None
-) -> tuple[Report, ...]:
-    """What is seen after these counts of cycles, on from what was kept."""
-    reports: tuple[Report, ...] = ()
-    found = kept.read() if kept else None
-    if found is not None:
-        state, reports = found
-        run.resume(state)
-        reports = tuple(report for report in reports if report.cycles in counts)
-    seen = {report.cycles for report in reports}
-    for count in counts:
-        if count in seen:
-            continue
-        if count < run.cycles:
-            raise ValueError(f"the store is {run.cycles:g} cycles on and has not seen {count:g}; give another folder")
-
-        def listening(done: float) -> None:
-            if kept is not None and done < count:  # noqa: B023 (called before the next)
-                kept.write(run.state, reports)  # noqa: B023
-            listen(done)
-
-        reports = (*reports, run.until(count, listening))
-        if kept is not None:
-            kept.write(run.state, reports)
-    return reports
-
-
 _RATES = ("volume", "depth")
-_PLACED = "the cup is tilted by {:g}° from the load, as the cycle's standard has it"
-_LIFTS = "the ball lifts off, first at {}, and comes down again: in {} of {} instants nothing is pressed or worn"
-
-
-def _in_cup(cup: Cup, vectors: Numbers) -> Numbers:
-    """Vectors (n, 3) of the body in the cup's own frame."""
-    return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
-
-
-def _held(along: Numbers, loaded: Numbers) -> Numbers:
-    """Directions of the loads; where there is none, the last one that was."""
-    if not len(loaded):
-        return along
-    last = numpy.searchsorted(loaded, numpy.arange(len(along)), side="right") - 1
-    return along[loaded[last]]
-
-
-def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
-    """Numbers of cycles in order, the last one at the end.
-
-    Raises
-    ------
-    ValueError
-        Not positive and finite, or a look beyond the end.
-    """
-    require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
-    for count in report_at:
-        require("report_at", count, 0 <= count <= cycles, f"it lies between 0 and the {cycles:g} cycles of the run")
-    return sorted({float(count) for count in (*report_at, cycles)})

@@ -1,0 +1,155 @@
+"""A cycle as a cup finds it: loads and turns in the cup's own frame, and where the ball is held."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import degrees
+
+import numpy
+
+from ..arrays import Numbers
+from ..cup import Cup, Side
+from ..joint import Joint
+from .cycle import Cycle, Frame
+from .mix import Mix
+from .separation import Separation, on_the_rim
+from .sliding import slide
+
+_LIFTED = 1e-6
+"""Of the largest force: below, the ball is taken to be lifted off."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Placed:
+    """A joint in a cup that goes through a cycle.
+
+    Attributes
+    ----------
+    joint : Joint
+        Of plain numbers.
+    cycle : Cycle or Mix
+        In the body's frame, as the cup's orientation is. On a left cup it is mirrored.
+    cup : Cup
+        Arc of cover and where it faces; where the cycle's standard says a tilt, that of a cup that faces down.
+    """
+
+    joint: Joint
+    cycle: Cycle | Mix
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
+
+    def _check_held(self) -> None:
+        out = self._over
+        if self.separation is not None:
+            out = out[numpy.isnan(self.separation.displacement[:, 0])]
+        if len(out):
+            first = out[0]
+            raise ValueError(
+                f"dislocated at {self.cycle.told(first)}: the load of {numpy.linalg.norm(self.forces[first]):.0f} N "
+                f"points {degrees(self._tilts[first]):.1f}° from the dome's pole, and the bore ends at "
+                f"{degrees(self.reach):.1f}°"
+            )
+
+    @cached_property
+    def moved(self) -> Cycle | Mix:
+        """The cycle on the side of the body that the cup belongs to."""
+        return self.cycle.mirrored() if self.cup.side is Side.LEFT else self.cycle
+
+    @cached_property
+    def forces(self) -> Numbers:
+        """Forces of the ball on the socket in N, in the cup's frame: (instants, 3)."""
+        given = self.moved.forces
+        return given if self.cycle.frame is Frame.CUP else _in_cup(self.placed, given)
+
+    @property
+    def _tilts(self) -> Numbers:
+        """Angles of the forces from the dome's pole, in rad: (instants,)."""
+        return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
+
+    @cached_property
+    def _pressed(self) -> Numbers:
+        """Whether there is a load at all: (instants,)."""
+        sizes = self.cycle.sizes
+        return numpy.asarray(sizes > _LIFTED * max(float(sizes.max()), 1e-300))
+
+    @cached_property
+    def _over(self) -> Numbers:
+        """The instants in which the load points beyond the rim."""
+        return numpy.flatnonzero(self._pressed & (self._tilts >= self.reach))
+
+    @cached_property
+    def separation(self) -> Separation | None:
+        """The instants in which a spring has pushed the ball onto the rim; None where it never does."""
+        return on_the_rim(self, self._over) if self.cycle.spring is not None and len(self._over) else None
+
+    @cached_property
+    def placed(self) -> Cup:
+        """The cup as the cycle finds it: where it faces straight down and a standard has a tilt, it has that tilt."""
+        upright = self.cup.inclination == 0 and self.cup.anteversion == 0
+        tilt = self.cycle.cup_tilt
+        return self.cup.tilted(tilt) if upright and tilt is not None else self.cup
+
+    @property
+    def reach(self) -> float:
+        """Where the bore ends, in rad from the dome's pole."""
+        return float(self.cup.rim - self.cup.chamfer / self.joint.socket_radius)
+
+    @cached_property
+    def loaded(self) -> Numbers:
+        """The instants in which the ball is pressed into the bore."""
+        within = self._pressed.copy()
+        within[self._over] = False
+        return numpy.flatnonzero(within)
+
+    @cached_property
+    def loads(self) -> Numbers:
+        """The forces of those instants in the cup's frame: (loaded, 3)."""
+        return numpy.ascontiguousarray(self.forces[self.loaded])
+
+    @property
+    def largest(self) -> Numbers:
+        """Which of the loads is the largest: one number, or none where there are no loads."""
+        sizes = numpy.linalg.norm(self.loads, axis=1)
+        return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
+
+    @cached_property
+    def turns(self) -> Numbers:
+        """How the ball turns in those instants, in the cup's frame: (loaded, 3)."""
+        return _in_cup(self.placed, self.moved.turns[self.loaded])
+
+    @property
+    def slide(self) -> float:
+        """How far the ball slides past the loads' line in a cycle, in mm."""
+        sizes = self.cycle.sizes[:, None]
+        along = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
+        return slide(float(self.joint.ball_radius), _in_cup(self.placed, self.moved.turns), _held(along, self.loaded))
+
+    @property
+    def _placing_notes(self) -> tuple[str, ...]:
+        """What is to be said of where the cup faces, and of a ball that is not in it all the time."""
+        placed = () if self.placed == self.cup else (_PLACED.format(degrees(self.cycle.cup_tilt or 0.0)),)
+        apart = () if self.separation is None else (self.separation.told(self),)
+        return (*placed, *self._lifted, *apart)
+
+    @property
+    def _lifted(self) -> tuple[str, ...]:
+        """When the ball is lifted off, in a sentence."""
+        off = numpy.flatnonzero(~self._pressed)
+        return (_LIFTS.format(self.cycle.told(int(off[0])), len(off), self.cycle.instants),) if len(off) else ()
+
+
+_PLACED = "the cup is tilted by {:g}° from the load, as the cycle's standard has it"
+_LIFTS = "the ball lifts off, first at {}, and comes down again: in {} of {} instants nothing is pressed or worn"
+
+
+def _in_cup(cup: Cup, vectors: Numbers) -> Numbers:
+    """Vectors (n, 3) of the body in the cup's own frame."""
+    return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
+
+
+def _held(along: Numbers, loaded: Numbers) -> Numbers:
+    """Directions of the loads; where there is none, the last one that was."""
+    if not len(loaded):
+        return along
+    last = numpy.searchsorted(loaded, numpy.arange(len(along)), side="right") - 1
+    return along[loaded[last]]
