@@ -1,23 +1,29 @@
 """An exported element, compiled and called."""
 
 import ctypes
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
 
 from ballsocket.export import CElement
-from ballsocket.export.compiler import LIBRARY_ENDING, NoCompiler, compiler, shared_library
+from ballsocket.export.compiler import LIBRARY_ENDING, NoCompiler, shared_library
 
 
 def _missing():
-    try:
-        compiler()
-    except NoCompiler as missing:
-        return str(missing)
+    """Why nothing can be compiled and loaded here, empty where it can."""
+    with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        Path(folder, "one.c").write_text("int one(void) { return 1; }\n")
+        try:
+            ctypes.CDLL(str(shared_library(["one.c"], Path(folder, f"one{LIBRARY_ENDING}"), Path(folder))))
+        except (NoCompiler, OSError) as missing:
+            return str(missing)
     return ""
 
 
-needs_compiler = pytest.mark.skipif(bool(_missing()), reason=_missing())
+MISSING = _missing()
+needs_compiler = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 
 
 class Library:

@@ -158,6 +158,23 @@ def test_fmpy_runs_it_to_the_reference(version, kind, late, folder, fmpy):
         assert_allclose(found[name][late:], wanted, rtol=1e-12, atol=1e-12 * abs(wanted).max())
 
 
+@pytest.mark.long
+@needs_compiler
+@pytest.mark.parametrize("version", VERSIONS)
+def test_fmpy_compiles_what_is_in_it(version, folder, fmpy, tmp_path):
+    from shutil import rmtree
+
+    from fmpy.build import build_platform_binary
+
+    unzipped = str(fmpy.extract(str(folder / f"hip{version}.fmu"), str(tmp_path)))
+    rmtree(f"{unzipped}/binaries")
+    (tmp_path / "build").mkdir()
+    build_platform_binary(unzipped, tmp_path / "build")
+    given, reference = table(folder / f"hip{version}_in.csv"), table(folder / f"hip{version}_ref.csv")
+    found = fmpy.simulate_fmu(unzipped, fmi_type="ModelExchange", input=given, stop_time=0.1, output_interval=1e-3)
+    assert_allclose(found["energy"], reference["energy"], rtol=1e-12)
+
+
 GOOD, DISCARD, ERROR = 0, 2, 3
 PRESSED = {"position": (0.0, 1e-5, 1.2e-4), "velocity": (0.001, 0.0, 0.02), "spin": (0.0, 1.0, 2.0)}
 

@@ -13,6 +13,7 @@ from pathlib import Path
 _NAMES = ("cc", "gcc", "clang")
 _ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 LIBRARY_ENDING = _ENDINGS.get(sys.platform, ".so")
+_SHARED = ("-shared",) if sys.platform == "win32" else ("-fPIC", "-shared")
 
 
 class NoCompiler(RuntimeError):  # noqa: N818 - a sentence for people
@@ -46,7 +47,7 @@ def shared_library(sources: Sequence[str], library: Path, folder: Path, options:
         There is no compiler, or it refuses, with its first complaint.
     """
     chosen = shlex.split(os.environ.get("CFLAGS", ""))
-    words = [*compiler(), "-std=c99", "-O2", *chosen, "-fPIC", "-shared", *options, *sources, "-o", str(library), "-lm"]
+    words = [*compiler(), "-std=c99", "-O2", *chosen, *_SHARED, *options, *sources, "-o", str(library), "-lm"]
     try:
         done = subprocess.run(words, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
     except (OSError, subprocess.TimeoutExpired) as error:
