@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.sphere.forms import scan_of
 from ballsocket.sphere.grid import even_grid
+from ballsocket.sphere.scans import scan_of
 
 from ..joints import HIP
 
@@ -23,6 +23,24 @@ def bore(radius=18.0, depth=lambda n: 0.0 * n[2], reach=85.0, count=60, shift=(0
     n = np.stack([np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)])
     points = (radius + depth(n)) * n
     return np.stack([points[0], points[2], -points[1]], axis=-1).reshape(-1, 3) + shift
+
+
+def test_a_depth_that_shifts_the_bore_shifts_the_ball_and_nothing_else():
+    """The pole of the grid lies in the contact, where cells are triangles."""
+    shift = np.array([0.02, 0.01, 0.03])
+    here, there = (replace(COARSE, worn=each) for each in (None, bs.Worn(of=lambda n: np.tensordot(shift, n, 1))))
+    plain, shifted = (model.press(RIGID, force=2000.0, tilt=0.3) for model in (here, there))
+    assert shifted.pressure_map[2] == pytest.approx(plain.pressure_map[2], abs=2e-3 * plain.max_pressure)
+    assert shifted.displacement == pytest.approx(plain.displacement + shift, abs=1e-5)
+
+
+def test_noise_of_a_scan_is_no_form():
+    random = np.random.default_rng(2)
+    noisy = scan_of(bore(depth=lambda n: random.normal(0.0, 0.0005, n.shape[1:])))
+    plain, scanned = (replace(COARSE, worn=each).press(RIGID, force=2000.0, tilt=0.3) for each in (None, noisy))
+    assert scanned.max_pressure == pytest.approx(plain.max_pressure, rel=0.1)
+    with pytest.raises(ValueError, match="finest"):
+        scan_of(bore(), finest=4.0)
 
 
 def test_a_pinched_bore_is_an_oval_that_a_turn_turns():
@@ -46,9 +64,9 @@ def test_a_table_is_the_function_it_was_made_from():
 
 def test_a_measured_depth_is_computed_once_for_a_grid_and_anew_where_points_may_change():
     scan, grid = scan_of(bore(depth=lambda n: 0.02 * n[0] ** 2)), even_grid(1.2, 0.2)
-    first = scan.depth(grid.middles)
-    assert scan.depth(grid.middles) is first
-    moving = grid.middles.copy()
+    first = scan.depth(grid.centroids)
+    assert scan.depth(grid.centroids) is first
+    moving = grid.centroids.copy()
     assert scan.depth(moving) == pytest.approx(first)
     moving[:2] *= -1
     assert scan.depth(moving) == pytest.approx(scan.depth(np.array(moving)))

@@ -1,9 +1,10 @@
 """Contact on the sphere: the ball anywhere in a socket, in rings and meridians about the socket's own axis."""
 
-from .forms import DepthTable, Pinched, Scan, read_scan
+from .forms import DepthTable, Pinched
 from .model import Sphere
 from .orientations import Orientations, orient
 from .preload import Preload
+from .scans import Scan, read_scan
 from .surfaces import ClosedShell, RealCup, Springs
 from .worn import Worn
 

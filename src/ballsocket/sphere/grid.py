@@ -91,10 +91,18 @@ class Grid:
 
     @cached_property
     def middles(self) -> Numbers:
-        """Unit vectors to the middles of the cells: (3, rings, meridians); nobody writes into them."""
-        middles = unit_vectors(self.polar[:, None], self.azimuth)
-        middles.setflags(write=False)
-        return middles
+        """Unit vectors to the middles of the cells: (3, rings, meridians)."""
+        return unit_vectors(self.polar[:, None], self.azimuth)
+
+    @cached_property
+    def centroids(self) -> Numbers:
+        """Unit vectors to where fields have their means over the cells: (3, rings, meridians); nobody writes into them.
+
+        At the pole, where cells are triangles, these are not the middles.
+        """
+        centroids = self.normals / numpy.linalg.norm(self.normals, axis=0)
+        centroids.setflags(write=False)
+        return centroids
 
     def averaged(self, rings: Numbers) -> Numbers:
         """From what rings do to rings, ∫ u dA for each m, to what cells do to cells: the mean u over each.

@@ -276,7 +276,7 @@ class Sphere(Model):
             grid=soft.grid,
             clearance=float(joint.clearance),
             socket_radius=float(joint.socket_radius),
-            depth=self._depth(soft.grid.middles),
+            depth=self._depth(soft.grid.centroids),
             kind=self.gap,
         )
         axes = numpy.stack(along, axis=-1)[touching]
@@ -289,10 +289,10 @@ class Sphere(Model):
             error=state.errors(kind),
         )
 
-    def _depth(self, middles: Numbers) -> Numbers:
+    def _depth(self, directions: Numbers) -> Numbers:
         if self.worn is None:
-            return numpy.zeros(middles.shape[1:])
-        depth = numpy.asarray(self.worn.depth(middles), dtype=float)
+            return numpy.zeros(directions.shape[1:])
+        depth = numpy.asarray(self.worn.depth(directions), dtype=float)
         require("worn depth", depth, numpy.isfinite(depth), "a depth (mm) is finite")
         return depth
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
@@ -40,3 +41,22 @@ class Worn:
 
     def depth(self, directions: Numbers) -> Numbers:
         return numpy.broadcast_to(self.of(directions), directions.shape[1:])
+
+
+class Measured:
+    """A depth between measured points, which takes its time: that at the last directions is remembered."""
+
+    def depth(self, directions: Numbers) -> Numbers:
+        """In mm, positive where material is missing, at unit vectors (3, ...) in the cup's frame."""
+        if directions.flags.writeable:
+            return self.between(directions)
+        last, found = vars(self).get("_last", (None, None))
+        if last is not directions:
+            found = self.between(directions)
+            vars(self)["_last"] = directions, found
+        depth: Numbers = found
+        return depth
+
+    @abstractmethod
+    def between(self, directions: Numbers) -> Numbers:
+        """The depth in mm at unit vectors (3, ...)."""
