@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import HeavyTailed, Machine, Measured
+from ballsocket.identify import HeavyTailed, Machine, Measured, Own
 from ballsocket.identify.experiment import Candidate, experiment
-from ballsocket.identify.synthetic import trials
+from ballsocket.identify.synthetic import drawn, trials
+from ballsocket.identify.tracing import by_tracing
+from ballsocket.kinds import Kind
+from ballsocket.output.identify_plots import fit_figure
+from ballsocket.quantities import Quantity
 from ballsocket.studies import LogNormal, Normal
 
 RIGID = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
@@ -176,13 +180,13 @@ def test_coverage_and_bias_over_two_hundred_synthetic_sets():
 def test_the_posterior_agrees_with_the_bands_and_tells_how_it_converged():
     pytest.importorskip("emcee")
     found = identified(measured("indentation", share=0.003, random=np.random.default_rng(8)))
-    drawn = found.posterior(1000)
-    assert drawn.converged
-    assert min(drawn.effective.values()) >= 1000
-    assert 0.2 < drawn.acceptance < 0.9
+    posterior = found.posterior(1000)
+    assert posterior.converged
+    assert min(posterior.effective.values()) >= 1000
+    assert 0.2 < posterior.acceptance < 0.9
     for name, each in found.estimates.items():
-        np.testing.assert_allclose(drawn.band(name), (each.low, each.high), rtol=0.05)
-    assert drawn.samples.shape == (1000, 2)
+        np.testing.assert_allclose(posterior.band(name), (each.low, each.high), rtol=0.05)
+    assert posterior.samples.shape == (1000, 2)
 
 
 def test_the_posterior_of_what_is_not_told_runs_along_the_product():
@@ -241,3 +245,37 @@ def test_data_that_no_model_answers_are_told():
     data = Measured(quantity="indentation", values=0.01, uncertainty=1e-3, force=100.0)
     with pytest.raises(ValueError, match="tabulated has no answer for all the data anywhere between the ends"):
         identified(data, free={"liner_thickness": (0.05, 0.1)}, model=bs.Tabulated())
+
+
+@pytest.mark.long
+def test_slopes_by_jax_are_those_of_differences_and_lead_to_the_same_point():
+    pytest.importorskip("jax")
+    machine = Machine(compliance=(0.0, 2e-5), offset=0.002)
+    read = TRUTH.indentation + 8e-6 * FORCE + 0.002
+    data = [
+        measured("indentation", read, share=1e-3, machine=machine),
+        Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.004),
+    ]
+    traced, found = identified(*data, slopes=by_tracing), identified(*data)
+    assert traced.point == pytest.approx(found.point, rel=1e-6)
+    np.testing.assert_allclose(traced.information.matrix, found.information.matrix, rtol=1e-3)
+
+
+def test_a_model_that_jax_cannot_trace_is_named():
+    with pytest.raises(ValueError, match="exact cannot be traced by JAX: take by_differences"):
+        identified(measured("area"), model=bs.Exact(), slopes=by_tracing)
+
+
+def test_ones_own_quantity_is_read_from_contacts():
+    """The frequency of a small vibration about a load tells the stiffness there."""
+    frequency = Quantity("frequency", "f", "natural frequency", Kind.NUMBER, "Of a small vibration of 1 kg, in Hz.")
+
+    def read(contact):
+        return (1e3 * contact.stiffness / 1.0) ** 0.5 / (2 * np.pi)
+
+    own = Own(frequency, read)
+    vibrations = Measured(quantity="frequency", own=own, values=read(TRUTH), uncertainty=1.0, force=FORCE)
+    found = identified(vibrations, measured("area"))
+    assert found.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
+    assert drawn(found, np.random.default_rng(0))[0].values == pytest.approx(read(TRUTH), rel=0.1)
+    assert fit_figure(found).axes[0].get_ylabel() == "natural frequency f"

@@ -4,7 +4,7 @@
 """
 
 from .information import Information, Product
-from .measured import MEASURED, Machine, Measured
+from .measured import MEASURED, Machine, Measured, Own
 from .modulus import Calibration, as_constant, as_corrected_vessel, as_polynomial, calibrate
 from .parameters import Estimate, Identified, identify
 from .scatter import HeavyTailed, NormalScatter
@@ -19,6 +19,7 @@ __all__ = [
     "Machine",
     "Measured",
     "NormalScatter",
+    "Own",
     "Product",
     "as_constant",
     "as_corrected_vessel",

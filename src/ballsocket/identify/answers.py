@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any
 
 import numpy
 
-from ..arrays import Array, Numbers
+from .. import arrays
+from ..arrays import Array
 from ..contact import Contact
 from ..joint import Joint
 from ..model import Model
@@ -48,8 +50,8 @@ class Answers:
             known |= each.machine.known()
         object.__setattr__(self, "_known", known)
 
-    def at(self, values: Numbers, louder: float = 0.0) -> Numbers:
-        """The answers (points, data) at numbers (points, unknowns); NaN where there is none.
+    def at(self, values: Array, louder: float = 0.0) -> Array:
+        """The answers (points, data) at numbers (points, unknowns) of any array library; NaN where there is none.
 
         `louder` moves every load by that share of itself.
         """
@@ -58,13 +60,13 @@ class Answers:
         joint, possible = varied(self.joint, own)
         machines = self._known | columns
         parts = self._pressed(joint, machines, 1 + louder)
-        shape = (len(values), -1)
-        rows = [numpy.broadcast_to(part, (len(values), part.shape[-1])).reshape(shape) for part in parts]
-        return numpy.where(possible, numpy.concatenate(rows, axis=1), numpy.nan)
+        xp = arrays.namespace(values)
+        rows = [xp.broadcast_to(xp.asarray(part), (len(values), part.shape[-1])) for part in parts]
+        return arrays.where(possible, xp.concat(rows, axis=1), float("nan"))
 
-    def _pressed(self, joint: Joint, machines: Columns, factor: float) -> list[Numbers]:
+    def _pressed(self, joint: Joint, machines: Columns, factor: float) -> list[Array]:
         """A part for each set; sets whose loads are of one kind, and the same for all points, are pressed at once."""
-        parts: dict[int, Numbers] = {}
+        parts: dict[int, Array] = {}
         for kind in dict.fromkeys(each.load for each in self.data):
             sets = [place for place, each in enumerate(self.data) if each.load == kind]
             together = [place for place in sets if not _read_by_machine(self.data[place])]
@@ -79,7 +81,7 @@ class Answers:
 
     def _together(
         self, joint: Joint, machines: Columns, kind: str, places: list[int], factor: float
-    ) -> dict[int, Numbers]:
+    ) -> dict[int, Array]:
         loads = factor * numpy.concatenate([self.data[place].loads for place in places])
         contact, found, start = self._press(joint, kind, loads), {}, 0
         for place in places:
@@ -88,27 +90,27 @@ class Answers:
             found[place] = self._of_set(contact, len(loads), each, where, machines)
         return found
 
-    def _of_set(self, contact: Contact | None, count: int, each: Measured, where: slice, machines: Columns) -> Numbers:
+    def _of_set(self, contact: Contact | None, count: int, each: Measured, where: slice, machines: Columns) -> Array:
         if contact is None:
             return numpy.full((1, len(each)), numpy.nan)
         return _read(contact, count, each, where) + _added(each, machines, contact, where)
 
-    def _by_depth(self, joint: Joint, machines: Columns, each: Measured, factor: float) -> Numbers:
+    def _by_depth(self, joint: Joint, machines: Columns, each: Measured, factor: float) -> Array:
         """Answers at indentations that a machine reads: its own share, and its zero, are taken off first."""
         compliance, offset = (machines[each.machine.key(part)] for part in ("compliance", "offset"))
         force: Array = each.values if each.quantity == "force" else 0.0 * each.values
-        contact = self._press(joint, "indentation", numpy.maximum(factor * each.loads - offset, 0.0))
-        for _ in range(_ROUNDS if numpy.any(compliance) else 0):
-            depth = numpy.maximum(factor * each.loads - offset - compliance * force, 0.0)
+        contact = self._press(joint, "indentation", _depth(factor * each.loads - offset))
+        for _ in range(_ROUNDS if each.machine.compliance else 0):
+            depth = _depth(factor * each.loads - offset - compliance * force)
             contact = self._press(joint, "indentation", depth)
             if contact is not None:
-                stiffness = numpy.nan_to_num(contact.stiffness, posinf=0.0)
+                stiffness = arrays.where(arrays.isfinite(contact.stiffness), contact.stiffness, 0.0)
                 force = force - (force - contact.force) / (1 + compliance * stiffness)
         return self._of_set(contact, len(each), each, slice(None), machines)
 
     def _press(self, joint: Joint, kind: str, load: Array) -> Contact | None:
         """None where the model has no answer for any of the points."""
-        load_by_kind: dict[str, Any] = {kind: load}
+        load_by_kind: dict[str, Any] = {kind: arrays.namespace(*joint.numbers()).asarray(load)}
         try:
             return self.model.press(joint, **load_by_kind)
         except OutsideDomainError:
@@ -119,17 +121,23 @@ def _read_by_machine(each: Measured) -> bool:
     return each.load == "indentation" and bool(each.machine.name)
 
 
-def _read(contact: Contact, count: int, each: Measured, where: slice) -> Numbers:
+def _depth(read: Array) -> Array:
+    return arrays.clip(read, 0.0, inf)
+
+
+def _read(contact: Contact, count: int, each: Measured, where: slice) -> Array:
     """What a set asks of its contacts, which are some of `count`."""
+    if each.own is not None:
+        return _rows(each.own.read(contact))[:, where]
     if each.quantity != "pressure":
         return _rows(getattr(contact, each.quantity))[:, where]
     angle = numpy.zeros(count)
     angle[where] = each.angle
-    return _rows(contact.pressure(angle))[:, where]
+    return _rows(contact.pressure(arrays.namespace(contact.force).asarray(angle)))[:, where]
 
 
-def _rows(found: Array) -> Numbers:
-    return numpy.atleast_2d(numpy.asarray(found, dtype=float))
+def _rows(found: Array) -> Array:
+    return found[None, :] if len(found.shape) == 1 else found
 
 
 def _added(each: Measured, machines: Columns, contact: Contact, where: slice) -> Array:
@@ -140,10 +148,12 @@ def _added(each: Measured, machines: Columns, contact: Contact, where: slice) ->
     return compliance * _rows(contact.force)[:, where] + offset
 
 
-def _of_joint(joint: Joint, each: Measured) -> Numbers:
+def _of_joint(joint: Joint, each: Measured) -> Array:
     if each.quantity in PARTS:
         part, _, number = each.quantity.partition("_")
         value = getattr(getattr(joint, part), number)
     else:
         value = getattr(joint, each.quantity)
-    return numpy.broadcast_to(numpy.reshape(value, (-1, 1)), (numpy.size(value), len(each)))
+    if arrays.is_plain(value):
+        return numpy.full((1, len(each)), value)
+    return value + numpy.zeros(len(each))

@@ -125,7 +125,7 @@ def read_measured(
                 machine=machine if "indentation" in (name, kind) else PERFECT,
                 name=path.name,
                 **_beside(kind, rows, load_uncertainty),
-                **({"angle": rows["angle"]} if name == "pressure" and "angle" in rows else {}),
+                angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
         )
     return tuple(sets)

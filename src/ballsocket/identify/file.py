@@ -176,7 +176,7 @@ def _of_values(table: Mapping[str, Any], machine: Machine) -> Measured:
     )
 
 
-def _saturation(table: Mapping[str, Any]) -> dict[str, float]:
+def _saturation(table: Mapping[str, Any]) -> dict[str, Any]:
     return {"saturation": parse("saturation", table["saturation"], Kind.MODULUS)} if "saturation" in table else {}
 
 

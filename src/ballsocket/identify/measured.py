@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import inf, pi
 from types import MappingProxyType
@@ -12,6 +12,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..checks import known_name, one_load, require, shown
+from ..contact import Contact
 from ..joint import Joint
 from ..kinds import Kind, Unit
 from ..quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
@@ -103,6 +104,14 @@ class Machine:
         return {self.key(part): value for part, value in self._parts() if not isinstance(value, tuple)}
 
 
+@dataclass(frozen=True)
+class Own:
+    """One's own quantity, such as the frequency of a vibration: how it is described, and read from a contact."""
+
+    described: Quantity
+    read: Callable[[Contact], Any]
+
+
 PERFECT = Machine(name="")
 """A machine that adds nothing."""
 
@@ -130,6 +139,8 @@ class Measured:
         What a film or sensor reads at most: values there say that the quantity is at least so much.
     machine : Machine
         What reads the indentations.
+    own : Own
+        What one's own quantity is, of any name.
     name : str
         What a refusal or a figure calls this set, such as its file.
 
@@ -155,12 +166,17 @@ class Measured:
     angle: Any = None
     saturation: float = inf
     machine: Machine = PERFECT
+    own: Own | None = None
     name: str = ""
+    described: Quantity = field(init=False)
+    """The quantity with its title and unit."""
     load: str = field(init=False, default="")
     """The name of the load; empty where there is none."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "quantity", known_name("quantity", self.quantity, MEASURED))
+        if self.own is None:
+            self._set("quantity", known_name("quantity", self.quantity, MEASURED))
+        self._set("described", MEASURED[self.quantity] if self.own is None else self.own.described)
         values = _row(self._called(self.quantity), self.values)
         self._set("values", values)
         self._check_values(values)
@@ -188,11 +204,13 @@ class Measured:
         if len(gaps):
             rows = ", ".join(str(gap + 1) for gap in gaps[:8])
             raise ValueError(f"{self._called(self.quantity)} has no number in row {rows}: leave it out, or give it one")
-        if not MEASURED[self.quantity].allowed:
+        if self.own is not None:
+            return
+        if not self.described.allowed:
             require(self._called(self.quantity), values, (values >= 0) & (values < inf), "it is 0 or more and finite")
         elif self.machine is PERFECT:  # one that adds an offset may read less than nothing
-            good = MEASURED[self.quantity].allows(values)
-            require(self._called(self.quantity), values, good, MEASURED[self.quantity].allowed)
+            good = self.described.allows(values)
+            require(self._called(self.quantity), values, good, self.described.allowed)
 
     def _beside(self, what: str, numbers: Any, values: Numbers) -> Numbers:
         """One number for all the values, or one each."""
@@ -220,7 +238,7 @@ class Measured:
     def _check_unloaded(self, load: Numbers, values: Numbers) -> None:
         """Nothing is measured where nothing is pressed, but by a machine whose zero is off."""
         if self.machine.offset == 0.0:
-            said = f"at first touch there is no {MEASURED[self.quantity].title}, unless the machine's zero is off"
+            said = f"at first touch there is no {self.described.title}, unless the machine's zero is off"
             require(self._called(self.load), load, (load > 0) | (values == 0), said)
 
     def __len__(self) -> int:

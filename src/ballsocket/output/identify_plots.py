@@ -46,7 +46,7 @@ def fit_figure(found: Identified) -> Figure:
 def _draw_set(above: Axes, below: Axes, found: Identified, place: int) -> None:
     each, residuals = found.data[place], found.residuals[place]
     x, label = _across(each)
-    quantity, factor = MEASURED[each.quantity], MEASURED[each.quantity].shown.factor
+    quantity, factor = each.described, each.described.shown.factor
     colour, mark = _COLOURS[place % len(_COLOURS)], _MARKS[place % len(_MARKS)]
     above.plot(*_line(found, place, x, factor), color=INK, linewidth=1.4, label=found.model.name)
     bars = {"yerr": factor * each.uncertainty, "color": colour, "fmt": mark, "markersize": 4, "linewidth": 1}
