@@ -185,6 +185,7 @@ COUNTS = "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n"
 def test_activities_in_a_file(tmp_path):
     lines = ACTIVITIES.split("\n", 1)
     text = TEXT.replace(COUNTS, f"{lines[0]}\nyears = 2\nreport_years = [1, 2]\n").replace(CYCLE, lines[1])
+    text = text.replace("[wear]", '[wear]\nring_width = "8 deg"')
     given = read_hip(told(tmp_path, text=text))
     assert isinstance(given.use.cycle, Mix)
     assert given.use.cycle.per_year == 1.05e6
