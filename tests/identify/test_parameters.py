@@ -241,6 +241,29 @@ def test_unknowns_that_cannot_be_found_are_refused(free, said):
         identified(data, free=free)
 
 
+@pytest.mark.parametrize(
+    ("model", "joint", "data", "said"),
+    [
+        ("tabulated", RIGID, measured("area"), r"model must be a model, such as bs.Tabulated\(\), got 'tabulated'"),
+        (MODEL, "hip-36", measured("area"), "joint must be a Joint"),
+        (MODEL, RIGID.replace(clearance=np.array([0.1, 0.2])), measured("area"), "one joint is identified at a time"),
+        (MODEL, RIGID, [3.0], "data must be sets of Measured, got 3.0"),
+        (MODEL, RIGID, [], "no data are given"),
+    ],
+)
+def test_what_is_no_question_is_refused(model, joint, data, said):
+    with pytest.raises((TypeError, ValueError), match=said):
+        bs.identify(model, joint, data, FREE)
+
+
+def test_a_liner_whose_two_elastic_numbers_are_free_is_not_told_by_a_press():
+    """Poisson's ratio and the modulus make one stiffness."""
+    found = identified(measured("indentation"), free={**FREE, "liner.poisson": (0.3, 0.48)})
+    assert found.information.untold == ("liner_poisson",)
+    assert found.information.rank == 2
+    assert found.notes[0].startswith("the data do not tell liner_poisson; of what is usually measured ")
+
+
 def test_data_that_no_model_answers_are_told():
     data = Measured(quantity="indentation", values=0.01, uncertainty=1e-3, force=100.0)
     with pytest.raises(ValueError, match="tabulated has no answer for all the data anywhere between the ends"):

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers
+from ..arrays import Numbers, is_plain
+from ..checks import shown
 from ..joint import Joint
 from ..model import Model
 from ..model.answer import check_joint
@@ -277,7 +278,7 @@ def identify(
         A name that is not known, an empty range, fewer values than unknowns, data that no contact can give, or no
         point between the ends at which the model answers all data.
     TypeError
-        What is no joint.
+        What is no model, no joint, or no set of data.
 
     Examples
     --------
@@ -290,7 +291,11 @@ def identify(
     0.1
     """
     check_joint(joint)
-    sets = (data,) if isinstance(data, Measured) else tuple(data)
+    if not isinstance(model, Model):
+        raise TypeError(f"model must be a model, such as bs.Tabulated(), got {shown(model)}")
+    if not all(map(is_plain, joint.numbers())):
+        raise ValueError("one joint is identified at a time, and this one has arrays of numbers")
+    sets = _sets(data)
     unknowns = unknowns_of(free, sets)
     _check(sets, joint, unknowns)
     answers = Answers(model, joint, sets, tuple(each.name for each in unknowns))
@@ -328,14 +333,20 @@ def _concatenated(rows: Iterable[Numbers]) -> Numbers:
     return numpy.concatenate(list(rows))
 
 
-def _check(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Any]) -> None:
-    if not data:
+def _sets(data: Any) -> tuple[Measured, ...]:
+    sets = tuple(data) if isinstance(data, list | tuple) else (data,)
+    if not sets:
         raise ValueError("no data are given: a set of measurements is needed")
+    for each in sets:
+        if not isinstance(each, Measured):
+            raise TypeError(f"data must be sets of Measured, got {shown(each)}")
+    return sets
+
+
+def _check(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Any]) -> None:
     if not unknowns:
         raise ValueError("nothing is free: name an unknown, such as clearance, with its two ends")
     for each in data:
-        if not isinstance(each, Measured):
-            raise TypeError(f"data must be sets of Measured, got {each!r}")
         each.check_within(joint)
     count = sum(map(len, data))
     wanted = [each.name for each in unknowns if not each.known]

@@ -36,7 +36,8 @@ def _untold(found: Identified) -> Iterator[str]:
     )
     settling = [_plain(name) for name in found.next.settling if name not in {each.quantity for each in found.data}]
     if not settling:
-        yield f"{told}: measure {_plain(found.next.best.candidate.quantity)} too"
+        best = _plain(found.next.best.candidate.quantity)
+        yield f"{told}; of what is usually measured {best} would tell most, though not all"
         return
     yield f"{told}: measure {_or(settling)}"
 
