@@ -266,5 +266,5 @@ def module(folder: Path, name: str) -> Any:
     finally:
         sys.path.remove(str(folder))
         for each in set(sys.modules) - known:
-            if each.startswith(NAME):
+            if each.startswith(name.partition("_")[0]):
                 del sys.modules[each]

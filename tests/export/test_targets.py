@@ -11,10 +11,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 import ballsocket as bs
+from ballsocket.cli.force_elements import ElementWords
 from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
 from ballsocket.export import TARGETS, CElement, Job
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.law_fit import expression_fit, power_fit
+from ballsocket.io.joint_file import JointFile
 
 from ..cli.command import run
 from ..joints import HIP
@@ -123,7 +125,7 @@ def test_a_power_law_is_found_as_it_is():
 
 def test_a_table_says_what_the_model_says_up_to_the_load_of_the_file(tmp_path):
     done = run("export", "table", str(EXAMPLES / "hip.toml"), "--out", "hip", "--model", "exact", folder=tmp_path)
-    assert (done.returncode, done.stdout) == (0, "hip/hip_law.csv\nhip/hip_power.txt\n")
+    assert (done.returncode, done.stdout) == (0, "hip: hip_law.csv, hip_power.txt\n")
     rows = np.genfromtxt(tmp_path / "hip" / "hip_law.csv", delimiter=",", names=True, deletechars="")
     assert_allclose(rows["force_N"][-1], 3000.0, rtol=1e-6)
     contact = bs.Exact().press(HIP.replace(liner=bs.Material(young=1000.0, poisson=0.4)), force=3000.0)
@@ -131,12 +133,23 @@ def test_a_table_says_what_the_model_says_up_to_the_load_of_the_file(tmp_path):
     assert_allclose(np.gradient(rows["energy_N_mm"], rows["indentation_mm"])[50], rows["force_N"][50], rtol=1e-3)
 
 
+def test_the_cup_of_a_file_has_its_rim_and_a_file_without_one_is_a_whole_sphere():
+    cup = bs.Cup(arc_of_cover=2.6)
+    words = ElementWords(friction=0.1, restitution=0.8, impact_speed=100.0)
+    element = words.element(JointFile(HIP, {}, cup))
+    assert (element.cup, element.constants.rim) == (cup, 1.3)
+    assert element.constants.sliding == 0.1
+    assert_allclose(element.damping.restitution(100.0), 0.8, rtol=1e-6)
+    assert words.element(JointFile(HIP, {})).constants.rim == 0.0
+
+
 @pytest.mark.parametrize("target", TARGETS)
 def test_every_target_takes_a_joint_without_a_load_and_says_what_is_missing(target, tmp_path, monkeypatch):
     monkeypatch.setenv("CC", "no-such-compiler")
     done = run("export", target, "hip-28", "--out", "hip", "--model", "hess-forsbach", folder=tmp_path)
     assert done.returncode == 0
-    assert all((tmp_path / line).stat().st_size > 100 for line in done.stdout.splitlines())
+    names = done.stdout.removeprefix("hip: ").strip().split(", ")
+    assert all((tmp_path / "hip" / name).stat().st_size > 100 for name in names)
     compiled = target in ("mujoco", "drake", "exudyn")
     assert ("the sources are there" in done.stderr) == compiled
     for path in (tmp_path / "hip").glob("*.py"):
@@ -195,3 +208,62 @@ def test_a_ball_bounces_as_it_does_here(target, program, package, tools, tmp_pat
     wanted = tools.by_load(bounce, load)
     assert np.linalg.norm(wanted, axis=1).max() > HIP.clearance + 0.01
     assert_allclose(getattr(tools, program)(bounce, tmp_path), wanted, atol=1e-5)
+
+
+def mujoco_momentum(tools, folder):
+    import mujoco as mj
+
+    box, site = '<geom type="box" size=".03 .02 .01" mass="0.7"/>', '<site name="socket" pos="-0.01 0 0"/>'
+    text = (folder / "meeting.xml").read_text().replace("-9.81", "0")
+    text = text.replace('<site name="socket"/>', f'<body pos="0.01 0 0"><freejoint/>{box}{site}</body>')
+    mj.mj_loadPluginLibrary(str(next(folder.glob("_meeting_plugin*"))))
+    model = mj.MjModel.from_xml_string(text)
+    model.opt.timestep, model.opt.disableflags = 5e-6, mj.mjtDisableBit.mjDSBL_CONTACT
+    data = mj.MjData(model)  # cup, then ball: places and turns, velocities and spins
+    data.qpos[7:10], data.qvel[:] = (5e-5, 0.0, 2e-5), (0, 0, 0, 0.5, 1, -2, 0.06, 0.02, 0.08, 3, -2, 1)
+    for steps in (0, 1000):
+        for _ in range(steps):
+            mj.mj_step(model, data)
+        mj.mj_forward(model, data)
+        mj.mj_subtreeVel(model, data)
+        yield np.concatenate([1.7 * data.subtree_linvel[0], data.subtree_angmom[0]]), data.qvel[6:9].copy()
+
+
+def drake_momentum(tools, folder):
+    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+    from pydrake.multibody.tree import SpatialInertia
+    from pydrake.systems.analysis import Simulator
+    from pydrake.systems.framework import DiagramBuilder
+
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
+    ball = plant.AddRigidBody("ball", SpatialInertia.SolidSphereWithMass(1.0, 0.018))
+    cup = plant.AddRigidBody("cup", SpatialInertia.SolidBoxWithMass(0.7, 0.06, 0.04, 0.02))
+    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
+    plant.Finalize()
+    with tools.module(folder, "meeting_drake") as made:
+        made.add_joint(builder, plant, ball, cup, socket_centre=(-0.01, 0.0, 0.0))
+    simulator = Simulator(builder.Build())
+    simulator.get_mutable_integrator().request_initial_step_size_target(1e-5)
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    plant.SetPositions(context, [1, 0, 0, 0, 5e-5, 0, 2e-5, 1, 0, 0, 0, 0.01, 0, 0])
+    plant.SetVelocities(context, [3, -2, 1, 0.06, 0.02, 0.08, 0.5, 1, -2, 0, 0, 0])
+    for time in (0.0, 0.005):
+        simulator.AdvanceTo(time)
+        found = plant.CalcSpatialMomentumInWorldAboutPoint(context, np.zeros(3))
+        yield np.concatenate([found.translational(), found.rotational()]), plant.GetVelocities(context)[3:6]
+
+
+@pytest.mark.long
+@needs_compiler
+@pytest.mark.parametrize(
+    ("target", "momentum", "package"), [("mujoco", mujoco_momentum, "mujoco"), ("drake", drake_momentum, "pydrake")]
+)
+def test_ball_and_free_socket_keep_their_momentum_and_its_moment(target, momentum, package, tools, tmp_path):
+    """The socket turns, and friction drags at it: action is reaction in force and moment."""
+    if find_spec(package) is None:
+        pytest.skip(f"{package} is not installed")
+    assert written(target, LOSSY, tmp_path, name="meeting")[1] == ""
+    (before, speed), (after, slowed) = momentum(tools, tmp_path)
+    assert np.linalg.norm(slowed - speed) > 0.01  # they met
+    assert_allclose(after, before, atol=1e-14)

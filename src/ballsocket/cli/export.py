@@ -41,7 +41,6 @@ def export(
     made = element.element(file)
     job = Job(element=made, name=identifier(out), depth=depth_of(made, file.load))
     paths, missing = chosen.write(job, out)
-    for path in paths:
-        echo_path(path)
+    echo_path(out, f": {', '.join(path.relative_to(out).as_posix() for path in paths)}")
     if missing:
         complain(missing)

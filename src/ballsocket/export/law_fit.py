@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy
@@ -51,7 +52,7 @@ def _power(d: Numbers, F: Numbers, n: float) -> tuple[float, float]:
     return k / float(d[-1]) ** n, float(numpy.max(abs(k * shape - F)))
 
 
-def _smallest(of, low: float = 0.5, high: float = 4.0) -> float:  # type: ignore[no-untyped-def]
+def _smallest(of: Callable[[float], float], low: float = 0.5, high: float = 4.0) -> float:
     """Where a function that falls and rises again is smallest, by golden section."""
     share = (5.0**0.5 - 1.0) / 2.0
     for _ in range(60):
