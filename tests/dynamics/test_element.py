@@ -243,7 +243,11 @@ def test_a_law_outside_its_validity_says_so_once(caplog):
 
 def test_jax_finds_force_and_tangent_as_derivatives_of_the_energy():
     jax = pytest.importorskip("jax")
-    jax.config.update("jax_enable_x64", True)
+    with jax.enable_x64(True):
+        _derived(jax)
+
+
+def _derived(jax):
     for model in (bs.HessForsbach(), bs.Tabulated()):
         element = bs.ForceElement(model, HIP, cup=CUPS["leaning cup"], smoothing=0.02)
         for place in ([0.01, 0.02, C], [0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05], [C + 0.04, 0.0, 0.02]):

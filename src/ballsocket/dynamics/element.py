@@ -24,7 +24,7 @@ from .friction import Friction
 from .load import Load
 from .matrices import vector
 from .potential import Potential, potential_of
-from .reaction import APART, Constants, Elastic, Place, Three, elastic, place_of, reaction
+from .reaction import APART, Constants, Place, Three, elastic, place_of, reaction
 from .side_curves import curve_of, read
 from .sticking import sticking_potential, undamped_pull
 from .watch import Watch
@@ -167,13 +167,16 @@ class ForceElement:
     def _of_numbers(self, position: Three, velocity: Three, spin: Three, attached: bool) -> Load:
         given = self.constants
         place = place_of(*position, given.clearance)
-        if self.stretch > 0.0:
+        sticks = self.stretch > 0.0
+        if sticks:
             place = self._held(place, attached)
         if place.indentation <= -given.smoothing and place.distance > 0.0:
             return Load(_REST, _REST, 0.0, self, place, APART, position, velocity, spin)
         if place.indentation > self._watch.limit:
             self._watch.at(place.indentation)
-        contact = self._elastic(place)
+        contact = elastic(self.potential, place, given)
+        if sticks:
+            contact = undamped_pull(contact)
         fx, fy, fz, mx, my, mz = reaction(place, contact, velocity, spin, given)
         return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, place, contact, position, velocity, spin)
 
@@ -185,14 +188,11 @@ class ForceElement:
         with numpy.errstate(all="ignore"):  # a state without an answer has a status
             place = self._held(place_of(*r, self.constants.clearance), attached)
             self._watch.look(place.indentation)
-            contact = self._elastic(place)
+            contact = elastic(self.potential, place, self.constants)
+            contact = undamped_pull(contact) if self.stretch > 0.0 else contact
             parts = reaction(place, contact, v, w, self.constants)
         force, moment = vector(object, *parts[:3]), vector(object, *parts[3:])
         return Load(force, moment, contact.energy, self, place, contact, r, v, w)
-
-    def _elastic(self, place: Place) -> Elastic:
-        contact = elastic(self.potential, place, self.constants)
-        return undamped_pull(contact) if self.stretch > 0.0 else contact
 
     def _held(self, place: Place, attached: Any) -> Place:
         """The place of a ball that sticks: apart before first touch, unless it is attached."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from .. import arrays
 from ..arrays import Array
 from . import reaction as formulas
-from .matrices import damping_matrix, symmetric, vector
+from .matrices import damping_matrix, matrix, vector
 from .reaction import Elastic, Place, Three
 from .touch import Touch, status_of, told
 
@@ -80,7 +80,9 @@ class Load(NamedTuple):
     @property
     def tangent(self) -> Any:
         """∂²U/∂r² in N/mm, (3, 3) and symmetric: less the slope of the elastic force."""
-        return symmetric(formulas.tangent(self.place, self.contact, self.element.constants), self._packed)
+        xx, yy, zz, xy, yz, zx = formulas.tangent(self.place, self.contact, self.element.constants)
+        rows = (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
+        return rows if type(self.force) is tuple else matrix(rows)
 
     @property
     def damping_matrix(self) -> Any:

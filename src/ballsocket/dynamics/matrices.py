@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy
@@ -21,25 +20,18 @@ def vector(kind: type, *components: Array) -> Any:
     return arrays.namespace(*components).stack(components, axis=-1)
 
 
-def symmetric(six: tuple[Array, ...], packed: Callable[..., Any]) -> Any:
-    """The matrix of xx, yy, zz, xy, yz, zx."""
-    xx, yy, zz, xy, yz, zx = six
-    rows = (packed(xx, xy, zx), packed(xy, yy, yz), packed(zx, yz, zz))
-    return rows if type(rows[0]) is tuple else arrays.namespace(rows[0]).stack(rows, axis=-2)
-
-
 def damping_matrix(place: Place, contact: Elastic, velocity: Three, spin: Three, given: Constants) -> Any:
     """∂/∂(v, ω) of what damping and friction take, friction at the normal force as it is: (..., 6, 6)."""
     place, contact = Place(*_arrays(place)), Elastic(*_arrays(contact))
     velocity, spin = _arrays(velocity), _arrays(spin)
     n, one, none = _vector(place.x, place.y, place.z), *_ones(place.distance)
     normal = n[..., :, None] * n[..., None, :]
-    level = _matrix(((one, none, none), (none, one, none), (none, none, one))) - normal
+    level = matrix(((one, none, none), (none, one, none), (none, none, one))) - normal
     along, drag = _normal_rates(place, contact, velocity, given)
     push = along[..., None, None] * normal + drag[..., None, None] * level
     slip = sliding(place, pressed(contact, _along(place, velocity), given), velocity, spin, given)
     x, y, z = place.x, place.y, place.z
-    turn = given.ball_radius * _matrix(((none, z, -y), (-z, none, x), (y, -x, none)))
+    turn = given.ball_radius * matrix(((none, z, -y), (-z, none, x), (y, -x, none)))
     lever = arrays.sqrt(slip.lever_squared)
     xp = arrays.namespace(n)
     # rows: slip x, y, z and the lever's speed; columns: v and ω
@@ -88,7 +80,8 @@ def _vector(*components: Array) -> Any:
     return arrays.namespace(*components).stack(components, axis=-1)
 
 
-def _matrix(rows: Any) -> Any:
+def matrix(rows: Any) -> Any:
+    """Rows of components as the last two axes of an array."""
     stacked = [_vector(*row) for row in rows]
     return arrays.namespace(*stacked).stack(stacked, axis=-2)
 
