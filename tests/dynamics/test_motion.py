@@ -27,7 +27,7 @@ def test_without_losses_energy_is_kept_through_every_bounce(smoothing):
 
 @pytest.mark.long
 def test_ten_thousand_bounces_drift_by_less_than_a_ten_millionth():
-    """The discrete gradient with steps of 20 µs, compiled; a contact lasts some 35 of them."""
+    """The discrete gradient with steps of 20 µs, compiled; a contact lasts some 22 of them."""
     from ballsocket.dynamics.compiled import CompiledElement
 
     motion = simulate(CompiledElement(FREE), duration=24.0, **THROW)

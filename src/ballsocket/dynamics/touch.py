@@ -40,7 +40,7 @@ _SENTENCES = {
     Touch.CONTACT: "the ball touches the socket",
     Touch.AT_RIM: "the contact reaches the rim, which carries a part of it",
     Touch.OVER_RIM: "the ball has left the cup over its rim, and nothing carries it",
-    Touch.THROUGH_WALL: "the ball is deeper than the wall of the socket, and a shorter step is needed",
+    Touch.THROUGH_WALL: "the ball is deeper than the wall, or the model, goes: a shorter step is needed",
     Touch.NO_NUMBER: "the state is no finite number",
 }
 
@@ -74,7 +74,7 @@ def _told(load: Load, codes: Numbers, touch: Touch) -> str:
     x, y, z, d = (_at(part, codes, numbers[0]) for part in (*load.position, load.indentation))
     many = "" if codes.size == 1 else f"{len(numbers)} of {codes.size}: "
     state = f"r = ({x:.6g}, {y:.6g}, {z:.6g}) mm, d = {d:.6g} mm"
-    return f"{many}{touch.sentence}; {state}, the wall ends at {load.element.wall:.6g} mm"
+    return f"{many}{touch.sentence}; {state}, and there is an answer up to {load.element.wall:.6g} mm"
 
 
 def _at(part: Array, codes: Numbers, number: int) -> float:
