@@ -104,8 +104,9 @@ def slopes_of_number(
     energy = math.exp(value)
     if indentation < shallowest:
         energy, curvature = energy * (indentation / shallowest) ** power, 0.0
-    force = energy * power / indentation
-    return energy, force, (force * (power - 1.0) + energy * curvature / indentation) / indentation
+    over = 1.0 / indentation
+    force = energy * over * power
+    return energy, force, (force * (power - 1.0) + energy * over * curvature) * over
 
 
 _TINY = 1e-150
