@@ -16,9 +16,9 @@ Four = tuple[Array, Array, Array, Array]
 
 @dataclass(frozen=True, kw_only=True)
 class Bristles:
-    """The LuGre model: with z the deflection, v the slip and N the normal force,
+    """The LuGre model: with z the deflection, v the slip of the size w, and N the normal force::
 
-        z' = v - σ0 |v| z/μ(v),    f = -N (σ0 z + σ1 z' + σ2 v),
+        z' = v - σ0 w z/μ(w),    f = -N (σ0 z + σ1 z' + σ2 v),
 
     for the slip across the load and the spin about it at once, which share μ. Bristles that slide have f = μ N, those
     that hold are springs of N σ0. The damping σ1 falls with the slip just enough that none makes energy. A ball that

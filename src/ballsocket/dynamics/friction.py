@@ -15,7 +15,7 @@ class Friction:
     """Regularised Coulomb friction: the force is smooth in the speed, nearly μ N once that is above the transition.
 
     Sliding and drilling share one limit: with v the slip at the pole of the contact, ω the spin about its axis and ρ
-    the mean lever of the pressure about it, q² = v² + (ρ ω)² + (transition speed)²,
+    the mean lever of the pressure about it, q² = v² + (ρ ω)² + (transition speed)²::
 
         f = -N (μ(q)/q + viscous) v,   M = -N (μ(q)/q + viscous) ρ² ω,
         μ(q) = coefficient + (static - coefficient) exp[-(q/stribeck_speed)²].
