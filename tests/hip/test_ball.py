@@ -8,6 +8,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.hip import Archard, Cycle, OwnLaw, flexion, iso_14242_1, logarithmic
 from ballsocket.hip.facing import ball_directions, ball_grid, facing
+from ballsocket.output.hip_report import write_hip_report
 
 from .test_wear import K, hip
 
@@ -82,3 +83,12 @@ def test_a_law_of_ones_own_for_the_ball_cannot_be_kept(tmp_path):
     use = hip(ball_wear=OwnLaw(of=lambda cycle: 1e-9 * cycle.work))
     with pytest.raises(ValueError, match="a run with a law of one's own cannot be kept"):
         use.after(1e4, store=tmp_path)
+
+
+def test_the_page_of_a_ball_that_wears_has_its_map(tmp_path):
+    history = hip(
+        cycle=iso_14242_1(20), ring_width=radians(8.0), wear=Archard(coefficient=K), ball_wear=Archard(coefficient=K)
+    ).after(1e4)
+    page = write_hip_report(history, tmp_path / "ball.html").read_text(encoding="utf-8")
+    assert "Wear of the ball" in page
+    assert page.count("data:image/png;base64") == 7

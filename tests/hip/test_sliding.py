@@ -85,3 +85,11 @@ def test_the_track_of_a_point_is_as_long_as_it_slides():
     track = tracks(cycle.rotations, point, radius=14.0)[0]
     assert np.linalg.norm(np.diff(track, axis=0), axis=1).sum() == pytest.approx(2 * radians(43.0) * 14.0, rel=1e-4)
     assert np.linalg.norm(track, axis=1) == pytest.approx(14.0)
+
+
+def test_a_point_of_the_socket_draws_its_track_on_the_ball():
+    """As long as that of the ball on the socket, and the other way round: flexion to the front is one to the back."""
+    cycle = flexion(1000)
+    there = tracks(cycle.rotations, POLE, radius=14.0)[0]
+    back = tracks(cycle.rotations.swapaxes(1, 2), POLE, radius=14.0)[0]
+    assert back == pytest.approx(there * [1.0, -1.0, 1.0], abs=1e-9)

@@ -165,7 +165,7 @@ def tracks(rotations: Numbers, points: Numbers, radius: float = 1.0) -> Numbers:
     Parameters
     ----------
     rotations : array (n, 3, 3)
-        Of the ball.
+        Of the ball; transposed (0, 2, 1), points of the socket draw their tracks on the ball.
     points : array (3, points)
         Unit vectors to where the points are while the ball is not turned.
     radius : float

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..hip.facing import ball_directions, ball_grid
 from ..hip.history import History, Report
 from ..hip.sliding import tracks
 from ..hip.uncertainty import Bands
@@ -45,6 +46,23 @@ def cross_shear_map(history: History) -> Figure:
     done = use.passed(use.unworn)
     field = done.cross_shear.reshape(use.grid.rings, -1)
     return _map(use, field, "cross-shear", "0 on a straight track, 0.5 where no direction is preferred")
+
+
+def ball_map(history: History) -> Figure:
+    """The worn depth of the ball, seen from above as it is not turned: to the side is to the right, the front above."""
+    own = ball_grid(history.use.ring_width)
+    x, y, z = ball_directions(own)
+    upper, radius = z > 0, float(history.use.joint.ball_radius)
+    figure, axes = _figure((5.6, 4.8))
+    depth = 1e3 * history.last.ball_wear[upper]
+    shown = axes.tricontourf(radius * x[upper], radius * y[upper], depth, levels=20, cmap="cividis")
+    figure.colorbar(shown, ax=axes, label="worn depth [µm]", shrink=0.8)
+    axes.set_aspect("equal")
+    axes.set_xlabel("to the side [mm]")
+    axes.set_ylabel("to the front [mm]")
+    told = f"{history.last.ball_volume:.4g} mm³ of the ball after {history.last.cycles / 1e6:g} million cycles"
+    axes.set_title(told, fontsize=10)
+    return figure
 
 
 def _map(use: InUse, field: Numbers, label: str, title: str) -> Figure:

@@ -42,6 +42,9 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
         "edge": ("Edge distance", hip_plots.edge_figure, "0 is edge loading; a dot where the contact comes nearest."),
     }
 )
+_OF_BALLS: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = MappingProxyType(
+    {"ball": ("Wear of the ball", hip_plots.ball_map, "Seen from above, in the ball's own frame.")}
+)
 _HEADS = (
     "million cycles",
     "volume [mm³]",
@@ -74,7 +77,8 @@ def write_hip_report(history: History, path: Path, bands: Bands | None = None) -
     check_page(path)
     sections = {"numbers": ("Numbers", _numbers(history))}
     if len(history.use.loaded):
-        for name, (title, draw, caption) in _FIGURES.items():
+        drawn_here = _FIGURES if history.use.ball_wear is None else _FIGURES | _OF_BALLS
+        for name, (title, draw, caption) in drawn_here.items():
             sections[name] = (title, picture(drawn(draw(history)), title, escape(caption)))
     if bands is not None:
         sections |= band_sections(history, bands)
