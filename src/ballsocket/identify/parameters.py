@@ -163,7 +163,7 @@ class Identified:
 
     @property
     def spread(self) -> float:
-        """Root of χ² over the degrees of freedom: 1 where data scatter as their uncertainties say; NaN of none."""
+        """Root of χ² over the degrees of freedom, which is 1 where uncertainties are right; NaN of none."""
         total = sum(float(numpy.sum(row**2)) for row in self.residuals)
         return (total / self.freedom) ** 0.5 if self.freedom > 0 else float("nan")
 
@@ -181,7 +181,7 @@ class Identified:
 
     @cached_property
     def next(self) -> Experiment:
-        """What to measure next: the usual quantities over the loads of the data; see `experiment`."""
+        """What to measure next, of the usual quantities over the loads of the data; see `experiment`."""
         from .experiment import experiment
 
         return experiment(self)
