@@ -96,10 +96,27 @@ def test_a_state_that_is_no_number_is_a_status(library, place):
     assert np.isnan([*force, *moment, *energy]).all()
 
 
+def test_a_state_too_large_to_square_is_a_status(library):
+    far = (0.0, 0.0, 1e200), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    assert library.load(*far)[0] == Touch.NO_NUMBER
+    assert library.contact(far[0])[0] == library.tangent(far[0])[0] == Touch.NO_NUMBER
+
+
 def test_a_ball_through_the_wall_is_a_status(library):
     status, force, *_ = library.load((0.0, 0.0, HIP.liner_thickness + 1.0), (0, 0, 0), (0, 0, 0))
     assert status == Touch.THROUGH_WALL
     assert np.isnan(force).all()
+
+
+def test_a_law_that_solves_for_its_answer_comes_as_a_curve(tmp_path):
+    solved = ForceElement(bs.HessForsbach(), HIP)
+    formula = solved.potential
+    object.__setattr__(solved, "potential", lambda depth: formula(np.asarray(depth, dtype=float)))
+    assert set(CElement(element=solved).recording.curves) == {"energy_curve", "half_angle_curve", "max_pressure_curve"}
+    library = Library(solved, tmp_path)
+    for depth in (1e-6, 1e-3, 0.05):
+        state = (0.0, 0.0, HIP.clearance + depth), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        assert_allclose(library.load(*state)[1][2], -formula(state[0][2] - HIP.clearance)[1], rtol=1e-9)
 
 
 def test_losses_can_be_tuned(tmp_path):

@@ -7,7 +7,7 @@ from functools import cached_property
 from itertools import chain
 from typing import Any
 
-from ..arrays import where
+from ..arrays import isfinite, where
 from ..dynamics import ForceElement, reaction
 from ..dynamics.potential import CurvePotential, energy_curve
 from ..dynamics.reaction import Constants, Elastic, Place, Three
@@ -91,7 +91,7 @@ class Recording:
     @cached_property
     def status(self) -> Targets:
         """A code of `Touch`."""
-        return {"status": status_of(self.place, self.contact, True, self.constants)}
+        return {"status": status_of(self.place, self.contact, isfinite(self.place.distance), self.constants)}
 
     @cached_property
     def tangent(self) -> Targets:
