@@ -307,6 +307,8 @@ CUP = _table(
 
 AIM = _table(
     Quantity("tilt", "γ", "tilt", Kind.ANGLE, "Between load and cup's own axis.", **_turn("a tilt", 0.0, 180.0)),
+    Quantity("azimuth", "", "azimuth", Kind.ANGLE, "Of a tilted load around the cup's axis, from where the cup leans.",
+             **_turn("an azimuth", 0.0, 360.0)),
 )
 """Where a load points that does not go along the cup's axis."""
 # fmt: on

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.engines import Distributed, Processes
 from ballsocket.sphere.solver import pressed
+from ballsocket.studies import table
 
 from ..extent import either, some
 from ..joints import HIP
@@ -298,7 +300,37 @@ def test_orientations_are_axes_of_a_study():
     assert (np.diff(study.edge_distance, axis=0) < 0).all()
     tilts = bs.study(model, RIGID, tilt=np.radians([0.0, 40.0]), force=2000.0, quantities=["max_pressure"])
     assert tilts.sizes == {"tilt": 2}
+    with pytest.raises(ValueError, match="a tilt is needed besides"):
+        bs.study(model, RIGID, azimuth=[0.0, 0.5], force=2000.0)
     with pytest.raises(ValueError, match="take sphere"):
         bs.study(bs.Exact(), RIGID, tilt=[0.0, 0.5], force=2000.0)
     with pytest.raises(ValueError, match="one too many"):
         bs.study(model, RIGID, tilt=[0.0, 0.5], inclination=[0.1, 0.2], force=2000.0)
+
+
+OVAL = bs.Sphere(ring_width=radians(6.0), worn=bs.Pinched(squeeze=0.1))
+AXES = {"tilt": [0.2, 0.7], "azimuth": [0.0, pi / 2], "force": [500.0, 2000.0]}
+
+
+def test_directions_and_steps_are_axes_of_a_study(tmp_path):
+    """All loads of a step are one call; an oval bore tells one azimuth from another."""
+    study = bs.study(OVAL, RIGID, quantities=["max_pressure", "edge_distance"], **AXES)
+    assert study.max_pressure.dims == ("tilt", "azimuth", "force")
+    assert study.edge_distance.attrs["units"] == "mm"
+    alone = OVAL.press(RIGID, force=2000.0, direction=(0.0, sin(0.7), cos(0.7)))
+    there = study.sel(tilt=0.7, azimuth=pi / 2, force=2000.0)
+    assert float(there.max_pressure) == pytest.approx(alone.max_pressure, rel=1e-4)
+    assert float(abs(study.max_pressure.diff("azimuth")).max()) > 0.05
+    step_file = tmp_path / "step.csv"
+    step_file.write_text("tilt_deg,azimuth_deg,force_N\n10,0,500\n30,17,900\n40,337,700\n", encoding="utf-8")
+    step = bs.study(OVAL, RIGID, table(step_file))
+    assert step.max_pressure.dims == ("row",)
+    assert np.isfinite(step.max_pressure).all()
+
+
+@pytest.mark.long
+def test_a_study_of_directions_is_the_same_wherever_it_runs(monkeypatch):
+    monkeypatch.setattr("ballsocket.studies.run.points_a_block", lambda model: 4)
+    here = bs.study(OVAL, RIGID, **AXES)
+    for engine in (Processes(workers=2), Distributed(workers=1)):
+        assert bs.study(OVAL, RIGID, engine=engine, **AXES).equals(here)

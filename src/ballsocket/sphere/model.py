@@ -150,6 +150,7 @@ class Sphere(Model):
         displacement: Array | None = None,
         direction: Array | None = None,
         tilt: Array | None = None,
+        azimuth: Array | None = None,
         inclination: Array | None = None,
         anteversion: Array | None = None,
     ) -> Contact:
@@ -173,6 +174,8 @@ class Sphere(Model):
             In the body's frame, upwards by default; its leading axes broadcast against joint and load.
         tilt : float or array, optional
             In place of a direction its angle from the cup's axis in rad, from the dome to the rim.
+        azimuth : float or array, optional
+            Of a tilted load around the cup's axis in rad, from the cup's x, where the tilt alone leans to.
         inclination, anteversion : float or array, optional
             Other orientations of the cup, in rad: many of them under one load, or each under its own.
 
@@ -190,11 +193,11 @@ class Sphere(Model):
         refuse_unnamed(unnamed)
         load = {"force": force, "indentation": indentation, "half_angle": half_angle}
         if inclination is not None or anteversion is not None:
-            return self.along(direction, tilt).facing(inclination, anteversion)._pressed(joint, **load)
+            return self.along(direction, tilt, azimuth).facing(inclination, anteversion)._pressed(joint, **load)
         if displacement is None:
-            return self.along(direction, tilt)._pressed(joint, **load)
+            return self.along(direction, tilt, azimuth)._pressed(joint, **load)
         one_load(**load, displacement=displacement)
-        if direction is not None or tilt is not None:
+        if direction is not None or tilt is not None or azimuth is not None:
             raise ValueError("a displacement has a direction of its own: neither direction nor tilt goes with it")
         return self._displaced(joint, displacement)
 
@@ -210,12 +213,14 @@ class Sphere(Model):
     def _pressed(self, joint: Joint, **load: Array | None) -> Contact:
         return super().press(joint, **load)
 
-    def along(self, direction: Array | None = None, tilt: Array | None = None) -> Sphere:
+    def along(self, direction: Array | None = None, tilt: Array | None = None, azimuth: Array | None = None) -> Sphere:
         """This model with another direction of load; see `press`."""
         if direction is not None and tilt is not None:
             raise ValueError("either a direction or a tilt is needed, got both")
+        if azimuth is not None and tilt is None:
+            raise ValueError("an azimuth turns a tilted load around the cup's axis: a tilt is needed besides")
         if tilt is not None:
-            return replace(self, direction=self._tilted(tilt))
+            return replace(self, direction=self._tilted(tilt, 0.0 if azimuth is None else azimuth))
         return self if direction is None else replace(self, direction=direction)
 
     def facing(self, inclination: Array | None = None, anteversion: Array | None = None) -> Sphere:
@@ -236,10 +241,12 @@ class Sphere(Model):
         inside = numpy.einsum("...ij,...j->...i", turned, self.direction)
         return replace(self, direction=inside @ numpy.array(self.cup.frame))
 
-    def _tilted(self, tilt: Array) -> Numbers:
-        angle = arrays.to_numpy(AIM["tilt"].checked(tilt))
-        inside = numpy.stack([numpy.sin(angle), 0.0 * angle, numpy.cos(angle)], axis=-1)
-        return inside @ numpy.array(self.cup.frame)
+    def _tilted(self, tilt: Array, azimuth: Array) -> Numbers:
+        given = {"tilt": tilt, "azimuth": azimuth}
+        angles = (arrays.to_numpy(AIM[name].checked(angle)) for name, angle in given.items())
+        polar, around = numpy.broadcast_arrays(*angles)
+        x, y, z = numpy.sin(polar) * numpy.cos(around), numpy.sin(polar) * numpy.sin(around), numpy.cos(polar)
+        return numpy.stack([x, y, z], axis=-1) @ numpy.array(self.cup.frame)
 
     def reach_of(self, joint: Joint) -> Array:
         """Where the bore ends, in rad from the dome's pole."""

@@ -92,6 +92,8 @@ def contradiction(names: Mapping[str, object]) -> None:
         raise ValueError(f"one load is needed, got {', '.join(loads)}")
     if "tilt" in names and ("inclination" in names or "anteversion" in names):
         raise ValueError("tilt and the cup's orientation are one too many: either says where the load points")
+    if "azimuth" in names and "tilt" not in names:
+        raise ValueError("an azimuth turns a tilted load around the cup's axis: a tilt is needed besides")
 
 
 def _material(material: Material | None, values: Mapping[str, Array], part: str) -> Material | None:
