@@ -61,12 +61,12 @@ def _tolerance(question: Question, name: str) -> str:
 
 def _source(question: Question, joint: Joint, name: str) -> str:
     """Where a number comes from: as the question says of it or its part, else the preset."""
-    part = name.split("_")[0].split("[")[0]
-    said = question.sources.get(name) or question.sources.get("joint" if name in _LENGTHS else part, "")
+    part = "joint" if name in _LENGTHS else name.split("_")[0].split("[")[0]
+    said = question.sources.get(name) or question.sources.get(part)
     if said:
         return said
-    material = getattr(joint, part, None)
-    return str(material.source) if isinstance(material, Material) else joint.source if name in _LENGTHS else ""
+    described = joint if part == "joint" else getattr(joint, part, None)
+    return described.source if isinstance(described, Joint | Material) else ""
 
 
 def made_with() -> dict[str, str]:

@@ -25,6 +25,7 @@ _LIMITS = (
     "off the axis and in finite elements.",
     "Loads do not change in time; what wear says is in its own section.",
 )
+_FINE = 1e-5
 _PRINT = """<style>@media print { @page { margin: 18mm 15mm; } body { max-width: none; font-size: 10pt; }
 nav { display: none; } h2 { break-after: avoid; } table { font-size: 8pt; } tr, figure { break-inside: avoid; }
 .wide { overflow: visible; } .sign td { height: 2.5rem; } }
@@ -95,7 +96,8 @@ def _matrix(record: Record) -> str:
     worst = [(NAMES[name].title, _value(name, row), _case(row)) for name, row in record["worst"].items()]
     told = f"<p>{len(rows)} cases by the model {escape(record['model']['name'])}.</p>"
     call = _call(record["model"]["call"])
-    return told + html.table(heads, limits) + html.table(("worst", "value", "case"), worst) + _cases(rows) + call
+    judged = html.table(heads, limits) if limits else ""
+    return told + judged + _words(("worst", "value", "case"), worst) + _cases(rows) + call
 
 
 def _cases(rows: Sequence[Record]) -> str:
@@ -151,7 +153,7 @@ def _with_bar(method: Record, key: str) -> str:
     if key not in method["numbers"]:
         return ""
     bar = method["errors"].get(key)
-    return _number(method["numbers"][key]) + (f" ± {_percent(bar)}" if bar else "")
+    return _number(method["numbers"][key]) + _bar(bar)
 
 
 def _validation(record: Record) -> str:
@@ -216,13 +218,15 @@ def _signed(record: Record, day: date) -> str:
 
 
 def _case(row: Record) -> str:
-    return ", ".join(f"{_title_of_key(key)} {_number(value)}" for key, value in row["case"].items())
+    return ", ".join(
+        f"{_KEYS[key].title} {_number(value)} {_KEYS[key].written.text}".strip() for key, value in row["case"].items()
+    )
 
 
 def _value(name: str, row: Record) -> str:
     each = NAMES[name]
     bar = row["errors"].get(each.key)
-    return f"{_number(row['numbers'][each.key])} {each.written.text}" + (f" ± {_percent(bar)}" if bar else "")
+    return f"{_number(row['numbers'][each.key])} {each.written.text}" + _bar(bar)
 
 
 def _head(key: str) -> str:
@@ -230,12 +234,13 @@ def _head(key: str) -> str:
     return f"{each.symbol or each.title}{each.written.bracketed}"
 
 
-def _title_of_key(key: str) -> str:
-    return _KEYS[key].title
-
-
 def _title(name: str) -> str:
     return QUANTITIES[name].title
+
+
+def _bar(error: float | None) -> str:
+    """An error bar; what is below the digits that are shown is not."""
+    return f" ± {_percent(error)}" if error and error > _FINE else ""
 
 
 def _number(value: Any) -> str:
