@@ -156,6 +156,8 @@ def test_uncertain_loads_widen_the_band():
     unsure = identified(measured("indentation", share=1e-3, load_uncertainty=60.0))
     wide, narrow = (each["clearance"].high / each["clearance"].low for each in (unsure, sure))
     assert np.log(wide) > 2 * np.log(narrow)
+    offs = [drawn(found, np.random.default_rng(0))[0].values - TRUTH.indentation for found in (unsure, sure)]
+    assert np.std(offs[0]) > 3 * np.std(offs[1])
 
 
 def test_bands_hold_the_truth_as_often_as_they_say():

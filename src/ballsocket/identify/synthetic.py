@@ -11,7 +11,6 @@ from ..arrays import Numbers
 from ..checks import require
 from .information import WIDE, Information
 from .measured import Measured
-from .scatter import Scatter
 from .search import found as searched
 
 if TYPE_CHECKING:
@@ -77,14 +76,15 @@ def trials(found: Identified, count: int = 200, seed: int = 0) -> Trials:
 
 
 def drawn(found: Identified, random: numpy.random.Generator) -> tuple[Measured, ...]:
-    """Measurements drawn once more, of the joint of the best point."""
+    """Measurements drawn once more, of the joint of the best point; what loads are off by is in the values."""
+    wide = numpy.split(found.misfit.uncertainty, numpy.cumsum([len(each) for each in found.data])[:-1])
     return tuple(
-        replace(each, values=_values(each, row, found.misfit.scatter, random))
-        for each, row in zip(found.data, found.answers, strict=True)
+        replace(each, values=_values(each, row, off * found.misfit.scatter.draw(len(each), random)))
+        for each, row, off in zip(found.data, found.answers, wide, strict=True)
     )
 
 
-def _values(each: Measured, answers: Numbers, scatter: Scatter, random: numpy.random.Generator) -> Numbers:
+def _values(each: Measured, answers: Numbers, off: Numbers) -> Numbers:
     """Readings, cut off where the film saturates, and none below 0 but by a machine."""
-    read = answers + each.uncertainty * scatter.draw(len(each), random)
+    read = answers + off
     return numpy.minimum(read if each.machine.name else numpy.maximum(read, 0.0), each.saturation)
