@@ -1,5 +1,6 @@
 """The force element: a gradient of its energy, one law for both bodies, and nothing made out of nothing."""
 
+import json
 import logging
 from dataclasses import replace
 from math import inf, nan, pi, radians
@@ -116,22 +117,23 @@ def test_nothing_is_made_out_of_nothing(cup, smoothing):
             assert (np.abs(work + load.dissipation) <= 1e-12 * size).all()
 
 
-@EVERY_CUP
-def test_the_work_of_a_closed_way_is_nothing(cup):
-    element = bs.ForceElement(bs.Tabulated(), HIP, cup=cup)
-    random, turns = np.random.default_rng(3), 4000
-    t = 2 * pi * np.arange(turns) / turns
-    waves = sum(
-        random.normal(size=3) * np.cos(k * t)[:, None] + random.normal(size=3) * np.sin(k * t)[:, None] for k in (1, 2)
-    )
-    way = np.array([0.02, 0.03, C]) + 0.02 * waves
-    rate = np.fft.ifft(1j * np.fft.fftfreq(turns, 1 / turns)[:, None] * np.fft.fft(way, axis=0), axis=0).real
-    power = np.einsum("ni,ni->n", element(way).force, rate)
-    energy = element(way).energy
-    # the rule is as good as the force is smooth: what is left goes with the cube of the step
-    assert abs(power.sum()) * 2 * pi / turns <= 1e-6 * energy.max()
-    steps = np.roll(energy, -1) - energy
-    assert abs(steps.sum()) <= 1e-10 * energy.max()
+@pytest.mark.parametrize(("cup", "polar"), [(None, 0.3), (bs.Cup(), 1.5)], ids=["sphere", "over the rim"])
+def test_the_work_of_a_closed_way_is_nothing(cup, polar):
+    """∮ f·dr over ways in three dimensions that stay in contact: the trapezoidal rule is exact for smooth periods."""
+    element = bs.ForceElement(bs.HessForsbach(), HIP, cup=cup, smoothing=0.005)
+    random, count = np.random.default_rng(3), 2000
+    t = 2 * pi * np.arange(count) / count
+    for _ in range(3):
+        wave = [sum(random.normal(scale=0.3 / k) * np.sin(k * t + random.uniform(0, 6)) for k in (1, 2)) for _ in "eab"]
+        e, lean, turn = C + 0.05 * (1.0 + 0.3 * wave[0]), polar + 0.1 * wave[1], wave[2]
+        way = e[:, None] * np.stack([np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)], axis=-1)
+        rate = np.fft.ifft(1j * np.fft.fftfreq(count, 1 / count)[:, None] * np.fft.fft(way, axis=0), axis=0).real
+        load = element(way)
+        power = np.einsum("ni,ni->n", load.force, rate)
+        assert np.ptp(load.energy) > 0.2 * load.energy.max()
+        assert abs(power.mean()) <= 1e-10 * np.abs(power).max()
+        if cup is not None:
+            assert set(load.status.tolist()) == {Touch.AT_RIM}
 
 
 def test_force_and_stiffness_are_continuous_at_touch_down_and_there_is_none_within_the_clearance():
@@ -258,3 +260,12 @@ def _derived(jax):
             np.testing.assert_allclose(bend, load.tangent, atol=1e-8)
             pushed = jax.jit(lambda r, each=element: each(r, 10.0 * r, r).force)(position)
             np.testing.assert_allclose(pushed, element(position, 10.0 * position, position).force, atol=1e-9)
+
+
+def test_a_load_is_told_in_json():
+    element = bs.ForceElement(bs.HessForsbach(), HIP, **LOSSY)
+    for position in ((0.0, 0.0, C + 0.04), np.array([[0.0, 0.0, C + 0.04], [0.0, 0.0, nan]])):
+        told = json.loads(json.dumps(element(position).summary(), allow_nan=False))
+        assert {"force", "socket_moment", "energy", "half_angle_deg", "max_pressure"} <= set(told)
+    assert told["energy"][1] is None
+    assert element((0.0, 0.0, C + 0.04)).summary()["status"] == "contact"

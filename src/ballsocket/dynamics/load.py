@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from functools import partial
+from math import degrees
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import arrays
-from ..arrays import Array
+from ..arrays import Array, to_list
 from . import reaction as formulas
 from .matrices import damping_matrix, matrix, vector
 from .reaction import Elastic, Place, Three
@@ -100,6 +101,18 @@ class Load(NamedTuple):
         """A `Touch`, or an array of its codes."""
         return status_of(self.place, self.contact, self._known, self.element.constants)
 
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON in N, mm, N mm, MPa and degrees; a missing number is None."""
+        status = self.status
+        names = ("force", "moment", "socket_force", "socket_moment", "energy", "dissipation", "indentation")
+        return {
+            "status": status.name.lower() if isinstance(status, Touch) else to_list(status),
+            **{name: _listed(getattr(self, name)) for name in names},
+            "half_angle_deg": _listed(self.half_angle * degrees(1.0)),
+            "max_pressure": _listed(self.max_pressure),
+            "notes": list(self.notes),
+        }
+
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be said of the state: failures with where they are; empty where all is well."""
@@ -118,3 +131,7 @@ class Load(NamedTuple):
     def _parts(packed: Any) -> Three:
         x, y, z = packed if type(packed) is tuple else (packed[..., axis] for axis in range(3))
         return x, y, z
+
+
+def _listed(value: Any) -> Any:
+    return [to_list(part) for part in value] if type(value) is tuple else to_list(value)

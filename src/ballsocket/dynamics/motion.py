@@ -80,6 +80,21 @@ class Motion:
         """The indentation in mm; below 0 it is the way to the touch-down. (steps,)."""
         return numpy.linalg.norm(self.position, axis=1) - self.element.constants.clearance
 
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON, in s, mm, N and N mm."""
+        force = numpy.linalg.norm(self.element(self.position, self.velocity, self.spin).force, axis=1)
+        ends = {"stored": self.energy, "kinetic": self.kinetic, "lost": self.lost, "work": self.work}
+        return {
+            "duration": float(self.time[-1]),
+            "steps": len(self.time) - 1,
+            "bounces": self.bounces,
+            "deepest": float(self.depth.max()),
+            "largest_force": float(force.max()),
+            **{name: float(values[-1]) for name, values in ends.items()},
+            "drift": self.drift,
+            "ended": self.ended,
+        }
+
     @property
     def bounces(self) -> int:
         """How often the ball left the socket."""

@@ -118,7 +118,7 @@ def slopes_of_array(
     """`slopes_of_number` of an array of any library."""
     xp = arrays.namespace(indentation)
     rows = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
-    d = clip(indentation, _TINY, deepest)
+    d = where(indentation == indentation, clip(indentation, _TINY, deepest), deepest)
     along = (log(clip(d, shallowest, deepest)) - first) * density
     number = xp.astype(clip(xp.floor(arrays.frozen(along)), 0.0, rows.shape[0] - 1.0), xp.int64)
     place = 2.0 * (along - xp.astype(number, d.dtype)) - 1.0
