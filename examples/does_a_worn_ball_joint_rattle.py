@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 
 import ballsocket as bs
 from ballsocket.dynamics import Gonthier, simulate
+from ballsocket.output.dynamics_plots import energy_balance
 
 SHAKING, FREQUENCY, MASS = 400.0, 25.0, 3.0  # N, Hz, kg
 SPRINGS = {500.0: "#0072B2", 300.0: "#009E73", 0.0: "#D55E00"}  # N, from new to worn out
@@ -69,3 +70,4 @@ for panel in (way, blows):
     panel.spines[["top", "right"]].set_visible(False)
 way.legend(frameon=False, fontsize=8)
 figure.savefig("does_a_worn_ball_joint_rattle.png", dpi=150)
+energy_balance(motion).savefig("does_a_worn_ball_joint_rattle_energy.png", dpi=150)  # of the spring that is worn out
