@@ -5,7 +5,7 @@ How must the cup stand?
 Distance to the rim and largest pressure over inclination and anteversion.
 
 In single-leg stance the load of a hip leans to the middle of the body, and the cup opens to the side. How steep may it
-stand until the contact reaches its rim? With a 32 mm head and 170° of cover, at 15° of anteversion: 48°. Every
+stand until the contact reaches its rim? With a 32 mm head and 170° of cover, at 15° of anteversion: 49°. Every
 orientation is pressed by full elasticity in the cup as it is built, whose rings do not know how it stands: a map of
 seventy takes a second.
 """
