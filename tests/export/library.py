@@ -34,8 +34,8 @@ class Library:
         strict = ("-pedantic-errors", "-Wall", "-Wextra", "-Werror")
         path = shared_library([f"{name}.c"], folder / f"{name}{LIBRARY_ENDING}", folder, strict)
         self.functions, self.name = ctypes.CDLL(str(path)), name
-        kept = (ctypes.c_double * 7).in_dll(self.functions, f"{name}_defaults")
-        self.parameters = (ctypes.c_double * 7)(*kept)
+        self.defaults = tuple((ctypes.c_double * 7).in_dll(self.functions, f"{name}_defaults"))
+        self.parameters = (ctypes.c_double * 7)(*self.defaults)
 
     def _call(self, function, given, *sizes):
         out = [np.full(size, -1.0) for size in sizes]

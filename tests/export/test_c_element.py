@@ -1,5 +1,7 @@
 """The element in C: the same numbers as the element in Python."""
 
+import ctypes
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -119,23 +121,28 @@ def test_a_law_that_solves_for_its_answer_comes_as_a_curve(tmp_path):
         assert_allclose(library.load(*state)[1][2], -formula(state[0][2] - HIP.clearance)[1], rtol=1e-9)
 
 
-def test_losses_can_be_tuned(tmp_path):
-    tuned, plain = ELEMENTS["springs"](), Library(ForceElement(bs.HessForsbach(), HIP), tmp_path)
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    return Library(ForceElement(bs.HessForsbach(), HIP), tmp_path_factory.mktemp("plain"))
+
+
+def test_losses_can_be_tuned(plain):
+    tuned = ELEMENTS["springs"]()
     losses = (0.004, 0.002, 0.05, 0.08, 0.1, 10.0, 1e-4)
     state = (0.0, 0.03, 0.12), (5.0, 1.0, 20.0), (0.0, 1.0, 2.0)
     plain.parameters[:] = losses
     close(np.concatenate(plain.load(*state)[1:3]), np.concatenate(tuned(*state)[:2]), 1e3)
+    plain.parameters[:] = plain.defaults
+    assert plain.load(*state)[2].tolist() == [0.0, 0.0, 0.0]
 
 
-def test_parameters_that_are_not_allowed_have_a_sentence(tmp_path):
-    import ctypes
-
-    library = Library(ForceElement(bs.HessForsbach(), HIP), tmp_path)
-    complaint = library.functions.joint_complaint
+def test_parameters_that_are_not_allowed_have_a_sentence(plain):
+    complaint = plain.functions.joint_complaint
     complaint.restype = ctypes.c_char_p
-    assert complaint(ctypes.byref(library.parameters)) is None
-    library.parameters[2] = -0.1
-    assert complaint(ctypes.byref(library.parameters)) == b"friction_coefficient must be finite and 0 or more"
+    given = (ctypes.c_double * 7)(*plain.defaults)
+    assert complaint(ctypes.byref(given)) is None
+    given[2] = -0.1
+    assert complaint(ctypes.byref(given)) == b"friction_coefficient must be finite and 0 or more"
 
 
 @pytest.mark.parametrize("name", ["", "two words", "1st", "a-b"])
