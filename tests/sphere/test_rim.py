@@ -46,3 +46,16 @@ def test_a_bore_narrower_than_its_contact_lacks_what_the_ball_would_stand_in():
     contact = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(60.0))).press(joint, indentation=0.05)
     assert contact.edge_loaded
     assert contact.edge_margin == pytest.approx(pi / 6 - np.arccos(0.05 / 0.1), abs=1e-3)
+
+
+@pytest.mark.parametrize("poisson", [0.3, 0.45])
+def test_error_bars_hold_over_the_rim(poisson):
+    """Wide rings against rings half as wide, of contacts that the rim cuts off."""
+    liner = bs.Material(young=1000.0, poisson=poisson)
+    joint = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=liner)
+    tilt = np.radians([45.0, 60.0, 68.0, 75.0])
+    wide, close = (bs.Sphere(ring_width=radians(width)).press(joint, force=2000.0, tilt=tilt) for width in (4.0, 2.0))
+    assert wide.edge_loaded.tolist() == [False, True, True, True]
+    for name in ("indentation", "max_pressure", "half_angle", "energy", "stiffness"):
+        off = abs(getattr(wide, name) / getattr(close, name) - 1)
+        assert (off <= wide.error[name]).all(), name
