@@ -20,7 +20,7 @@ LOSSY = replace(FREE, damping=Damping(hysteresis=1e-3, time=1e-5), friction=Fric
 
 @pytest.mark.parametrize("smoothing", [0.0, 0.02])
 def test_without_losses_energy_is_kept_through_every_bounce(smoothing):
-    motion = simulate(replace(FREE, smoothing=smoothing), duration=0.03, **THROW)
+    motion = simulate(replace(FREE, smoothing=smoothing), duration=0.02, **THROW)
     assert motion.bounces > 10
     assert motion.drift < 1e-12
 

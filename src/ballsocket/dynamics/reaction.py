@@ -96,8 +96,7 @@ def elastic(potential, place: Place, given: Constants) -> Elastic:  # type: igno
     depth, slope, bend = ramp(d, given.smoothing)
     missing = where(d > given.wall, nan, 0.0 * d)
     energy, force, stiffness = potential(depth)
-    energy, force = energy + missing, force + missing
-    stiffness = where(d >= -given.smoothing, stiffness + missing, missing)
+    energy, force, stiffness = energy + missing, force + missing, stiffness + missing
     if given.rim > 0.0:
         return covered(place, depth, slope, bend, energy, force, stiffness, given)
     none, normal = 0.0 * energy, force * slope

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
-
 from ..arrays import Array, clip, where
 
 
@@ -11,7 +9,7 @@ def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
     """max(y, 0), its slope and its bend; between -width and width a polynomial, three times differentiable."""
     if width == 0.0:
         none = 0.0 * y
-        return clip(y, 0.0, inf), where(y >= 0.0, none + 1.0, none), none
+        return where(y > 0.0, y, none), where(y >= 0.0, none + 1.0, none), none
     t = clip((y + width) / (2.0 * width), 0.0, 1.0)
     bend = 15.0 * t * t * (1.0 - t) * (1.0 - t) / width
     return where(y >= width, y, 2.0 * width * _rounded(t)), t * t * t * (10.0 - 15.0 * t + 6.0 * t * t), bend
