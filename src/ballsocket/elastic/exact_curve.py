@@ -47,7 +47,7 @@ class ExactCurve(Wrapped):
     >>> shell = bs.Layer(thickness=3.0, material=bs.TITANIUM)
     >>> contact = bs.ExactCurve().press(bs.joints["hip-28"].replace(backing=(shell,)), force=numpy.array([1e3, 3e3]))
     >>> contact.max_pressure.round(3)
-    array([ 7.968, 15.27 ])
+    array([ 8.728, 16.905])
     """
 
     model: Exact = field(default_factory=Exact)

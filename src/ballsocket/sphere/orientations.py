@@ -173,7 +173,7 @@ def orient(
     >>> stood = bs.orient(bs.joints["hip-36"], force=3000.0, inclination=angles, anteversion=[0.0, radians(20.0)])
     >>> stood.edge_distance.round(1)
     array([[ 5.4,  3.9],
-           [-0.1, -1.5]])
+           [ 0.2, -0.9]])
     """
     model = Sphere() if model is None else model
     one = model.direction.ndim == 1
