@@ -61,4 +61,4 @@ def served_explorer(*words: str) -> Iterator[str]:
         yield found[1]
     finally:
         process.terminate()
-        process.communicate(timeout=20)
+        process.communicate(timeout=90)  # a slow machine may take its time

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import signal
+import sys
+from typing import Annotated, Any
 
 import typer
 
@@ -31,4 +33,18 @@ def explorer(
     if address == EVERYWHERE and not origin:
         typer.echo("ballsocket: browsers elsewhere need the name that they use: --origin host:port", err=True)
     served.start()
-    served.io_loop.start()
+    _until_ended(served.io_loop)
+
+
+def _until_ended(loop: Any) -> None:
+    """Serve until somebody ends the process, between two steps: what is raised inside one could be caught there."""
+    asked: list[int] = []
+
+    def end(number: int, frame: Any) -> None:
+        asked.append(number)
+        loop.asyncio_loop.call_soon_threadsafe(loop.stop)
+
+    for ending in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(ending, end)
+    loop.start()
+    sys.exit(128 + asked[0] if asked else 0)
