@@ -53,6 +53,8 @@ LONG = {
     "how_steep_may_a_cup_stand",  # hips in use, of which one is quick enough
     "what_clearance_lasts_twenty_years",
     "does_a_cross_linked_liner_last",
+    "how_must_the_cup_stand",  # maps of tilted cups
+    "does_a_worn_ball_joint_rattle",  # thousands of steps
 }
 
 

@@ -76,6 +76,7 @@ def test_without_wear_the_ball_beds_in_and_the_load_stays_balanced():
     assert rest.pressure.max() < 0.8 * use.first.max_pressure
 
 
+@pytest.mark.long
 def test_radiographs_see_bedding_in_and_then_a_slope():
     history = hip(creep=logarithmic()).after(4e6, [1e5, 1e6, 2e6, 3e6])
     early, *later = history.reports
@@ -87,6 +88,7 @@ def test_radiographs_see_bedding_in_and_then_a_slope():
     assert any("not verified" in note for note in history.notes)
 
 
+@pytest.mark.long
 def test_creep_in_half_the_steps_is_the_same(monkeypatch):
     from ballsocket.hip import blocks
 

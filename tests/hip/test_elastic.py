@@ -58,6 +58,7 @@ def test_elasticity_changes_volume_and_depth_by_little():
     assert cup.volume != springs.volume
 
 
+@pytest.mark.long
 def test_finer_rings_wear_the_same():
     widths = either(quick=(5.0, 3.5), long=(3.0, 2.0))
     volumes, depths = np.array(
@@ -139,6 +140,7 @@ def test_loads_that_swing_in_a_worn_bore_come_to_rest():
     assert report.volume == pytest.approx(hip(cycle=rocking(20)).after(8e5).last.volume, rel=1e-2)
 
 
+@pytest.mark.long
 def test_creep_in_a_bore_of_full_elasticity_lowers_its_pressures():
     crept = elastic(creep=logarithmic()).after(3e4).last
     assert crept.settled

@@ -175,6 +175,7 @@ def test_the_error_of_blocks_is_what_they_miss():
     assert finest.steps > 2 * fine.steps > 2 * coarse.steps
 
 
+@pytest.mark.long
 def test_half_the_rings_and_twice_the_instants_change_little():
     usual = hip(cycle=iso_14242_1(100)).after(1e6).last
     for words in ({"ring_width": radians(1.5)}, {"cycle": iso_14242_1(200)}):
