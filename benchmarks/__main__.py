@@ -35,6 +35,7 @@ BENCHMARKS = {
     "patients": ("patients", "hips of patients who differ, a million cycles each, and ten thousand of them on paper"),
     "bounce": ("bounce", "a ball that bounces in its socket, in every program that a joint is exported to"),
     "identify": ("identify", "clearance and modulus from twenty points: the best point, 4000 samples of the posterior"),
+    "evidence": ("evidence", "a pack of evidence for 81 cases off the axis, with and without finite elements"),
     "in-motion": ("in_motion", "a ball joint in MuJoCo, Exudyn, OpenSim and FMI, beside what these have themselves"),
     "gpu": ("gpu", "presses a second on a GPU through PyTorch, against its memory's bandwidth; skipped without one"),
     "app": ("app", "the explorer in a browser: first view, a slider that moves, fifty sessions at once"),
