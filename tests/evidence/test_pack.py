@@ -1,6 +1,7 @@
 """Evidence for a question: what is refused, what is gathered, and whether it still says the same."""
 
 import json
+from functools import partial
 from importlib.util import find_spec
 
 import pytest
@@ -9,10 +10,12 @@ import ballsocket as bs
 from ballsocket.evidence import matrix
 from ballsocket.evidence.code_checks import CHECKS
 from ballsocket.evidence.folder import QUESTION, RECORD, differences, write
+from ballsocket.evidence.inputs import inputs
 from ballsocket.evidence.pack import gathered
 from ballsocket.evidence.question import read_question
+from ballsocket.paper.plan import Plan
 
-from ..places import ROOT
+from ..places import EXAMPLES, ROOT
 
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
 from ballsocket.output.evidence_page import evidence_page
@@ -134,9 +137,25 @@ def test_what_is_kept_is_not_computed_anew(pack):
     told = []
     assert gathered(question, folder / "data", told.append) == json.loads(json.dumps(record))
     assert len(told) > 10
-    for path in (folder / "data").rglob("matrix_clearance_0_05.json"):
+    for path in (folder / "data").rglob("matrix_block_0.json"):
         path.write_text("{", encoding="utf-8")  # a piece that was cut off
     assert gathered(question, folder / "data") == json.loads(json.dumps(record))
+
+
+def test_an_angle_and_its_opposite_are_not_taken_for_each_other(tmp_path):
+    """Their files' names are alike, since these have no signs."""
+    parts = {"turned": {f"anteversion {angle}": partial(float, angle) for angle in (-0.2, 0.2)}}
+    plan = Plan(name="signs", parts=parts)
+    assert plan.results(tmp_path) == plan.results(tmp_path) == {"turned": [-0.2, 0.2]}
+
+
+def test_layers_have_the_sources_of_their_materials(asked):
+    asked.write_text(ASKED.replace("hip-36", "metal.toml"), encoding="utf-8")
+    file = EXAMPLES / "metal_backed_hip.toml"
+    (asked.parent / "metal.toml").write_bytes(file.read_bytes())
+    question = read_question(asked)
+    found = {each["name"]: each["source"] for each in inputs(question)}
+    assert found["backing[0].young"] == question.file.joint.backing[0].material.source != ""
 
 
 def test_a_pack_is_computed_again_and_what_was_changed_is_named(pack):

@@ -5,48 +5,48 @@ from __future__ import annotations
 import platform
 import sys
 from importlib.metadata import PackageNotFoundError, version
+from math import inf
 from typing import Any
 
-from ..joint import Joint, Material
-from ..joint.dimensions import DIAMETERS
-from ..quantities import JOINT, MATERIAL, STRENGTH
+from ..joint import Material
+from ..joint.dimensions import DIAMETERS, OWN
+from ..quantities import JOINT, MATERIAL, QUANTITIES, STRENGTH
 from .question import Question
 
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat")
-_LENGTHS = ("ball_radius", "clearance", "liner_thickness")
 
 
 def inputs(question: Question) -> list[dict[str, Any]]:
     """Every number that goes in, with unit, tolerance and source."""
     joint = question.file.joint
-    listed = [(name, getattr(joint, name), JOINT[name].written.text) for name in _LENGTHS]
-    for part in ("liner", "ball"):
-        listed += _material(part, getattr(joint, part))
+    listed = [("joint", name, getattr(joint, name), JOINT[name].written.text, joint.source) for name in OWN]
+    listed += _material("liner", joint.liner) + _material("ball", joint.ball)
     for number, layer in enumerate(joint.backing):
-        listed += [(f"backing[{number}].thickness", layer.thickness, "mm")]
-        listed += _material(f"backing[{number}]", layer.material)
+        listed.append(("backing", f"backing[{number}].thickness", layer.thickness, "mm", joint.source))
+        listed += _material("backing", layer.material, f"backing[{number}].")
     if question.friction is not None:
-        listed.append(("friction.coefficient", question.friction, ""))
+        listed.append(("friction", "friction.coefficient", question.friction, "", ""))
     return [
         {
             "name": name,
-            "value": value if value is None or abs(value) < float("inf") else "inf",
+            "value": value if abs(value) < inf else "inf",
             "unit": unit,
             "tolerance": _tolerance(question, name),
-            "source": _source(question, joint, name),
+            "source": question.sources.get(name) or question.sources.get(part) or source,
         }
-        for name, value, unit in listed
+        for part, name, value, unit, source in listed
     ]
 
 
-def _material(part: str, material: Material | None) -> list[tuple[str, Any, str]]:
+def _material(part: str, material: Material | None, prefix: str = "") -> list[tuple[str, str, Any, str, str]]:
+    """Part, name, value, unit and the preset's source of each number that is known."""
     if material is None:
         return []
-    numbers = {**MATERIAL, **STRENGTH}
+    known = {name: getattr(material, name) for name in (*MATERIAL, *STRENGTH)}
     return [
-        (f"{part}_{name}", getattr(material, name), each.written.text)
-        for name, each in numbers.items()
-        if getattr(material, name) is not None
+        (part, f"{prefix or f'{part}_'}{name}", value, QUANTITIES[name].written.text, material.source)
+        for name, value in known.items()
+        if value is not None
     ]
 
 
@@ -57,16 +57,6 @@ def _tolerance(question: Question, name: str) -> str:
         return "varied in the matrix" if name in varied else ""
     low, high = (float(spread.frozen.ppf(share)) for share in (0.0, 1.0))
     return f"{low:g} to {high:g}"
-
-
-def _source(question: Question, joint: Joint, name: str) -> str:
-    """Where a number comes from: as the question says of it or its part, else the preset."""
-    part = "joint" if name in _LENGTHS else name.split("_")[0].split("[")[0]
-    said = question.sources.get(name) or question.sources.get(part)
-    if said:
-        return said
-    described = joint if part == "joint" else getattr(joint, part, None)
-    return described.source if isinstance(described, Joint | Material) else ""
 
 
 def made_with() -> dict[str, str]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..engines.local import Engine, Serial
 from ..fingerprint import fingerprint
-from ..paper.plan import Piece, Plan, Results
+from ..paper.plan import Piece, Plan, Results, Summary
 from . import matrix
 from .calculation import beside, largest_deviation, rival
 from .code_checks import CHECKS
@@ -48,36 +48,37 @@ def gathered(question: Question, folder: Path, listen: Listener = silent, engine
         A folder that cannot be written to.
     """
     first = plan(question).results(folder, listen, engine)
-    rows = [row for block in first["matrix"] for row in block]
-    found = [matrix.Row.of(each) for each in rows]
-    places = {name: row.case for name, row in matrix.worst(found).items()}
-    second = later(question, places).results(folder, listen, engine)
-    return _record(question, rows, found, places, {**first, **second})
+    found = [matrix.Row.of(row) for block in first["matrix"] for row in block]
+    worst = matrix.worst(found)
+    second = later(question, worst).results(folder, listen, engine)
+    return _record(question, found, worst, {**first, **second})
 
 
 def plan(question: Question) -> Plan:
     """What does not depend on where the worst cases are."""
     cases = matrix.cases(question)
     first = next(iter(question.axes))
-    blocks = {f"{first} {value:g}": [case for case in cases if case[first] == value] for value in question.axes[first]}
+    blocks = [tuple(case for case in cases if case[first] == value) for value in question.axes[first]]
     return Plan(
         name=f"first-{_digest(question)}",
         parts={
-            "matrix": {name: partial(_block, question, tuple(block)) for name, block in blocks.items()},
-            "code_verification": {name: partial(_check, name) for name in CHECKS},
+            "matrix": {f"block {number}": partial(_block, question, block) for number, block in enumerate(blocks)},
+            "code_verification": {name: Summary(check) for name, check in CHECKS.items()},
             "claims": {name: partial(claim, name) for name in CLAIMS},
-            "comparators": {name: partial(_published, name) for name in PUBLISHED},
+            "comparators": {name: Summary(found) for name, found in PUBLISHED.items()},
         },
     )
 
 
-def later(question: Question, places: Mapping[str, matrix.Case]) -> Plan:
+def later(question: Question, places: Mapping[str, matrix.Row]) -> Plan:
     """What is asked of the worst cases."""
-    distinct = {_told_case(case): case for case in places.values()}
-    worst = places.get("max_pressure", next(iter(places.values()), None))
+    pressed = places.get("max_pressure", next(iter(places.values()), None))
+    worst = None if pressed is None else pressed.case
     parts: dict[str, Mapping[str, Piece]] = {
         "rival": {} if worst is None else {"": partial(_rival, question, worst)},
-        "calculation": {name: partial(_beside, question, case) for name, case in distinct.items()},
+        "calculation": {
+            f"case {number}": partial(_beside, question, case) for number, case in enumerate(_distinct(places))
+        },
         "uncertainty": {},
         "wear": {},
     }
@@ -100,14 +101,6 @@ def _block(question: Question, those: Sequence[matrix.Case]) -> list[dict[str, A
     return [row.summary() for row in matrix.rows(question, those)]
 
 
-def _check(name: str) -> dict[str, Any]:
-    return CHECKS[name]().summary()
-
-
-def _published(name: str) -> dict[str, Any]:
-    return PUBLISHED[name]().summary()
-
-
 def _beside(question: Question, case: matrix.Case) -> list[dict[str, Any]]:
     return [method.summary() for method in beside(question, case)]
 
@@ -116,8 +109,9 @@ def _rival(question: Question, case: matrix.Case) -> list[dict[str, Any]]:
     return [method.summary() for method in rival(question, case)]
 
 
-def _told_case(case: matrix.Case) -> str:
-    return ", ".join(f"{name} {value:.6g}" for name, value in case.items())
+def _distinct(places: Mapping[str, matrix.Row]) -> list[matrix.Case]:
+    """The cases in which some number is worst, each once."""
+    return list({tuple(row.case.items()): row.case for row in places.values()}.values())
 
 
 def _compared(names: list[str], methods: list[Any], others: list[Any]) -> dict[str, Any]:
@@ -133,16 +127,14 @@ def _compared(names: list[str], methods: list[Any], others: list[Any]) -> dict[s
 
 def _record(
     question: Question,
-    rows: Sequence[Mapping[str, Any]],
     found: Sequence[matrix.Row],
-    places: Mapping[str, matrix.Case],
+    worst: Mapping[str, matrix.Row],
     results: Results,
 ) -> dict[str, Any]:
-    distinct = list({_told_case(case): case for case in places.values()}.values())
     others: list[Any] = next(iter(results["rival"]), [])
     calculation = [
-        _compared([name for name, case in places.items() if case == one], piece, others)
-        for one, piece in zip(distinct, results["calculation"], strict=True)
+        _compared([name for name, row in worst.items() if row.case == one], piece, others)
+        for one, piece in zip(_distinct(worst), results["calculation"], strict=True)
     ]
     record: dict[str, Any] = {
         "version": fingerprint(),
@@ -153,8 +145,8 @@ def _record(
         "required": {"accuracy": question.accuracy, "limits": [str(limit) for limit in question.limits]},
         "inputs": inputs(question),
         "model": {"name": question.model.name, "call": _CALL},
-        "matrix": list(rows),
-        "worst": {name: row.summary() for name, row in matrix.worst(found).items()},
+        "matrix": [row.summary() for row in found],
+        "worst": {name: row.summary() for name, row in worst.items()},
         "limits": [matrix.kept(limit, found, question.accuracy).summary() for limit in question.limits],
         "code_verification": results["code_verification"],
         "calculation": calculation,

@@ -57,15 +57,14 @@ class Plan:
         folder = folder / self.name
         folder.mkdir(parents=True, exist_ok=True)
         pieces = [(part, name) for part, pieces in self.parts.items() for name in pieces]
-        key = f"ballsocket {fingerprint()}, {self.name}"
         work = _Pieces(
             tuple(folder / f"{part}{_plain(name)}.json" for part, name in pieces),
             tuple(self.parts[part][name] for part, name in pieces),
-            key,
+            tuple(f"ballsocket {fingerprint()}, {self.name}, {part} {name}" for part, name in pieces),
         )
         missing = []
         for number, (part, name) in enumerate(pieces):
-            kept = _kept(work.paths[number], key)
+            kept = _kept(work.paths[number], work.keys[number])
             if kept is None:
                 missing.append(number)
             else:
@@ -90,12 +89,12 @@ class _Pieces:
 
     paths: tuple[Path, ...]
     pieces: tuple[Piece, ...]
-    key: str
+    keys: tuple[str, ...]
 
     def __call__(self, number: int) -> Any:
         result = self.pieces[number]()
         try:
-            record = json.dumps({"key": self.key, "result": result}, allow_nan=False)
+            record = json.dumps({"key": self.keys[number], "result": result}, allow_nan=False)
         except ValueError as error:
             raise ValueError(f"{self.paths[number].stem} has a number that is missing or infinite") from error
         write_text(self.paths[number], record)
@@ -168,7 +167,7 @@ def full_plan() -> Plan:
 def _ledgers(judge: Model, claims: tuple[Claim, ...], elsewhere: tuple[Claim, ...]) -> dict[str, Mapping[str, Piece]]:
     """What the paper says and what others found."""
     return {
-        part: {claim.__name__: _Summary(partial(judged, claim, judge)) for claim in group}
+        part: {claim.__name__: Summary(partial(judged, claim, judge)) for claim in group}
         for part, group in (("claims", claims), ("elsewhere", elsewhere))
     }
 
@@ -189,33 +188,33 @@ def _parts(
             f"{name} {ratio}": partial(_column, name, model, ratios[ratio])
             for (name, model), ratio in product(references.items(), ratios)
         },
-        "figure_2": {ratio: _Summary(partial(curves.figure_2, value, references)) for ratio, value in ratios.items()},
+        "figure_2": {ratio: Summary(partial(curves.figure_2, value, references)) for ratio, value in ratios.items()},
         "figure_2_models": {
-            ratio: _Summary(partial(curves.figure_2_models, value, models)) for ratio, value in ratios.items()
+            ratio: Summary(partial(curves.figure_2_models, value, models)) for ratio, value in ratios.items()
         },
         **{
             f"figure_{number}": {
-                name: _Summary(partial(curves.figure_3_or_4, number, {name: model})) for name, model in dense.items()
+                name: Summary(partial(curves.figure_3_or_4, number, {name: model})) for name, model in dense.items()
             }
             for number in (3, 4)
         },
         "figure_5": {
-            name: _Summary(partial(curves.figure_5, *joint, judged_as_drawn)) for name, joint in joints.items()
+            name: Summary(partial(curves.figure_5, *joint, judged_as_drawn)) for name, joint in joints.items()
         },
         "figure_5_forces": {
-            name: _Summary(partial(curves.figure_5_forces, *joint, models)) for name, joint in joints.items()
+            name: Summary(partial(curves.figure_5_forces, *joint, models)) for name, joint in joints.items()
         },
         "figure_5_pressures": {
-            name: _Summary(partial(curves.figure_5_pressures, *joint, models)) for name, joint in joints.items()
+            name: Summary(partial(curves.figure_5_pressures, *joint, models)) for name, joint in joints.items()
         },
-        "figure_6": {"": _Summary(partial(curves.figure_6, "hess-forsbach", models["hess-forsbach"]))},
-        "figure_6_exact": {"": _Summary(partial(curves.figure_6, "exact", models["exact"], _COARSE))},
+        "figure_6": {"": Summary(partial(curves.figure_6, "hess-forsbach", models["hess-forsbach"]))},
+        "figure_6_exact": {"": Summary(partial(curves.figure_6, "exact", models["exact"], _COARSE))},
         "figure_6_pressures": {
-            name: _Summary(partial(curves.figure_6_pressures, name, model, models["exact"], _COARSE))
+            name: Summary(partial(curves.figure_6_pressures, name, model, models["exact"], _COARSE))
             for name, model in fields.items()
         },
         "figure_6_areas": {
-            name: _Summary(partial(curves.figure_6_areas, name, model, models["exact"], _COARSE))
+            name: Summary(partial(curves.figure_6_areas, name, model, models["exact"], _COARSE))
             for name, model in fields.items()
         },
     }
@@ -226,7 +225,7 @@ _COARSE = 13
 
 
 @dataclass(frozen=True)
-class _Summary:
+class Summary:
     """The summary of what is computed; a value, so that it can go to another process."""
 
     compute: Callable[[], Any]
