@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from ..arrays import Array, divisor, sqrt, where
 from ..sources import Source
-from .friction import checked, coefficient_at
+from .friction import Coulomb, checked, coefficient_at
 from .reaction import Place, Sliding
 
 Four = tuple[Array, Array, Array, Array]
@@ -15,7 +15,7 @@ Four = tuple[Array, Array, Array, Array]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bristles:
+class Bristles(Coulomb):
     """The LuGre model: with z the deflection, v the slip of the size w, and N the normal force::
 
         z' = v - σ0 w z/μ(w),    f = -N (σ0 z + σ1 z' + σ2 v),
@@ -68,13 +68,7 @@ class Bristles:
             checked(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
         for name in ("stiffness", "stribeck_speed", "release"):
             checked(self, name, 5e-324, "it is above 0 and finite")
-        if self.static_coefficient is not None:
-            checked(self, "static_coefficient", self.coefficient, "static friction is not below that of sliding")
-
-    @property
-    def static(self) -> float:
-        """The coefficient of a ball that hardly moves."""
-        return self.coefficient if self.static_coefficient is None else self.static_coefficient
+        self.check_static()
 
 
 def bent(place: Place, slip: Sliding, deflection: Four, given: Bristles) -> tuple[Four, Four, Array]:

@@ -10,8 +10,25 @@ from ..checks import require
 from .damping import one_number
 
 
+class Coulomb:
+    """A coefficient of sliding, and one of a ball that hardly moves where that differs."""
+
+    coefficient: float
+    static_coefficient: float | None
+
+    @property
+    def static(self) -> float:
+        """The coefficient of a ball that hardly moves."""
+        return self.coefficient if self.static_coefficient is None else self.static_coefficient
+
+    def check_static(self) -> None:
+        """Raise ValueError for a static coefficient that is below that of sliding."""
+        if self.static_coefficient is not None:
+            checked(self, "static_coefficient", self.coefficient, "static friction is not below that of sliding")
+
+
 @dataclass(frozen=True, kw_only=True)
-class Friction:
+class Friction(Coulomb):
     """Regularised Coulomb friction: the force is smooth in the speed, nearly μ N once that is above the transition.
 
     Sliding and drilling share one limit: with v the slip at the pole of the contact, ω the spin about its axis and ρ
@@ -52,13 +69,7 @@ class Friction:
             checked(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
         for name in ("transition_speed", "stribeck_speed"):
             checked(self, name, 5e-324, "a speed (mm/s) is above 0 and finite")
-        if self.static_coefficient is not None:
-            checked(self, "static_coefficient", self.coefficient, "static friction is not below that of sliding")
-
-    @property
-    def static(self) -> float:
-        """The coefficient of a ball that hardly moves."""
-        return self.coefficient if self.static_coefficient is None else self.static_coefficient
+        self.check_static()
 
 
 def checked(friction: object, name: str, least: float, allowed: str) -> None:

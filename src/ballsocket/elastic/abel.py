@@ -23,14 +23,14 @@ import numpy
 
 from ..arrays import Numbers, gauss_legendre
 from ..gaps import Gap
-from ..model.per_joint import largest_pressure
+from ..model.largest import Peaked, largest_pressure
 from .grid import Grid
 from .intervals import Intervals, KeptIntervals
 from .kernel import Kernel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class State:
+class State(Peaked):
     """Contacts of one joint at half angles ε (loads,) above 0; quantities have that shape.
 
     Arrays over the points of the grid have one more axis. H and G are counted in units of 1/C: they are in mm.
@@ -147,20 +147,11 @@ class State:
         return numpy.all(numpy.diff(self._G[0] / numpy.sin(s) * numpy.sqrt(room), axis=-1) < 0, axis=-1)
 
     @cached_property
-    def _largest(self) -> tuple[Numbers, Numbers]:
+    def largest(self) -> tuple[Numbers, Numbers]:
+        """The largest pressure of each contact in MPa, and its polar angle in rad."""
         if self.falls.all():
             return self.pole_pressure, 0.0 * self.half_angle
         return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, ROUNDING)
-
-    @property
-    def max_pressure(self) -> Numbers:
-        """The largest pressure in MPa."""
-        return self._largest[0]
-
-    @property
-    def max_pressure_angle(self) -> Numbers:
-        """Where the pressure is largest, in rad from the pole."""
-        return self._largest[1]
 
     @cached_property
     def pressure_integral(self) -> Numbers:

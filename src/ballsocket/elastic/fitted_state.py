@@ -10,7 +10,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..gaps import Gap
-from ..model.per_joint import largest_pressure
+from ..model.largest import Peaked, largest_pressure
 from .abel import State, pressure_of
 from .kernel import Kernel
 
@@ -24,7 +24,7 @@ _FLAT = 1e-7  # of a pressure: what series may ripple
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FittedState:
+class FittedState(Peaked):
     """Contacts at half angles ε (contacts,) above 0, with the quantities of a `State`."""
 
     fitted: FittedCurve
@@ -106,18 +106,11 @@ class FittedState:
         return self.fitted.missed[0] * self._opened[0] / self._opened[1]
 
     @cached_property
-    def _largest(self) -> tuple[Numbers, Numbers]:
+    def largest(self) -> tuple[Numbers, Numbers]:
+        """The largest pressure of each contact in MPa, and its polar angle in rad."""
         if self.fitted.knots.falls.all():
             return self.pole_pressure, 0.0 * self.half_angle
         return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _FLAT)
-
-    @property
-    def max_pressure(self) -> Numbers:
-        return self._largest[0]
-
-    @property
-    def max_pressure_angle(self) -> Numbers:
-        return self._largest[1]
 
     def largest_von_mises(self, reached: Numbers) -> Numbers:
         """That in the liner of each contact that was reached (a mask), between those of half angles along the curve."""

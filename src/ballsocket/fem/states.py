@@ -10,7 +10,8 @@ from operator import attrgetter
 import numpy
 
 from ..arrays import Numbers
-from ..model.per_joint import QUANTITIES, largest_pressure
+from ..model.largest import Peaked, largest_pressure
+from ..model.per_joint import QUANTITIES
 from .full_contact import Brimful
 from .work import Solved, stiffness, work
 
@@ -24,7 +25,7 @@ _LAWS: dict[str, Callable[[Solved], float]] = {"stiffness": stiffness, "energy":
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class States:
+class States(Peaked):
     """Solved contacts side by side, each quantity one number a contact; None and NaN where there is none."""
 
     solved: tuple[Solved | None, ...]
@@ -53,18 +54,9 @@ class States:
         return self._each(lambda one: one.edge_element / one.half_angle)
 
     @cached_property
-    def _largest(self) -> tuple[Numbers, Numbers]:
+    def largest(self) -> tuple[Numbers, Numbers]:
+        """The largest pressure of each contact in MPa, and its polar angle in rad."""
         return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _NOISE)
-
-    @property
-    def max_pressure(self) -> Numbers:
-        """The largest pressure in MPa."""
-        return self._largest[0]
-
-    @property
-    def max_pressure_angle(self) -> Numbers:
-        """Where the pressure is largest, in rad from the pole."""
-        return self._largest[1]
 
     def pressure(self, angle: Numbers) -> Numbers:
         """p(φ) in MPa at angles (anything, loads)."""
