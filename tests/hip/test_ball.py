@@ -7,7 +7,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.hip import Archard, Cycle, OwnLaw, flexion, iso_14242_1, logarithmic
-from ballsocket.hip.facing import ball_directions, ball_grid, facing
+from ballsocket.hip.facing import facing
+from ballsocket.hip.spots import ball_directions, ball_grid
 from ballsocket.output.hip_report import write_hip_report
 
 from .test_wear import K, hip

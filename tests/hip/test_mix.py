@@ -19,6 +19,7 @@ from ballsocket.hip import (
     iso_14242_4,
     logarithmic,
 )
+from ballsocket.sphere.surfaces import ClosedShell
 
 from .test_wear import K, hip
 
@@ -126,6 +127,30 @@ def test_on_the_rim_the_loads_meet_the_edge():
     loads = use.forces[apart.instants] - 100.0 * followed[:, None] * side
     assert np.cross(along, loads) == pytest.approx(0.0, abs=1e-4)
     assert ((followed > 0) & (followed < 3.0)).all()
+
+
+def test_whichever_way_the_cup_faces_a_ball_is_in_its_bore_or_on_the_rim():
+    """Between the two nothing jumps: near the rim the ball follows its spring, which pulls the less."""
+    use = hip(36.0, 6.0, cycle=iso_14242_4(100), ring_width=radians(6.0))
+    seen = [replace(use, cup=bs.Cup().tilted(radians(tilt))) for tilt in np.arange(40.0, 46.0, 0.2)]
+    for one in seen:
+        assert len(one.loaded) + len(one.separation.instants) == 100
+        assert one.unworn.settled
+        assert np.linalg.norm(one.unworn.displacement, axis=1).max() < 0.6  # it had been metres
+    volumes = np.array([one.first.volume for one in seen])
+    assert abs(np.diff(volumes) / volumes[:-1]).max() < 0.01
+
+
+@pytest.mark.parametrize("surface", [bs.Springs(), ClosedShell()])
+def test_a_bore_carries_what_the_spring_leaves(surface):
+    """The load less the spring's stiffness by the way that the ball has followed it."""
+    cup = bs.Cup(inclination=radians(40.0), anteversion=radians(8.0))
+    use = hip(36.0, 6.0, cycle=iso_14242_4(50), cup=cup, ring_width=radians(6.0), surface=surface)
+    rest, side = use.unworn, np.array(use.placed.frame)[:, 0]
+    carried = np.einsum("tp,kp,p->tk", rest.pressure, use.bed.normals, use.bed.areas)
+    expected = use.loads - 100.0 * (rest.displacement @ side)[:, None] * side
+    assert np.linalg.norm(expected - use.loads, axis=1).max() > 5.0
+    assert carried == pytest.approx(expected, rel=2e-6, abs=2e-6 * np.linalg.norm(use.loads, axis=1).max())
 
 
 def test_a_left_ball_is_pulled_to_the_left():

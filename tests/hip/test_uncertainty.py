@@ -229,6 +229,12 @@ def test_patients_are_kept_and_more_are_added(tmp_path):
         kept(tmp_path, scatter(coefficient=LogNormal(median=K, factor=2.0)), [FEW], 0)
 
 
+def test_no_patients_leave_no_folder(tmp_path):
+    with pytest.raises(ValueError, match="patients = 0 is not allowed"):
+        many(0, tmp_path / "none")
+    assert not (tmp_path / "none").exists()
+
+
 def test_every_patient_has_a_row(tmp_path):
     file = short(tmp_path, extra=f"[creep]\n{SCATTER}")
     done = run("hip", str(file), "--patients", "5", "--store", str(tmp_path / "kept"), "--json")

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import inf
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy
 
@@ -15,9 +15,7 @@ from .chebyshev import Step, longest, stages_of, step
 from .creep import Ladder
 from .laws import Pass, steepest
 from .near import near_cells
-
-if TYPE_CHECKING:
-    from .use import InUse
+from .set_up import SetUp
 
 _FIRST = 1e-2  # of the time in which what wears fastest would be worn in
 _SAFE, _LEAST, _MOST = 0.8, 0.2, 4.0
@@ -33,7 +31,7 @@ class Run:
 
     Attributes
     ----------
-    use : InUse
+    use : SetUp
     cycles : float
         Done so far.
     depth : array (cells,)
@@ -56,7 +54,7 @@ class Run:
         The contacts that were found last.
     """
 
-    use: InUse
+    use: SetUp
     cycles: float = 0.0
     depth: Numbers = field(default_factory=lambda: numpy.zeros(0))
     ball: Numbers = field(default_factory=lambda: numpy.zeros(0))
@@ -117,7 +115,7 @@ class Run:
         depth = values[:count] + self._creep
         if near.facing is not None:
             depth = depth + near.facing.gap(values[count:-1])
-        rest = near.bed.rest(self.use.loads, depth, self.rest)
+        rest = near.bed.rest(self.use.loads, depth, self.rest, self.use.tether)
         self.rest = rest
         self.settled = self.settled and rest.settled
         self._pass = Pass(pressure=rest.pressure, sliding=near.sliding)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy
 
@@ -14,11 +14,9 @@ from ..arrays import Numbers
 from ..npz import read_arrays, write_arrays
 from .history import Report
 from .laws import OwnLaw
+from .set_up import SetUp
 
-if TYPE_CHECKING:
-    from .use import InUse
-
-_VERSION = 2
+_VERSION = 3
 _NAME = "hip_in_use.npz"
 
 
@@ -80,7 +78,7 @@ def _report(found: Mapping[str, Numbers], prefix: str) -> Report:
     return Report(**values)
 
 
-def checkpoint(use: InUse, folder: Path) -> Checkpoint:
+def checkpoint(use: SetUp, folder: Path) -> Checkpoint:
     """Where the run of a hip is kept.
 
     Raises
@@ -90,7 +88,7 @@ def checkpoint(use: InUse, folder: Path) -> Checkpoint:
     """
     if isinstance(use.wear, OwnLaw) or isinstance(use.ball_wear, OwnLaw):
         raise ValueError("a run with a law of one's own cannot be kept: nothing tells whether it is still the same")
-    cycle = sha256(use.loads.tobytes() + use.turns.tobytes() + use.loaded.tobytes()).hexdigest()
+    cycle = sha256(b"".join(each.tobytes() for each in (use.loads, use.tether, use.turns, use.loaded))).hexdigest()
     parts = (
         use.joint,
         use.placed,

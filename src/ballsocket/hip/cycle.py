@@ -170,7 +170,9 @@ class Cycle:
     def mirrored(self) -> Cycle:
         """What the other side of the body goes through: to the left what was to the right."""
         # M Rx(a) Ry(b) Rz(c) M = Rx(a) Ry(-b) Rz(-c), M = diag(-1, 1, 1)
-        spring = None if self.spring is None else replace(self.spring, mismatch=-self.spring.mismatch)
+        spring = self.spring
+        if spring is not None and self.frame is Frame.BODY:
+            spring = replace(spring, mismatch=-spring.mismatch)
         return replace(self, force=self._aside, angles=lambda phases: _OTHER_WAY * self.angles(phases), spring=spring)
 
     def _aside(self, phases: Numbers) -> Numbers:

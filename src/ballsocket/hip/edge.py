@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy
 
 from ..arrays import Numbers
-
-if TYPE_CHECKING:
-    from .use import InUse
+from ..sphere.grid import Grid
+from .placing import Placed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +60,7 @@ class Edge:
     distance: Numbers
     place: Numbers
 
-    def worst(self, use: InUse) -> Worst | None:
+    def worst(self, use: Placed) -> Worst | None:
         """The worst instant; None where nothing is pressed."""
         if not len(self.distance):
             return None
@@ -75,18 +74,21 @@ class Edge:
         )
 
 
-def edge_of(use: InUse, field: Numbers) -> Edge:
-    """The edges of contacts from what falls to 0 there as a straight line does: (loaded, cells)."""
-    polar, around = use.grid.polar, use.grid.azimuth
+def edge_of(grid: Grid, reach: float, radius: float, field: Numbers) -> Edge:
+    """The edges of contacts in a bore of this radius in mm, which reaches so far (rad).
+
+    They are found from what falls to 0 there as a straight line does: (loaded, cells).
+    """
+    polar, around = grid.polar, grid.azimuth
     rows = field.reshape(len(field), len(polar), len(around))
     ends = (rows > 0) & numpy.concatenate([rows[:, 1:] <= 0, numpy.ones_like(rows[:, :1], dtype=bool)], axis=1)
     fall = rows[:, :-1] - rows[:, 1:]
     share = numpy.divide(rows[:, :-1], fall, out=numpy.ones_like(fall), where=ends[:, :-1])
     edges = polar[:-1, None] + share * numpy.diff(polar)[:, None]
-    edges = numpy.concatenate([edges, numpy.full_like(edges[:, :1], use.reach)], axis=1)
+    edges = numpy.concatenate([edges, numpy.full_like(edges[:, :1], reach)], axis=1)
     furthest = numpy.where(ends, edges, 0.0).max(axis=1, initial=0.0)
     return Edge(
-        distance=(use.reach - furthest.max(axis=1, initial=0.0)) * use.bed.socket_radius,
+        distance=(reach - furthest.max(axis=1, initial=0.0)) * radius,
         place=_middle(furthest, rows[:, -1], around),
     )
 

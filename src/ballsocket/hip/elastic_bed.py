@@ -19,9 +19,9 @@ from ..sphere.grid import Grid, even_grid
 from ..sphere.search import Bed
 from ..sphere.search import Rest as BedRest
 from ..sphere.surfaces import ClosedShell, RealCup
-from .levels import Levels, levels_of
+from .levels import Levels, each_of, levels_of
 from .smoothing import Smoothing
-from .springs import Rest
+from .springs import FREE, Rest
 
 _POWER = 60
 _SEED = 1
@@ -93,12 +93,12 @@ class ElasticBed:
         """What falls to 0 at the edge of the contacts as a straight line does: (loads, cells)."""
         return rest.pressure**2
 
-    def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None) -> Rest:
+    def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None, tether: Numbers = FREE) -> Rest:
         """Where balls come to rest under loads; see `SpringBed.rest`.
 
         Loads of one direction are solved at a few sizes, with straight lines between: those carry the load as it is.
         """
-        levels = levels_of(loads)
+        levels = levels_of(loads) if not tether.any() else each_of(loads)
         shape = (len(levels.loads), self.grid.rings, self.grid.meridians)
         separation = Separation(
             grid=self.grid,
@@ -107,7 +107,7 @@ class ElasticBed:
             depth=depth.reshape(shape[1:]),
             kind=LinearGap,
         )
-        bed = Bed(compliance=self.compliance, separation=separation)
+        bed = Bed(compliance=self.compliance, separation=separation, tether=tether)
         found = self._settled(bed, levels, depth, start)
         flat = found.pressure.reshape(shape[0], -1)
         return Rest(

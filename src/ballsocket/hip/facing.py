@@ -1,68 +1,16 @@
-"""The ball's own cells: how they pass over those of the socket, and what that wears of the ball."""
+"""How the ball's own cells pass over those of the socket, and what that wears of the ball."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy
 
 from ..arrays import Numbers
-from ..sphere.grid import Grid, even_grid
 from .laws import Pass
+from .set_up import SetUp
 from .sliding import Sliding
-
-if TYPE_CHECKING:
-    from .use import InUse
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Spots:
-    """Places between the cells of a grid, each with the four around it.
-
-    Attributes
-    ----------
-    cells : array (n, places, 4)
-    shares : array (n, places, 4)
-        They add up to 1; 0 beyond the grid's reach.
-    """
-
-    cells: Numbers
-    shares: Numbers
-
-    def of(self, fields: Numbers) -> Numbers:
-        """Values of fields (n or 1, all cells) at the places: (n, places)."""
-        count, places, four = self.cells.shape
-        fields = numpy.broadcast_to(fields, (count, fields.shape[-1]))
-        found = numpy.take_along_axis(fields, self.cells.reshape(count, -1), axis=1)
-        return numpy.einsum("tpk,tpk->tp", found.reshape(count, places, four), self.shares)
-
-
-def spots_of(grid: Grid, directions: Numbers) -> Spots:
-    """Where unit vectors (3, n, places) lie between the middles of a grid's cells."""
-    x, y, z = directions
-    polar, around = numpy.arctan2(numpy.hypot(x, y), z), numpy.arctan2(y, x)
-    ring = numpy.clip(numpy.searchsorted(grid.polar, polar) - 1, 0, grid.rings - 2)
-    up = numpy.clip((polar - grid.polar[ring]) / (grid.polar[ring + 1] - grid.polar[ring]), 0.0, 1.0)
-    turn = around / (2 * numpy.pi) * grid.meridians - 0.5
-    first = numpy.floor(turn).astype(int)
-    on = turn - first
-    cells = numpy.stack(
-        [(ring + i) * grid.meridians + (first + j) % grid.meridians for i in (0, 1) for j in (0, 1)], axis=-1
-    )
-    shares = numpy.stack([(1 - up) * (1 - on), (1 - up) * on, up * (1 - on), up * on], axis=-1)
-    return Spots(cells=cells, shares=shares * (polar <= grid.reach)[..., None])
-
-
-def ball_grid(width: float) -> Grid:
-    """The ball's cells: rings about its axis to the front, so that none of those that are pressed is a sliver."""
-    return even_grid(numpy.pi, width)
-
-
-def ball_directions(grid: Grid) -> Numbers:
-    """Unit vectors (3, cells) to the middles of the cells of a ball that is not turned, in the body's directions."""
-    along, across, front = grid.middles.reshape(3, -1)
-    return numpy.stack([across, front, along])
+from .spots import Spots, ball_directions, ball_grid, spots_of
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -114,7 +62,7 @@ class Facing:
         return Pass(pressure=pressure * share[:, None], sliding=self.sliding)
 
 
-def facing(use: InUse, cells: Numbers) -> Facing:
+def facing(use: SetUp, cells: Numbers) -> Facing:
     """The ball's cells that pass over some cells of the socket in a cycle."""
     frame = numpy.array(use.placed.frame)
     turned = frame @ use.moved.middles[use.loaded]

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy
 
 from ..arrays import Numbers
 from ..checks import require
 from ..joint import Joint, Material
-
-if TYPE_CHECKING:
-    from .springs import Rest
-    from .use import InUse
+from .placing import Placed
+from .sliding import Sliding
+from .springs import CycleBed, Rest
 
 CONFORMING = (
     "Hamrock and Dowson's films are those of bodies that hardly conform: here they tell a regime, not a thickness"
@@ -141,31 +140,30 @@ class Film:
         return {**numbers, "moment_on_cup_Nmm": most, "regime": self.regime, "note": CONFORMING}
 
 
-def film(use: InUse, rest: Rest, lubricant: Lubricant) -> Film:
-    """The film and the friction of a cycle of contacts."""
-    instant = use.cycle.seconds[use.loaded]
-    size = numpy.linalg.norm(use.loads, axis=1)
-    across = numpy.linalg.norm(numpy.cross(use.turns, use.loads), axis=1) / numpy.where(size > 0, size, 1.0)
-    least, central = film_thickness(use.joint, size, across / instant, lubricant.viscosity)
+def film(placed: Placed, bed: CycleBed, sliding: Sliding, rest: Rest, lubricant: Lubricant) -> Film:
+    """The film and the friction of a cycle of contacts, where the ball slides so over this bore."""
+    instant = placed.cycle.seconds[placed.loaded]
+    carried = placed.carried(rest.displacement)
+    size = numpy.linalg.norm(carried, axis=1)
+    across = numpy.linalg.norm(numpy.cross(placed.turns, carried), axis=1) / numpy.where(size > 0, size, 1.0)
+    least, central = film_thickness(placed.joint, size, across / instant, lubricant.viscosity)
     rough = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
-    steps = use.sliding.steps
-    work = lubricant.friction * numpy.einsum("tp,tp,p->t", rest.pressure, steps, use.bed.areas)
+    work = lubricant.friction * numpy.einsum("tp,tp,p->t", rest.pressure, sliding.steps, bed.areas)
     return Film(
-        phases=use.cycle.phases[use.loaded],
+        phases=placed.cycle.phases[placed.loaded],
         least=least,
         central=central,
         ratio=least / rough if rough > 0 else numpy.full_like(least, inf),
-        moment=lubricant.friction * _moment(use, rest),
+        moment=lubricant.friction * _moment(bed, sliding, rest.pressure),
         power=1e-3 * work / instant,
         heat=1e-3 * float(work.sum()),
-        duration=use.cycle.duration,
+        duration=placed.cycle.duration,
     )
 
 
-def _moment(use: InUse, rest: Rest) -> Numbers:
+def _moment(bed: CycleBed, sliding: Sliding, pressure: Numbers) -> Numbers:
     """∫ R n × v/abs(v) p dA, v = R ω × n: n × (ω × n) = ω - (ω·n) n; in N mm: (instants, 3)."""
-    n, radius = use.bed.directions, use.sliding.radius
-    steps = use.sliding.steps
-    share = numpy.divide(rest.pressure * use.bed.areas * radius**2, steps, out=numpy.zeros_like(steps), where=steps > 0)
-    along = share * (use.turns @ n)
-    return use.turns * share.sum(axis=1)[:, None] - along @ n.T
+    n, turns, steps = bed.directions, sliding.turns, sliding.steps
+    share = numpy.divide(pressure * bed.areas * sliding.radius**2, steps, out=numpy.zeros_like(steps), where=steps > 0)
+    along = share * (turns @ n)
+    return turns * share.sum(axis=1)[:, None] - along @ n.T

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy
 
@@ -12,36 +12,7 @@ from ..arrays import Numbers
 from .edge import Edge, Worst
 from .film import Lubricant
 from .mix import Mix
-
-if TYPE_CHECKING:
-    from .use import InUse
-
-
-@dataclass(frozen=True, kw_only=True)
-class First:
-    """A cycle on a bore that is not worn.
-
-    Attributes
-    ----------
-    slide : float
-        Of the ball past the line of the load, in mm.
-    work : float
-        ∫∫ p v dA dt in N m.
-    cross_shear : float
-        Its mean over the socket, weighted by p v.
-    volume, depth : float
-        What a million such cycles would wear: mm³, and mm at the deepest point.
-    max_pressure, max_force : float
-        In MPa and N.
-    """
-
-    slide: float
-    work: float
-    cross_shear: float
-    volume: float
-    depth: float
-    max_pressure: float
-    max_force: float
+from .set_up import SetUp
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -151,7 +122,7 @@ class History:
     lubricant : Lubricant
     """
 
-    use: InUse
+    use: SetUp
     reports: tuple[Report, ...]
     error: Error
     steps: int
@@ -210,7 +181,7 @@ class History:
                 "cross_shear_mean": first.cross_shear,
                 "crossing_angle_mean_deg": degrees(self.use.crossing_angle),
                 "edge": _told(self.worst),
-                "microseparation": None if apart is None else apart.summary(self.use),
+                "microseparation": None if apart is None else apart.summary(self.use.cycle),
                 "peaks": {
                     "force_N": first.max_force,
                     "max_pressure_MPa": first.max_pressure,

@@ -32,6 +32,11 @@ class Levels:
         return self.shares @ solved
 
 
+def each_of(loads: Numbers) -> Levels:
+    """All of the loads (loads, 3), each by itself."""
+    return Levels(loads=loads, shares=numpy.eye(len(loads)))
+
+
 def levels_of(loads: Numbers, most: int = _MOST) -> Levels:
     """Levels of loads (loads, 3) in N: at most so many where all have one direction, all of them elsewhere.
 
@@ -39,7 +44,7 @@ def levels_of(loads: Numbers, most: int = _MOST) -> Levels:
     """
     size = numpy.linalg.norm(loads, axis=1)
     if len(loads) <= most or abs(numpy.cross(loads, loads[0])).max() > _ALONG * size.max() ** 2:
-        return Levels(loads=loads, shares=numpy.eye(len(loads)))
+        return each_of(loads)
     each = numpy.linspace(size.min() ** 0.5, size.max() ** 0.5, most) ** 2
     each[0], each[-1] = size.min(), size.max()
     if each[-1] - each[0] <= _ALONG * each[-1]:

@@ -112,6 +112,8 @@ class Lives:
 
     def all(self, engine: Engine = _HERE, store: Kept | None = None, listen: Listener = lambda done: None) -> Lived:
         """Every patient, those of a store not anew."""
+        if store is not None:
+            store.prepare()
         found = {} if store is None else store.found(self)
         sent = replace(self, scatter=replace(self.scatter, use=self.scatter.quick))
         work = sent if store is None else Writing(lives=sent, store=store)
@@ -154,18 +156,26 @@ class Kept:
     def _path(self, piece: int) -> Path:
         return self.folder / f"patients_{piece:06d}.npz"
 
+    @property
+    def _label(self) -> Path:
+        return self.folder / _LABEL
+
     def prepare(self) -> None:
-        """Make the folder.
+        """Make the folder where it is not there yet."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        if not self._label.exists():
+            write_text(self._label, json.dumps({"identity": self.identity}))
+
+    def check(self) -> None:
+        """Whether what is kept there, if anything is, are these patients.
 
         Raises
         ------
         ValueError
             Other patients are kept there, or something else.
         """
-        self.folder.mkdir(parents=True, exist_ok=True)
-        label = self.folder / _LABEL
+        label = self._label
         if not label.exists():
-            write_text(label, json.dumps({"identity": self.identity}))
             return
         try:
             kept = json.loads(label.read_bytes())["identity"]
@@ -195,7 +205,7 @@ def kept(folder: Path, scatter: Scatter, counts: Sequence[float], seed: int) -> 
     whose = checkpoint(scatter.quick, folder).identity
     drawn = (fingerprint(), whose, dict(scatter.distributions), scatter.body_weight, tuple(counts), seed)
     store = Kept(folder=folder.absolute(), identity=sha256(repr(drawn).encode()).hexdigest())
-    store.prepare()
+    store.check()
     return store
 
 

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy
 
 from ..arrays import Numbers
 from ..checks import require
+from .blocks import Run
+from .checkpoint import Checkpoint
 from .facing import facing
 from .history import Report
-
-if TYPE_CHECKING:
-    from .blocks import Run
-    from .checkpoint import Checkpoint
-    from .springs import Rest
-    from .use import InUse
+from .set_up import SetUp
+from .springs import Rest
 
 
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
@@ -93,5 +90,5 @@ def report_of(run: Run) -> Report:
     )
 
 
-def _only(use: InUse, depth: Numbers) -> Rest:
+def _only(use: SetUp, depth: Numbers) -> Rest:
     return use.rest(depth) if depth.any() else use.unworn

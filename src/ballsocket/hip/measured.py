@@ -11,6 +11,7 @@ from types import MappingProxyType
 from ..arrays import Numbers
 from ..checks import check_names, shown
 from ..cup import Side
+from .resampled import at_times
 from .tables import Table, parted_head
 
 FORCES = ("force_x", "force_y", "force_z")
@@ -139,8 +140,6 @@ def _told(said: set[tuple[str, str]]) -> dict[str, str]:
 
 def together(parts: Sequence[Measured]) -> Measured:
     """Several tables of one walk as one, at the times of the first."""
-    from .resampled import at_times
-
     if len(parts) == 1:
         return parts[0]
     columns = dict(parts[0].columns)

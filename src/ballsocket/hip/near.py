@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy
 
 from ..arrays import Numbers
 from .facing import Facing, facing
+from .set_up import SetUp
 from .sliding import Sliding
 from .springs import CycleBed
-
-if TYPE_CHECKING:
-    from .use import InUse
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,7 +32,7 @@ class Near:
         return self.bed.areas if self.facing is None else numpy.concatenate([self.bed.areas, self.facing.areas])
 
 
-def near_cells(use: InUse, cells: Numbers) -> Near:
+def near_cells(use: SetUp, cells: Numbers) -> Near:
     """Some cells of the socket, and those of the ball that pass over them if it wears."""
     faced = None if use.ball_wear is None else facing(use, cells)
     return Near(cells=cells, bed=use.bed.part(cells), sliding=use.sliding.part(cells), facing=faced)

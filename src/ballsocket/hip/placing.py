@@ -13,7 +13,7 @@ from ..cup import Cup, Side
 from ..joint import Joint
 from .cycle import Cycle, Frame
 from .mix import Mix
-from .separation import Separation, on_the_rim
+from .separation import Pulled, Separation
 from .sliding import slide
 
 _LIFTED = 1e-6
@@ -73,14 +73,45 @@ class Placed:
         return numpy.asarray(sizes > _LIFTED * max(float(sizes.max()), 1e-300))
 
     @cached_property
+    def _pulled(self) -> Pulled | None:
+        """The ball on its spring; None where it has none."""
+        spring = self.moved.spring
+        if spring is None:
+            return None
+        return Pulled(
+            spring=spring,
+            side=self._side,
+            reach=self.reach,
+            socket_radius=float(self.joint.socket_radius),
+            ball_radius=float(self.joint.ball_radius),
+        )
+
+    @property
+    def _side(self) -> Numbers:
+        """The first axis of the frame that forces and springs are told in, in the cup's own: (3,)."""
+        return numpy.array([1.0, 0.0, 0.0] if self.cycle.frame is Frame.CUP else numpy.array(self.placed.frame)[:, 0])
+
+    @cached_property
+    def tether(self) -> Numbers:
+        """The stiffness of the cycle's spring in N/mm: what it pulls less by what the ball has moved, (3, 3)."""
+        spring = self.moved.spring
+        return numpy.outer(self._side, self._side) * (0.0 if spring is None else spring.stiffness)
+
+    def carried(self, displacement: Numbers) -> Numbers:
+        """What bores carry of the loads in N, with balls displaced so far in mm: (loaded, 3)."""
+        return self.loads - displacement @ self.tether
+
+    @cached_property
     def _over(self) -> Numbers:
-        """The instants in which the load points beyond the rim."""
-        return numpy.flatnonzero(self._pressed & (self._tilts >= self.reach))
+        """The instants in which the load pushes the ball over the rim."""
+        found = numpy.flatnonzero(self._pressed & (self._tilts >= self.reach))
+        return found if self._pulled is None else found[self._pulled.beyond(self.forces[found])]
 
     @cached_property
     def separation(self) -> Separation | None:
         """The instants in which a spring has pushed the ball onto the rim; None where it never does."""
-        return on_the_rim(self, self._over) if self.cycle.spring is not None and len(self._over) else None
+        over = self._over
+        return None if self._pulled is None or not len(over) else self._pulled.rest(self.forces[over], over)
 
     @cached_property
     def placed(self) -> Cup:
@@ -128,7 +159,7 @@ class Placed:
     def _placing_notes(self) -> tuple[str, ...]:
         """What is to be said of where the cup faces, and of a ball that is not in it all the time."""
         placed = () if self.placed == self.cup else (_PLACED.format(degrees(self.cycle.cup_tilt or 0.0)),)
-        apart = () if self.separation is None else (self.separation.told(self),)
+        apart = () if self.separation is None else (self.separation.told(self.cycle),)
         return (*placed, *self._lifted, *apart)
 
     @property

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import degrees
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from math import cos, degrees, sin
+from typing import Any
 
 import numpy
 
 from ..arrays import Numbers
-from .cycle import Spring
-
-if TYPE_CHECKING:
-    from .placing import Placed
+from .cycle import Cycle, Spring
+from .mix import Mix
 
 _HALVINGS = 60
 
@@ -44,14 +43,14 @@ class Separation:
     def _furthest(self) -> int:
         return int(numpy.linalg.norm(self.displacement, axis=1).argmax())
 
-    def summary(self, use: Placed) -> dict[str, Any]:
+    def summary(self, cycle: Cycle | Mix) -> dict[str, Any]:
         """For JSON."""
-        first, last = (use.cycle.told(int(instant)) for instant in self.instants[[0, -1]])
+        first, last = (cycle.told(int(instant)) for instant in self.instants[[0, -1]])
         return {"from": first, "to": last, "largest_mm": self.largest, "place_deg": degrees(self.place[self._furthest])}
 
-    def told(self, use: Placed) -> str:
+    def told(self, cycle: Cycle | Mix) -> str:
         """A sentence: when, where, how far."""
-        seen = self.summary(use)
+        seen = self.summary(cycle)
         return (
             f"microseparation from {seen['from']} to {seen['to']}: the ball sits on the rim, its centre up to "
             f"{seen['largest_mm']:.2g} mm off, {abs(seen['place_deg']):.0f}° from the cup's uppermost point; what it "
@@ -59,39 +58,69 @@ class Separation:
         )
 
 
-def on_the_rim(use: Placed, instants: Numbers) -> Separation:
-    """Where the ball rests in these instants, rigid and without friction on the edge of a rigid rim.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pulled:
+    """A rigid ball that a spring pulls to the side, on the edge of a rigid rim without friction.
 
     The load points from the ball's centre to the edge that it rests on: c = R2 r - R1 f, the spring being shorter by
     what the ball has followed it.
+
+    Attributes
+    ----------
+    spring : Spring
+    side : array (3,)
+        A unit vector to the spring's right, in the cup's frame.
+    reach : float
+        Where the bore ends, in rad from the dome's pole.
+    socket_radius, ball_radius : float
+        In mm.
     """
-    spring = use.moved.spring
-    assert spring is not None
-    aside = numpy.sign(spring.mismatch) * numpy.array(use.placed.frame)[:, 0]
-    low, high = numpy.zeros(len(instants)), numpy.full(len(instants), abs(spring.mismatch))
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        short = _centre(use, instants, spring, aside, middle) @ aside > middle
-        low, high = numpy.where(short, low, middle), numpy.where(short, middle, high)
-    centre = _centre(use, instants, spring, aside, high)
-    held = abs(centre @ aside - high) <= 1e-6 * abs(spring.mismatch)
-    loads = _loads(use, instants, spring, aside, high)
-    return Separation(
-        instants=instants,
-        displacement=numpy.where(held[:, None], centre, numpy.nan),
-        place=numpy.arctan2(loads[:, 1], loads[:, 0]),
-    )
 
+    spring: Spring
+    side: Numbers
+    reach: float
+    socket_radius: float
+    ball_radius: float
 
-def _loads(use: Placed, instants: Numbers, spring: Spring, aside: Numbers, followed: Numbers) -> Numbers:
-    """Forces of a ball that has followed its spring so far, in N, in the cup's frame."""
-    return use.forces[instants] - spring.stiffness * followed[:, None] * aside
+    @cached_property
+    def _aside(self) -> Numbers:
+        """Where the spring pulls to: (3,)."""
+        return numpy.sign(self.spring.mismatch) * self.side
 
+    def beyond(self, forces: Numbers) -> Numbers:
+        """Whether a ball under forces (n, 3) that point beyond the rim leaves its bore, where its spring lets it.
 
-def _centre(use: Placed, instants: Numbers, spring: Spring, aside: Numbers, followed: Numbers) -> Numbers:
-    """The ball's centre in mm where it rests on the rim under these loads: (n, 3)."""
-    loads = _loads(use, instants, spring, aside, followed)
-    along = loads / numpy.linalg.norm(loads, axis=1)[:, None]
-    across = loads[:, :2] / numpy.linalg.norm(loads[:, :2], axis=1)[:, None]
-    edge = numpy.column_stack([numpy.sin(use.reach) * across, numpy.full(len(loads), numpy.cos(use.reach))])
-    return float(use.joint.socket_radius) * edge - float(use.joint.ball_radius) * along
+        It stays where the clearance alone lets it follow so far that it would be held.
+        """
+        followed = numpy.zeros(len(forces))
+        out: Numbers = self._centre(forces, followed) @ self._aside <= followed
+        return out
+
+    def rest(self, forces: Numbers, instants: Numbers) -> Separation:
+        """Where the ball rests in these instants under forces (n, 3), those of a spring that it has not followed."""
+        furthest = abs(self.spring.mismatch)
+        low, high = numpy.zeros(len(forces)), numpy.full(len(forces), furthest)
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            short = self._centre(forces, middle) @ self._aside > middle
+            low, high = numpy.where(short, low, middle), numpy.where(short, middle, high)
+        centre = self._centre(forces, high)
+        held = abs(centre @ self._aside - high) <= 1e-6 * furthest
+        loads = self._loads(forces, high)
+        return Separation(
+            instants=instants,
+            displacement=numpy.where(held[:, None], centre, numpy.nan),
+            place=numpy.arctan2(loads[:, 1], loads[:, 0]),
+        )
+
+    def _loads(self, forces: Numbers, followed: Numbers) -> Numbers:
+        """Forces of a ball that has followed its spring so far, in N: (n, 3)."""
+        return forces - self.spring.stiffness * followed[:, None] * self._aside
+
+    def _centre(self, forces: Numbers, followed: Numbers) -> Numbers:
+        """The ball's centre in mm where it rests on the rim under these loads: (n, 3)."""
+        loads = self._loads(forces, followed)
+        along = loads / numpy.linalg.norm(loads, axis=1)[:, None]
+        across = loads[:, :2] / numpy.linalg.norm(loads[:, :2], axis=1)[:, None]
+        edge = numpy.column_stack([sin(self.reach) * across, numpy.full(len(loads), cos(self.reach))])
+        return self.socket_radius * edge - self.ball_radius * along

@@ -15,7 +15,8 @@ from ..sphere.grid import Grid
 
 _ROUNDS = 60
 TOLERANCE = 1e-8
-"""Of the load, where the balance is good."""
+FREE = numpy.zeros((3, 3))
+"""Of the load, where the balance is good; and the stiffness of a ball that no spring of its cycle holds."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,7 +56,7 @@ class CycleBed(Protocol):
     def stiffest(self) -> float: ...
     def part(self, cells: Numbers) -> CycleBed: ...
     def near(self, rest: Rest, depth: Numbers, margin: float) -> Numbers: ...
-    def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None) -> Rest: ...
+    def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None, tether: Numbers = FREE) -> Rest: ...
     def smoothed(self, depth: Numbers) -> Numbers: ...
     def edge_field(self, rest: Rest, depth: Numbers) -> Numbers: ...
 
@@ -131,7 +132,7 @@ class SpringBed:
         n = self.normals
         return (n[:, None] * n[None] * self.areas).reshape(9, -1).T.copy()
 
-    def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None) -> Rest:
+    def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None, tether: Numbers = FREE) -> Rest:
         """Where balls come to rest under loads.
 
         Parameters
@@ -142,6 +143,8 @@ class SpringBed:
             Of the worn bore below the sphere in mm.
         start : Rest, optional
             To begin with.
+        tether : array (3, 3)
+            In N/mm: so much less of the loads is left by where the ball has moved.
         """
         e = sunk(self, self.modulus, depth, *sized(loads)) if start is None else start.displacement
         allowed = TOLERANCE * numpy.linalg.norm(loads, axis=1)
@@ -152,18 +155,19 @@ class SpringBed:
             touching = (overlap > 0).astype(float)
             pressure = numpy.maximum(overlap, 0.0, out=overlap)
             pressure *= self.modulus
-            missing = loads - pressure @ self._outward
+            missing = loads - e @ tether - pressure @ self._outward
             lost = float((numpy.linalg.norm(missing, axis=1) / allowed).max(initial=0.0))
             if lost <= 1:
                 break
-            e = e + self._step(touching, missing, loads)
+            e = e + self._step(touching, missing, loads, tether)
         return Rest(displacement=e, pressure=pressure, settled=lost <= 1)
 
-    def _step(self, touching: Numbers, missing: Numbers, loads: Numbers) -> Numbers:
+    def _step(self, touching: Numbers, missing: Numbers, loads: Numbers, tether: Numbers) -> Numbers:
         """Newton's step; a ball that has lost its bore moves on along its load."""
         tangent = self.modulus * (touching @ self._products).reshape(-1, 3, 3)
         trace = numpy.trace(tangent, axis1=1, axis2=2)
         apart = trace <= 0
+        tangent += tether
         solid = numpy.where(apart, 1.0, 1e-12 * trace)
         step = numpy.linalg.solve(tangent + solid[:, None, None] * numpy.eye(3), missing[:, :, None])[:, :, 0]
         along = loads / numpy.linalg.norm(loads, axis=1)[:, None]

@@ -228,8 +228,8 @@ def population(
         No number of patients; a seed below 0.
     """
     lives = Lives(scatter=scatter, counts=tuple(sorted(counts)), values=drawn(scatter, patients, seed))
-    lived = lives.all(engine, store, listen)
     whole = Patient(use=scatter.use, pace=1.0).seen(lives.counts)
+    lived = lives.all(engine, store, listen)
     return lives, Bands(scatter=scatter, counts=lives.counts, lived=lived, seed=seed, off=_off(scatter, whole))
 
 

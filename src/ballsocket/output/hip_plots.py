@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..hip.facing import ball_directions, ball_grid
 from ..hip.history import History, Report
 from ..hip.sliding import tracks
+from ..hip.spots import ball_directions, ball_grid
 from ..hip.uncertainty import Bands
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..arrays import Numbers
-    from ..hip.use import InUse
+    from ..hip.set_up import SetUp
 
 _INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"
 _SIZE = (6.4, 4.2)
@@ -65,7 +65,7 @@ def ball_map(history: History) -> Figure:
     return figure
 
 
-def _map(use: InUse, field: Numbers, label: str, title: str) -> Figure:
+def _map(use: SetUp, field: Numbers, label: str, title: str) -> Figure:
     """A field (rings, meridians) over the bore, with a cross where the largest load points."""
     figure, axes = _figure((5.6, 4.8), polar=True)
     around = numpy.append(use.grid.azimuth, use.grid.azimuth[0] + 2 * pi)

@@ -148,9 +148,10 @@ class _Run:
         """Press where the trial is, and take it where that is better."""
         overlap = self.bed.separation.overlap(self.trial)
         made = pressed(self.bed.compliance, overlap, self.begin, self.tolerance)
-        force = self.bed.force(made.pressure)
+        back = self.trial @ self.bed.tether
+        force = self.bed.force(made.pressure) + back
         miss = numpy.linalg.norm(self.load - force, axis=1) / self.size
-        work = self.bed.area * made.energy - numpy.einsum("bk,bk->b", self.trial, self.load)
+        work = self.bed.area * made.energy - numpy.einsum("bk,bk->b", self.trial, self.load - back / 2)
         gap = numpy.minimum(overlap.max(axis=(1, 2)), 0.0)
         first = numpy.isinf(self.work)
         less = (work <= self.work) | (miss < self.miss) | (miss < _NOISE * self.known)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy
@@ -37,10 +37,19 @@ class Rest:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Bed:
-    """A bore with a ball in it: a compliance and a gap."""
+    """A bore with a ball in it: a compliance and a gap.
+
+    Attributes
+    ----------
+    compliance : Compliance
+    separation : Separation
+    tether : array (3, 3)
+        A stiffness in N/mm that holds the ball beside the bore; none by default.
+    """
 
     compliance: Compliance
     separation: Separation
+    tether: Numbers = field(default_factory=lambda: numpy.zeros((3, 3)))
 
     @property
     def area(self) -> float:
@@ -57,7 +66,7 @@ class Bed:
     def coarser(self) -> Bed | None:
         """This bed in cells twice as wide; None where these are wide already."""
         soft = self.compliance.coarser
-        return None if soft is None else Bed(compliance=soft, separation=self.separation.on(soft.grid))
+        return None if soft is None else replace(self, compliance=soft, separation=self.separation.on(soft.grid))
 
     def spread(self, fields: Numbers) -> Numbers:
         """Fields (..., rings, meridians) of the coarser cells in these."""
@@ -87,9 +96,9 @@ class Bed:
         return answers(self.compliance, touching, asked, begin, tolerance).reshape(shape)
 
     def tangent(self, stretched: Numbers) -> Numbers:
-        """The stiffness in N/mm: (batch, 3, 3)."""
+        """The stiffness of bore and tether in N/mm: (batch, 3, 3)."""
         tangent = stretched.reshape(len(stretched), 3, len(self._outward)) @ self._outward
-        return tangent.swapaxes(1, 2)
+        return tangent.swapaxes(1, 2) + self.tether
 
     def under(self, load: Numbers, start: Numbers, held: Numbers, pressure: Numbers | None = None) -> Rest:
         """Balls at rest under loads.

@@ -1,0 +1,161 @@
+"""The set-up of a hip in use: a joint, how its cup stands, what it goes through, and what its first cycle is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+from math import inf, radians
+from typing import Any
+
+import numpy
+
+from ..arrays import Numbers, is_plain
+from ..checks import require
+from ..cup import Cup
+from ..fem.shapes import socket_shape
+from ..sphere.grid import Grid, even_grid, grid
+from ..sphere.model import Sphere
+from ..sphere.surfaces import ClosedShell, RealCup, Springs
+from ..validity import inside
+from .creep import Ladder
+from .edge import Edge, edge_of
+from .elastic_bed import elastic_bed
+from .film import Film, Lubricant, film
+from .first import First, first_of
+from .laws import Law, Pass
+from .placing import Placed
+from .sliding import Sliding
+from .spots import ball_grid
+from .springs import CycleBed, Rest, spring_bed
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SetUp(Placed):
+    """A hip before it is used, with what can be said of any cycle of it; the fields are told at `InUse`."""
+
+    wear: Law
+    surface: Springs | ClosedShell | RealCup = Springs()  # noqa: RUF009 (frozen)
+    ring_width: float = radians(3.0)
+    ball_wear: Law | None = None
+    creep: Ladder | None = None
+    seconds_per_cycle: float | None = None
+    tolerance: float = 4e-3
+
+    def __post_init__(self) -> None:
+        if not all(map(is_plain, self.joint.numbers())):
+            raise ValueError("a hip in use is one joint, and this one has arrays of numbers")
+        require("ring_width", self.ring_width, radians(0.5) <= self.ring_width <= radians(10.0), "0.5 to 10 degrees")
+        require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
+        if not isinstance(self.surface, Springs):
+            inside(Sphere(cup=self._around).domain, self.joint, "full elasticity")
+        if self.creep is not None:
+            thickness = float(self.joint.liner_thickness)
+            require("liner_thickness", thickness, thickness < inf, "creep needs a liner that ends")
+        if self.ball_wear is not None and (self.creep is not None or not isinstance(self.surface, Springs)):
+            raise ValueError("a ball that wears is on springs, in a socket that does not creep")
+        require("seconds_per_cycle", self.seconds, 0 < self.seconds < inf, "a time (s) is positive and finite")
+        self._check_held()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For other processes: the hip itself, without what was found of it."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
+
+    @property
+    def seconds(self) -> float:
+        """That a cycle stands for in the life of the liner."""
+        return self.cycle.duration if self.seconds_per_cycle is None else self.seconds_per_cycle
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be said of the cycle, the cup and the law."""
+        crept = self.creep.notes if self.creep else ()
+        worn = (*self.wear.notes, *(self.ball_wear.notes if self.ball_wear else ()))
+        return (*self.cycle.notes, *self._placing_notes, *worn, *crept)
+
+    @cached_property
+    def grid(self) -> Grid:
+        """The cells of the bore."""
+        reach = socket_shape(self.joint, self.cup).reach
+        return grid(reach, self.ring_width) if isinstance(self.surface, Springs) else even_grid(reach, self.ring_width)
+
+    @cached_property
+    def bed(self) -> CycleBed:
+        joint = self.joint
+        if not isinstance(self.surface, Springs):
+            return elastic_bed(self.surface, joint, self._around, self.ring_width)
+        return spring_bed(
+            self.grid,
+            modulus=float(self.surface.modulus(joint)),
+            clearance=float(joint.clearance),
+            socket_radius=float(joint.socket_radius),
+        )
+
+    @cached_property
+    def ball_areas(self) -> Numbers:
+        """Areas of the ball's own cells in mm²: (cells,)."""
+        own = ball_grid(self.ring_width)
+        return numpy.repeat(own.areas[:, 0], own.meridians) * float(self.joint.ball_radius) ** 2
+
+    @property
+    def _around(self) -> Cup:
+        """The cup, wherever it faces."""
+        return Cup(arc_of_cover=self.cup.arc_of_cover, chamfer=self.cup.chamfer, interface=self.cup.interface)
+
+    @cached_property
+    def sliding(self) -> Sliding:
+        return Sliding(radius=float(self.joint.ball_radius), turns=self.turns, directions=self.bed.directions)
+
+    def edge(self, rest: Rest, depth: Numbers | float = 0.0) -> Edge:
+        """How near the edge of each contact comes to the end of the bore, and where."""
+        field = self.bed.edge_field(rest, self._everywhere(depth))
+        return edge_of(self.grid, self.reach, self.bed.socket_radius, field)
+
+    def edge_distance(self, rest: Rest, depth: Numbers | float = 0.0) -> Numbers:
+        """The arc in mm from the edge of each contact to the end of the bore where it is nearest: (loaded,).
+
+        0 where the contact reaches it: edge loading.
+        """
+        return self.edge(rest, depth).distance
+
+    def rest(self, depth: Numbers | float = 0.0, start: Rest | None = None) -> Rest:
+        """The contacts of a cycle on a bore that is worn by a depth in mm (cells,)."""
+        return self.bed.rest(self.loads, self._everywhere(depth), start, self.tether)
+
+    def _everywhere(self, depth: Numbers | float) -> Numbers:
+        """A depth of each cell, (cells,), or of each in each instant, (loaded, cells)."""
+        field = numpy.asarray(depth)
+        return field if field.ndim == 2 else numpy.broadcast_to(field, self.bed.areas.shape)
+
+    def passed(self, rest: Rest) -> Pass:
+        """What the points of the socket go through under these contacts."""
+        return Pass(pressure=rest.pressure, sliding=self.sliding)
+
+    @cached_property
+    def unworn(self) -> Rest:
+        """The contacts of the first cycle."""
+        return self.rest()
+
+    def film(self, lubricant: Lubricant, depth: Numbers | float = 0.0) -> Film:
+        """The film and the friction of a cycle on a bore that is worn by a depth in mm (cells,)."""
+        return film(self, self.bed, self.sliding, self.rest(depth), lubricant)
+
+    @cached_property
+    def first(self) -> First:
+        """The first cycle, on a bore that is not worn, a million times over."""
+        done = self.passed(self.unworn)
+        return first_of(self.wear, done, self.bed.areas, slide=self.slide, max_force=self.cycle.largest_force)
+
+    @property
+    def crossing_angle(self) -> float:
+        """Between sliding and its principal direction in the first cycle, in rad: its mean, weighted by p v."""
+        done = self.passed(self.unworn)
+        touched = numpy.flatnonzero(done.work > 0)
+        weight = (done.work * self.bed.areas)[touched]
+        found = self.sliding.part(touched).crossing_angle(done.pressure[:, touched])
+        return float(found @ weight / weight.sum()) if len(touched) else 0.0
+
+    @property
+    def largest_speed(self) -> float:
+        """The largest speed of sliding in contact in the first cycle, in mm/s."""
+        within = numpy.where(self.unworn.pressure > 0, self.sliding.steps, 0.0)
+        return float((within / self.cycle.seconds[self.loaded][:, None]).max(initial=0.0))
