@@ -17,13 +17,17 @@ version = release = ballsocket.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.intersphinx",
     "sphinx.ext.napoleon",
+    "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
     "generated",
     "mathml",
     "offline",
+    "palettes",
+    "used",
 ]
-exclude_patterns = ["_build", "_generated"]
+exclude_patterns = ["_build", "_generated", "inventories/README.md", "paper/paper.md"]
 nitpicky = True
 nitpick_ignore_regex = [("py:(class|obj|data|exc)", ".*")]  # words of a docstring: linked where they are names
 
@@ -40,7 +44,17 @@ napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_use_ivar = True
 
+intersphinx_mapping = {  # names are looked up here, in files: docs/inventories/README.md
+    "python": ("https://docs.python.org/3", "inventories/python.inv"),
+    "scipy": ("https://docs.scipy.org/doc/scipy", "inventories/scipy.inv"),
+    "pandas": ("https://pandas.pydata.org/docs", "inventories/pandas.inv"),
+}
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
+
 html_theme = "furo"
+html_logo = "_static/logo.svg"
+html_favicon = "_static/logo.svg"
 html_title = f"ballsocket {release}"
 html_math_renderer = "mathml"
 html_static_path = ["_static"]
@@ -53,6 +67,8 @@ sphinx_gallery_conf = {
     "examples_dirs": "../examples",
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
+    "backreferences_dir": "_generated/used",
+    "doc_module": ("ballsocket",),
     "image_scrapers": ("pictures.moved_pictures",),
     "abort_on_example_error": True,
     "download_all_examples": False,

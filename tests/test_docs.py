@@ -6,15 +6,17 @@ import shlex
 import shutil
 from importlib.util import find_spec
 
+import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.sources import bibliography
 
 from .cli.command import run
 from .places import ROOT
 
 DOCS = ROOT / "docs"
-PAGES = sorted(path for path in (DOCS / "index.md", *DOCS.glob("[etrh]*/*.md")) if "```" in path.read_text("utf-8"))
+PAGES = sorted(path for path in (DOCS / "index.md", *DOCS.glob("[ehrst]*/*.md")) if "```" in path.read_text("utf-8"))
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 
 
@@ -83,3 +85,25 @@ def test_an_example_begins_with_a_title(path):
     title, line = path.read_text("utf-8").splitlines()[1:3]
     assert re.fullmatch("=+", line)
     assert len(line) == len(title)
+
+
+def test_the_short_paper_cites_what_the_package_cites():
+    """Its bibliography is of the same entries, and has what is cited and no more."""
+    paper, entries = (DOCS / "paper" / "paper.md").read_text("utf-8"), (DOCS / "paper" / "paper.bib").read_text("utf-8")
+    cited = set(re.findall(r"@(\w+\d{4})", paper))
+    assert cited == set(re.findall(r"^@\w+\{(\w+),", entries, flags=re.MULTILINE))
+    for entry in re.split(r"\n(?=@)", entries.strip()):
+        assert entry.strip() in bibliography().values()
+
+
+def test_a_figure_in_two_palettes(monkeypatch):
+    """Over white the light one is what was drawn; on a dark page ink turns white and colours stay."""
+    pytest.importorskip("sphinx")
+    monkeypatch.syspath_prepend(DOCS / "_ext")
+    from palettes import on_dark, on_light, over_white
+
+    white, black, grey, blue, pale = (1, 1, 1), (0, 0, 0), (0.6, 0.6, 0.6), (0, 0.45, 0.7), (0.34, 0.71, 0.91)
+    drawn = np.array([[white, black, grey, blue, pale]], dtype=float)
+    assert np.allclose(over_white(on_light(drawn)), drawn)
+    on_black = on_dark(drawn)[..., :3] * on_dark(drawn)[..., 3:]
+    assert np.allclose(on_black[0, :4], [black, white, (0.4, 0.4, 0.4), blue])
