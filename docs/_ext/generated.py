@@ -3,6 +3,7 @@
 The paper's pieces are kept between builds by `Plan.run`; everything else takes a second.
 """
 
+import json
 import re
 from contextlib import contextmanager
 from os import environ
@@ -17,6 +18,7 @@ from ballsocket.paper.plan import quick_plan
 from ballsocket.quantities import QUANTITIES
 from ballsocket.sources import Source, bibliography
 
+_PROMISED = Path(__file__).parents[2] / "tests" / "data" / "promised.json"
 _COLUMNS = 88  # of the terminal whose help texts are shown
 
 
@@ -42,6 +44,7 @@ def write(folder: Path) -> None:
         "joints": _presets(bs.joints),
         "materials": _presets(bs.materials, lambda name: f"`{name}`, in Python `{name.replace('-', '_').upper()}`"),
         "nearness": _nearness(),
+        "promised": _promised(),
         "statuses": _statuses(),
         "validity": _validity(),
     }
@@ -184,6 +187,19 @@ def _entry(fields: dict[str, str]) -> str:
     if "eprint" in fields:
         parts.append(f"[arXiv {fields['eprint']}](https://arxiv.org/abs/{fields['eprint']})")
     return ". ".join(filter(None, parts)) + "."
+
+
+# --- what stays ---
+
+
+def _promised() -> str:
+    """Commands with their options, and statuses: the part of the promises that is looked up."""
+    promised = json.loads(_PROMISED.read_text(encoding="utf-8"))
+    rows = [
+        (f"`{name}`", " ".join(f"`{option}`" for option in options)) for name, options in promised["commands"].items()
+    ]
+    keys = [(told, " ".join(f"`{key}`" for key in keys)) for told, keys in promised["keys of JSON"].items()]
+    return f"{_table(('command', 'options'), rows)}\n\n{_table(('JSON', 'keys'), keys)}"
 
 
 # --- the command ---

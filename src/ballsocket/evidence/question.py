@@ -29,7 +29,7 @@ MOST = 2000
 """Cases of a matrix."""
 
 _ASIDE = ("tolerances", "sources", "friction", "wear")
-_KEYS = {
+FILE_KEYS = {
     "": ("question", "context_of_use", "finite_elements", "risk", "required", "matrix", *PARTS, *_ASIDE),
     **{name: KEYS[name] for name in PARTS},
     "risk": ("influence", "consequence"),
@@ -121,10 +121,10 @@ def read_question(path: str | Path) -> Question:
 
 
 def _question(content: Mapping[str, Any], path: Path) -> Question:
-    check_keys(content, "", "at the top", _KEYS)
+    check_keys(content, "", "at the top", FILE_KEYS)
     parts = {name: table_of(content, name) for name in ("risk", "required", "matrix", "tolerances", "friction", "wear")}
     for name, part in parts.items():
-        check_keys(part, name, f"in [{name}]", _KEYS)
+        check_keys(part, name, f"in [{name}]", FILE_KEYS)
     axes = {name: _several(name, value) for name, value in parts["matrix"].items()}
     _check_axes(axes)
     elements = content.get("finite_elements", False)

@@ -38,7 +38,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
     "wear": WEAR_KEYS,
     "uncertainty": SCATTER_KEYS,
 }
-_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
+FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
 _MILLION = 1e6
 
 
@@ -86,9 +86,9 @@ def read_hip(path: str | Path) -> HipFile:
 
 
 def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
-    check_keys(content, "", "at the top", _KEYS)
+    check_keys(content, "", "at the top", FILE_KEYS)
     for name in ("cup", "cycle", "wear", "creep", "film", "uncertainty"):
-        check_keys(table_of(content, name), name, f"in [{name}]", _KEYS)
+        check_keys(table_of(content, name), name, f"in [{name}]", FILE_KEYS)
     given = _joint(content, folder)
     cycle, wear = given_cycle(content, folder), table_of(content, "wear")
     width = {name: parse(name, wear[name], Kind.ANGLE) for name in ("ring_width",) if name in wear}

@@ -35,7 +35,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
     "": (*PARTS, "model", "scatter", "free", "machine", "data"),
     "data": (*_OF_FILE, *_OF_VALUES, *_OF_BOTH),
 }
-_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
+FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
 _SCATTERS = ("normal", "heavy-tailed")
 
 
@@ -76,7 +76,7 @@ def read_identify(path: str | Path) -> IdentifyFile:
 
 
 def _file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
-    check_keys(content, "", "at the top", _KEYS)
+    check_keys(content, "", "at the top", FILE_KEYS)
     given = joint_in(content, folder)
     machines = {name: _machine(name, table) for name, table in table_of(content, "machine").items()}
     return IdentifyFile(
@@ -129,7 +129,7 @@ def _data(tables: Any, machines: Mapping[str, Machine], folder: Path) -> tuple[M
 
 
 def _set(table: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
-    check_keys(table, "data", "in [[data]]", _KEYS)
+    check_keys(table, "data", "in [[data]]", FILE_KEYS)
     if ("file" in table) == ("values" in table):
         raise ValueError("[[data]] needs a file, or a quantity with its values, and not both")
     machine = machines[known_name("machine", table["machine"], machines)] if "machine" in table else PERFECT

@@ -34,7 +34,7 @@ _TOP = (
     "store",
     "engine",
 )
-_KEYS = {"": _TOP, **{name: KEYS[name] for name in PARTS}, "axes": tuple(PARAMETERS)}
+FILE_KEYS = {"": _TOP, **{name: KEYS[name] for name in PARTS}, "axes": tuple(PARAMETERS)}
 _ENGINES = ("serial", "processes", "dask")
 _LARGEST = 1 << 53
 models: dict[str, Model] = {**catalogue, "exact-curve": ExactCurve(), judge.name: judge, off_axis.name: off_axis}
@@ -78,7 +78,7 @@ def read_study(path: str | Path) -> StudyFile:
 
 
 def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
-    check_keys(content, "", "at the top", _KEYS)
+    check_keys(content, "", "at the top", FILE_KEYS)
     quantities = content.get("quantities", [])
     if not (isinstance(quantities, list) and all(isinstance(name, str) for name in quantities)):
         raise ValueError(f"quantities = {shown(quantities)} must be a list of names")

@@ -1,0 +1,101 @@
+"""What the package promises to keep, as it is now: `python tests/data/make_promised.py` writes `promised.json`.
+
+Run when something is added that is to stay. What would go is named, and not taken out: that is for a new major version.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from inspect import signature
+from pathlib import Path
+from typing import Any
+
+import typer
+
+import ballsocket as bs
+from ballsocket.cli.root import app
+from ballsocket.evidence.question import FILE_KEYS as OF_EVIDENCE
+from ballsocket.hip.file import FILE_KEYS as OF_A_HIP
+from ballsocket.identify.file import FILE_KEYS as OF_DATA
+from ballsocket.io.joint_file import KEYS as OF_A_JOINT
+from ballsocket.quantities import QUANTITIES
+from ballsocket.studies.file import FILE_KEYS as OF_A_STUDY
+
+PROMISED = Path(__file__).with_name("promised.json")
+LOAD = {"force": 3000.0}
+FILES = {
+    "joint file": OF_A_JOINT,
+    "study file": OF_A_STUDY,
+    "hip file": OF_A_HIP,
+    "file of data": OF_DATA,
+    "question of evidence": OF_EVIDENCE,
+}
+
+
+def main() -> None:
+    now = present()
+    gone = missing(promised(), now)
+    if gone:
+        sys.exit("promised, and not there:\n" + "\n".join(gone))
+    PROMISED.write_text(json.dumps(now, indent=1, ensure_ascii=False, sort_keys=True) + "\n", encoding="utf-8")
+
+
+def promised() -> dict[str, Any]:
+    return json.loads(PROMISED.read_text(encoding="utf-8"))
+
+
+def present() -> dict[str, Any]:
+    """Names, parameters, units, commands and their options, keys of JSON and of joint files, statuses."""
+    hip = bs.joints["hip-36"]
+    answer = bs.compare(hip, **LOAD).summary()
+    tilted = bs.Sphere(ring_width=0.1).press(hip, tilt=0.5, **LOAD)
+    return {
+        "names of ballsocket": sorted(bs.__all__),
+        "parameters": {
+            name: _parameters(getattr(bs, name)) for name in sorted(bs.__all__) if callable(getattr(bs, name))
+        },
+        "models": sorted([*bs.catalogue, "fem", "sphere"]),
+        "presets": {"joints": sorted(bs.joints), "materials": sorted(bs.materials)},
+        "units": {each.name: each.unit for each in QUANTITIES.values()},
+        "statuses": {status.name: int(status) for status in bs.Status},
+        "commands": _commands(),
+        "keys of files": {
+            file: {table or "top": sorted(keys) for table, keys in of.items()} for file, of in FILES.items()
+        },
+        "keys of JSON": {
+            "of an answer": sorted(answer),
+            "of a joint": sorted(answer["joint"]),
+            "of a contact": sorted(answer["results"][0]),
+            "of a tilted contact": sorted(tilted.to_dict()),
+        },
+    }
+
+
+def _parameters(thing: Any) -> list[str]:
+    try:
+        return sorted(name for name in signature(thing).parameters if not name.startswith("_"))
+    except ValueError:
+        return []
+
+
+def _commands() -> dict[str, list[str]]:
+    group = typer.main.get_command(app)
+    return {
+        name: sorted(option for parameter in command.params for option in parameter.opts if option.startswith("--"))
+        for name, command in group.commands.items()  # type: ignore[attr-defined]
+    }
+
+
+def missing(said: Any, now: Any, path: str = "") -> list[str]:
+    """What is promised and is not so, each by the path to it."""
+    if isinstance(said, dict):
+        lost = [f"{path}{key}" for key in said if key not in now]
+        return lost + [each for key in said if key in now for each in missing(said[key], now[key], f"{path}{key}: ")]
+    if isinstance(said, list):
+        return [f"{path}{one}" for one in said if one not in now]
+    return [] if said == now else [f"{path}{said!r}, now {now!r}"]
+
+
+if __name__ == "__main__":
+    main()
