@@ -88,7 +88,7 @@ def _keys(used: Any) -> list[str]:
 
 def _found(used: Any) -> Iterator[str]:
     yield from (source.key for source in getattr(used, "sources", ()))
-    yield from _named_in(str(getattr(used, "source", "")))
+    yield from named_in(str(getattr(used, "source", "")))
     for layer in getattr(used, "backing", ()):
         yield from _found(layer)
     for part in ("model", "joint", "liner", "ball", "material"):
@@ -96,7 +96,7 @@ def _found(used: Any) -> Iterator[str]:
             yield from _found(getattr(used, part))
 
 
-def _named_in(text: str) -> Iterator[str]:
+def named_in(text: str) -> Iterator[str]:
     """The publications that a text names, such as "Plank et al. 2007"."""
     for key in bibliography() if text else ():
         source = Source(key)

@@ -170,13 +170,16 @@ def test_a_massive_socket_is_called_so():
 @pytest.mark.parametrize("load", ["--force=-0", "--indentation=-0.0", "--half-angle=-0"])
 def test_minus_nothing_is_nothing(load):
     assert "-0" not in re.sub(r"hip-28", "", run("press", "hip-28", load, "--model", "hertz").stdout)
-    assert "-0" not in run("press", "hip-28", load, "--model", "hertz", "--json").stdout
+    answer = json.loads(run("press", "hip-28", load, "--model", "hertz", "--json").stdout)
+    said = answer.pop("next")
+    assert "-0" not in json.dumps(answer)
+    assert all(load in step["command"] for step in said if "press" in step["command"])
 
 
 def test_json():
     done = run("press", EXAMPLE, "--model", "hess-forsbach", "--model", "bartel", "--json")
     answer = json.loads(done.stdout)
-    assert list(answer) == ["version", "joint", "results"]
+    assert list(answer) == ["version", "joint", "results", "valid", "error", "notes", "sources", "next"]
     assert answer["version"] == bs.__version__
     assert answer["joint"]["socket_radius"] == pytest.approx(18.0)
     assert answer["joint"]["ball"]["young"] == 230000.0

@@ -46,7 +46,7 @@ def test_what_is_told_has_a_value_and_a_band(folder):
     assert all(each["low"] < each["value"] < each["high"] for each in said["estimates"])
     assert said["valid"] is True
     assert said["information"]["rank"] == 2
-    assert said["next"][0]["bits"] > 0
+    assert said["experiment"][0]["bits"] > 0
 
 
 def test_areas_alone_are_answered_by_the_product(folder):

@@ -145,7 +145,7 @@ def looked_at() -> bool:
 def _run(pipe: Connection, work: Work) -> None:
     """In the process."""
     leave_with_parent()
-    _limit_memory()
+    limit_memory()
     try:
         pipe.send(Done(work(pipe.send)))
     except (ValueError, OutsideDomainError, ImportError) as error:
@@ -154,7 +154,8 @@ def _run(pipe: Connection, work: Work) -> None:
         pipe.send(Refused(why=f"this takes more than {MEMORY / 1e9:g} GB, the most that a run may have here"))
 
 
-def _limit_memory() -> None:
+def limit_memory() -> None:
+    """Hold this process, and those that it starts, to `MEMORY` each."""
     try:
         import resource
     except ImportError:  # no such limits on this system: only the time is limited

@@ -1,11 +1,13 @@
 """The words of the shell become the calls of the package."""
 
 # in the order in which `--help` lists what they do
-from . import press, orient, questions, study, hip, lists, identify, fit, evidence, deck, fmu, export, app, reproduce  # noqa
+from . import press, curve, orient, questions, study, hip, lists, identify, fit, evidence  # noqa: I001
+from . import deck, fmu, export, app, serve_mcp, reproduce
 from .root import main
 
 __all__ = [
     "app",
+    "curve",
     "deck",
     "evidence",
     "export",
@@ -19,5 +21,6 @@ __all__ = [
     "press",
     "questions",
     "reproduce",
+    "serve_mcp",
     "study",
 ]

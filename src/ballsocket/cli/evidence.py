@@ -11,12 +11,14 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
+import ballsocket as bs
+
 from ..checks import needs
 from ..engines.local import Engine, Processes
 from ..evidence.folder import differences, write
 from ..evidence.pack import Listener, gathered
 from ..evidence.question import read_question
-from ..output.evidence_page import evidence_page
+from ..output.evidence_page import conclusions, evidence_page
 from .root import FAILURE, app, echo_path
 from .words import AsJson, echo_json
 
@@ -41,7 +43,7 @@ def evidence(
     if (question is None) == (check is None):
         raise ValueError("either a question file is needed, or --check with a folder of evidence")
     if check is not None:
-        _again(check, Processes(workers=workers))
+        _again(check, Processes(workers=workers), as_json)
         return
     assert question is not None
     asked = read_question(question)
@@ -49,17 +51,21 @@ def evidence(
         record = gathered(asked, out / "data", listen, Processes(workers=workers))
     path = write(asked, record, evidence_page(record), out)
     if as_json:
-        echo_json(record)
+        echo_json({**record, "folder": str(out), "valid": record["accurate"]["holds"], "notes": conclusions(record)})
     else:
         echo_path(path)
 
 
-def _again(folder: Path, engine: Engine) -> None:
+def _again(folder: Path, engine: Engine, as_json: bool) -> None:
     with _told() as listen:
         count, found = differences(folder, listen, engine)
-    for each in found:
-        typer.echo(str(each))
-    typer.echo(f"{count - len(found)} of {count} numbers, words and files are as they were written")
+    if as_json:
+        told = [each.summary() for each in found]
+        echo_json({"version": bs.__version__, "valid": not found, "compared": count, "differences": told})
+    else:
+        for each in found:
+            typer.echo(str(each))
+        typer.echo(f"{count - len(found)} of {count} numbers, words and files are as they were written")
     if found:
         raise typer.Exit(FAILURE)
 

@@ -83,7 +83,7 @@ def _bands(given: HipFile, history: History, engine: Engine) -> Bands | None:
 
 
 def _echo(history: History, bands: Bands | None) -> None:
-    answer = {"version": bs.__version__, **history.summary()}
+    answer = {"version": bs.__version__, "valid": history.settled, **history.summary()}
     if bands is not None:
         answer |= bands.summary()
         answer["notes"] = [*answer["notes"], *bands.notes]

@@ -65,5 +65,5 @@ def _summary(found: Identified, drawn: Posterior | None) -> dict[str, Any]:
         "joint": found.joint.summary(),
         **found.summary(),
         "posterior": posterior,
-        "next": found.next.summary(),
+        "experiment": found.next.summary(),
     }

@@ -173,7 +173,10 @@ def optimise(
     if len(chosen) != 1:
         raise ValueError(f"one answer or two are minimised, got {len(chosen)}")
     best = find_optimum(model, file.joint, ranges, among=among, minimise=chosen[0], limits=limits, load=load)
-    form.print(lambda: {"version": bs.__version__, **best.summary()}, lambda: study_terminal.print_optimum(best))
+    form.print(
+        lambda: {"version": bs.__version__, "model": model.name, **best.summary()},
+        lambda: study_terminal.print_optimum(best),
+    )
     sizes = {name: value for name, value in best.point.items() if name in among}
     form.draw(lambda: study_plots.design_map(everywhere(best.joint, sizes), limits, _shown(chosen), best=best.point))
 

@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 import ballsocket as bs
 
-from ..output import study_plots, study_terminal
+from ..output import study_plots, study_summary, study_terminal
 from ..output.save import check_format, save
 from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
@@ -23,6 +23,7 @@ from ..studies.run import Listener
 from ..studies.run import Progress as Reached
 from .engine import Scheduler, Workers, engine_of
 from .root import app, complain, echo_path
+from .words import AsJson, echo_json
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,6 +39,7 @@ def study(
     figure: Annotated[
         Path | None, typer.Option(help="A map of two axes, or bands of samples over one (.png, .svg, .pdf).")
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Press a joint at every point of a study file, into a store that can be resumed."""
     if out is not None:
@@ -55,15 +57,17 @@ def study(
             engine=engine_of(workers, scheduler, given.engine),
             listen=listen,
         )
-    study_terminal.print_study(found)
-    if kept is not None:
-        echo_path(kept)
+    if as_json:
+        echo_json({"version": bs.__version__, "joint": given.joint.summary(), **study_summary.study_summary(found)})
+    else:
+        study_terminal.print_study(found)
     if out is not None:
         export(found, out)
-        echo_path(out)
     if draw is not None and figure is not None:
         save(draw(found), figure)
-        echo_path(figure)
+    for path in () if as_json else (kept, out, figure):
+        if path is not None:
+            echo_path(path)
 
 
 def _drawing(given: StudyFile, path: Path) -> Callable[[Any], Figure]:

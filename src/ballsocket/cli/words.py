@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,6 +14,7 @@ from ..checks import nearest, plain_name
 from ..io.joint_file import JointFile, joint_of, read_joint, read_load, varied
 from ..joint.dimensions import LENGTHS
 from ..presets import joints
+from .answers import whole
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")]
 
@@ -106,5 +108,5 @@ def named_joint(name: str) -> JointFile:
 
 
 def echo_json(answer: dict[str, Any]) -> None:
-    """Print one JSON object; a number that is missing is null."""
-    typer.echo(json.dumps(answer, indent=2, allow_nan=False))
+    """Print one JSON object, with what every answer says; a number that is missing is null."""
+    typer.echo(json.dumps(whole(answer, sys.argv[1:]), indent=2, allow_nan=False))

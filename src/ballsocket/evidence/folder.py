@@ -57,6 +57,10 @@ class Difference:
     written: Any
     now: Any
 
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON."""
+        return {"where": self.where, "written": self.written, "now": self.now}
+
     def __str__(self) -> str:
         return f"{self.where}: written {shown(self.written)}, now {shown(self.now)}"
 

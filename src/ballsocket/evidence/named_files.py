@@ -22,8 +22,9 @@ def files_of(path: Path) -> tuple[Path, ...]:
     """
     found, left = {path: None}, [path]
     while left:
-        for text in _texts(read_toml(left.pop(), "question", dict)):
-            there = path.parent / text
+        here = left.pop()
+        for text in _texts(read_toml(here, "question", dict)):
+            there = here.parent / text
             if len(text) < 200 and there.is_file() and there not in found:
                 _check_inside(text)
                 found[there] = None
@@ -35,7 +36,7 @@ def files_of(path: Path) -> tuple[Path, ...]:
 
 def _check_inside(text: str) -> None:
     if Path(text).is_absolute() or ".." in Path(text).parts:
-        raise ValueError(f"{shown(text)} lies outside the folder of the question: put it beside it")
+        raise ValueError(f"{shown(text)} lies outside the folder of its file: put it beside that")
 
 
 def _texts(part: Any) -> Iterator[str]:

@@ -50,18 +50,18 @@ def evidence_page(record: Record, day: date | None = None) -> str:
         "credibility": ("Credibility factors (ASME V&V 40)", _credibility(record)),
         "signed": ("Signatures", _signed(record, day or date.today())),
     }
-    lede = f"{_PRINT}<p>{escape(record['question'])}</p>{_answer(record)}"
+    lede = f"{_PRINT}<p>{escape(record['question'])}</p>{_list(conclusions(record))}"
     return html.page("Evidence", lede, sections)
 
 
-def _answer(record: Record) -> str:
-    """What it comes to, first."""
+def conclusions(record: Record) -> list[str]:
+    """What it comes to, in sentences: how limits are kept, and whether the numbers are as exact as is required."""
     limits = [f"{each['limit']}: {each['verdict']}" for each in record["limits"]] or ["no limit was given"]
     accurate = record["accurate"]
     largest = "unknown" if accurate["largest"] is None else _percent(accurate["largest"])
     holds = "within" if accurate["holds"] else "NOT within"
     said = f"Error bars and other methods: {largest} at most, {holds} the required {_percent(accurate['required'])}."
-    return _list([*limits, said])
+    return [*limits, said]
 
 
 def _question(record: Record) -> str:

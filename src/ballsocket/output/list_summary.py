@@ -20,7 +20,7 @@ def model_summary(model: Theory) -> dict[str, Any]:
         "promise": None if promise is None else {"within": promise.within, "quantities": list(promise.quantities)},
         "validity": list(map(_range, model.validity)),
         "reach": model.reach,
-        "sources": list(map(_source, model.sources)),
+        "sources": list(map(source_summary, model.sources)),
     }
 
 
@@ -35,5 +35,6 @@ def _range(limit: Range) -> dict[str, Any]:
     return {"quantity": name, "text": str(limit), "low": low, "high": high, "why": limit.why}
 
 
-def _source(source: Source) -> dict[str, Any]:
+def source_summary(source: Source) -> dict[str, Any]:
+    """A publication, and the place in it."""
     return {"key": source.key, "text": str(source), "doi": source.doi or None}

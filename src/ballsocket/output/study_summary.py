@@ -3,17 +3,105 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy
 
 from ..arrays import to_list
 from ..studies.limits import Limit, allowed, refusal
 from ..studies.parameters import PARTS_OF
-from ..studies.pieces import dims_of
+from ..studies.pieces import dims_of, pieces
+from ..validity import Status
 
 if TYPE_CHECKING:
     import xarray
+
+
+class End(NamedTuple):
+    """A least or largest value, and the number of its point."""
+
+    value: float
+    place: int
+
+
+@dataclass
+class Seen:
+    """What is told of a study, gathered part by part: it may be larger than the memory."""
+
+    ends: dict[str, tuple[End, End]]
+    sampled: dict[str, list[numpy.ndarray]]
+    failed: dict[Status, int]
+    valid: int = 0
+
+    @classmethod
+    def of(cls, study: xarray.Dataset) -> Seen:
+        names = answers(study)
+        nothing = (End(float("nan"), 0), End(float("nan"), 0))
+        seen = cls(
+            dict.fromkeys(names, nothing), {name: [] for name in names}, {one: 0 for one in Status if one.failed}
+        )
+        first, stride = 0, max(1, study.status.size // _SAMPLED)
+        for part in pieces(study):
+            for name in names:
+                seen._add(name, part[name].values.ravel(), first, stride)
+            for one in seen.failed:
+                seen.failed[one] += int((part.status.values == int(one)).sum())
+            seen.valid += int(part.valid.values.sum())
+            first += part.status.size
+        return seen
+
+    def _add(self, name: str, values: numpy.ndarray, first: int, stride: int) -> None:
+        self.sampled[name].append(values[::stride].copy())
+        if numpy.isnan(values).all():
+            return
+        low, high = self.ends[name]
+        least, most = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
+        if not values[least] >= low.value:
+            low = End(float(values[least]), first + least)
+        if not values[most] <= high.value:
+            high = End(float(values[most]), first + most)
+        self.ends[name] = low, high
+
+
+_SAMPLED = 1_000_000  # points over which a median is taken
+_LISTED = 5000  # points up to which all values are told
+
+
+def study_summary(study: xarray.Dataset) -> dict[str, Any]:
+    """Least, median and largest value of each answer with their places, and all values where these are few."""
+    seen, size = Seen.of(study), int(study.status.size)
+    quantities = {name: _ends_of(study, name, seen) for name in seen.ends}
+    return {
+        "model": study.attrs["model"],
+        "points": size,
+        "valid": seen.valid == size,
+        "notes": [f"{count} of {size}: {one.sentence}" for one, count in seen.failed.items() if count],
+        "quantities": quantities,
+        "values": _values(study) if size <= _LISTED else None,
+    }
+
+
+def _values(study: xarray.Dataset) -> dict[str, Any]:
+    """What varies and what was answered, point by point in the order of the axes."""
+    flat = study.stack(point=dims_of(study)) if dims_of(study) else study.expand_dims("point")
+    names = [*varying(study), *answers(study)]
+    return {name: _plain(flat[name].values) for name in names}
+
+
+def _plain(values: numpy.ndarray) -> Any:
+    return values.tolist() if values.dtype.kind in "OUS" else to_list(values)
+
+
+def _ends_of(study: xarray.Dataset, name: str, seen: Seen) -> dict[str, Any]:
+    low, high = seen.ends[name]
+    if numpy.isnan(low.value):
+        return {"least": None, "median": None, "largest": None}
+    told = {
+        end: {"value": one.value, "at": coordinates(study, one.place)}
+        for end, one in (("least", low), ("largest", high))
+    }
+    return {**told, "median": float(numpy.nanmedian(numpy.concatenate(seen.sampled[name])))}
 
 
 def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any]:
@@ -32,7 +120,12 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
         values = study[name].where(good).transpose(*dims_of(study)).values
         ends = (int(numpy.nanargmin(values)), int(numpy.nanargmax(values)))
         quantities[name] = [{"value": float(values.flat[end]), "at": coordinates(study, end)} for end in ends]
-    return {"model": study.attrs["model"], "limits": [str(limit) for limit in limits], "quantities": quantities}
+    return {
+        "model": study.attrs["model"],
+        "limits": [str(limit) for limit in limits],
+        "valid": bool(study.valid.where(good, True).all()),
+        "quantities": quantities,
+    }
 
 
 def front_summary(front: xarray.Dataset) -> dict[str, Any]:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy
 from rich.console import Console
@@ -12,16 +11,12 @@ from rich.table import Table
 
 from ..quantities import QUANTITIES
 from ..studies.limits import Limit, allowed
-from ..studies.pieces import pieces
-from ..validity import Status
-from .study_summary import answers, coordinates, map_summary, varying
+from .study_summary import Seen, answers, coordinates, map_summary, varying
 
 if TYPE_CHECKING:
     import xarray
 
     from ..studies.optimum import Optimum
-
-_SAMPLED = 1_000_000  # points over which a median is taken
 
 
 def print_study(study: xarray.Dataset) -> None:
@@ -29,7 +24,7 @@ def print_study(study: xarray.Dataset) -> None:
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
     Console().print(f"{study.attrs['model']}, {shape or 'one point'}", highlight=False)
     table = _table("quantity", "unit", "least", "median", "largest", "least at", "largest at")
-    seen = _Seen.of(study)
+    seen = Seen.of(study)
     for name, (low, high) in seen.ends.items():
         if numpy.isnan(low.value):
             table.add_row(name, _unit(name), *["no answer"] * 3, "", "")
@@ -40,50 +35,6 @@ def print_study(study: xarray.Dataset) -> None:
     Console().print(table)
     failed = "".join(f"; {count} {one.sentence}" for one, count in seen.failed.items() if count)
     Console().print(f"{study.status.size} points, {seen.valid} of them valid{failed}", highlight=False)
-
-
-class _End(NamedTuple):
-    value: float
-    place: int
-
-
-@dataclass
-class _Seen:
-    """What is told of a study, gathered part by part: it may be larger than the memory."""
-
-    ends: dict[str, tuple[_End, _End]]
-    sampled: dict[str, list[numpy.ndarray]]
-    failed: dict[Status, int]
-    valid: int = 0
-
-    @classmethod
-    def of(cls, study: xarray.Dataset) -> _Seen:
-        names = answers(study)
-        nothing = (_End(float("nan"), 0), _End(float("nan"), 0))
-        seen = cls(
-            dict.fromkeys(names, nothing), {name: [] for name in names}, {one: 0 for one in Status if one.failed}
-        )
-        first, stride = 0, max(1, study.status.size // _SAMPLED)
-        for part in pieces(study):
-            for name in names:
-                seen._add(name, part[name].values.ravel(), first, stride)
-            for one in seen.failed:
-                seen.failed[one] += int((part.status.values == int(one)).sum())
-            seen.valid += int(part.valid.values.sum())
-            first += part.status.size
-        return seen
-
-    def _add(self, name: str, values: numpy.ndarray, first: int, stride: int) -> None:
-        self.sampled[name].append(values[::stride].copy())
-        if numpy.isnan(values).all():
-            return
-        low, high = self.ends[name]
-        least, most = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
-        if not values[least] >= low.value:
-            low = _End(float(values[least]), first + least)
-        if not values[most] <= high.value:
-            high = _End(float(values[most]), first + most)
-        self.ends[name] = low, high
 
 
 def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:

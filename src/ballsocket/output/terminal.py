@@ -15,8 +15,8 @@ from rich.text import Text
 from ..catalogue import reference
 from ..compare import Comparison, relative
 from ..contact import Contact
-from ..contact.describe import UTILISATION, Column, number_text
-from ..quantities import CONTACT
+from ..contact.describe import COLUMNS, UTILISATION, Column, number_text
+from ..quantities import CONTACT, HEADLINE
 from .unit_systems import Units
 
 _BARS = " ▁▂▃▄▅▆▇█"
@@ -57,6 +57,23 @@ def _letters(comparison: Comparison, columns: Sequence[Column]) -> str:
     meant = ", ".join(f"{column.symbol} {column.title}" for column in columns)
     apart = any(comparison.deviation(name) is not None for name in comparison)
     return f"{meant}; Δ % from {reference.name}" if apart else meant
+
+
+def print_curve(contact: Contact) -> None:
+    """Contacts at one load after the other as a table of the quantities of most interest, and the notes."""
+    terminal = console()
+    print_folded(terminal, f"{contact.model.name} on {contact.joint}", "bold")
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
+    for column in COLUMNS:
+        if column.attribute in HEADLINE:
+            table.add_column(column.head, justify="right", no_wrap=True)
+    table.add_column("valid", no_wrap=True)
+    values = [column.of(contact) for column in COLUMNS if column.attribute in HEADLINE]
+    for place, valid in enumerate(contact.valid):
+        table.add_row(*(number_text(value[place], 4, "-") for value in values), "yes" if valid else "no")
+    terminal.print(table)
+    for note in contact.notes:
+        print_folded(terminal, note, "dim")
 
 
 def console() -> Console:

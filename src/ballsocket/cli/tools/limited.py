@@ -1,0 +1,12 @@
+"""The command with limits on its memory; run as a process of its own."""
+
+from __future__ import annotations
+
+from ...app.running import limit_memory
+from ...engines.local import leave_with_parent
+from ..root import main
+
+if __name__ == "__main__":
+    leave_with_parent()
+    limit_memory()
+    main()

@@ -1,0 +1,106 @@
+"""What every answer in JSON says beside its numbers, and where it sends the one who asks next."""
+
+import json
+import shlex
+from inspect import signature
+
+import pytest
+
+from ballsocket.cli.root import app
+
+from ..places import EXAMPLES
+from .command import run
+
+FIELDS = ("valid", "error", "notes", "sources", "next")
+STUDY = "joint = 'hip-28'\nmodel = 'hess-forsbach'\n[axes]\nforce = [1000, 2000]\n"
+
+ASKED = {
+    "press": ("press", "hip-36", "--force", "3 kN"),
+    "curve": ("curve", "hip-36", "--force", "3 kN", "--points", "3"),
+    "map": ("map", "hip-36", "--force", "3 kN", "--points", "2"),
+    "optimise": ("optimise", "hip-36", "--force", "3 kN", "--vary", "clearance=50..200 um"),
+    "sensitivity": (
+        "sensitivity",
+        "hip-36",
+        "--force",
+        "3 kN",
+        "--spread",
+        "liner_poisson=0.38..0.46",
+        "--count",
+        "64",
+    ),
+    "orient": ("orient", "hip-36", "--force", "3 kN", "--inclination", "40..50 deg", "--points", "2"),
+    "study": ("study", "study.toml"),
+    "identify": ("identify", str(EXAMPLES / "measured_areas.toml")),
+    "calibrate": ("calibrate", "hip-36"),
+    "models": ("models", "exact"),
+    "presets": ("presets", "hip-36"),
+}
+ELSEWHERE = {"hip", "evidence"}  # these take seconds: their own tests look
+
+
+def said(*words, folder=None):
+    return json.loads(run(*words, "--json", folder=folder).stdout)
+
+
+def test_every_command_that_answers_in_json_is_looked_at():
+    spoken = {
+        each.name or each.callback.__name__
+        for each in app.registered_commands
+        if "as_json" in signature(each.callback).parameters
+    }
+    assert spoken == {*ASKED, *ELSEWHERE}
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_an_answer_says_whether_it_holds_whence_and_what_next(name, tmp_path):
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    answer = said(*ASKED[name], folder=tmp_path)
+    assert [each for each in FIELDS if each not in answer] == []
+    assert all(each["key"] and each["text"] for each in answer["sources"])
+    assert answer["sources"]
+    for step in answer["next"]:
+        command, *words = shlex.split(step["command"])
+        assert (command, step["why"] != "") == ("ballsocket", True)
+        assert words[0] in {each.name or each.callback.__name__ for each in app.registered_commands}
+
+
+def test_who_follows_what_is_next_comes_to_an_answer_that_holds():
+    answer = said("press", "hip-36", "--force", "3 kN", "--model", "hertz")
+    assert not answer["valid"]
+    assert any("half-space" in note for note in answer["notes"])
+    words = shlex.split(answer["next"][0]["command"])[1:]
+    assert words == ["press", "hip-36", "--force", "3 kN", "--model", "exact"]
+    better = said(*words)
+    assert better["valid"]
+    assert 0 < better["error"]["exact"]["max_pressure"] < 1e-6
+
+
+def test_a_joint_that_was_found_is_pressed_next():
+    answer = said(*ASKED["optimise"])
+    step = shlex.split(answer["next"][0]["command"])[1:]
+    exact = next(each for each in said(*step)["results"] if each["model"] == "exact")
+    assert exact["max_pressure"] == pytest.approx(answer["value"], rel=1e-3)
+
+
+def test_a_tilted_answer_is_judged_by_itself_and_not_by_the_exact_one_beside_it():
+    answer = said("press", "hip-36", "--force", "3 kN", "--tilt", "45 deg", "--ring-width", "6 deg")
+    assert answer["valid"]
+    assert not next(each["valid"] for each in answer["results"] if each["model"] == "exact")
+
+
+def test_a_curve_is_pressed_point_by_point():
+    answer = said("curve", "hip-36", "--force", "3 kN", "--points", "4", "--model", "hertz")
+    assert answer["force"] == [0.0, 1000.0, 2000.0, 3000.0]
+    assert answer["valid"] is all(answer["valid_at"]) is False
+    last = said("press", "hip-36", "--force", "3 kN", "--model", "hertz")["results"][0]
+    assert answer["max_pressure"][-1] == pytest.approx(last["max_pressure"], rel=1e-12)
+    assert "Hertz 1882" in [each["text"] for each in answer["sources"]]
+
+
+def test_a_study_in_json_has_its_ends_and_all_values_of_few_points(tmp_path):
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    answer = said("study", "study.toml", folder=tmp_path)
+    assert answer["values"]["force"] == [1000.0, 2000.0]
+    assert answer["quantities"]["max_pressure"]["largest"]["at"]["force"] == 2000.0
+    assert answer["values"]["max_pressure"][1] == answer["quantities"]["max_pressure"]["largest"]["value"]

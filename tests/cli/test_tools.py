@@ -1,0 +1,109 @@
+"""The tools for assistants: what they take, what they refuse, and that a call is bounded."""
+
+import asyncio
+import json
+
+import pytest
+
+from ballsocket.cli.tools.call import words_of
+from ballsocket.cli.tools.run import run as run_tool
+from ballsocket.cli.tools.schema import schema
+from ballsocket.cli.tools.table import TOOLS
+
+from .command import run
+
+PRESS = {"joint": "hip-36", "force": "3 kN"}
+
+
+@pytest.mark.parametrize("name", TOOLS)
+def test_a_tool_says_what_it_takes_and_names_no_file_to_write(name):
+    properties = schema(TOOLS[name])["properties"]
+    assert all(each["description"] for each in properties.values())
+    assert not {"figure", "out", "store", "section", "view", "vtk", "report", "scheduler"} & set(properties)
+
+
+def test_numbers_of_a_tool_have_their_units():
+    properties = schema(TOOLS["press"])["properties"]
+    units = {"ball_radius": "[mm]", "force": "[N]", "young": "[MPa]", "half_angle": "[°]"}
+    assert all(unit in properties[name]["description"] for name, unit in units.items())
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "message"),
+    [
+        ("pres", {}, "tool 'pres' is not known; did you mean 'press'"),
+        ("press", {"forces": 1}, "'forces' in a call of press is not known; did you mean 'force'"),
+        ("press", {**PRESS, "figure": "x.png"}, "'figure' in a call of press is not known"),
+        ("press", {**PRESS, "force": True}, "force = True must be text with a unit, or a number"),
+        ("press", {**PRESS, "force": {"N": 1}}, "must be text with a unit"),
+        ("press", {**PRESS, "force": float("nan")}, "force = nan must be finite"),
+        ("press", {**PRESS, "force": "3\nkN"}, "must be one line of at most 300 characters"),
+        ("press", {**PRESS, "model": ["exact"] * 51}, "model has 51 values: at most 50"),
+        ("press", {**PRESS, "joint": "../hip.toml"}, "'../hip.toml' lies outside the folder of this server"),
+        ("press", {**PRESS, "joint": "/etc/passwd"}, "'/etc/passwd' lies outside the folder of this server"),
+        ("optimise", PRESS, "vary is missing"),
+        ("study", {}, "either a file is needed, or content: TOML about a study"),
+        ("study", {"file": "no.toml"}, "'no.toml' is no file in the folder"),
+        ("study", {"content": "joint = 'hip-28'\nstore = 'x'"}, "store is not for this server"),
+        ("study", {"content": "joint = 'hip-28'\n[engine]\nkind = 'dask'"}, "engine is not for this server"),
+        ("study", {"content": "[table]\npath = '/etc/passwd'"}, "'/etc/passwd' lies outside the folder of its file"),
+        ("study", {"content": "joint = "}, "is not TOML"),
+        ("identify", {"content": "x" * 100_001}, "the content is larger than 100000 bytes"),
+    ],
+)
+def test_a_call_that_is_wrong_is_told_how(name, arguments, message, tmp_path):
+    with pytest.raises(ValueError, match=message):
+        words_of(name, arguments, tmp_path)
+
+
+def test_a_link_does_not_lead_out_of_the_folder(tmp_path):
+    (tmp_path / "room").mkdir()
+    (tmp_path / "joint.toml").write_text("[joint]", encoding="utf-8")
+    try:
+        (tmp_path / "room" / "joint.toml").symlink_to(tmp_path / "joint.toml")
+    except OSError:
+        pytest.skip("no links here")
+    with pytest.raises(ValueError, match="lies outside the folder"):
+        words_of("press", {"joint": "joint.toml", "force": 1}, tmp_path / "room")
+
+
+def test_words_are_those_of_the_shell(tmp_path):
+    words = words_of("press", {**PRESS, "force": 3000.0, "model": ["hertz", "exact"]}, tmp_path)
+    assert words == ["press", "hip-36", "--force=3000", "--model=hertz", "--model=exact", "--json"]
+    assert words_of("press", {"joint": "--help"}, tmp_path)[1] == "./--help"
+    question = words_of("evidence", {"content": "question = 'q'"}, tmp_path)
+    assert question[1].endswith(".toml")
+    assert question[2] == f"--out={question[1].removesuffix('.toml')}-pack"
+    assert [path.name for path in tmp_path.iterdir()] == [question[1]]
+
+
+def test_a_call_is_bounded_and_ends(tmp_path):
+    long = words_of("sensitivity", {**PRESS, "model": "fem", "spread": ["clearance=0.05..0.15 mm"]}, tmp_path)
+    told = asyncio.run(run_tool(long, tmp_path, 0.5))
+    assert (told.answer, told.refusal[:19]) == (None, "stopped after 0.5 s")
+
+
+def test_an_assistant_hears_what_the_shell_says(tmp_path):
+    mcp = pytest.importorskip("mcp", reason="the extra for assistants is not installed")
+    from ballsocket.cli.tools.server import server
+
+    async def asked():
+        async with mcp.Client(server(tmp_path, 60.0)) as client:
+            listed = await client.list_tools()
+            half = await client.call_tool("press", {"joint": "hip-36", "force": 1e12, "model": ["bartel"]})
+            refusal = await client.call_tool("press", {"forces": 1})
+            return {each.name for each in listed.tools}, half, refusal
+
+    names, half, refusal = asyncio.run(asked())
+    assert names == set(TOOLS)
+    shell = run("press", "hip-36", "--force=1000000000000", "--model=bartel", "--json")
+    assert half.structured_content == json.loads(half.content[1].text) == json.loads(shell.stdout)
+    assert (half.is_error, f"ballsocket: {half.content[0].text}\n") == (True, shell.stderr)
+    assert refusal.is_error
+    assert refusal.content[0].text.startswith("'forces' in a call of press is not known")
+
+
+def test_without_the_extra_it_is_said_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setattr("ballsocket.checks.find_spec", lambda name: None)
+    done = run("serve-mcp", "--folder", str(tmp_path))
+    assert (done.returncode, done.stderr) == (2, "ballsocket: mcp is not installed: pip install 'ballsocket[mcp]'\n")
