@@ -14,6 +14,7 @@ from typing import Any
 import typer
 
 import ballsocket as bs
+from ballsocket.cli.answers import whole
 from ballsocket.cli.root import app
 from ballsocket.evidence.question import FILE_KEYS as OF_EVIDENCE
 from ballsocket.hip.file import FILE_KEYS as OF_A_HIP
@@ -64,6 +65,7 @@ def present() -> dict[str, Any]:
             file: {table or "top": sorted(keys) for table, keys in of.items()} for file, of in FILES.items()
         },
         "keys of JSON": {
+            "of every command": sorted(whole({}, ())),
             "of an answer": sorted(answer),
             "of a joint": sorted(answer["joint"]),
             "of a contact": sorted(answer["results"][0]),
