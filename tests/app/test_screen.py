@@ -57,7 +57,9 @@ loads = st.one_of(
     st.builds(lambda value: {"indentation": value}, st.floats(1e-6, 1.0)),
     st.builds(lambda value: {"half_angle": value}, st.floats(0.01, 1.5)),
 )
-made_files = st.builds(JointFile, made_joints, loads, cups)
+ways = st.tuples(*3 * (st.floats(-1e3, 1e3),)).filter(lambda way: any(abs(each) > 1e-3 for each in way))
+aims = st.one_of(st.just({}), st.builds(lambda way: {"direction": way}, ways), st.just({"tilt": 0.5}))
+made_files = st.builds(JointFile, made_joints, loads, cups, aims)
 axes = st.sampled_from([("ball_radius", "liner_thickness"), ("clearance", "force"), ("liner_poisson", "outer_radius")])
 
 
@@ -88,6 +90,7 @@ def near(one, other):
     (kind, value), (_, again) = *one.load.items(), *other.load.items()
     return (
         one.joint == other.joint
+        and one.aim == other.aim
         and kind in other.load
         and again == pytest.approx(value, rel=1e-14)
         and (one.cup.interface, one.cup.side, one.cup.chamfer)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from math import degrees, inf, isinf, nextafter, radians
 from typing import Any
@@ -44,6 +45,8 @@ def tables_of(file: JointFile) -> Tables:
         tables["cup"] = cup_table(file.cup)
     if file.load:
         tables["load"] = {name: _bare(name, value) for name, value in file.load.items()}
+    if file.aim:
+        tables.setdefault("load", {}).update(_aim(file.aim))
     return tables
 
 
@@ -54,6 +57,12 @@ def cup_table(cup: Cup) -> Tables:
     if replace(cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT) == cup:
         return {name: table[name] for name in ("arc_of_cover", "chamfer", "interface")}
     return table
+
+
+def _aim(aim: Mapping[str, Any]) -> Tables:
+    """Where a load points, as the table `load` has it: three numbers with commas between, or an angle."""
+    words = {"direction": lambda way: ", ".join(map(repr, way)), "tilt": lambda angle: _bare("tilt", angle)}
+    return {name: words[name](each) for name, each in aim.items()}
 
 
 def _bare(name: str, value: float) -> float:
