@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.dynamics import Damping, Flores, Friction, Touch
+from ballsocket.dynamics import Bristles, Damping, Flores, Friction, Touch
 
 from ..extent import either
 from ..joints import HIP
@@ -197,18 +197,34 @@ def test_numbers_and_arrays_of_any_library_say_the_same():
         (((0.0, 0.0, inf),), Touch.NO_NUMBER),
         (((nan, 0.0, 0.1),), Touch.NO_NUMBER),
         (((0.0, 0.0, 0.12), (0.0, nan, 0.0)), Touch.NO_NUMBER),
+        (((1e200, 0.0, 0.0),), Touch.NO_NUMBER),
         (((0.0, 0.0, 0.05),), Touch.FREE),
         (((0.0, 0.0, 0.12),), Touch.CONTACT),
     ],
 )
-def test_a_state_without_an_answer_is_flagged_and_named(state, touch):
-    load = bs.ForceElement(bs.HessForsbach(), HIP, **LOSSY)(*state)
+@pytest.mark.parametrize("lost", [{}, LOSSY, {"friction": Bristles(coefficient=0.1)}], ids=["elastic", "lossy", "held"])
+def test_a_state_without_an_answer_is_flagged_and_named(state, touch, lost):
+    element = bs.ForceElement(bs.HessForsbach(), HIP, **lost)
+    load = element(*state)
     assert load.status is touch
+    assert element(*map(np.array, state)).status == touch
     assert touch.failed == bool(np.isnan(load.force).any())
     assert bool(load.notes) == touch.failed
     if touch is Touch.THROUGH_WALL:
         assert "deeper than the wall" in load.notes[0]
         assert "r = (0, 0, 30.1) mm, d = 30 mm" in load.notes[0]
+
+
+@pytest.mark.parametrize("rates", [((0.0, 0.0, 1e200),), ((0.0, 0.0, 0.0), (1e300, 0.0, 0.0))], ids=["speed", "spin"])
+@pytest.mark.parametrize("friction", [LOSSY["friction"], Bristles(coefficient=0.1)], ids=["friction", "bristles"])
+def test_rates_too_large_to_square_and_bristles_that_are_no_number_are_flagged(rates, friction):
+    element = bs.ForceElement(bs.HessForsbach(), HIP, friction=friction)
+    assert element((0.0, 0.0, 0.12), *rates).status is Touch.NO_NUMBER
+    several = element(np.array([[0.0, 0.0, 0.12]] * 2), *(np.array([(0.0, 0.0, 1.0), rate]) for rate in rates))
+    assert several.status.tolist() == [Touch.CONTACT, Touch.NO_NUMBER]
+    if isinstance(friction, Bristles):
+        bent = element((0.0, 0.0, 0.12), deflection=(nan, 0.0, 0.0, 0.0))
+        assert bent.status is Touch.NO_NUMBER
 
 
 @pytest.mark.parametrize(

@@ -162,7 +162,10 @@ class ForceElement:
             load = self._of_numbers(three(position), three(velocity), three(spin), attached)
         else:
             load = self._of_arrays(position, velocity, spin, attached)
-        return load if not isinstance(self.friction, Bristles) else brushed(load, self.friction, deflection)
+        if not isinstance(self.friction, Bristles):
+            return load
+        with numpy.errstate(all="ignore"):
+            return brushed(load, self.friction, deflection)
 
     def _of_numbers(self, position: Three, velocity: Three, spin: Three, attached: bool) -> Load:
         given = self.constants

@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable
+from functools import partial, wraps
 from math import degrees
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy
 
 from .. import arrays
 from ..arrays import Array, to_list
 from . import reaction as formulas
 from .matrices import damping_matrix, matrix, vector
 from .reaction import Elastic, Place, Three
-from .touch import Touch, status_of, told
+from .touch import ROOM, Touch, status_of, told
 
 if TYPE_CHECKING:
     from .element import ForceElement
+
+
+def _quiet(formula: Callable[[Load], Any]) -> Callable[[Load], Any]:
+    """A formula without NumPy's warnings: a state without an answer has a status."""
+
+    @wraps(formula)
+    def answer(load: Load) -> Any:
+        if type(load.force) is tuple:
+            return formula(load)
+        with numpy.errstate(all="ignore"):
+            return formula(load)
+
+    return answer
 
 
 class Load(NamedTuple):
@@ -52,6 +68,7 @@ class Load(NamedTuple):
         return self._packed(*(-part for part in self._parts(self.force)))
 
     @property
+    @_quiet
     def socket_moment(self) -> Any:
         """On the socket about its own centre, in N mm: less the moment on the ball, less r x F."""
         (fx, fy, fz), (mx, my, mz) = self._parts(self.force), self._parts(self.moment)
@@ -69,16 +86,19 @@ class Load(NamedTuple):
         return self.place.indentation > 0.0
 
     @property
+    @_quiet
     def half_angle(self) -> Array:
         """ε of the contact in rad, 0 where nothing touches."""
         return self.element.half_angle(self.indentation)
 
     @property
+    @_quiet
     def max_pressure(self) -> Array:
         """In MPa, of the elastic contact away from a rim."""
         return self.element.max_pressure(self.indentation)
 
     @property
+    @_quiet
     def tangent(self) -> Any:
         """∂²U/∂r² in N/mm, (3, 3) and symmetric: less the slope of the elastic force."""
         xx, yy, zz, xy, yz, zx = formulas.tangent(self.place, self.contact, self.element.constants)
@@ -88,15 +108,18 @@ class Load(NamedTuple):
     @property
     def damping_matrix(self) -> Any:
         """Less the slope of (force, moment) over (velocity, spin) at this normal force, (6, 6) and symmetric."""
-        return damping_matrix(self.place, self.contact, self.velocity, self.spin, self.element.constants)
+        with numpy.errstate(all="ignore"):
+            return damping_matrix(self.place, self.contact, self.velocity, self.spin, self.element.constants)
 
     @property
+    @_quiet
     def dissipation(self) -> Array:
         """What is lost in N mm/s: never below 0."""
         state = self.place, self.contact, self.velocity, self.spin
         return formulas.dissipation(*state, self.element.constants) + self.rubbed
 
     @property
+    @_quiet
     def status(self) -> Touch | Array:
         """A `Touch`, or an array of its codes."""
         return status_of(self.place, self.contact, self._known, self.element.constants)
@@ -120,8 +143,10 @@ class Load(NamedTuple):
 
     @property
     def _known(self) -> Array:
-        total = sum((*self.position, *self.velocity, *self.spin), 0.0)
-        return arrays.isfinite(total)
+        rates = self.deflection_rate
+        bent = rates if type(rates) is tuple else (rates[..., axis] for axis in range(4))
+        state = *self.position, *self.velocity, *self.spin, *bent
+        return arrays.isfinite(ROOM * sum((part * part for part in state), 0.0))
 
     @property
     def _packed(self) -> Any:

@@ -156,7 +156,7 @@ def pressed(elastic: Elastic, speed: Array, given: Constants) -> Array:
     if given.smoothing > 0.0:
         return positive(force, ROUNDED * elastic.damped_force)
     least = where(elastic.normal < 0.0, elastic.normal, 0.0)  # below 0 where a ball sticks
-    return where(force > least, force, least)
+    return where(force < least, least, force)  # no number stays none
 
 
 ROUNDED = 0.1

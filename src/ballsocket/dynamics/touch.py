@@ -31,7 +31,7 @@ class Touch(IntEnum):
 
     @property
     def failed(self) -> bool:
-        """Whether there is no force (NaN): the step that led here is to be taken again, shorter."""
+        """Whether there is no answer: the step that led here is to be taken again, shorter."""
         return self >= Touch.THROUGH_WALL
 
 
@@ -41,8 +41,12 @@ _SENTENCES = {
     Touch.AT_RIM: "the contact reaches the rim, which carries a part of it",
     Touch.OVER_RIM: "the ball has left the cup over its rim, and nothing carries it",
     Touch.THROUGH_WALL: "the ball is deeper than the wall, or the model, goes: a shorter step is needed",
-    Touch.NO_NUMBER: "the state is no finite number",
+    Touch.NO_NUMBER: "the state is no finite number, or too large a one",
 }
+
+
+ROOM = 1e8
+"""Numbers of a state are too large if this times the sum of their squares is none."""
 
 
 def status_of(place: Place, contact: Elastic, known: Array, given: Constants) -> Touch | Array:

@@ -25,11 +25,12 @@ $sentences
     return "an unknown status";
 }
 
+/* Whether numbers can be squared, with room for what squares are multiplied with. */
 static int finite_numbers(const double *numbers, int count)
 {
     double none = 0.0;
-    while (count-- > 0)
-        none += 0.0 * *numbers++;
+    for (; count-- > 0; numbers++)
+        none += 0.0 * (1e8 * *numbers * *numbers);
     return none == 0.0;
 }
 
