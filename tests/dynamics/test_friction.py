@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, Friction, simulate
+from ballsocket.dynamics import Bristles, Damping, Friction, simulate
 
 from ..joints import HIP
 from .test_element import states
@@ -98,5 +98,22 @@ def test_bristles_that_are_none_are_refused():
         Bristles(coefficient=0.1, damping=-1.0)
     with pytest.raises(ValueError, match="four deflections"):
         HELD(DEEP, deflection=(0.0, 0.0))
-    with pytest.raises(TypeError, match="bristles have a state"):
-        simulate(HELD, mass=1.0, position=DEEP, duration=1e-3, step=1e-5)
+
+
+def test_a_ball_on_bristles_comes_to_hang_where_friction_would_let_it_creep():
+    """Below μ it is held at rest by bent bristles; energy is balanced, and a way without an end says where it is."""
+    normal, side = 700.0, 30.0
+    thrown = {"mass": 1.0, "position": (0.0, 0.0, HIP.clearance + 0.019), "duration": 0.02, "step": 1e-4}
+    element = replace(HELD, friction=replace(HELD.friction, viscous=1e-3), damping=Damping(time=2e-4))
+    held = simulate(element, pull=(side, 0.0, normal), inertia=1e9, **thrown)  # too slow to roll
+    assert held.drift < 1e-7
+    assert held.ended == ""
+    assert held.load.force[-1, 0] == pytest.approx(-side, rel=2e-3)
+    creeping = simulate(
+        replace(element, friction=Friction(coefficient=0.1)), pull=(side, 0.0, normal), inertia=1e9, **thrown
+    )
+    assert abs(held.velocity[-1, 0]) < 0.01 * creeping.velocity[-1, 0]
+    ended = simulate(element, **thrown | {"position": (np.nan, 0.0, 0.0)})
+    assert "after 0 s: the state is no finite number" in ended.ended
+    fast = simulate(element, velocity=(0.0, 0.0, 1e7), **thrown)
+    assert "deeper than the wall" in fast.ended

@@ -77,5 +77,14 @@ def test_what_nobody_knows_of_it_is_refused():
         bs.ForceElement(STICKY, HIP, friction=Friction(coefficient=0.1))
     with pytest.raises(ValueError, match="the adhesion number = .* is not allowed: from 1 on"):
         bs.ForceElement(bs.AdhesiveSocket(work_of_adhesion=10.0), HIP)
-    with pytest.raises(TypeError, match="a ball that sticks has a state"):
-        simulate(ELEMENT, mass=1.0, position=(0.0, 0.0, 0.0), duration=1e-3, step=1e-5)
+
+
+def test_a_ball_that_bounces_loses_the_same_each_time_until_it_is_caught():
+    fall = float((at(np.array([-1e-12]), False).energy - at(np.array([1e-12]), False).energy)[0])
+    thrown = {"mass": 1.0, "position": (0.0, 0.0, 0.0), "step": 1e-4}
+    fast = simulate(ELEMENT, velocity=(0.0, 0.0, 30.0), duration=0.06, **thrown)
+    assert fast.drift < 1e-6
+    assert fast.bounces == 450.0e-3 // fall  # kinetic energy in N mm, of which each bounce takes as much
+    assert fast.lost[-1] == pytest.approx((fast.bounces + 1) * fall, rel=1e-5)
+    assert fast.attached[-1]
+    assert fast.depth[-1] > -STRETCH

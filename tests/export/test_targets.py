@@ -176,9 +176,18 @@ def test_what_is_not_allowed_is_one_sentence(words, said, tmp_path):
     assert not (tmp_path / "hip").exists()
 
 
-def test_bristles_have_a_state_that_nothing_exported_has():
-    with pytest.raises(ValueError, match="bristles have a state"):
-        CElement(element=ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05)))
+@pytest.mark.parametrize(
+    ("element", "said"),
+    [
+        (ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05)), "bristles have a state, and what"),
+        (ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP), "a ball that sticks has a state, and what"),
+    ],
+)
+def test_a_state_is_something_that_nothing_exported_or_compiled_has(element, said):
+    with pytest.raises(ValueError, match=said):
+        CElement(element=element)
+    with pytest.raises(ValueError, match=said):
+        pytest.importorskip("ballsocket.dynamics.compiled").CompiledElement(element)
 
 
 @pytest.mark.long

@@ -42,6 +42,11 @@ class CompiledElement:
         From an indentation to energy, force and stiffness, inside of compiled functions.
     constants : Constants
 
+    Raises
+    ------
+    ValueError
+        An element with bristles, or one that sticks: they have a state.
+
     Examples
     --------
     >>> import numpy
@@ -55,6 +60,10 @@ class CompiledElement:
     """
 
     element: ForceElement
+
+    def __post_init__(self) -> None:
+        if self.element.remembers:
+            raise ValueError(f"{self.element.remembers}, and what is compiled has none: ask the element itself")
 
     def __call__(self, position: Any, velocity: Any = (0.0, 0.0, 0.0), spin: Any = (0.0, 0.0, 0.0)) -> Load:
         """The load at a state as the element itself has it."""

@@ -108,6 +108,13 @@ class ForceElement:
         """How far a ball that sticks is pulled back before it is free, in mm: u_c; 0 for all other models."""
         return getattr(self.potential, "stretch", 0.0)
 
+    @property
+    def remembers(self) -> str:
+        """What of the contact has a state of its own, in words; empty where nothing does."""
+        if isinstance(self.friction, Bristles):
+            return "bristles have a state"
+        return "a ball that sticks has a state" if self.stretch > 0.0 else ""
+
     def _constants(self, smoothing: float) -> Constants:
         joint, cup = self.joint.with_floats(), self.cup
         damping = self.damping or Damping()

@@ -13,9 +13,10 @@ from ..arrays import Numbers
 from ..checks import require
 from ..sources import Source
 from . import stepping
-from .bristles import Bristles
+from .carried import Carrier, pull_of
 from .damping import one_number
 from .element import ForceElement, three
+from .load import Load
 from .stepping import Ball
 
 TONNE = 1e-3
@@ -38,9 +39,13 @@ class Motion:
     energy : array (steps,)
         Stored in the contact, in N mm.
     lost : array (steps,)
-        What damping and friction took since the beginning, in N mm.
+        What damping and friction took since the beginning, in N mm; what bristles hold is among it.
     work : array (steps,)
         What the pull on the ball did since then, in N mm.
+    deflection : array (steps, 4), or four numbers
+        Of bristles, in mm.
+    attached : array (steps,) or bool
+        Whether a ball that sticks does.
     ended : str
         Why it ended before its time, with the state; empty if it did not.
     """
@@ -57,7 +62,14 @@ class Motion:
     energy: Numbers
     lost: Numbers
     work: Numbers
+    deflection: Any = (0.0, 0.0, 0.0, 0.0)
+    attached: Any = False
     ended: str = ""
+
+    @cached_property
+    def load(self) -> Load:
+        """The load at each step."""
+        return self.element(self.position, self.velocity, self.spin, self.deflection, self.attached)
 
     @cached_property
     def kinetic(self) -> Numbers:
@@ -78,11 +90,11 @@ class Motion:
     @cached_property
     def depth(self) -> Numbers:
         """The indentation in mm; below 0 it is the way to the touch-down. (steps,)."""
-        return numpy.linalg.norm(self.position, axis=1) - self.element.constants.clearance
+        return numpy.linalg.norm(self.position, axis=1) - float(self.element.joint.clearance)
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON, in s, mm, N and N mm."""
-        force = numpy.linalg.norm(self.element(self.position, self.velocity, self.spin).force, axis=1)
+        force = numpy.linalg.norm(self.load.force, axis=1)
         ends = {"stored": self.energy, "kinetic": self.kinetic, "lost": self.lost, "work": self.work}
         return {
             "duration": float(self.time[-1]),
@@ -98,7 +110,7 @@ class Motion:
     @property
     def bounces(self) -> int:
         """How often the ball left the socket."""
-        touching = self.depth > 0
+        touching = numpy.asarray(self.load.attached)
         return int(numpy.sum(touching[:-1] & ~touching[1:]))
 
 
@@ -114,7 +126,9 @@ def simulate(
     duration: float,
     step: float,
 ) -> Motion:
-    """A ball in a socket at rest.
+    """A ball in a socket at rest, by steps that keep its energy to rounding.
+
+    Bristles and what sticks have a state of their own; with them the motion is integrated by LSODA, to 1e-10.
 
     Parameters
     ----------
@@ -139,39 +153,69 @@ def simulate(
     ------
     ValueError
         A number that is not allowed, named with its value.
-    TypeError
-        An element with bristles, or one that sticks.
     """
-    if isinstance(getattr(element, "friction", None), Bristles):
-        raise TypeError(
-            "bristles have a state that these steps do not carry: integrate the element's `deflection_rate`"
-        )
-    if getattr(element, "stretch", 0.0) > 0.0:
-        raise TypeError("a ball that sticks has a state that these steps do not carry: integrate the element's force")
     heavy = _above_nothing("mass", mass)
     turning = 0.4 * heavy * element.constants.ball_radius**2 if inertia is None else _above_nothing("inertia", inertia)
     count = int(numpy.ceil(_above_nothing("duration", duration) / _above_nothing("step", step) - 1e-9))
     begun = Ball(*three(position), *three(velocity), *three(spin))
-    states, lost = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
-    march = getattr(element, "march", stepping.march)
-    h = duration / count
-    pulls = _pulls(pull, h * (numpy.arange(count) + 0.5))
-    good = march(element.potential, element.constants, begun, TONNE * heavy, TONNE * turning, pulls, h, states, lost)
-    ended = "" if good == count else _why(element, states[good + 1], good * h, h)
-    states, lost = states[: good + 1], lost[: good + 1]
-    return Motion(
-        element=element,
-        mass=heavy,
-        inertia=turning,
-        time=h * numpy.arange(good + 1),
-        position=states[:, :3],
-        velocity=states[:, 3:6],
-        spin=states[:, 6:],
-        energy=element(states[:, :3]).energy,
-        lost=lost,
-        work=numpy.append(0.0, numpy.cumsum(numpy.sum(pulls[:good] * numpy.diff(states[:, :3], axis=0), axis=1))),
-        ended=ended,
-    )
+    ball = _Thrown(element, heavy, turning, begun, pull, duration / count, count)
+    return ball.carried() if ball.plain.remembers else ball.stepped()
+
+
+@dataclass(frozen=True)
+class _Thrown:
+    """A ball that begins to move, `count` steps of `step` seconds."""
+
+    element: Any
+    mass: float
+    inertia: float
+    begun: Ball
+    pull: Any
+    step: float
+    count: int
+
+    @property
+    def plain(self) -> ForceElement:
+        return getattr(self.element, "element", self.element)
+
+    def stepped(self) -> Motion:
+        """By steps that keep the energy."""
+        h, count, given = self.step, self.count, (self.element.potential, self.element.constants)
+        states, lost = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
+        march = getattr(self.element, "march", stepping.march)
+        pulls = _pulls(self.pull, h * (numpy.arange(count) + 0.5))
+        good = march(*given, self.begun, TONNE * self.mass, TONNE * self.inertia, pulls, h, states, lost)
+        ended = "" if good == count else _why(self.plain, states[good + 1], good * h, h)
+        states, lost = states[: good + 1], lost[: good + 1]
+        work = numpy.cumsum(numpy.sum(pulls[:good] * numpy.diff(states[:, :3], axis=0), axis=1))
+        return self._moved(states, self.plain(states[:, :3]), lost=lost, work=numpy.append(0.0, work), ended=ended)
+
+    def carried(self) -> Motion:
+        """With what the contact carries along."""
+        ball = Carrier(
+            element=self.plain, mass=TONNE * self.mass, inertia=TONNE * self.inertia, pull=pull_of(self.pull)
+        )
+        found = ball.moved(self.begun, self.step * numpy.arange(self.count + 1), self.step)
+        load = self.plain(found.states[:, :3], attached=found.attached)
+        ended = ""
+        if found.stopped is not None:
+            notes = "; ".join(found.stopped.notes) or "the integration does not get any further"
+            ended = f"after {self.step * (len(found.states) - 1):g} s: {notes}"
+        kept = {"deflection": found.deflection, "attached": found.attached, "ended": ended}
+        return self._moved(found.states, load, lost=found.lost, work=found.work, **kept)
+
+    def _moved(self, states: Numbers, load: Load, **found: Any) -> Motion:
+        return Motion(
+            element=self.plain,
+            mass=self.mass,
+            inertia=self.inertia,
+            time=self.step * numpy.arange(len(states)),
+            position=states[:, :3],
+            velocity=states[:, 3:6],
+            spin=states[:, 6:],
+            energy=load.energy,
+            **found,
+        )
 
 
 def _pulls(pull: Any, time: Numbers) -> Numbers:

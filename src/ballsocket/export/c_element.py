@@ -11,7 +11,7 @@ from string import Template
 
 from ..arrays import Numbers
 from ..atomic import write_text
-from ..dynamics import Bristles, ForceElement, Touch
+from ..dynamics import ForceElement, Touch
 from ..model.law import CurveLaw
 from ..version import __version__
 from .c_text import c_number, c_statements
@@ -35,7 +35,7 @@ class CElement:
     Raises
     ------
     ValueError
-        A name that C does not allow; friction that has a state.
+        A name that C does not allow; bristles, or what sticks, which have a state.
 
     Examples
     --------
@@ -52,8 +52,8 @@ class CElement:
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]{0,40}", self.name):
             raise ValueError(f"name must be letters, digits and _ that C can begin a name with, got {self.name!r:.60}")
-        if isinstance(self.element.friction, Bristles):
-            raise ValueError("bristles have a state, and what is exported has none: Friction is taken")
+        if self.element.remembers:
+            raise ValueError(f"{self.element.remembers}, and what is exported has none")
 
     @cached_property
     def recording(self) -> Recording:

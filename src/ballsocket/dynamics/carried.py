@@ -1,0 +1,144 @@
+"""A ball whose contact has a state of its own, bristles or what sticks: integrated with it, from event to event."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy
+
+from ..arrays import Numbers
+from .element import ForceElement, three
+from .load import Load
+from .reaction import Three
+from .touch import Touch
+
+_TOLERANCE = 1e-10
+_RATES = 15  # position, velocity, spin, four deflections, what was lost, and the work of the pull
+
+
+class Carried(NamedTuple):
+    """What became of a ball at the times it got to; `stopped` is the state that has no load, if one was met."""
+
+    states: Numbers
+    deflection: Numbers
+    attached: Numbers
+    lost: Numbers
+    work: Numbers
+    stopped: Load | None
+
+
+class _Stopped(ArithmeticError):  # noqa: N818 - a way out of the integrator
+    def __init__(self, load: Load) -> None:
+        super().__init__("; ".join(load.notes))
+        self.load = load
+
+
+@dataclass(frozen=True, kw_only=True)
+class Carrier:
+    """A ball and what pulls it: `mass` in t, `inertia` in t mm², a force in N of the time in s."""
+
+    element: ForceElement
+    mass: float
+    inertia: float
+    pull: Callable[[float], Three]
+
+    def moved(self, begun: Any, times: Numbers, step: float) -> Carried:
+        """The ball at times that grow, the first of which is its beginning; no step is longer than `step`."""
+        state = numpy.zeros(_RATES)
+        state[:9] = begun
+        rows, held, stopped = [state], [self._touches(state)], None
+        try:
+            for part, attached in self._stretches(state, times, step):
+                rows.append(part)
+                held.append(attached)
+        except _Stopped as met:
+            stopped = met.load
+        found = numpy.array(rows)
+        return Carried(found[:, :9], found[:, 9:13], numpy.array(held), found[:, 13], found[:, 14], stopped)
+
+    def _stretches(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
+        """The state at each time after the first, in stretches between snapping in and letting go."""
+        from scipy.integrate import solve_ivp
+
+        now, end, attached = float(times[0]), float(times[-1]), self._touches(state)
+        begun = self._load(state, attached)
+        if Touch(begun.status).failed:
+            raise _Stopped(begun)
+        while now < end:
+            done = solve_ivp(
+                self._rates(attached),
+                (now, end),
+                state,
+                method="LSODA",
+                t_eval=times[times > now],
+                events=self._change(attached),
+                max_step=step,
+                rtol=_TOLERANCE,
+                atol=_TOLERANCE,
+            )
+            rows = numpy.reshape(done.y, (_RATES, -1)).T
+            yield from ((row, attached) for row in rows)
+            if done.status < 0:
+                raise _Stopped(self._load(rows[-1] if len(rows) else state, attached))
+            if done.status == 0:
+                return
+            now, state, attached = float(done.t_events[0][0]), done.y_events[0][0], not attached
+            if attached:  # what the energy falls by is lost
+                state[13] -= self._load(state, attached).energy
+
+    def _rates(self, attached: bool) -> Callable[[float, Numbers], list[float]]:
+        def rates(time: float, state: Numbers) -> list[float]:
+            load, pull = self._load(state, attached), self.pull(time)
+            if load.force[0] != load.force[0]:
+                raise _Stopped(load)
+            push = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
+            turn = [a / self.inertia for a in load.moment]
+            work = _dot(pull, load.velocity)
+            return [*load.velocity, *push, *turn, *load.deflection_rate, _lost(load), work]
+
+        return rates
+
+    def _load(self, state: Numbers, attached: bool) -> Load:
+        s = state.tolist()
+        return self.element(s[:3], s[3:6], s[6:9], s[9:13], attached)
+
+    def _touches(self, state: Numbers) -> bool:
+        return bool(self._depth(state) >= 0.0)
+
+    def _depth(self, state: Numbers) -> float:
+        return float(numpy.linalg.norm(state[:3])) - float(self.element.joint.clearance)
+
+    def _change(self, attached: bool) -> Callable[[float, Numbers], float] | None:
+        """Where a ball that sticks snaps in, or lets go."""
+        stretch = self.element.stretch
+        if stretch == 0.0:
+            return None
+
+        def change(_: float, state: Numbers) -> float:
+            return self._depth(state) + (stretch if attached else 0.0)
+
+        change.terminal, change.direction = True, -1.0 if attached else 1.0  # type: ignore[attr-defined]
+        return change
+
+
+def pull_of(pull: Any) -> Callable[[float], Three]:
+    """A force, or a function of the time, as such a function."""
+    if callable(pull):
+        return lambda time: three(pull(time))
+    always = three(pull)
+    return lambda time: always
+
+
+def _lost(load: Load) -> float:
+    """The power of all that is not elastic, in N mm/s; bristles give a part of theirs back."""
+    contact, place = load.contact, load.place
+    speed = _dot(load.velocity, (place.x, place.y, place.z))
+    aside = _dot(load.velocity, (contact.px, contact.py, contact.pz))
+    fall = contact.normal * speed - contact.polar * aside
+    return -(_dot(load.force, load.velocity) + fall + _dot(load.moment, load.spin))
+
+
+def _dot(a: Any, b: Any) -> float:
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
