@@ -34,6 +34,7 @@ BENCHMARKS = {
     "element-in-c": ("element_in_c", "one evaluation of the force element: exported to C, in Python, in NumPy"),
     "patients": ("patients", "hips of patients who differ, a million cycles each, and ten thousand of them on paper"),
     "bounce": ("bounce", "a ball that bounces in its socket, in every program that a joint is exported to"),
+    "four-bar": ("four_bar", "a second of a spatial four-bar with clearance: compiled, in Python, in Exudyn"),
     "identify": ("identify", "clearance and modulus from twenty points: the best point, 4000 samples of the posterior"),
     "evidence": ("evidence", "a pack of evidence for 81 cases off the axis, with and without finite elements"),
     "in-motion": ("in_motion", "a ball joint in MuJoCo, Exudyn, OpenSim and FMI, beside what these have themselves"),

@@ -237,6 +237,8 @@ class ForceElement:
 def three(value: Any) -> Three:
     try:
         x, y, z = value
+        if type(x) is numpy.float64:  # numbers of Python are quicker
+            return float(x), float(y), float(z)
         return x + 0.0, y + 0.0, z + 0.0
     except (TypeError, ValueError) as error:
         raise ValueError(f"a state has three components, x, y and z, all numbers, got {shown(value)}") from error

@@ -211,10 +211,14 @@ def corrected(
 def march(  # type: ignore[no-untyped-def]
     potential, given: Constants, ball: Ball, mass: float, inertia: float, pulls, h: float, states, lost
 ) -> int:
-    """Steps into `states` (steps + 1, 9) and `lost` (steps + 1,), pulled by `pulls` (steps, 3); how many were good."""
+    """Steps into `states` (steps + 1, 9) and `lost` (steps + 1,), pulled by `pulls` (steps, 3); how many were good.
+
+    In Python `pulls` is a list: numbers of NumPy would be slower.
+    """
     states[0, :] = ball
     for number in range(len(lost) - 1):
-        pull = pulls[number, 0], pulls[number, 1], pulls[number, 2]
+        row = pulls[number]
+        pull = row[0], row[1], row[2]
         after = stepped(potential, given, ball, mass, inertia, pull, h)
         ball = after.ball
         states[number + 1, :] = ball

@@ -1,0 +1,60 @@
+"""The four-bar of the gallery: its equations balance, and it moves as Exudyn has it with the exported joint."""
+
+from importlib import import_module
+from importlib.util import find_spec
+from runpy import run_path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from ..places import EXAMPLES, ROOT
+from .library import needs_compiler
+
+
+@pytest.fixture(scope="module")
+def bar():
+    return SimpleNamespace(**run_path(str(EXAMPLES / "what_does_clearance_do_to_a_four_bar.py"), run_name="four_bar"))
+
+
+def energy(bar, y):
+    position = bar.at_joint(y.tolist())[0]
+    return float(bar.mechanical(y[:, None])[0]) + bar.ELEMENT(position).energy
+
+
+def test_what_the_mechanism_loses_is_what_its_joint_takes(bar, monkeypatch):
+    """dE/dt along the equations of motion, wherever the links are and however they turn."""
+    random = np.random.default_rng(5)
+    for depth in (-0.1, 0.01, 0.02):
+        y = np.array(bar.START) + np.append(0.02 * random.normal(size=11), 0.0)
+        u = y[2:5] / np.linalg.norm(y[2:5])
+        y[2:5], y[5:8] = u, np.cross(random.normal(size=3), u)
+        centre = np.array(bar.at_joint(y.tolist())[0])
+        away = centre - centre / np.linalg.norm(centre) * (bar.JOINT.clearance + depth)
+        pivot = tuple(np.array(bar.PIVOT) + away)  # the rocker is moved until they touch as wanted
+        monkeypatch.setitem(bar.at_joint.__globals__, "PIVOT", pivot)
+        rate = np.array(bar.rates(bar.ask, bar.ELEMENT, y.tolist()))
+        fall = -(energy(bar, y + 1e-7 * rate) - energy(bar, y - 1e-7 * rate)) / 2e-7
+        assert fall == pytest.approx(rate[11], rel=1e-4, abs=1e-6 * abs(rate[10]))
+        assert (rate[11] > 0) == (depth > 0)
+        monkeypatch.undo()
+
+
+@pytest.mark.long
+@needs_compiler
+@pytest.mark.parametrize("name", ["law", "sphere"])
+def test_exudyn_answers_what_is_kept_and_the_exported_law_as_this_element(name, bar, monkeypatch):
+    if find_spec("exudyn") is None:
+        pytest.skip("exudyn is not installed")
+    monkeypatch.syspath_prepend(str(ROOT))
+    found = import_module("benchmarks.four_bar").in_exudyn(name, 0.05, 2e-5, 11)
+    kept = np.genfromtxt(EXAMPLES / "four_bar_in_exudyn.csv", delimiter=",", names=True)[:11]
+    assert_allclose(found.time, kept["time_s"])
+    assert_allclose(found.angle, kept[f"{name}_angle_rad"], atol=3e-5)
+    assert_allclose(found.lost, kept[f"{name}_lost_N_mm"], atol=0.02)
+    if name == "law":
+        own = bar.fallen(found.time)
+        assert np.ptp(own[9]) > 1e-3
+        assert_allclose(found.angle, own[9], atol=1e-5)
+        assert_allclose(found.lost, own[11], atol=5e-3)
