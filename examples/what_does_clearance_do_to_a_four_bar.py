@@ -25,6 +25,7 @@ from scipy.integrate import solve_ivp
 import ballsocket as bs
 from ballsocket.dynamics import Gonthier
 
+HERE = Path(__file__).parent if "__file__" in globals() else Path()  # the gallery runs it where it stands
 GRAVITY, THICK = 9806.65, 16.0  # mm/s², and the radius of the links in mm
 CRANK, ROCKER = (100.0, 2e-3), (150.0, 2.5e-3)  # mm, t: the crank turns about x, the rocker about y
 COUPLER = (hypot(200.0, 100.0, 50.0), 3e-3)
@@ -108,7 +109,7 @@ def fallen(times):
 
 
 if __name__ == "__main__":
-    kept = np.genfromtxt(Path("four_bar_in_exudyn.csv"), delimiter=",", names=True)
+    kept = np.genfromtxt(HERE / "four_bar_in_exudyn.csv", delimiter=",", names=True)
     times = kept["time_s"]
     states = fallen(times)
     angle, lost = states[9], states[11]

@@ -55,6 +55,8 @@ LONG = {
     "does_a_cross_linked_liner_last",
     "how_must_the_cup_stand",  # maps of tilted cups
     "does_a_worn_ball_joint_rattle",  # thousands of steps
+    "what_does_clearance_do_to_a_four_bar",
+    "how_far_does_a_head_wander_in_a_simulator",
 }
 
 

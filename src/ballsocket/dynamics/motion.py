@@ -183,11 +183,9 @@ class _Thrown:
         h, count, given = self.step, self.count, (self.element.potential, self.element.constants)
         states, lost = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
         pulls = _pulls(self.pull, h * (numpy.arange(count) + 0.5))
-        ball = self.begun, TONNE * self.mass, TONNE * self.inertia
-        if isinstance(self.element, ForceElement):
-            good = stepping.march(*given, *ball, pulls.tolist(), h, states, lost)
-        else:
-            good = self.element.march(*given, *ball, pulls, h, states, lost)
+        plain = isinstance(self.element, ForceElement)
+        march, rows = (stepping.march, pulls.tolist()) if plain else (self.element.march, pulls)
+        good = march(*given, self.begun, TONNE * self.mass, TONNE * self.inertia, rows, h, states, lost)
         ended = "" if good == count else _why(self.plain, states[good + 1], good * h, h)
         states, lost = states[: good + 1], lost[: good + 1]
         work = numpy.cumsum(numpy.sum(pulls[:good] * numpy.diff(states[:, :3], axis=0), axis=1))
