@@ -68,6 +68,14 @@ def numeric(name: str, value: Any) -> Array:
     return common(value)[0]  # integers as floats, before they are added
 
 
+def one_number(name: str, value: Any) -> float:
+    """`value` as a float, where it is one number."""
+    number = numeric(name, value)
+    if _shape(number):
+        raise TypeError(f"{name} must be one number, got {shown(value)}")
+    return float(number)
+
+
 def vectors(name: str, value: Any, axes: str) -> Array:
     """`value` as an array whose last axis is that of `axes`, such as "x, y, z (mm)"."""
     value = numeric(name, value)

@@ -137,6 +137,13 @@ def test_the_load_is_the_slope_of_the_energy_and_the_tangent_that_of_the_load(ti
     assert np.linalg.eigvalsh(here.stiffness_matrix).min() > 0
 
 
+def test_around_the_pole_of_its_grid_an_axial_contact_is_even():
+    """Cells are narrow there: what is left of the iteration must not become pressures."""
+    narrow = bs.Cup(arc_of_cover=radians(40.0))
+    contact = bs.Sphere(cup=narrow, ring_width=radians(0.5)).press(lined(0.4), indentation=0.006)
+    assert np.ptp(contact.pressure_map[2][0]) < 1e-4 * contact.max_pressure
+
+
 def test_nothing_depends_on_where_the_meridians_are():
     model, tilt = bs.Sphere(), 0.9
     contacts = [
@@ -213,17 +220,6 @@ def test_an_edge_that_digs_in_has_no_largest_pressure():
     assert chamfered.force == pytest.approx(3000.0)
 
 
-def test_a_load_out_of_the_bore_dislocates():
-    for load in ({"force": 1000.0}, {"indentation": 12.0}):
-        contact = bs.Sphere().press(RIGID, tilt=pi, **load)
-        assert contact.status is bs.Status.DISLOCATED
-        assert not contact.valid
-        assert np.isnan(contact.max_pressure)
-        assert any("180.0°" in note for note in contact.notes)
-    apart = bs.Sphere().press(RIGID, tilt=pi, indentation=0.5)
-    assert (apart.force, apart.max_pressure, apart.area) == (0, 0, 0)
-
-
 # --- surfaces that are not round ---
 
 
@@ -244,36 +240,6 @@ def test_a_bore_worn_by_the_ball_itself_fits_it():
     angle = np.linspace(0.0, 1.2, 5)
     modulus = bs.hess_forsbach(RIGID)
     assert worn.pressure(angle) == pytest.approx(modulus * 0.01 * np.cos(angle), rel=2e-3)
-
-
-# --- bad input ---
-
-
-@pytest.mark.parametrize(
-    ("wrong", "word"),
-    [
-        ({"tilt": 45.0}, "radians"),
-        ({"tilt": -0.1}, "radians"),
-        ({"direction": (0.0, 0.0, 0.0)}, "points somewhere"),
-        ({"direction": (0.0, 1.0)}, "x, y, z"),
-        ({"direction": (0.0, 0.0, float("nan"))}, "points somewhere"),
-        ({"direction": (0.0, 0.0, 1.0), "tilt": 0.1}, "both"),
-    ],
-)
-def test_directions_that_are_none_are_refused(wrong, word):
-    with pytest.raises(ValueError, match=word):
-        bs.Sphere().press(RIGID, force=100.0, **wrong)
-
-
-def test_settings_that_make_no_sense_are_refused():
-    with pytest.raises(ValueError, match="0.5 to 6 degrees"):
-        bs.Sphere(ring_width=2.0)
-    with pytest.raises(TypeError, match="cup must be Cup"):
-        bs.Sphere(cup="hemisphere")
-    with pytest.raises(TypeError, match="worn must have a method"):
-        bs.Sphere(worn=0.1)
-    with pytest.raises(ValueError, match="depth"):
-        bs.Sphere(worn=bs.Worn(of=lambda n: np.nan * n[2])).press(RIGID, force=1.0)
 
 
 # --- many cups ---

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..checks import numeric, require
+from ..checks import one_number, require
 from ..sources import Source
 from . import restitution as relations
 from .restitution import Relation, restitution_of
@@ -60,14 +60,6 @@ def _set(damping: Damping, name: str, allowed: str) -> None:
     value = one_number(name, getattr(damping, name))
     require(name, value, 0.0 <= value < math.inf, allowed)
     object.__setattr__(damping, name, value)
-
-
-def one_number(name: str, value: object) -> float:
-    """`value` as a float, where it is one number."""
-    number = numeric(name, value)
-    if getattr(number, "shape", ()) != ():
-        raise TypeError(f"{name} must be one number, got {value!r:.60}")
-    return float(number)
 
 
 def of_restitution(relation: Relation, restitution: float, impact_speed: float) -> Damping:

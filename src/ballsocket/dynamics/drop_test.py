@@ -9,8 +9,8 @@ from typing import Any
 import numpy
 
 from ..arrays import Numbers
-from ..checks import require
-from .damping import Damping, one_number
+from ..checks import one_number, require
+from .damping import Damping
 from .restitution import restitution_of
 
 GRAVITY = 9806.65

@@ -10,7 +10,7 @@ import numpy
 
 from .. import arrays
 from ..arrays import Array, common, where
-from ..checks import require, shown, vectors
+from ..checks import one_number, require, shown, vectors
 from ..cup import Cup
 from ..joint import Joint
 from ..model import Model
@@ -19,7 +19,7 @@ from ..model.law import CurveLaw
 from ..models.adhesion import AdhesiveSocket
 from .bristles import Bristles
 from .brushed import brushed
-from .damping import Damping, one_number
+from .damping import Damping
 from .friction import Friction
 from .load import Load
 from .matrices import vector

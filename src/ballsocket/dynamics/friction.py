@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ..arrays import Array, exp, sqrt
-from ..checks import require
-from .damping import one_number
+from ..checks import one_number, require
 
 
 class Coulomb:

@@ -10,11 +10,10 @@ from typing import Any, ClassVar
 import numpy
 
 from ..arrays import Numbers
-from ..checks import require
+from ..checks import one_number, require
 from ..sources import Source
 from . import stepping
 from .carried import Carrier, pull_of
-from .damping import one_number
 from .element import ForceElement, three
 from .load import Load
 from .stepping import Ball

@@ -75,7 +75,7 @@ def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve, *others: 
     pieces = []
     for column, place in _columns(numbers, shape):
         one = joint.with_numbers(column)
-        if all(limit.strictly_holds(SimpleNamespace(joint=one)) for limit in model.domain):
+        if place.size and all(limit.strictly_holds(SimpleNamespace(joint=one)) for limit in model.domain):
             pieces.append((place, solve(one, *(each[place] for each in loads))))
     return PiecedSolution(like=load, shape=shape, pieces=tuple(pieces))
 

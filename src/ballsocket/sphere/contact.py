@@ -14,7 +14,7 @@ from ..arrays import Array, Numbers
 from ..contact.strength import share
 from ..model.per_joint import Piece, SolvedContact, joint_at
 from ..validity import Status
-from .directions import polar_angle
+from .directions import checked_direction, polar_angle
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -111,9 +111,14 @@ class OffAxisContact(SolvedContact):
         Parameters
         ----------
         direction : array (..., 3)
-            Unit vectors.
+            Of any length.
+
+        Raises
+        ------
+        ValueError
+            More than one contact; what is no direction.
         """
-        at: Numbers = self.single_state.patches[0].at(numpy.asarray(direction, dtype=float))
+        at: Numbers = self.single_state.patches[0].at(checked_direction(direction))
         return float(at) if at.shape == () else at
 
     @property
@@ -127,13 +132,23 @@ class OffAxisContact(SolvedContact):
         """What has no answer or lies outside the validity, and what happens at the rim, in words."""
         notes = list(super().notes)
         if self._is_plain and self.status is Status.DISLOCATED:
-            tilt, reach = (degrees(float(each)) for each in (self.tilt, self.model.reach_of(self.joint)))
-            notes.append(f"the load points {tilt:.1f}° from the dome's pole, and the bore ends at {reach:.1f}°")
+            notes.append(self._where_lost)
         if not self._failed_everywhere:
             unbounded = self.laws.spread(lambda piece: piece.state.unbounded) == 1
             notes += self._note(~(arrays.to_numpy(unbounded)), _DIGS)
             notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _REACHES)
         return tuple(notes)
+
+    @property
+    def _where_lost(self) -> str:
+        """The angle at which a ball has left its bore; where the load points into that, how far it went."""
+        tilt, reach = (degrees(float(each)) for each in (self.tilt, self.model.reach_of(self.joint)))
+        if tilt > reach:
+            return f"the load points {tilt:.1f}° from the dome's pole, and the bore ends at {reach:.1f}°"
+        (_, piece), *_ = self.laws.pieces
+        place = piece.state.displacement[:, 0]
+        far, swung = float(numpy.linalg.norm(place)), degrees(float(polar_angle(place)))
+        return f"the ball's centre went {far:.3g} mm from the bore's, {swung:.1f}° from the dome's pole"
 
     def _scalar(self, name: str) -> Array:
         return self._answer(lambda: self.laws.spread(lambda piece: getattr(piece.state, name)))

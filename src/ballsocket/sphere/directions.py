@@ -1,10 +1,53 @@
-"""Directions in the cup's frame: their angles, and what lies across them. Vectors have their components first."""
+"""Directions in the cup's frame: their angles, and what lies across them.
+
+Vectors have their components first, but where a user gives them.
+"""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy
 
-from ..arrays import Numbers
+from .. import arrays
+from ..arrays import Array, Numbers
+from ..checks import require, vectors
+from ..cup import Cup
+from ..quantities import AIM, CUP
+
+_SMALL = 1e-100  # a component that small, and its inverse, need not have a square
+
+
+def checked_direction(direction: Any) -> Numbers:
+    """Directions (..., 3) that point somewhere, of lengths that have a square."""
+    found = arrays.to_numpy(vectors("direction", direction, "x, y, z of a direction")).astype(float)
+    largest = abs(found).max(axis=-1)
+    require("length of direction", largest, (largest > 0) & (largest < numpy.inf), "a direction points somewhere")
+    squared_well = (largest > _SMALL) & (largest < 1 / _SMALL)
+    return numpy.where(squared_well, 1.0, 1 / largest)[..., None] * found
+
+
+def tilted(tilt: Array, azimuth: Array | None) -> Numbers:
+    """Unit vectors (..., 3) in the cup's frame at a tilt from its axis and an azimuth around that, in rad."""
+    given = {"tilt": tilt, "azimuth": 0.0 if azimuth is None else azimuth}
+    angles = (arrays.to_numpy(AIM[name].checked(angle)) for name, angle in given.items())
+    return numpy.moveaxis(unit_vectors(*numpy.broadcast_arrays(*angles)), 0, -1)
+
+
+def frames_of(cup: Cup, inclination: Array | None, anteversion: Array | None) -> Numbers:
+    """The frames (..., 3, 3) of a cup that stands in many ways; as it does where an angle is not given."""
+    given = {"inclination": inclination, "anteversion": anteversion}
+    angles = (
+        arrays.to_numpy(CUP[name].checked(getattr(cup, name) if angle is None else angle))
+        for name, angle in given.items()
+    )
+    pairs = numpy.broadcast_arrays(*angles)
+    frames = [
+        replace(cup, inclination=float(one), anteversion=float(other)).frame
+        for one, other in zip(*(each.ravel() for each in pairs), strict=True)
+    ]
+    return numpy.array(frames).reshape(*pairs[0].shape, 3, 3)
 
 
 def unit_vectors(polar: Numbers, azimuth: Numbers) -> Numbers:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy
 
 from ..arrays import Numbers
-from ..checks import require
+from ..checks import in_radians, one_number, require
 from .directions import polar_angle
 from .worn import Measured
 
@@ -32,7 +32,9 @@ class Pinched:
     Raises
     ------
     ValueError
-        A number that is not finite.
+        A number that is not finite, a direction that can only be degrees.
+    TypeError
+        What is not one number.
 
     Examples
     --------
@@ -47,8 +49,10 @@ class Pinched:
     direction: float = 0.0
 
     def __post_init__(self) -> None:
-        require("squeeze", self.squeeze, abs(self.squeeze) < inf, "a squeeze (mm) is finite")
-        require("direction", self.direction, abs(self.direction) <= 2 * pi, "a direction (rad) is at most 2 pi")
+        squeeze, turned = (one_number(name, getattr(self, name)) for name in ("squeeze", "direction"))
+        require("squeeze", squeeze, abs(squeeze) < inf, "a squeeze (mm) is finite")
+        meant = f"; {in_radians(turned)}"
+        require("direction", turned, abs(turned) <= 2 * pi, f"a direction is in radians, at most 6.283{meant}")
 
     def depth(self, directions: Numbers) -> Numbers:
         x, y, _ = directions

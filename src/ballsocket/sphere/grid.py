@@ -107,10 +107,17 @@ class Grid:
     def averaged(self, rings: Numbers) -> Numbers:
         """From what rings do to rings, ∫ u dA for each m, to what cells do to cells: the mean u over each.
 
-        The mean over the width of a cell takes its share of cos mφ, from the pressure and from what that does.
+        The mean over the width of a cell takes its share of cos mφ, from the pressure and from what that does. Waves
+        around the pole that are shorter than two rings give way as those that are as long: they mean nothing, and
+        what is left of an iteration would make pressures of them.
         """
         share = numpy.sinc(numpy.arange(self.degrees + 1) / self.meridians) ** 2
-        return rings * share[:, None, None] / self.ring_areas[:, None]
+        cells = rings * share[:, None, None] / self.ring_areas[:, None]
+        each, own = numpy.arange(self.rings), numpy.einsum("mii->mi", cells)
+        two_rings = numpy.ceil(pi * numpy.sin(self.polar) / self.width).clip(2, self.degrees).astype(int)
+        shorter = numpy.arange(self.degrees + 1)[:, None] > two_rings
+        cells[:, each, each] += numpy.where(shorter, numpy.maximum(own[two_rings, each] - own, 0.0), 0.0)
+        return cells
 
     @cached_property
     def coarser(self) -> Grid | None:

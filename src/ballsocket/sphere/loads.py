@@ -18,8 +18,8 @@ from .states import Edges, Loaded, States
 def _displaced(bed: Bed, indentation: Numbers, axes: Numbers, edges: Edges) -> States:
     rest = bed.at(axes * (bed.separation.clearance + indentation)[:, None])
     apart = ~(rest.pressure > 0).any(axis=(1, 2))
-    far = bed.separation.clearance + indentation > _OUT * bed.separation.socket_radius
-    lost = numpy.asarray(apart & far)
+    far = (bed.separation.clearance + indentation) / bed.separation.socket_radius
+    lost = numpy.asarray((apart & (far > _OUT)) | (far > 1))
     return States(bed=bed, rest=rest, axes=axes, edges=edges, dislocated=lost, load=indentation, press=_displaced)
 
 
@@ -35,7 +35,10 @@ def _forced(bed: Bed, force: Numbers, axes: Numbers, edges: Edges) -> States:
 
 
 _OUT = 0.5
-"""Of the bore's radius: a ball that touches nothing and is displaced further has left its bore."""
+"""Of the bore's radius: a ball that touches nothing and is displaced further has left its bore.
+
+So has one whose centre lies beyond the bore's own surface, whatever it touches.
+"""
 
 _AWAY = 0.25
 """Of the bore's radius: a ball at rest is nearer, and a preloaded one that is not was pushed out by its bore."""

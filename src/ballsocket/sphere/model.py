@@ -10,7 +10,7 @@ import numpy
 
 from .. import arrays
 from ..arrays import Array, Numbers
-from ..checks import needs, one_load, refuse_unnamed, require, vectors
+from ..checks import needs, numeric, one_load, one_number, refuse_unnamed, require, shown, vectors
 from ..contact import Contact
 from ..cup import UP, Cup
 from ..fem.model import largest_poisson
@@ -20,10 +20,10 @@ from ..model import Model
 from ..model.answer import Answer
 from ..model.law import Law
 from ..model.per_joint import Piece, taken_apart
-from ..quantities import AIM, CUP
 from ..sources import Source
 from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from .contact import OffAxisContact
+from .directions import checked_direction, frames_of, tilted
 from .surfaces import ClosedShell, RealCup, Springs, Surface
 from .worn import Shape
 
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from .states import Edges
 
 _FINEST, _WIDEST = radians(0.5), radians(6.0)
-_DIRECTION = "x, y, z of a direction"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,11 +100,12 @@ class Sphere(Model):
                 known = " or ".join(kind.__name__ for kind in kinds)
                 raise TypeError(f"{name} must be {known}, got {getattr(self, name)!r}")
         check_gap(self.gap)
-        good = _FINEST <= self.ring_width <= _WIDEST
-        require("ring_width", self.ring_width, good, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
-        if self.worn is not None and not hasattr(self.worn, "depth"):
+        width = one_number("ring_width", self.ring_width)
+        good = _FINEST <= width <= _WIDEST
+        require("ring_width", width, good, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
+        if self.worn is not None and (isinstance(self.worn, type) or not hasattr(self.worn, "depth")):
             raise TypeError(f"worn must have a method depth(directions), got {self.worn!r}")
-        object.__setattr__(self, "direction", _checked_direction(self.direction))
+        object.__setattr__(self, "direction", checked_direction(self.direction))
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -220,7 +220,7 @@ class Sphere(Model):
         if azimuth is not None and tilt is None:
             raise ValueError("an azimuth turns a tilted load around the cup's axis: a tilt is needed besides")
         if tilt is not None:
-            return replace(self, direction=self._tilted(tilt, 0.0 if azimuth is None else azimuth))
+            return replace(self, direction=tilted(tilt, azimuth) @ numpy.array(self.cup.frame))
         return self if direction is None else replace(self, direction=direction)
 
     def facing(self, inclination: Array | None = None, anteversion: Array | None = None) -> Sphere:
@@ -228,25 +228,8 @@ class Sphere(Model):
 
         What they are made of is the same, and their own frames; so they are directions of load to one cup.
         """
-        angles = [
-            arrays.to_numpy(CUP[name].checked(getattr(self.cup, name) if given is None else given))
-            for name, given in (("inclination", inclination), ("anteversion", anteversion))
-        ]
-        pairs = numpy.broadcast_arrays(*angles)
-        frames = [
-            replace(self.cup, inclination=float(one), anteversion=float(other)).frame
-            for one, other in zip(*(each.ravel() for each in pairs), strict=True)
-        ]
-        turned = numpy.array(frames).reshape(*pairs[0].shape, 3, 3)
-        inside = numpy.einsum("...ij,...j->...i", turned, self.direction)
+        inside = numpy.einsum("...ij,...j->...i", frames_of(self.cup, inclination, anteversion), self.direction)
         return replace(self, direction=inside @ numpy.array(self.cup.frame))
-
-    def _tilted(self, tilt: Array, azimuth: Array) -> Numbers:
-        given = {"tilt": tilt, "azimuth": azimuth}
-        angles = (arrays.to_numpy(AIM[name].checked(angle)) for name, angle in given.items())
-        polar, around = numpy.broadcast_arrays(*angles)
-        x, y, z = numpy.sin(polar) * numpy.cos(around), numpy.sin(polar) * numpy.sin(around), numpy.cos(polar)
-        return numpy.stack([x, y, z], axis=-1) @ numpy.array(self.cup.frame)
 
     def reach_of(self, joint: Joint) -> Array:
         """Where the bore ends, in rad from the dome's pole."""
@@ -299,9 +282,11 @@ class Sphere(Model):
     def _depth(self, directions: Numbers) -> Numbers:
         if self.worn is None:
             return numpy.zeros(directions.shape[1:])
-        depth = numpy.asarray(self.worn.depth(directions), dtype=float)
+        depth = arrays.to_numpy(numeric("worn depth", self.worn.depth(directions)))
+        if depth.shape not in ((), directions.shape[1:]):
+            raise ValueError(f"worn depth of shape {depth.shape} is not allowed: a depth (mm) for each direction")
         require("worn depth", depth, numpy.isfinite(depth), "a depth (mm) is finite")
-        return depth
+        return numpy.broadcast_to(depth, directions.shape[1:])
 
     def _edges(self) -> Edges:
         """A corner of 90° keeps the pressure finite under a ball that is much stiffer.
@@ -314,8 +299,8 @@ class Sphere(Model):
         return Edges(power=self.surface.power, bounded=corner or isinstance(self.surface, Springs))
 
 
-def _checked_direction(direction: Any) -> Numbers:
-    found = arrays.to_numpy(vectors("direction", direction, _DIRECTION)).astype(float)
-    length = numpy.linalg.norm(found, axis=-1)
-    require("length of direction", length, (length > 0) & (length < numpy.inf), "a direction points somewhere")
-    return found
+def check_sphere(model: Any) -> Sphere:
+    """The model, if it is contact on the sphere."""
+    if not isinstance(model, Sphere):
+        raise TypeError(f"model must be Sphere, got {shown(model)}")
+    return model

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, inf, radians
@@ -13,14 +13,15 @@ import numpy
 
 from .. import arrays
 from ..arrays import Array, Numbers
-from ..checks import require
+from ..checks import one_number, require
 from ..fem.progress import tell
 from ..joint import Joint
+from ..model.answer import check_joint
 from ..quantities import CUP
 from ..validity import Status, missing
 from ..version import __version__
 from .contact import OffAxisContact
-from .model import Sphere
+from .model import Sphere, check_sphere
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -164,6 +165,8 @@ def orient(
     ------
     ValueError
         A number that is not allowed; a model with more than one direction.
+    TypeError
+        Another model; more than one joint or load.
 
     Examples
     --------
@@ -175,7 +178,8 @@ def orient(
     array([[ 5.4,  3.9],
            [ 0.2, -0.9]])
     """
-    model = Sphere() if model is None else model
+    model = Sphere() if model is None else check_sphere(model)
+    _check_alone(joint, load)
     one = model.direction.ndim == 1
     require("directions of the model", model.direction.size // 3, one, "a cup is turned under one direction of load")
     axes = [_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))]
@@ -194,10 +198,21 @@ def orient(
     )
 
 
+def _check_alone(joint: Any, load: Mapping[str, Any]) -> None:
+    """Raise TypeError for what is no joint, or more than one of it or its load."""
+    check_joint(joint)
+    if any(numpy.shape(arrays.to_numpy(number)) for number in joint.numbers()):
+        raise TypeError("joint must be one joint, of plain numbers: a cup is turned around one")
+    for name, value in load.items():
+        if value is not None:
+            one_number(name, value)
+
+
 def _angles(name: str, values: Array) -> Numbers:
     """Angles (n,) in rad that a cup can have."""
-    angles = numpy.atleast_1d(numpy.asarray(CUP[name].checked(numpy.asarray(values, dtype=float))))
-    require(f"dimensions of {name}", angles.ndim, angles.ndim == 1 and angles.size > 0, "a row of angles is needed")
+    angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].checked(values)).astype(float))
+    if angles.ndim != 1 or angles.size == 0:
+        raise ValueError(f"{name} of shape {angles.shape} is not allowed: a row of angles is needed")
     rising = bool((numpy.diff(angles) > 0).all())
     require(f"{name} from {angles[0]:.4g} to", angles[-1], rising, "angles (rad) rise from one to the next")
     return angles

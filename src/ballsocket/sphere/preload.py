@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING
 import numpy
 
 from ..arrays import Array, Numbers
-from ..checks import require, vectors
+from ..checks import one_number, require
 from ..joint import Joint
+from ..model.answer import check_joint
+from .directions import checked_direction
+from .model import Sphere, check_sphere
 from .worn import Worn
 
 if TYPE_CHECKING:
     from .contact import OffAxisContact
-    from .model import Sphere
 
 _HALVINGS = 40
 _FAR = 4.0  # interferences: no contact is whole at such a displacement
@@ -40,6 +42,8 @@ class Preload:
     ------
     ValueError
         A joint with a clearance; a cup that ends before the equator.
+    TypeError
+        Another model; what is no joint, or is many.
 
     Examples
     --------
@@ -55,7 +59,9 @@ class Preload:
     joint: Joint
 
     def __post_init__(self) -> None:
-        interference = self.joint.interference
+        check_sphere(self.model)
+        check_joint(self.joint)
+        interference = one_number("interference", self.joint.interference)
         require("interference", interference, interference > 0, "a preloaded joint has an interference above 0")
         arc = self.model.cup.arc_of_cover
         require("arc_of_cover", arc, arc > numpy.pi, "a preloaded socket reaches beyond the equator, above pi radians")
@@ -85,11 +91,11 @@ class Preload:
         direction : array (3,)
             In the body's frame, of any length.
         """
-        way = vectors("direction", direction, "x, y, z of a direction")
-        length = float(numpy.linalg.norm(way))
-        require("length of direction", length, 0 < length < numpy.inf, "a direction points somewhere")
+        way = checked_direction(direction)
+        if way.shape != (3,):
+            raise ValueError(f"direction of shape {way.shape} is not allowed: one direction at a time, x, y, z")
         start = self.rest.displacement @ numpy.array(self.model.cup.frame)
-        return self._last(lambda far: self._whole(start + far * way / length))
+        return self._last(lambda far: self._whole(start + far * way / numpy.linalg.norm(way)))
 
     def worn_out_at(self) -> float:
         """The even wear of the bore in mm after which the ball at rest first leaves its socket somewhere."""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy
 
 from ..arrays import Numbers
-from ..checks import needs, require
+from ..checks import needs, one_number, require
 from .directions import tangents
 from .worn import Measured
 
@@ -108,7 +108,8 @@ def read_scan(path: str | Path, finest: float = _FINEST) -> Scan:
 
 def scan_of(points: Numbers, name: str = "the scan", finest: float = _FINEST) -> Scan:
     """A scan from its points (points, 3) in mm; see `read_scan`."""
-    require("finest", finest, 0 < finest <= _COARSEST, "what is averaged (rad) is above 0 and at most 0.35")
+    size = one_number("finest", finest)
+    require("finest", size, 0 < size <= _COARSEST, "what is averaged is above 0 and at most 0.35 radians (20°)")
     require(f"points of {name}", len(points), len(points) >= _FEWEST, f"a scan has {_FEWEST} points and more")
     require(f"points of {name}", points, numpy.isfinite(points), "a point is finite")
     centre, radius = _fitted(points)

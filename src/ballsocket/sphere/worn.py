@@ -7,9 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy
-
 from ..arrays import Numbers
+from ..checks import shown
 
 
 class Shape(Protocol):
@@ -30,6 +29,11 @@ class Worn:
         From unit vectors (3, ...) in the cup's frame (z to the dome's pole, x in the plane in which a tilt counts) to
         the depth in mm, positive where material is missing.
 
+    Raises
+    ------
+    TypeError
+        What is no function.
+
     Examples
     --------
     An ellipse that a press fit squeezes by 30 µm across y:
@@ -39,8 +43,12 @@ class Worn:
 
     of: Callable[[Numbers], Numbers]
 
+    def __post_init__(self) -> None:
+        if not callable(self.of):
+            raise TypeError(f"of must be a function from directions to depths (mm), got {shown(self.of)}")
+
     def depth(self, directions: Numbers) -> Numbers:
-        return numpy.broadcast_to(self.of(directions), directions.shape[1:])
+        return self.of(directions)
 
 
 class Measured:
