@@ -101,6 +101,25 @@ def test_a_scan_finds_the_sphere_and_what_is_missing_of_it(tmp_path):
     assert worn.pole_pressure < fresh.pole_pressure
 
 
+def test_a_scan_lies_in_the_cup_as_it_was_turned():
+    """Its x is the cup's, turned by the azimuth, whatever the rounding of its axis."""
+    oval = bs.Pinched(squeeze=0.1)
+    points = bore(depth=oval.depth) @ np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]).T  # along z
+    along, across = (
+        replace(COARSE, worn=scan_of(points, azimuth=each)).press(RIGID, force=2000.0, tilt=0.4)
+        for each in (0.0, pi / 2)
+    )
+    for scanned, turned in ((along, 0.0), (across, pi / 2)):
+        function = replace(COARSE, worn=bs.Pinched(squeeze=0.1, direction=turned))
+        drawn = function.press(RIGID, force=2000.0, tilt=0.4)
+        assert scanned.max_pressure == pytest.approx(drawn.max_pressure, rel=5e-3)
+        assert scanned.indentation == pytest.approx(drawn.indentation, rel=5e-3)
+    with pytest.raises(ValueError, match="90 degrees are 1.571 radians"):
+        scan_of(points, azimuth=90.0)
+    with pytest.raises(ValueError, match=r"radius of the worn bore = 0\.70.* a scan is in mm"):
+        replace(COARSE, worn=scan_of(points / 25.4)).press(RIGID, force=2000.0)
+
+
 @pytest.mark.parametrize(
     ("points", "said"),
     [
@@ -116,10 +135,22 @@ def test_scans_that_are_no_bores_are_refused(points, said):
         scan_of(points)
 
 
-def test_what_is_no_mesh_is_refused(tmp_path):
-    (tmp_path / "bore.stl").write_text("no mesh", encoding="utf-8")
-    with pytest.raises(ValueError, match=r"bore\.stl"):
-        bs.read_scan(tmp_path / "bore.stl")
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("bore.stl", b"no mesh"),
+        ("bore.stl", b""),
+        ("bore.stl", bytes(80) + b"\x05\x00\x00\x00" + bytes(60)),
+        ("bore.stl", b"solid bore\nfacet normal 0 0 1\nouter loop\nvertex 1 2"),
+        ("bore.ply", b"ply\nformat ascii 1.0\n"),
+        ("bore.obj", b""),
+        ("bore", b"ply"),
+    ],
+)
+def test_what_is_no_mesh_or_not_all_of_one_is_refused(name, content, tmp_path):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(ValueError, match=f"{name} is no mesh that can be read: it is cut short, or"):
+        bs.read_scan(tmp_path / name)
 
 
 # --- preload ---

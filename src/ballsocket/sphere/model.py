@@ -266,7 +266,7 @@ class Sphere(Model):
             grid=soft.grid,
             clearance=float(joint.clearance),
             socket_radius=float(joint.socket_radius),
-            depth=self._depth(soft.grid.centroids),
+            depth=self._depth(soft.grid.centroids, float(joint.socket_radius)),
             kind=self.gap,
         )
         axes = numpy.stack(along, axis=-1)[touching]
@@ -279,9 +279,12 @@ class Sphere(Model):
             error=state.errors(kind),
         )
 
-    def _depth(self, directions: Numbers) -> Numbers:
+    def _depth(self, directions: Numbers, socket_radius: float) -> Numbers:
         if self.worn is None:
             return numpy.zeros(directions.shape[1:])
+        radius = float(getattr(self.worn, "radius", socket_radius))
+        near = abs(radius - socket_radius) < socket_radius / 2
+        require("radius of the worn bore", radius, near, f"the socket's is {socket_radius:.4g} mm; a scan is in mm")
         depth = arrays.to_numpy(numeric("worn depth", self.worn.depth(directions)))
         if depth.shape not in ((), directions.shape[1:]):
             raise ValueError(f"worn depth of shape {depth.shape} is not allowed: a depth (mm) for each direction")

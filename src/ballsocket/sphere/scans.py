@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi, radians
+from math import radians
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..checks import needs, one_number, require
-from .directions import tangents
+from ..quantities import AIM
 from .worn import Measured
 
 
@@ -45,10 +45,16 @@ class Scan(Measured):
     deviation: Numbers
 
     def between(self, directions: Numbers) -> Numbers:
-        """From the nearest points, weighted by the inverse square of their distance; as far as the scan goes."""
-        far, which = self._tree.query(numpy.moveaxis(directions, 0, -1), k=_NEAREST)
-        weights = 1 / (far**2 + (_BLUNT * self._spacing) ** 2)
-        depth: Numbers = (weights * self.deviation[which]).sum(axis=-1) / weights.sum(axis=-1)
+        """From planes through the nearest points, no deeper and no higher than these; as far as the scan goes."""
+        far, which = self._tree.query(numpy.moveaxis(directions, 0, -1), k=min(_NEAREST, len(self.deviation)))
+        weights = (1 - 0.999 * (far / far[..., -1:]) ** 2) ** 2  # the farthest is about to be another
+        beside = numpy.moveaxis((self.directions[:, which] - directions[..., None]) / far[..., -1:], 0, -1)
+        terms = numpy.concatenate([numpy.ones_like(beside[..., :1]), beside], axis=-1)
+        heavy = weights[..., None] * terms
+        matrices = heavy.swapaxes(-1, -2) @ terms + numpy.diag([0.0, *3 * [_FLAT]])
+        values = self.deviation[which]
+        planes = numpy.linalg.solve(matrices, heavy.swapaxes(-1, -2) @ values[..., None])
+        depth: Numbers = numpy.clip(planes[..., 0, 0], values.min(axis=-1), values.max(axis=-1))
         return depth
 
     @cached_property
@@ -57,13 +63,8 @@ class Scan(Measured):
 
         return cKDTree(self.directions.T)
 
-    @property
-    def _spacing(self) -> float:
-        """About how far the points are from each other, in rad."""
-        return float(numpy.sqrt(2 * pi * (1 - numpy.cos(self.reach)) / len(self.deviation)))
 
-
-_NEAREST, _BLUNT = 6, 0.5
+_NEAREST, _FLAT = 12, 1e-3
 _FEWEST = 200
 _NARROWEST = radians(25.0)
 _ROUGHEST = 0.03
@@ -73,7 +74,7 @@ _COARSEST = 0.35
 _FINEST = radians(4.0)
 
 
-def read_scan(path: str | Path, finest: float = _FINEST) -> Scan:
+def read_scan(path: str | Path, finest: float = _FINEST, azimuth: float = 0.0) -> Scan:
     """A scan of a bore from a mesh of triangles (STL, PLY, OBJ) in mm.
 
     The sphere is the least-squares fit to the points; the cup's axis runs from its centre to the middle of what was
@@ -85,31 +86,51 @@ def read_scan(path: str | Path, finest: float = _FINEST) -> Scan:
     finest : float
         In rad, above 0 and at most 0.35 (20°); 4° by default. Points that lie so near are one, their mean: a
         micrometre of noise from point to point would be a pressure of its own.
+    azimuth : float
+        How the scan is turned around the cup's axis: where its x lies, across that axis, in rad from the cup's x.
+        Its y takes the place of an x that is within 25° of the axis.
 
     Raises
     ------
     ValueError
         What is no mesh; fewer than 200 points; points that lie on no sphere, or on a piece of one that is narrower
-        than 25° or seen from outside.
+        than 25° or seen from outside; an angle that is not allowed.
     OSError
         The file cannot be read.
     """
     needs("fem", "meshio")
+    path = Path(path)
+    return scan_of(numpy.unique(_points(path), axis=0), path.name, finest, azimuth)
+
+
+def _points(path: Path) -> Numbers:
+    """The points (points, 3) of a mesh."""
     import meshio
 
-    path = Path(path)
+    no_mesh = f"{path.name} is no mesh that can be read: it is cut short, or not what its name says"
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if path.suffix.lower() == ".ply" and b"end_header" not in head:
+        raise ValueError(no_mesh)  # it would be read for ever
     try:
         with numpy.errstate(all="ignore"):
-            mesh = meshio.read(path)
-    except (meshio.ReadError, ValueError, KeyError, IndexError, UnicodeDecodeError, SystemExit) as error:
-        raise ValueError(f"{path.name} is no mesh that can be read: {error or type(error).__name__}") from error
-    return scan_of(numpy.unique(numpy.asarray(mesh.points, dtype=float)[:, :3], axis=0), path.name, finest)
+            points = numpy.asarray(meshio.read(path).points, dtype=float)
+    except (meshio.ReadError, ValueError, TypeError, LookupError, AttributeError, AssertionError, SystemExit) as error:
+        raise ValueError(no_mesh) from error
+    if points.ndim != 2 or points.shape[1] < 3:
+        raise ValueError(no_mesh)
+    return points[:, :3]
 
 
-def scan_of(points: Numbers, name: str = "the scan", finest: float = _FINEST) -> Scan:
+_HEAD = 2**16
+"""Bytes in which the head of a file ends."""
+
+
+def scan_of(points: Numbers, name: str = "the scan", finest: float = _FINEST, azimuth: float = 0.0) -> Scan:
     """A scan from its points (points, 3) in mm; see `read_scan`."""
     size = one_number("finest", finest)
     require("finest", size, 0 < size <= _COARSEST, "what is averaged is above 0 and at most 0.35 radians (20°)")
+    turned = one_number("azimuth", AIM["azimuth"].checked(azimuth))
     require(f"points of {name}", len(points), len(points) >= _FEWEST, f"a scan has {_FEWEST} points and more")
     require(f"points of {name}", points, numpy.isfinite(points), "a point is finite")
     centre, radius = _fitted(points)
@@ -120,11 +141,11 @@ def scan_of(points: Numbers, name: str = "the scan", finest: float = _FINEST) ->
     if not roughness < _ROUGHEST * radius:
         raise ValueError(round_enough)
     middle = (out / length[:, None]).mean(axis=0)
-    size = float(numpy.linalg.norm(middle))
-    if size < 1e-3:
+    beside = float(numpy.linalg.norm(middle))
+    if beside < 1e-3:
         raise ValueError(f"{name} is not a bore: its points go all around")
-    axis = middle / size
-    directions = numpy.stack([*tangents(axis), axis]) @ (out / length[:, None]).T
+    axis = middle / beside
+    directions = _frame(axis, turned) @ (out / length[:, None]).T
     reach = float(numpy.arccos(numpy.clip(directions[2], -1, 1)).max())
     if reach < _NARROWEST:
         raise ValueError(f"{name} covers {numpy.degrees(reach):.0f}° around its pole; a bore takes 25° and more")
@@ -134,8 +155,18 @@ def scan_of(points: Numbers, name: str = "the scan", finest: float = _FINEST) ->
         axis=axis,
         reach=reach,
         roughness=roughness,
-        **_averaged(directions, length - radius, finest),
+        **_averaged(directions, length - radius, size),
     )
+
+
+def _frame(axis: Numbers, azimuth: float) -> Numbers:
+    """The cup's axes in the scan's frame (3, 3): z is the axis, and the scan's x, across that, lies at the azimuth."""
+    near = numpy.eye(3)[0 if abs(axis[0]) < numpy.cos(_NARROWEST) else 1]
+    x = near - (near @ axis) * axis
+    x = x / numpy.linalg.norm(x)
+    y = numpy.cross(axis, x)
+    c, s = numpy.cos(azimuth), numpy.sin(azimuth)
+    return numpy.stack([c * x - s * y, s * x + c * y, axis])
 
 
 def _averaged(directions: Numbers, deviation: Numbers, size: float) -> dict[str, Numbers]:
