@@ -29,6 +29,7 @@ BENCHMARKS = {
         "a million presses by force from the tables, beside the exact solver and the paper's model",
     ),
     "off-axis": ("off_axis", "a ball in a cup at a tilt: set up, displacement, force, a cycle; and CalculiX"),
+    "rings": ("rings", "a tilted cup by the number of its rings: set up, displacement, force, and error"),
     "force-element": ("force_element", "the joint in motion: force, moment and tangent, beside OpenSim"),
     "hip": ("hip", "a hip in use: a cycle, millions of them, springs and real cup; and a loop by hand in NumPy"),
     "element-in-c": ("element_in_c", "one evaluation of the force element: exported to C, in Python, in NumPy"),

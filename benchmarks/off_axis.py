@@ -34,16 +34,16 @@ RIVALS = (11.25, 9.0)
 
 def measure() -> Report:
     works: dict[str, tuple[Callable[[bs.Sphere], Work], str]] = {
-        "set up": (_set_up, "1500, 6000"),
-        "by displacement": (_displaced, "15, 80"),
-        "by force": (_forced, "45, 240"),
+        "set up": (set_up, "1500, 6000"),
+        "by displacement": (displaced, "15, 80"),
+        "by force": (forced, "45, 240"),
     }
     rows = Rows("Milliseconds", ("what", *(f"rings of {width}" for width in WIDTHS), "aims"))
     springs = bs.Sphere(surface=bs.Springs())
     with one_core() as pinned:
         for name, (work, aims) in works.items():
             rows.add(name, *_timed(*(work(bs.Sphere(ring_width=width)) for width in WIDTHS.values())), aims)
-        one, cycle = _timed(_displaced(springs), _cycle(springs))
+        one, cycle = _timed(displaced(springs), _cycle(springs))
         (loads,) = _timed(_cycle(bs.Sphere()))
     rows.add(f"a cycle of {CYCLE} loads", loads, "", "1000")
     rows.add("springs, by displacement", one, "", "3")
@@ -56,7 +56,7 @@ def _timed(*work: Work) -> list[Spread]:
     return [each.per(1e-3) for each in seconds.values()]
 
 
-def _set_up(model: bs.Sphere) -> Work:
+def set_up(model: bs.Sphere) -> Work:
     def work() -> None:
         """A cup that nobody has asked for, and a folder that is empty."""
         joint = replace(JOINT, liner_thickness=6.75 + 1e-9 * numpy.random.default_rng().uniform())
@@ -66,11 +66,11 @@ def _set_up(model: bs.Sphere) -> Work:
     return work
 
 
-def _displaced(model: bs.Sphere) -> Work:
+def displaced(model: bs.Sphere) -> Work:
     return lambda: model.press(JOINT, indentation=INDENTATION, tilt=TILT)
 
 
-def _forced(model: bs.Sphere) -> Work:
+def forced(model: bs.Sphere) -> Work:
     return lambda: model.press(JOINT, force=3000.0, tilt=TILT)
 
 
@@ -85,7 +85,7 @@ def _cycle(model: bs.Sphere) -> Work:
 def _rival() -> list[str]:
     if shutil.which("ccx") is None:
         return ["CalculiX is not installed: no rival was run."]
-    ours = _displaced(bs.Sphere())
+    ours = displaced(bs.Sphere())
     truth: Any = ours()
     _, mine = interleaved(REPEATS, {"ours": ours})
     said = [

@@ -112,7 +112,7 @@ def test_a_scan_lies_in_the_cup_as_it_was_turned():
     for scanned, turned in ((along, 0.0), (across, pi / 2)):
         function = replace(COARSE, worn=bs.Pinched(squeeze=0.1, direction=turned))
         drawn = function.press(RIGID, force=2000.0, tilt=0.4)
-        assert scanned.max_pressure == pytest.approx(drawn.max_pressure, rel=5e-3)
+        assert scanned.max_pressure == pytest.approx(drawn.max_pressure, rel=8e-3)
         assert scanned.indentation == pytest.approx(drawn.indentation, rel=5e-3)
     with pytest.raises(ValueError, match="90 degrees are 1.571 radians"):
         scan_of(points, azimuth=90.0)

@@ -64,7 +64,7 @@ class Scan(Measured):
         return cKDTree(self.directions.T)
 
 
-_NEAREST, _FLAT = 12, 1e-3
+_NEAREST, _FLAT = 24, 1e-3
 _FEWEST = 200
 _NARROWEST = radians(25.0)
 _ROUGHEST = 0.03
