@@ -47,7 +47,7 @@ def measure() -> Report:
     rows.rows = [(*row, *shares) for row, shares in zip(rows.rows, [*map(_percent, off), ("", "")], strict=True)]
     _draw(numpy.array([each.rings for each in grids]), seconds, numpy.array(off))
     where = "on one core" if pinned else "not held to one core"
-    notes = [f"{where.capitalize()}; {load:.1f} programs ran at the end, this one included."]
+    notes = [f"{where.capitalize()}, seconds of the processor; {load:.1f} programs ran at the end, this one included."]
     return Report([rows], [*notes, "docs/rings_cost.png shows them."], ("scipy",))
 
 
