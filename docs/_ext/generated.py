@@ -11,6 +11,8 @@ from pathlib import Path
 
 import ballsocket as bs
 from ballsocket.catalogue import theories
+from ballsocket.evidence.comparator import between
+from ballsocket.evidence.comparators import PUBLISHED
 from ballsocket.evidence.validity import measure, promising
 from ballsocket.output.accuracy_table import markdown
 from ballsocket.output.report import write_report
@@ -40,6 +42,7 @@ def write(folder: Path) -> None:
         "claims": _claims(results["claims"]),
         "elsewhere": _claims(results["elsewhere"]),
         "commands": _commands(),
+        "comparators": "\n".join(_comparator(make()) for make in PUBLISHED.values()),
         "glossary": _glossary(QUANTITIES.values()),
         "joints": _presets(bs.joints),
         "materials": _presets(bs.materials, lambda name: f"`{name}`, in Python `{name.replace('-', '_').upper()}`"),
@@ -200,6 +203,18 @@ def _promised() -> str:
     ]
     keys = [(told, " ".join(f"`{key}`" for key in keys)) for told, keys in promised["keys of JSON"].items()]
     return f"{_table(('command', 'options'), rows)}\n\n{_table(('JSON', 'keys'), keys)}"
+
+
+def _comparator(each) -> str:
+    """A published number beside ours, with every input."""
+    rows = [("published input", name, text) for name, text in each.inputs.items()]
+    rows += [("assumed", name, text) for name, text in each.assumed.items()]
+    rows += [("**published**", name, text) for name, text in each.published.items()]
+    rows += [("**ours**", name, f"{low:.3g} to {high:.3g}") for name, (low, high) in each.ours.items()]
+    reach = ", ".join(f"{name} {between(ends)}" for name, ends in each.reaches.items())
+    parts = [f"## {each.title}", _table(("", "", ""), rows), each.agreement]
+    parts += [f"Over {reach}."] if reach else []
+    return "\n\n".join([*parts, f"{each.kind.capitalize()}. {_linked(each.source)} (read: {each.read})."]) + "\n"
 
 
 # --- the command ---

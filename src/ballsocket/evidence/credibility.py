@@ -69,6 +69,26 @@ def _comparators(found: Results) -> str:
     return f"{len(found['claims'])} published results judged, {len(found['comparators'])} more beside ours"
 
 
+def _applicable(found: Results) -> str:
+    return "; ".join(_named(found, "applies", "applies in part")) or "no comparator speaks of these joints"
+
+
+def _not_applicable(found: Results) -> str:
+    told = _named(found, "does not apply")
+    others = f"not of these joints: {', '.join(told)}; " if told else ""
+    return f"{others}to be argued by whoever signs"
+
+
+def _named(found: Results, *verdicts: str) -> list[str]:
+    """Comparators by their verdict on the question."""
+    listed = [(each.get("title") or each["where"], each["applicability"]["verdict"]) for each in _all(found)]
+    return [f"{name} ({verdict})" if len(verdicts) > 1 else name for name, verdict in listed if verdict in verdicts]
+
+
+def _all(found: Results) -> Sequence[Mapping[str, Any]]:
+    return [*found["claims"], *found["comparators"]]
+
+
 FACTORS: Sequence[Factor] = (
     Factor(
         "code verification",
@@ -120,7 +140,7 @@ FACTORS: Sequence[Factor] = (
     Factor(
         "applicability",
         "relevance of the validation activities to the context of use",
-        _always("liners of polyethylene under metal or ceramic heads are covered"),
-        _always("to be argued by whoever signs"),
+        _applicable,
+        _not_applicable,
     ),
 )

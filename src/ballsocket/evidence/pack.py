@@ -14,6 +14,7 @@ from ..paper.plan import Piece, Plan, Results, Summary
 from . import matrix
 from .calculation import beside, largest_deviation, rival
 from .code_checks import CHECKS
+from .comparator import applicability, reach_asked
 from .comparators import CLAIMS, PUBLISHED, claim
 from .credibility import FACTORS
 from .inputs import inputs, made_with
@@ -150,11 +151,14 @@ def _record(
         "limits": [matrix.kept(limit, found, question.accuracy).summary() for limit in question.limits],
         "code_verification": results["code_verification"],
         "calculation": calculation,
-        "claims": results["claims"],
-        "comparators": results["comparators"],
+        "claims": [dict(each) for each in results["claims"]],
+        "comparators": [dict(each) for each in results["comparators"]],
         "uncertainty": next(iter(results["uncertainty"]), None),
         "wear": next(iter(results["wear"]), None),
     }
+    tilted, asked = question.model.off_axis, reach_asked(question, found)
+    for each in (*record["claims"], *record["comparators"]):
+        each["applicability"] = applicability(each["reaches"], asked, tilted)
     record["accurate"] = _accurate(record)
     record["credibility"] = [factor.summary(record) for factor in FACTORS]
     return record

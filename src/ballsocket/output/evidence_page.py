@@ -157,8 +157,11 @@ def _with_bar(method: Record, key: str) -> str:
 
 
 def _validation(record: Record) -> str:
-    claims = [(each["sentence"], each["where"], each["text"], _ours(each["numbers"])) for each in record["claims"]]
-    told = _words(("published", "where", "verdict", "ours"), claims)
+    claims = [
+        (each["sentence"], each["where"], each["text"], _ours(each["numbers"]), each["applicability"]["text"])
+        for each in record["claims"]
+    ]
+    told = _words(("published", "where", "verdict", "ours", "to this question"), claims)
     return told + "".join(map(_comparator, record["comparators"]))
 
 
@@ -171,7 +174,10 @@ def _comparator(each: Record) -> str:
     said += [("assumed", name, text) for name, text in each["assumed"].items()]
     said += [("published", name, text) for name, text in each["published"].items()]
     said += [("ours", name, f"{_number(low)} to {_number(high)}") for name, (low, high) in each["ours"].items()]
-    told = f"<p>{escape(each['agreement'])} <small>({escape(each['source'])})</small></p>"
+    told = (
+        f"<p>{escape(each['agreement'])}</p><p>To this question it {escape(each['applicability']['text'])}.</p>"
+        f"<p><small>{escape(each['kind'])}; {escape(each['source'])} (read: {escape(each['read'])})</small></p>"
+    )
     return f"<h3>{escape(each['title'])}</h3>{_words(('', '', ''), said)}{told}{_call(each['call'])}"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib.resources import files
 from io import StringIO
 
@@ -56,17 +57,20 @@ def exact_agrees_with_calculix(_: Model) -> Finding:
 
 
 def _against_calculix(model: Model, table: Numbers) -> dict[str, float]:
-    joints = Joint(
+    ours = model.press(_joints_of(table), force=table["force"])
+    depth, pressure = (percent(worst_error(getattr(ours, name), table[name])) for name in SHOWN[:2])
+    angle = float(numpy.max(abs(numpy.degrees(ours.half_angle) - table["half_angle_deg"])))
+    return {"indentation off by, %": depth, "peak pressure off by, %": pressure, "half angle off by, °": angle}
+
+
+def _joints_of(table: Numbers) -> Joint:
+    return Joint(
         ball_radius=table["ball_radius"],
         clearance=table["clearance"],
         liner_thickness=table["liner_thickness"],
         liner=Material(young=1000.0, poisson=table["poisson"]),
         ball=STEEL,
     )
-    ours = model.press(joints, force=table["force"])
-    depth, pressure = (percent(worst_error(getattr(ours, name), table[name])) for name in SHOWN[:2])
-    angle = float(numpy.max(abs(numpy.degrees(ours.half_angle) - table["half_angle_deg"])))
-    return {"indentation off by, %": depth, "peak pressure off by, %": pressure, "half angle off by, °": angle}
 
 
 def calculix() -> Numbers:
@@ -79,7 +83,7 @@ def calculix() -> Numbers:
 _JIN_HEADS = {"22 mm head": (11.0, 10.0), "28 mm head": (14.0, 8.0), "32 mm head": (16.0, 6.0)}
 """Head radius and liner thickness in mm. Representative: the abstract does not name the pairs."""
 
-_JIN_CLEARANCES = numpy.array([0.1, 0.15])
+_JIN_CLEARANCES, _JIN_FORCE = numpy.array([0.1, 0.15]), 2500.0
 
 
 def half_angles_of_jin(reference: Model) -> Finding:
@@ -89,7 +93,7 @@ def half_angles_of_jin(reference: Model) -> Finding:
         joints = Joint(
             ball_radius=radius, clearance=_JIN_CLEARANCES, liner_thickness=thickness, liner=UHMWPE, ball=COCR
         )
-        half_angle = numpy.degrees(reference.press(joints, force=2500.0).half_angle)
+        half_angle = numpy.degrees(reference.press(joints, force=_JIN_FORCE).half_angle)
         for clearance, angle in zip(_JIN_CLEARANCES, half_angle, strict=True):
             angles[f"{name}, L {thickness:g}, c {clearance:g}, °"] = float(angle)
     low, high = min(angles.values()), max(angles.values())
@@ -112,6 +116,7 @@ _PLANK = (
     ("38 mm, 3 mm thick", 19.0, 3.0),
     ("46 mm, 3 mm thick", 23.0, 3.0),
 )
+_PLANK_CLEARANCE, _PLANK_FORCE = 0.1, 3000.0
 
 
 def ordering_of_plank(_: Model) -> Finding:
@@ -136,10 +141,28 @@ def ordering_of_plank(_: Model) -> Finding:
     )
 
 
+def pressed() -> Mapping[str, tuple[Joint, Numbers]]:
+    """The joints and forces in N behind each of these claims, by its name, as arrays."""
+    table = calculix()
+    elements = _joints_of(table), table["force"]
+    radii, thicknesses = (numpy.array(each)[:, None] for each in zip(*_JIN_HEADS.values(), strict=True))
+    jin = Joint(ball_radius=radii, clearance=_JIN_CLEARANCES, liner_thickness=thicknesses, liner=UHMWPE, ball=COCR)
+    heads, liners = (numpy.array(each)[:, None] for each in list(zip(*_PLANK, strict=True))[1:])
+    both = numpy.array([UHMWPE.young, CROSSLINKED_PE.young])
+    liner = Material(young=both, poisson=UHMWPE.poisson)
+    plank = Joint(ball_radius=heads, clearance=_PLANK_CLEARANCE, liner_thickness=liners, liner=liner, ball=COCR)
+    return {
+        elements_agree_with_calculix.__name__: elements,
+        exact_agrees_with_calculix.__name__: elements,
+        half_angles_of_jin.__name__: (jin, numpy.array(_JIN_FORCE)),
+        ordering_of_plank.__name__: (plank, numpy.array(_PLANK_FORCE)),
+    }
+
+
 def _surface_stress(radius: float, thickness: float, liner: Material) -> float:
     """The largest von Mises stress in MPa at the surface of the liner, over the contact."""
-    joint = Joint(ball_radius=radius, clearance=0.1, liner_thickness=thickness, liner=liner, ball=COCR)
-    contact = Exact().press(joint, force=3000.0)
+    joint = Joint(ball_radius=radius, clearance=_PLANK_CLEARANCE, liner_thickness=thickness, liner=liner, ball=COCR)
+    contact = Exact().press(joint, force=_PLANK_FORCE)
     assert isinstance(contact, ElasticContact)
     angles = numpy.linspace(0.0, 0.98, 15) * float(contact.half_angle)
     return float(numpy.max(contact.stress(angle=angles, depth=0.0).von_mises))
