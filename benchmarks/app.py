@@ -56,7 +56,8 @@ _MOVE = """
 ([slider, key]) => new Promise((done) => {
   const place = "dd[data-name=max_pressure]";
   const read = () => { const at = window.within(document, place); return at && at.dataset.value; };
-  const handle = window.within(window.within(document, "." + slider).shadowRoot, ".noUi-handle");
+  const place_of = window.within(document, `.${slider}, [data-name="${slider}"]`);
+  const handle = window.within(place_of.shadowRoot || place_of, ".noUi-handle, input[type=range]");
   const before = read(), start = performance.now();
   const look = () => (read() !== before ? done(performance.now() - start) : requestAnimationFrame(look));
   handle.dispatchEvent(new KeyboardEvent("keydown", { key, code: key, bubbles: true, cancelable: true }));
@@ -138,9 +139,10 @@ class Session:
     def __init__(self, address: str) -> None:
         self._address = address
         self._socket: Any = None
+        self._ears, self._asked = "", 0
 
-    async def open(self) -> str:
-        """The identity of the slider of the clearance, once the whole page is there."""
+    async def open(self) -> None:
+        """Until the numbers of the page are there."""
         from tornado.httpclient import AsyncHTTPClient, HTTPRequest
         from tornado.websocket import websocket_connect
 
@@ -153,16 +155,21 @@ class Session:
         await self._send("PULL-DOC-REQ", {})
         while '"doc":' not in (document := await self._receive())[:20]:
             pass
+        (self._ears,) = (
+            each["id"] for each in _models(json.loads(document)) if each["attributes"].get("name") == "asked"
+        )
         ready = {"type": "event", "name": "document_ready", "values": {"type": "map"}}
         await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": ready})
-        (slider,) = (each["id"] for each in _sliders(json.loads(document)) if each["attributes"]["end"] == 0.5)
-        return str(slider)
+        while _NUMBER not in await self._receive():
+            pass
 
-    async def move(self, slider: str, value: float) -> float:
-        """Seconds until another peak pressure comes."""
+    async def move(self, value: float) -> float:
+        """Seconds until the page has answered a move of the clearance."""
         start = time.perf_counter()
-        await self._patch({"kind": "ModelChanged", "model": {"id": slider}, "attr": "value", "new": value})
-        while "data-name=&#x27;max_pressure" not in await self._receive():
+        self._asked += 1
+        words = json.dumps({"n": self._asked, "do": "edit", "name": "clearance", "value": value})
+        await self._patch({"kind": "ModelChanged", "model": {"id": self._ears}, "attr": "value", "new": words})
+        while _NUMBER not in await self._receive():
             pass
         return time.perf_counter() - start
 
@@ -189,20 +196,23 @@ class Session:
         return str(part)
 
 
-def _sliders(part: Any) -> Iterator[dict[str, Any]]:
+_NUMBER = "data-name='max_pressure'"
+
+
+def _models(part: Any) -> Iterator[dict[str, Any]]:
     """All in a document."""
-    if isinstance(part, dict) and part.get("name") == "Slider":
+    if isinstance(part, dict) and isinstance(part.get("attributes"), dict):
         yield part
     for inner in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
-        yield from _sliders(inner)
+        yield from _models(inner)
 
 
 async def user(address: str, number: int) -> tuple[float, list[float]]:
     """Seconds to open a session, and those from a slider to the new number."""
     start, one = time.perf_counter(), Session(address)
-    slider = await one.open()
+    await one.open()
     opening = time.perf_counter() - start
-    return opening, [await one.move(slider, 0.0512 + 0.005 * ((turn + number) % 40)) for turn in range(TURNS)]
+    return opening, [await one.move(0.0512 + 0.005 * ((turn + number) % 40)) for turn in range(TURNS)]
 
 
 async def crowd_of(address: str) -> list[tuple[float, list[float]]]:

@@ -24,7 +24,7 @@ def main() -> None:
         for name, (query, height) in VIEWS.items():
             page = browser.new_page(viewport={"width": 1280, "height": height})
             page.goto(address + query)
-            page.locator("#view .bk-btn").first.wait_for()
+            page.locator(".app[data-idle=yes][data-shown]").wait_for()
             if name == "judge":
                 page.locator(".bk-btn", has_text="Run finite elements").click()
                 page.locator("img[alt^='mesh, von Mises']").wait_for()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.app.drawing import _petals
+from ballsocket.app.drawing import petals
 from ballsocket.io.joint_file import JointFile
 
 from ..joints import HIP
@@ -17,11 +17,11 @@ from ..joints import HIP
 def test_the_band_of_pressure_ends_with_the_contact_and_at_the_rim(arc):
     file = JointFile(HIP, {"force": 3000.0}, bs.Cup(arc_of_cover=radians(arc)))
     contact = bs.Exact().press(file.joint, force=3000.0)
-    petals = _petals(file, contact)
-    widest = degrees(np.arctan2(np.abs(petals["x"]), -np.asarray(petals["y"])).max())
+    outlines = [outline for outline, _ in petals(file, contact)]
+    widest = max(degrees(np.arctan2(np.abs(x), -y).max()) for x, y in outlines)
     assert widest == pytest.approx(min(arc / 2, degrees(contact.half_angle)), abs=0.01)
 
 
 def test_a_joint_without_a_load_has_no_band():
     file = JointFile(replace(HIP, name=""), {}, bs.Cup())
-    assert _petals(file, None)["x"] == []
+    assert petals(file, bs.Exact().press(file.joint, force=0.0)) == []

@@ -1,5 +1,7 @@
 """The explorer's page without a browser: what goes wrong inside is said on it."""
 
+import re
+from html import unescape
 from itertools import product
 
 import pytest
@@ -7,6 +9,7 @@ import pytest
 import ballsocket as bs
 
 from ..extent import either
+from .asking import does, edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
@@ -27,15 +30,14 @@ def test_a_view_that_fails_says_so_and_is_logged(monkeypatch, caplog):
 
     monkeypatch.setattr(Press, "show", show)
     page.ask(shown=("exact",))
-    assert "This cannot be shown: no &lt;luck&gt;" in page._trouble.object
+    assert "This cannot be shown: no &lt;luck&gt;" in trouble(page)
     assert "a view failed" in caplog.text
 
 
 def test_a_file_that_cannot_be_made_says_why():
     page = Page("view=judge")
-    with pytest.raises(ValueError, match="nothing has run yet"):
-        page._downloads._made(page._downloads._numbers)
-    assert "run the finite elements first" in page._trouble.object
+    assert "file" not in does(page, "save", kind="CSV")
+    assert "run the finite elements first" in trouble(page)
 
 
 def test_a_refusal_outlives_the_end_of_loading_and_goes_with_the_next_change():
@@ -68,7 +70,7 @@ def test_every_preset_can_be_seen_under_every_load(preset, load):
     for view in ("press", "map", "compare"):
         model = "hertz" if preset == "tilting-pad-pivot" else "tabulated"
         page = Page(f"view={view}&preset={preset}&load.{load}&map_model={model}")
-        assert page._trouble.object == ""
+        assert trouble(page) == ""
         assert page.view.document(page.screen).rows()
 
 
@@ -82,16 +84,20 @@ def test_a_map_of_angles_has_the_unit_that_is_chosen(angle, unit, factor):
 
 def test_a_load_of_zero_is_compared_without_shares():
     page = Page("view=compare&preset=hip-28&load.force=0&beside1.preset=hip-36")
-    assert page._trouble.object == ""
+    assert trouble(page) == ""
     assert page.view.document(page.screen).rows()
 
 
 def test_what_is_too_long_for_a_link_does_not_come_on_the_screen():
     page = Page("")
     before = page.screen
-    page._uploaded('1\nname = "' + "€" * 999 + '"\n' + toml_of(before.file).partition("source")[2].partition("\n")[2])
+    does(
+        page,
+        "upload",
+        text='name = "' + "€" * 999 + '"\n' + toml_of(before.file).partition("source")[2].partition("\n")[2],
+    )
     assert page.screen == before
-    assert "a link to this would be longer than 8000 characters" in page._trouble.object
+    assert "a link to this would be longer than 8000 characters" in trouble(page)
 
 
 def test_names_that_are_formulas_elsewhere_are_text_in_files():
@@ -99,9 +105,9 @@ def test_names_that_are_formulas_elsewhere_are_text_in_files():
         "view=compare&preset=hip-28&beside1.name==1%2B1 $\\frac{a$&beside1.joint.ball_radius=14"
         "&beside1.joint.clearance=.1&beside1.joint.liner_thickness=5&beside1.liner.material=pom"
     )
-    assert page._trouble.object == ""
-    assert b"'=1+1" in page._downloads._numbers()
-    assert page._downloads._picture("png").startswith(b"\x89PNG")
+    assert trouble(page) == ""
+    assert b"'=1+1" in saved(page, "CSV")
+    assert saved(page, "PNG").startswith(b"\x89PNG")
 
 
 def test_more_pages_than_there_is_room_for_are_refused(monkeypatch):
@@ -142,10 +148,72 @@ def test_a_map_of_joints_that_tables_do_not_know_is_solved():
     assert "Smallest value of" in told
 
 
-def test_a_legend_of_many_models_covers_no_curve_and_the_exact_one_lies_below():
+def test_the_exact_curve_lies_below_those_through_which_it_can_be_seen():
     page = Page(f"view=press&preset=hip-28&load.force=3000&shown={','.join(reversed(bs.catalogue))}")
-    chart = page.view._charts._pressure
-    assert not chart.legend.visible
-    assert chart._lines.data["name"][0] == "exact"
-    page.ask(shown=("exact", "hertz"))
-    assert chart.legend.visible
+    curves = re.findall('data-name="([^"]+)"', page.channel.told("#press-charts"))
+    assert curves[0] == "exact"
+    assert set(curves) == set(bs.catalogue)
+    does(page, "choose", name="shown", value=["exact", "hertz"])
+    assert set(re.findall('data-name="([^"]+)"', page.channel.told("#press-charts"))) == {"exact", "hertz"}
+
+
+def test_only_what_has_changed_is_sent():
+    page = Page("")
+    answer = edits(page, "load", 2900)
+    assert answer["=load"]["value"] == 2900
+    assert "data-value='2900.0'" in answer["#press-numbers"]
+    assert not {"=clearance", "order", "view", "#trouble"} & set(answer)
+    assert set(edits(page, "load", 2900)) == {"n"}
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"), [("0,2", 0.2), ("0.2", 0.2), (" 0,2 mm", 0.2), ("200 um", 0.2), (",2", 0.2), (0.2, 0.2)]
+)
+def test_a_number_is_understood_as_people_write_it(text, meant):
+    page = Page("")
+    edits(page, "clearance", text)
+    assert trouble(page) == ""
+    assert page.screen.file.joint.clearance == pytest.approx(meant, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "why"),
+    [
+        ("load", "3,000", "force = '3,000' could be two numbers: write 3000 or 3.000"),
+        ("load", "much", "force = 'much' is no number in N, and not a force, such as '3 kN'"),
+        ("liner_poisson", "0,7", "poisson = 0.7 is not allowed"),
+        ("clearance", None, "clearance = None is no number"),
+        ("clearence", "1", "'clearence' among the inputs is not known"),
+        ("liner", 3, "liner = 3 is no material"),
+        ("preset", "hip-29", "'hip-29' as preset is not known"),
+    ],
+)
+def test_an_input_that_is_none_is_refused_in_words_and_stays(name, text, why):
+    page = Page("")
+    before = page.screen
+    answer = edits(page, name, text)
+    assert why in unescape(trouble(page))
+    assert answer["reset"] is True
+    assert page.screen == before
+    edits(page, "load", 2900)
+    assert trouble(page) == ""
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{", '{"do": 3, "n": 1}', '{"do": "edit"}', "[" * 100_000, '"' + "x" * 400_000]
+)
+def test_what_no_page_of_ours_says_is_not_heard(text):
+    page = Page("")
+    said = page.channel.mouth.value
+    page.channel.ears.value = text
+    assert page.channel.mouth.value == said
+
+
+def test_a_word_that_no_page_of_ours_knows_is_refused():
+    page = Page("")
+    for words in ({"what": "leave"}, {"what": "choose", "name": "theme", "value": "dark"}):
+        does(page, words.pop("what"), **words)
+        assert "is not known" in trouble(page)
+    does(page, "choose", name="shown", value="exact")
+    assert "shown takes words" in trouble(page)
+    assert page.screen == Page("").screen

@@ -1,6 +1,5 @@
 """A page whose answer takes long: others go on, a process of its own solves it, and there is an end to that."""
 
-import asyncio
 import time
 
 import pytest
@@ -9,6 +8,7 @@ import ballsocket as bs
 from ballsocket.io.joint_file import JointFile
 
 from ..extent import some
+from .asking import saved
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
@@ -16,7 +16,7 @@ import panel as pn
 from panel.io.state import set_curdoc
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 
-from ballsocket.app import running, serve, solving
+from ballsocket.app import running, solving
 from ballsocket.app.page import Page
 from ballsocket.app.pressing import pressed
 from ballsocket.app.solving import heavy
@@ -80,9 +80,9 @@ def test_a_link_to_thin_liners_does_not_hold_the_server(query, monkeypatch):
     seen = presses_of(monkeypatch)
     page = Page(query)
     page.leave()
-    assert page._trouble.object == ""
+    assert not page.channel.told("#trouble")
     assert all(float(joint.thickness_ratio) <= THIN for joint in seen)
-    said = page.view._table.object
+    said = page.channel.told("#press-table") or page.view._table.object
     assert "exact is being solved: at R2/L = " in said
 
 
@@ -105,9 +105,9 @@ def test_what_was_solved_elsewhere_is_what_a_press_answers():
             assert seen.pressure(angle) == pytest.approx(own.pressure(angle), abs=2e-3 * own.max_pressure)
         assert seen.notes == own.notes
         assert seen.curve.half_angle[-1] > own.half_angle
-    assert f"data-value='{seen.max_pressure!r}'" in page.view._numbers.object
-    assert page._downloads._picture("png").startswith(b"\x89PNG")
-    assert b"exact" in page._downloads._numbers()
+    assert f"data-value='{seen.max_pressure!r}'" in page.channel.told("#press-numbers")
+    assert saved(page, "PNG").startswith(b"\x89PNG")
+    assert b"exact" in saved(page, "CSV")
 
 
 def test_what_takes_too_long_is_ended_and_said(monkeypatch):
@@ -115,11 +115,11 @@ def test_what_takes_too_long_is_ended_and_said(monkeypatch):
     page = Page(link(190))
     waited_for(page)
     words = "exact has no answer here: stopped after 0.01 s, the longest that a run may take here"
-    assert words in page.view._numbers.object
-    assert "hess-forsbach" in page.view._table.object
+    assert words in page.channel.told("#press-numbers")
+    assert "hess-forsbach" in page.channel.told("#press-table")
     again = Page(link(190))
     assert again._errand._run is None
-    assert words in again.view._numbers.object
+    assert words in again.channel.told("#press-numbers")
 
 
 def test_only_what_is_on_the_screen_is_solved():
@@ -134,17 +134,10 @@ def test_only_what_is_on_the_screen_is_solved():
     assert page._errand._run is None
 
 
-@pytest.fixture
-def served():
-    """A server in this process, whose loop turns while it is asked."""
-    loop = asyncio.new_event_loop()
-    asyncio.set_event_loop(loop)
-    one = serve.server(0)
-    one.start()
-    yield one
-    one.stop()
-    one.io_loop.close()
-    asyncio.set_event_loop(None)
+async def opened(session, callback):
+    """A browser has opened the page."""
+    with set_curdoc(session.document):
+        await session.with_document_locked(callback)
 
 
 def test_who_only_looks_makes_nothing_work(served, monkeypatch):
@@ -158,7 +151,6 @@ def test_who_only_looks_makes_nothing_work(served, monkeypatch):
     (session,) = served.get_sessions("/")
     assert not shown
     assert not seen
-    with set_curdoc(session.document):
-        for callback, _ in pn.state._onload[session.document]:
-            callback()
+    for callback, _ in pn.state._onload[session.document]:
+        served.io_loop.run_sync(lambda callback=callback: opened(session, callback))
     assert [float(screen.file.joint.thickness_ratio) for screen in shown] == [pytest.approx(190)]

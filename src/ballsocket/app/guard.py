@@ -1,9 +1,10 @@
-"""What the server says to strangers: other names than ours are refused, and every answer bids browsers be strict."""
+"""What the server says to strangers, and to those who leave: strict answers, and nothing kept of a closed page."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from typing import Any
 
 from tornado.httputil import HTTPHeaders
 from tornado.web import Application, OutputTransform, RequestHandler
@@ -52,3 +53,25 @@ def guard(application: Application, names: Iterable[str]) -> None:
 def _host(name: str) -> str:
     """Without the port, in small letters, as requests are matched."""
     return re.sub(r":[\d*]+$", "", name.lower())
+
+
+_GONE = 1001
+"""With which a browser takes leave when its page is closed; a line that breaks says nothing, and may come back."""
+
+
+def forget_closed(application: Any) -> None:
+    """Have what belongs to a page that a browser has closed be forgotten when the server next looks.
+
+    Parameters
+    ----------
+    application : BokehTornado
+    """
+    lost = application.client_lost
+
+    def leave(connection: Any) -> None:
+        session = connection.session
+        lost(connection)
+        if connection._socket.close_code == _GONE:
+            session.request_expiration()
+
+    application.client_lost = leave

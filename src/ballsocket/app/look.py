@@ -5,42 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from bokeh.models import ColorBar, LinearColorMapper, Range1d
+from bokeh.models import ColorBar, LinearColorMapper
 from bokeh.plotting import figure
-
-from ..output.style import INK, THICK, Line
 
 
 @dataclass(frozen=True, kw_only=True)
 class Palette:
-    """What a theme is made of; `ball`, `liner`, `backing` fill the drawing."""
+    """What a theme is made of."""
 
     text: str
     grid: str
     paper: str
-    ball: str
-    liner: str
-    backing: str
 
 
 PALETTES = {
-    "light": Palette(
-        text="#1d2328", grid="#e3e6e8", paper="#ffffff", ball="#c9ced3", liner="#e8eef4", backing="#b3a99c"
-    ),
-    "dark": Palette(
-        text="#e6e9ec", grid="#3a4249", paper="#191e23", ball="#5b646d", liner="#2b3946", backing="#6d6357"
-    ),
+    "light": Palette(text="#1d2328", grid="#e3e6e8", paper="#ffffff"),
+    "dark": Palette(text="#e6e9ec", grid="#3a4249", paper="#191e23"),
 }
-
-
-def colour_of(line: Line, palette: Palette) -> str:
-    """The colour of a line on this page, whose ink may be light."""
-    return palette.text if line.colour == INK else line.colour
-
-
-def dash_of(line: Line) -> str:
-    """The dash of a line as Bokeh takes it."""
-    return " ".join(f"{THICK * length:.0f}" for length in line.dash) or "solid"
 
 
 def chart(x: str, y: str, palette: Palette, height: int = 300, **options: Any) -> Any:
@@ -68,11 +49,6 @@ def chart(x: str, y: str, palette: Palette, height: int = 300, **options: Any) -
         axis.major_label_text_color = axis.axis_label_text_color = palette.text
         axis.axis_label_text_font_style = "normal"
     return made
-
-
-def from_zero(high: float) -> Range1d:
-    """A range that starts at zero."""
-    return Range1d(0.0, high)
 
 
 def colour_bar(mapper: LinearColorMapper, palette: Palette, title: str = "") -> Any:

@@ -3,35 +3,34 @@
 from __future__ import annotations
 
 import logging
+from base64 import b64encode
+from collections.abc import Mapping
+from concurrent.futures import Future
 from dataclasses import replace
+from functools import partial
 from typing import Any
 from urllib.parse import parse_qs
 
 import panel as pn
-from bokeh.models import CustomJS
-from bokeh.models.widgets import TextInput
 
-from ..io.joint_file import JointFile, parse_joint
-from .controls import JointControls
-from .downloads import Downloads, Seen
+from ..checks import check_names
+from ..io.joint_file import parse_joint
+from .beside import beside
+from .channel import Channel
+from .controls import behind, edited, fields_of
+from .fields import Field, segments
+from .files import Seen, made
 from .pressing import pressed
 from .screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, link_of, read_link
 from .solving import Errand
-from .style import asset, html, inputs
 from .view import View
-from .views.compare import Compare
-from .views.design_map import DesignMap
-from .views.judge import Judge
-from .views.press import Press
+from .views import KINDS
 from .words import alert
 
-_KINDS: dict[str, type[Press] | type[DesignMap] | type[Compare] | type[Judge]] = {
-    "press": Press,
-    "map": DesignMap,
-    "compare": Compare,
-    "judge": Judge,
-}
 _LOG = logging.getLogger(__name__)
+_LARGEST = 100_000  # characters of a joint file
+_CHOSEN = ("view", "answered_by", "shown", "angle", "size")
+"""Fields of the screen that the page's own inputs change."""
 
 
 class Page:
@@ -44,31 +43,11 @@ class Page:
     """
 
     def __init__(self, query: str) -> None:
-        self._trouble = html()
+        self.channel = Channel(self._asked)
         self.screen = self._read(query)
         self._views: dict[str, View] = {}
-        self._controls = JointControls(lambda file: self.ask(file=file), self.refuse, self._same_load)
-        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
-        self._view = pn.widgets.RadioButtonGroup(
-            label="view", options={kind.title: name for name, kind in _KINDS.items()}, stylesheets=inputs(), **wide
-        )
-        self._view.param.watch(lambda event: self.ask(view=event.new), "value")
-        self._angle = pn.widgets.RadioButtonGroup(label="angles in", options=list(ANGLES), stylesheets=inputs(), **wide)
-        self._size = pn.widgets.RadioButtonGroup(label="balls by", options=list(SIZES), stylesheets=inputs(), **wide)
-        self._angle.param.watch(lambda event: self.ask(angle=event.new), "value")
-        self._size.param.watch(lambda event: self.ask(size=event.new), "value")
-        self._downloads = Downloads(self._seen, self.refuse)
-        self._link = TextInput(name="link", value=link_of(self.screen), visible=False)
-        self._link.js_on_change("value", CustomJS(code="window.ballsocket.linked(cb_obj.value)"))
-        self._upload = TextInput(name="upload", value="", visible=False)
-        self._upload.on_change("value", lambda attribute, old, new: self._uploaded(new))
-        self.main = pn.Column(**wide)
-        self.side = pn.Column(
-            self._controls.panel, pn.Column(self._angle, self._size, **wide), self._downloads.panel, **wide
-        )
-        self.head = pn.Column(self._view, self._trouble, pn.pane.Bokeh(self._link), pn.pane.Bokeh(self._upload), **wide)
+        self.main = pn.Column(sizing_mode="stretch_width")
         self._errand = Errand(self._refresh)
-        self._arrange()
         pn.state.onload(self._refresh)  # whoever only looks at the address makes nothing work
 
     def _read(self, query: str) -> Screen:
@@ -85,7 +64,7 @@ class Page:
 
     def refuse(self, sentence: str) -> None:
         """Say what cannot be done; an empty sentence says nothing."""
-        self._trouble.object = alert(sentence) if sentence else ""
+        self.channel.put("#trouble", alert(sentence) if sentence else "")
 
     def ask(self, **changes: Any) -> None:
         """Put other things on the screen, and show it."""
@@ -99,46 +78,105 @@ class Page:
         self.refuse("")
         self._refresh()
 
-    def _arrange(self) -> View:
-        """Every input is what is on the screen, and one view is seen."""
-        self._controls.put(self.screen)
-        self._view.value, self._angle.value, self._size.value = (
-            self.screen.view,
-            self.screen.angle,
-            self.screen.size,
-        )
-        seen = self.view
-        for view in self._views.values():
-            view.panel.visible = view is seen
-        return seen
+    def _asked(self, what: str, words: Mapping[str, Any]) -> None:
+        """What a browser does; what cannot be done is said, and the inputs show what is meant."""
+        doings = {"edit": self._edit, "choose": self._choose, "save": self._save, "upload": self._upload}
+        try:
+            check_names([what], doings, "among what a page does")
+            doings[what](words)
+        except ValueError as error:
+            self.refuse(str(error))
+            self.channel.once("reset", True)
+
+    def _edit(self, words: Mapping[str, Any]) -> None:
+        self.ask(file=edited(self.screen, str(words.get("name")), words.get("value"), self._same_load))
+        self.refuse("")
+
+    def _choose(self, words: Mapping[str, Any]) -> None:
+        name, value = str(words.get("name")), words.get("value")
+        check_names([name], _CHOSEN, "among the choices")
+        wanted = tuple(value) if isinstance(value, list) else value
+        if not isinstance(wanted, tuple if name == "shown" else str) or not all(isinstance(one, str) for one in wanted):
+            raise ValueError(f"{name} takes words")
+        self.ask(**{name: wanted})
+
+    def _save(self, words: Mapping[str, Any]) -> None:
+        """A file, made in a thread; where there is none, the page says why."""
+        kind, seen = str(words.get("kind")), self.seen()
+        beside(partial(made, seen, kind), self._saved)
+
+    def _saved(self, outcome: Future[tuple[str, bytes]]) -> None:
+        try:
+            name, content = outcome.result()
+        except ValueError as error:
+            self.refuse(str(error))
+        except Exception as error:
+            _LOG.exception("a file failed")
+            self.refuse(f"This cannot be saved: {error}")
+        else:
+            self.channel.once("file", {"name": name, "content": b64encode(content).decode("ascii")})
+        self.channel.send()
+
+    def _upload(self, words: Mapping[str, Any]) -> None:
+        """A joint file from the browser, by the reader of files."""
+        text = str(words.get("text"))
+        if len(text) > _LARGEST:
+            raise ValueError(f"the file is longer than {_LARGEST} characters; a joint file is a few lines")
+        file = parse_joint(text.encode("utf-8"), "the file")
+        self.ask(file=file if file.load else replace(file, load=self.screen.file.load))
+
+    def start(self) -> dict[str, Any]:
+        """What the page shows before its first answer: inputs, and what is wrong with its link."""
+        self._put()
+        return self.channel.taken()
+
+    def fields(self) -> dict[str, Field]:
+        """Every input beside the views, by its name."""
+        angles = segments("angle", "angles in", [(each, each) for each in ANGLES], self.screen.angle)
+        sizes = segments("size", "balls by", [(each, each) for each in SIZES], self.screen.size)
+        return {**fields_of(self.screen), "angle": angles, "size": sizes}
 
     def _refresh(self) -> None:
         with pn.io.hold():
-            seen = self._arrange()
+            seen = self.view
+            for view in self._views.values():
+                if view.panel is not None:
+                    view.panel.visible = view is seen
+            self._put()
             try:
                 seen.show(self.screen)
             except Exception as error:  # a page must not fall silent, whatever it is
                 _LOG.exception("a view failed")
                 self.refuse(f"This cannot be shown: {error}")
-            self._link.value = link_of(self.screen)
+        self.channel.send()
         self._errand.ask(*seen.asks(self.screen))
+
+    def _put(self) -> None:
+        """Have every input show what is on the screen."""
+        fields = self.fields()
+        self.channel.put_fields(fields)
+        self.channel.put("order", list(fields))
+        self.channel.put("#behind", behind(self.screen.file.joint))
+        self.channel.put("view", self.screen.view)
+        self.channel.put("link", link_of(self.screen))
 
     @property
     def view(self) -> View:
         """The one that is seen, made when it is first looked at."""
         name = self.screen.view
         if name not in self._views:
-            self._views[name] = _KINDS[name](self.ask, self.screen)
-            self.main.append(self._views[name].panel)
+            self._views[name] = KINDS[name](self)
+            if self._views[name].panel is not None:
+                self.main.append(self._views[name].panel)
         return self._views[name]
 
-    def _seen(self) -> Seen:
+    def seen(self) -> Seen:
         """What is on the screen, for files."""
         return Seen(
             title=self.view.title,
             file=self.screen.file,
             link=self._whole_link(),
-            document=lambda: self.view.document(self.screen),
+            document=self.view.document(self.screen),
         )
 
     def _same_load(self, kind: str) -> dict[str, float]:
@@ -149,22 +187,10 @@ class Page:
         usual = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}
         return {kind: float(f"{value:.6g}") if value > 0 else usual[kind]}
 
-    def _uploaded(self, text: str) -> None:
-        """A joint file from the browser, after a line that makes each upload another; by the reader of files."""
-        raw = text.partition("\n")[2].encode("utf-8")
-        try:
-            file: JointFile = parse_joint(raw, "the file")
-        except ValueError as error:
-            self.refuse(str(error))
-            return
-        self.ask(file=file if file.load else replace(file, load=self.screen.file.load))
-
     def _whole_link(self) -> str:
         """The whole address of what is on the screen."""
-        location = pn.state.location
-        base = (
-            "" if location is None else f"{location.protocol}//{location.hostname}:{location.port}{location.pathname}"
-        )
+        place = pn.state.location
+        base = "" if place is None else f"{place.protocol}//{place.hostname}:{place.port}{place.pathname}"
         return f"{base}?{link_of(self.screen)}"
 
     def leave(self) -> None:
@@ -172,27 +198,3 @@ class Page:
         self._errand.leave()
         for view in self._views.values():
             view.leave()
-
-
-class Template(pn.Template):
-    """Bokeh looks through a document once when all is in it, and not after every part."""
-
-    def server_doc(self, doc: Any = None, title: str | None = None, location: Any = True) -> Any:
-        document = doc or pn.state.curdoc
-        with document.models.freeze():
-            return super().server_doc(document, title, location)
-
-    def __repr__(self) -> str:
-        return "<the explorer's page>"  # Panel asks often, and would write all parts down each time
-
-
-def template(page: Page) -> Any:
-    """The page with its style and script, all of it from here."""
-    made = Template(asset("page.html"))
-    made.add_variable("style", asset("page.css"))
-    made.add_variable("script", asset("page.js"))
-    made.add_variable("theme", page.screen.theme)
-    made.add_panel("head", page.head)
-    made.add_panel("side", page.side)
-    made.add_panel("main", page.main)
-    return made

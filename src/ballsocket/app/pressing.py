@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from math import ceil, log10
+from math import ceil, log10, pi
 
 import numpy
 
@@ -19,7 +19,8 @@ from ..validity import OutsideDomainError
 from .solving import heavy, solved
 from .written import WrittenContact
 
-_POINTS = numpy.linspace(0.0, 1.0, 33) ** 1.5
+_POINTS = numpy.linspace(0.0, 1.0, 17) ** 1.5
+_ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 60))
 
 
 def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
@@ -64,6 +65,13 @@ def fine_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) ->
     ready = {name: each.curve for name, each in contacts.items() if isinstance(each, WrittenContact) and each.curve}
     others = {name: each for name, each in contacts.items() if name not in ready}
     return {**ready, **(force_curves(others, models) if others else {})}
+
+
+@lru_cache(maxsize=256)
+def profile(contact: Contact) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """Angles in rad from the pole to the edge of a contact, dense where the pressure falls steeply, and pressures."""
+    angle = min(float(contact.half_angle), pi / 2) * _ANGLES
+    return angle, numpy.asarray(contact.pressure(angle))
 
 
 def rounded_up(value: float) -> float:

@@ -11,10 +11,11 @@ from typing import Any
 import panel as pn
 
 from ..checks import require, shown
-from .guard import guard
-from .page import Page, template
+from .guard import forget_closed, guard
+from .page import Page
 from .pressing import pressed
 from .screen import START
+from .template import template
 
 LOOPBACK, EVERYWHERE = "127.0.0.1", "0.0.0.0"
 MOST_SESSIONS = 200
@@ -23,7 +24,8 @@ MOST_SESSIONS = 200
 _MESSAGE = 400_000
 """Bytes of one message from a browser: an upload is smaller."""
 
-_IDLE = 60_000  # ms after which a page that was closed is forgotten
+_IDLE = 60_000  # ms after which a page whose line is broken is forgotten
+_LOOK = 1_000  # ms between two looks for pages that were closed
 
 
 def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (), show: bool = False) -> Any:
@@ -65,10 +67,11 @@ def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (
         title="ballsocket",
         websocket_max_message_size=_MESSAGE,
         unused_session_lifetime_milliseconds=_IDLE,
-        check_unused_sessions_milliseconds=_IDLE // 4,
+        check_unused_sessions_milliseconds=_LOOK,
         http_server_kwargs={"max_buffer_size": _MESSAGE, "max_body_size": _MESSAGE},
     )
     guard(served._tornado, (*own, *origins))
+    forget_closed(served._tornado)
     return served
 
 

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..io.joint_file import JointFile
+from .channel import Channel
 from .screen import Screen
-
-Ask = Callable[..., None]
-"""Changes the screen: called with fields of `Screen` by name."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,8 +25,26 @@ class Document:
     sections: Callable[[], Mapping[str, tuple[str, str]]]
 
 
+class Host(Protocol):
+    """What a view knows of its page."""
+
+    channel: Channel
+    screen: Screen
+
+    def ask(self, **changes: Any) -> None:
+        """Change the screen: called with fields of `Screen` by name."""
+        ...
+
+
 class View(Protocol):
-    """One question, answered for the screen."""
+    """One question, answered for the screen; made with its `Host` when it is first looked at.
+
+    Attributes
+    ----------
+    title : str
+    panel : Viewable or None
+        Its parts as Panel makes them; None where they stand in the page itself, which `Host.channel` fills.
+    """
 
     title: str
     panel: Any

@@ -12,9 +12,9 @@ from ..compare import Comparison
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column
 from ..kinds import Kind, Unit
-from ..output.style import THICK, line_of
+from ..output.style import line_of
 from ..quantities import CONTACT, HEADLINE, Quantity
-from .look import Palette, colour_of
+from .chart import swatch
 
 _DIGITS = 4
 
@@ -73,11 +73,11 @@ def trust(contact: Contact) -> str:
     return f"<p class='trust no'>{sentence}</p>{notes_list(contact.notes)}"
 
 
-def models_table(comparison: Comparison, palette: Palette, angle: str) -> str:
+def models_table(comparison: Comparison, angle: str) -> str:
     """Every model in a row, with its deviation from the exact answer, its validity, and its line in the charts."""
     shown = [each for each in columns(angle) if each.attribute in HEADLINE]
     heads = "".join(f"<th scope='col'>{escape(each.head)}</th>" for each in shown)
-    rows = "".join(_row(comparison, name, shown, palette) for name in comparison)
+    rows = "".join(_row(comparison, name, shown) for name in comparison)
     missing = "".join(
         f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(shown) + 1}' class='text'>{escape(why)}</td></tr>"
         for name, why in comparison.missing.items()
@@ -90,25 +90,13 @@ def models_table(comparison: Comparison, palette: Palette, angle: str) -> str:
     )
 
 
-def _row(comparison: Comparison, name: str, shown: list[Column], palette: Palette) -> str:
+def _row(comparison: Comparison, name: str, shown: list[Column]) -> str:
     contact, apart = comparison[name], comparison.deviation(name)
     cells = "".join(f"<td>{number_text(float(each.of(contact)))}{_apart(apart, each.name)}</td>" for each in shown)
     why = "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
-    swatch = _swatch(name, palette)
     kind = "reference" if name == reference.name else "valid" if bool(contact.valid) else "doubtful"
-    return (
-        f"<tr class='{kind}'><th scope='row'>{swatch}{escape(name)}</th>{cells}<td class='text'>{escape(why)}</td></tr>"
-    )
-
-
-def _swatch(name: str, palette: Palette) -> str:
-    """A short piece of a model's line."""
-    line = line_of(name)
-    dashes = " ".join(f"{THICK * length:g}" for length in line.dash)
-    return (
-        "<svg class='swatch' viewBox='0 0 32 8' aria-hidden='true'><path d='M0 4H32' "
-        f"stroke='{colour_of(line, palette)}' stroke-width='{THICK:g}' stroke-dasharray='{dashes}'/></svg>"
-    )
+    head = f"<th scope='row'>{swatch(line_of(name))}{escape(name)}</th>"
+    return f"<tr class='{kind}'>{head}{cells}<td class='text'>{escape(why)}</td></tr>"
 
 
 def _apart(deviation: Mapping[str, Any] | None, name: str) -> str:

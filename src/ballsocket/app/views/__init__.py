@@ -1,1 +1,14 @@
-"""The views of the explorer: one small file over one question."""
+"""Views: one question each."""
+
+from .compare import Compare
+from .design_map import DesignMap
+from .judge import Judge
+from .press import Press
+
+KINDS: dict[str, type[Press] | type[DesignMap] | type[Compare] | type[Judge]] = {
+    "press": Press,
+    "map": DesignMap,
+    "compare": Compare,
+    "judge": Judge,
+}
+"""All, by the names that links give them, in the order of the page."""

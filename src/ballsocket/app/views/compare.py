@@ -18,13 +18,12 @@ from ...output.press_plot import press_figure
 from ...output.style import Line, numbered
 from ...presets import joints
 from ...quantities import JOINT
-from ..drawing import SectionDrawing, extent_of
-from ..look import PALETTES
-from ..press_charts import PressCharts
+from ..drawing import extent_of, section
+from ..press_charts import press_charts
 from ..pressing import fine_curves, pressed
 from ..screen import BESIDE, Screen
 from ..style import html, inputs
-from ..view import Ask, Document
+from ..view import Document, Host
 from ..words import alert, columns, number_rows, number_text, percent
 
 _CHOOSE = "– choose –"
@@ -35,9 +34,9 @@ class Compare:
 
     title = "Compare"
 
-    def __init__(self, ask: Ask, screen: Screen) -> None:
-        self._ask, self._screen = ask, screen
-        self._palette = PALETTES[screen.theme]
+    def __init__(self, page: Host) -> None:
+        self._ask, self._screen = page.ask, page.screen
+
         self._keep = pn.widgets.Button(label="Put this joint beside", width=180)
         self._preset = pn.widgets.Select(
             label="Put beside", options=[_CHOOSE, *joints], width=220, stylesheets=inputs()
@@ -47,28 +46,13 @@ class Compare:
         self._preset.param.watch(self._chosen, "value")
         for number, button in enumerate(self._drop):
             button.on_click(lambda event, number=number: self._remove(number))
-        self._told, self._table = html(), html()
-        self._drawings = [SectionDrawing(self._palette, 260) for _ in range(BESIDE + 1)]
-        self._charts = PressCharts(self._palette)
-        self._heads = [html() for _ in self._drawings]
+        self._told, self._table, self._drawn = html(), html(), html()
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
-        self._places = [
-            pn.Column(head, pn.pane.Bokeh(drawing.figure, **wide), min_width=260, styles={"flex": "1 1 260px"})
-            for head, drawing in zip(self._heads, self._drawings, strict=True)
-        ]
         self.panel = pn.Column(
             pn.FlexBox(self._preset, self._keep, *self._drop, align_items="end", gap="12px", **wide),
             self._told,
             self._table,
-            pn.FlexBox(*self._places, gap="8px", **wide),
-            pn.FlexBox(
-                *(
-                    pn.Column(pn.pane.Bokeh(chart, **wide), min_width=300, styles={"flex": "1 1 340px"})
-                    for chart in self._charts.figures
-                ),
-                gap="8px",
-                **wide,
-            ),
+            self._drawn,
             **wide,
         )
 
@@ -98,15 +82,7 @@ class Compare:
         )
         contacts = answers(files, screen.answered_by)
         self._table.object = table(*_text_table(files, contacts, screen))
-        extent = max(map(extent_of, files.values()))
-        highest = max((float(contact.max_pressure) for contact in contacts.values()), default=1.0)
-        for number, (place, drawing) in enumerate(zip(self._places, self._drawings, strict=True)):
-            place.visible = number < len(files)
-            if place.visible:
-                name = list(files)[number]
-                self._heads[number].object = f"<h3>{escape(name)}</h3>"
-                drawing.show(files[name], contacts.get(name), extent, highest)
-        self._charts.show(contacts, _lines(files), screen.angle)
+        self._drawn.object = _drawings(files, contacts) + press_charts(contacts, _lines(files), screen.angle)
 
     def document(self, screen: Screen) -> Document:
         files = labelled(screen)
@@ -140,6 +116,17 @@ def labelled(screen: Screen) -> dict[str, JointFile]:
             name, number = f"{base} ({number})", number + 1
         found[name] = replace(file, load=screen.file.load)
     return found
+
+
+def _drawings(files: Mapping[str, JointFile], contacts: Mapping[str, Contact]) -> str:
+    """The joints in section, to one scale and with one scale of colours."""
+    extent = max(map(extent_of, files.values()))
+    highest = max((float(contact.max_pressure) for contact in contacts.values()), default=1.0)
+    figures = "".join(
+        f"<figure><figcaption>{escape(name)}</figcaption>{section(file, contacts.get(name), extent, highest)}</figure>"
+        for name, file in files.items()
+    )
+    return f"<div class='pair'>{figures}</div>"
 
 
 def _lines(files: Mapping[str, JointFile]) -> dict[str, Line]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -16,12 +17,13 @@ from ...output.study_terminal import map_rows
 from ...quantities import QUANTITIES
 from ...studies.parameters import PARAMETERS
 from ...studies.phrases import limit_of, range_of
+from ..beside import beside
 from ..look import PALETTES
 from ..map_chart import MapChart
 from ..mapping import around, best, joint_at, limits_of, mapped, now, told
 from ..screen import AXES, MAPPED, QUICK, Axis, Screen, phrases_of
 from ..style import html, inputs
-from ..view import Ask, Document
+from ..view import Document, Host
 from ..words import alert
 
 
@@ -30,8 +32,8 @@ class DesignMap:
 
     title = "Design map"
 
-    def __init__(self, ask: Ask, screen: Screen) -> None:
-        self._ask, self._screen, self._putting = ask, screen, False
+    def __init__(self, page: Host) -> None:
+        self._ask, self._screen, self._putting = page.ask, page.screen, False
         titles = {PARAMETERS[name].title: name for name in AXES}
         self._across = pn.widgets.Select(label="Across", options=titles, width=200, stylesheets=inputs())
         self._up = pn.widgets.Select(label="Upwards", options=titles, width=200, stylesheets=inputs())
@@ -52,7 +54,7 @@ class DesignMap:
         self._best = pn.widgets.Button(label="Press the best joint", width=180)
         self._watch()
         self._refused, self._told = html(), html()
-        self._chart = MapChart(PALETTES[screen.theme], self._tapped)
+        self._chart = MapChart(PALETTES[page.screen.theme], self._tapped)
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self.panel = pn.Column(
             pn.FlexBox(
@@ -91,11 +93,18 @@ class DesignMap:
         """Ask for another map, if there is one; else say why not, and leave all as it is."""
         try:
             wanted = replace(self._screen, **fields)
-            mapped(wanted.file, wanted.across, wanted.up, wanted.map_model)
         except ValueError as error:
             self._refuse(error)
             return
-        self._ask(**fields)
+        beside(lambda: _map_of(wanted), partial(self._changed, fields))
+
+    def _changed(self, fields: Mapping[str, Any], outcome: Future[Any]) -> None:
+        try:
+            outcome.result()
+        except ValueError as error:
+            self._refuse(error)
+        else:
+            self._ask(**fields)
 
     def _refuse(self, error: ValueError) -> None:
         self._put(self._screen)
@@ -130,9 +139,7 @@ class DesignMap:
             self._press({across.name: x, up.name: y})
 
     def _press_best(self) -> None:
-        point = best(
-            mapped(self._screen.file, self._screen.across, self._screen.up, self._screen.map_model), self._screen
-        )
+        point = best(_map_of(self._screen), self._screen)
         if point is None:
             self._refuse(ValueError("no point of the map is allowed by the limits"))
         else:
@@ -149,8 +156,14 @@ class DesignMap:
     def show(self, screen: Screen) -> None:
         self._screen = screen
         self._put(screen)
+        beside(lambda: _map_of(screen) if screen is self._screen else None, partial(self._shown, screen))
+
+    def _shown(self, screen: Screen, outcome: Future[Any]) -> None:
+        """Draw a map that has been made, unless another has been asked for since."""
+        if screen is not self._screen:
+            return
         try:
-            found = mapped(screen.file, screen.across, screen.up, screen.map_model)
+            found = outcome.result()
             self._chart.show(found, screen)
         except ValueError as error:
             self._chart.clear()
@@ -175,7 +188,7 @@ class DesignMap:
             self._putting = False
 
     def document(self, screen: Screen) -> Document:
-        found = mapped(screen.file, screen.across, screen.up, screen.map_model)
+        found = _map_of(screen)
         limits = list(limits_of(screen))
 
         def rows() -> list[list[Any]]:
@@ -193,6 +206,10 @@ class DesignMap:
 
     def leave(self) -> None:
         """Nothing runs on."""
+
+
+def _map_of(screen: Screen) -> Any:
+    return mapped(screen.file, screen.across, screen.up, screen.map_model)
 
 
 def _typed(name: str, value: float) -> str:

@@ -20,7 +20,7 @@ from ..judging import Judged, judged
 from ..running import LONGEST, Done, Reached, Refused, Run, looked_at
 from ..screen import Screen
 from ..style import html, inputs
-from ..view import Ask, Document
+from ..view import Document, Host
 from ..words import alert, columns, notes_list, number_text, percent
 
 _EVERY = 150  # ms between two questions for news
@@ -31,10 +31,10 @@ class Judge:
 
     title = "Judge"
 
-    def __init__(self, ask: Ask, screen: Screen) -> None:
-        self._ask, self._screen, self._putting = ask, screen, False
+    def __init__(self, page: Host) -> None:
+        self._ask, self._screen, self._putting = page.ask, page.screen, False
         self._run: Run | None = None
-        self._asked = screen.file
+        self._asked = page.screen.file
         self._asking: Any = None
         self._found: tuple[JointFile, Judged] | None = None
         self._go = pn.widgets.Button(label="Run finite elements", color="primary", width=180)
@@ -60,7 +60,7 @@ class Judge:
             self._picture,
             **wide,
         )
-        self._put(screen)  # before it is seen: what is typed into a page that still loads is not overwritten
+        self._put(page.screen)  # before it is seen: what is typed into a page that still loads is not overwritten
 
     def show(self, screen: Screen) -> None:
         if screen != self._screen:  # what was refused stays to be read until something else is asked

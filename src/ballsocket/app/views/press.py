@@ -13,17 +13,16 @@ from ...io.joint_file import JointFile
 from ...output import html as page
 from ...output.press_plot import press_figure
 from ...output.style import line_of
-from ..drawing import SectionDrawing
-from ..look import PALETTES
-from ..press_charts import PressCharts
+from ..chart import swatch
+from ..drawing import section
+from ..fields import choice, several
+from ..press_charts import press_charts
 from ..pressing import fine_curves, pressed
 from ..screen import Screen
-from ..style import html, inputs
-from ..view import Ask, Document
+from ..view import Document, Host
 from ..words import headline, models_table, number_rows
 
 _EVERY = tuple(catalogue)
-_WRAPPED = ".bk-input-group.bk-inline { flex-wrap: wrap; gap: 2px 14px; }"
 _PATIENCE = 300  # ms until the table of all models follows
 
 
@@ -31,37 +30,10 @@ class Press:
     """Numbers, drawing and curves at once; the table of all models when the slider rests."""
 
     title = "Press"
+    panel = None
 
-    def __init__(self, ask: Ask, screen: Screen) -> None:
-        self._palette = PALETTES[screen.theme]
-        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
-        self._by = pn.widgets.Select(
-            label="Answered by", options=list(_EVERY), value=screen.answered_by, width=220, stylesheets=inputs()
-        )
-        self._shown = pn.widgets.CheckBoxGroup(
-            label="drawn", options=list(_EVERY), value=list(screen.shown), inline=True, stylesheets=[_WRAPPED], **wide
-        )
-        self._by.param.watch(lambda event: ask(answered_by=event.new), "value")
-        self._shown.param.watch(lambda event: ask(shown=tuple(event.new)), "value")
-        self._numbers, self._table = html(), html()
-        self._drawing = SectionDrawing(self._palette)
-        self._charts = PressCharts(self._palette)
-        self.panel = pn.Column(
-            self._by,
-            self._numbers,
-            pn.FlexBox(
-                *(
-                    pn.Column(pn.pane.Bokeh(chart, **wide), min_width=280, styles={"flex": "1 1 280px"})
-                    for chart in (self._drawing.figure, *self._charts.figures)
-                ),
-                gap="8px",
-                **wide,
-            ),
-            html("<span class='label'>Drawn beside it:</span>"),
-            self._shown,
-            self._table,
-            **wide,
-        )
+    def __init__(self, page: Host) -> None:
+        self._channel = page.channel
         self._later: Any = None
 
     def show(self, screen: Screen) -> None:
@@ -69,12 +41,15 @@ class Press:
         found = pressed(screen.file, names)
         by = found.contacts.get(screen.answered_by)
         if by is None:
-            self._numbers.object = f"<p class='trust no'>✗ {escape(found.missing[screen.answered_by])}</p>"
+            numbers = f"<p class='trust no'>✗ {escape(found.missing[screen.answered_by])}</p>"
         else:
-            self._numbers.object = headline(by, screen.angle)
-        self._drawing.show(screen.file, None if by is None or by.status.failed else by)
+            numbers = headline(by, screen.angle)
         drawn = {name: found[name] for name in screen.shown if name in answered(found)}
-        self._charts.show(drawn, {name: line_of(name) for name in drawn}, screen.angle)
+        lines = {name: line_of(name) for name in drawn}
+        self._channel.put("#press-numbers", numbers)
+        self._channel.put("#press-section", section(screen.file, None if by is None or by.status.failed else by))
+        self._channel.put("#press-charts", press_charts(drawn, lines, screen.angle))
+        self._channel.put_fields(_fields(screen))
         self._fill_later(screen)
 
     def _fill_later(self, screen: Screen) -> None:
@@ -85,11 +60,15 @@ class Press:
             return
         if self._later is not None:
             document.remove_timeout_callback(self._later)
-        self._later = document.add_timeout_callback(lambda: self._fill(screen), _PATIENCE)
+        self._later = document.add_timeout_callback(lambda: self._filled(screen), _PATIENCE)
+
+    def _filled(self, screen: Screen) -> None:
+        self._later = None
+        self._fill(screen)
+        self._channel.send()
 
     def _fill(self, screen: Screen) -> None:
-        self._later = None
-        self._table.object = models_table(pressed(screen.file, _EVERY), self._palette, screen.angle)
+        self._channel.put("#press-table", models_table(pressed(screen.file, _EVERY), screen.angle))
 
     def document(self, screen: Screen) -> Document:
         found = pressed(screen.file, _EVERY)
@@ -108,6 +87,15 @@ class Press:
 
     def leave(self) -> None:
         """Nothing runs on."""
+
+
+def _fields(screen: Screen) -> dict[str, Any]:
+    names = [(name, name) for name in _EVERY]
+    pieces = {name: swatch(line_of(name)) for name in _EVERY}
+    return {
+        "answered_by": choice("answered_by", "Answered by", names, screen.answered_by),
+        "shown": several("shown", "Curves of", names, screen.shown, pieces),
+    }
 
 
 def _rows(found: Comparison) -> list[list[Any]]:

@@ -1,0 +1,107 @@
+"""Several named curves in one chart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import numpy
+
+from ..output.style import INK, THICK, THIN, Line
+from . import svg
+
+_WIDE, _HIGH = 440.0, 300.0
+_LEFT, _RIGHT, _TOP, _FOOT = 58.0, 12.0, 10.0, 44.0
+_INSIDE = (
+    f'x="{_LEFT:g}" y="{_TOP:g}" width="{_WIDE - _LEFT - _RIGHT:g}" height="{_HIGH - _TOP - _FOOT:g}" '
+    f'viewBox="{_LEFT:g} {_TOP:g} {_WIDE - _LEFT - _RIGHT:g} {_HIGH - _TOP - _FOOT:g}"'
+)
+"""Where curves are, and are cut off."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Points of one curve, where they can be trusted, how it is drawn, and a point to mark on it, if any."""
+
+    x: numpy.ndarray
+    y: numpy.ndarray
+    trusted: numpy.ndarray
+    line: Line
+    mark: tuple[float, float] | None = None
+
+
+def colour_of(line: Line) -> str:
+    """The colour of a line on the page, whose ink may be light."""
+    return "var(--text)" if line.colour == INK else line.colour
+
+
+def dash_of(line: Line, width: float = THICK) -> str:
+    """Its dashes, as an attribute; none for a line drawn through."""
+    lengths = " ".join(f"{THICK * length:g}" for length in line.dash)
+    return f'stroke-width="{width:g}"' + (f' stroke-dasharray="{lengths}"' if lengths else "")
+
+
+def chart(said: str, x: str, y: str, curves: Mapping[str, Curve], ends: tuple[float, float]) -> str:
+    """Curves over axes from zero to `ends`, as SVG; `x` and `y` label them.
+
+    Curves are thick where they can be trusted, and thin all the way where not; one without gaps lies below the others.
+    """
+    across, up = ends
+    ordered = sorted(curves.items(), key=lambda named: bool(named[1].line.dash))
+    lines = "".join(part for name, curve in ordered for part in _drawn(name, curve, across, up))
+    parts = [*_axes(x, y, across, up), f"<svg {_INSIDE}>{lines}</svg>"]
+    scale = f' data-x="{across!r}" data-y="{up!r}" data-box="{_LEFT:g} {_TOP:g} {_WIDE - _RIGHT:g} {_HIGH - _FOOT:g}"'
+    labels = f' data-across="{escape(x)}" data-up="{escape(y)}"'
+    return svg.picture((_WIDE, _HIGH), said, parts, f"{scale}{labels}")
+
+
+def _across(value: Any, end: float) -> Any:
+    return _LEFT + (_WIDE - _LEFT - _RIGHT) * value / end
+
+
+def _up(value: Any, end: float) -> Any:
+    return _HIGH - _FOOT - (_HIGH - _FOOT - _TOP) * value / end
+
+
+def _axes(x: str, y: str, across: float, up: float) -> Iterator[str]:
+    foot, right = _HIGH - _FOOT, _WIDE - _RIGHT
+    for value in svg.ticks(across):
+        place = _across(value, across)
+        yield svg.line(place, _TOP, place, foot, "grid")
+        yield svg.text(place, foot + 16, f"{value:g}", "tick")
+    for value in svg.ticks(up):
+        place = _up(value, up)
+        yield svg.line(_LEFT, place, right, place, "grid")
+        yield svg.text(_LEFT - 6, place + 4, f"{value:g}", "tick", "end")
+    yield svg.line(_LEFT, foot, right, foot, "axis")
+    yield svg.line(_LEFT, _TOP, _LEFT, foot, "axis")
+    yield svg.text((_LEFT + right) / 2, _HIGH - 8, x, "label")
+    middle = (_TOP + foot) / 2
+    yield svg.text(14, middle, y, "label", more=f' transform="rotate(-90 14 {middle:g})"')
+
+
+def _drawn(name: str, curve: Curve, across: float, up: float) -> Iterator[str]:
+    x, y = _across(curve.x, across), _up(curve.y, up)
+    stroke = f'fill="none" stroke="{colour_of(curve.line)}" data-name="{escape(name)}"'
+    if curve.trusted.any():
+        yield f'<path d="{svg.path(x, numpy.where(curve.trusted, y, numpy.nan))}" {stroke} {dash_of(curve.line)}/>'
+    if not curve.trusted.all():
+        yield f'<path d="{svg.path(x, y)}" {stroke} {dash_of(curve.line, THIN)}/>'
+    if curve.mark is not None:
+        place = f'cx="{_across(curve.mark[0], across):.1f}" cy="{_up(curve.mark[1], up):.1f}"'
+        yield f'<circle {place} r="4" fill="{colour_of(curve.line)}"/>'
+
+
+def swatch(line: Line) -> str:
+    """A short piece of a line."""
+    return (
+        f"<svg class='swatch' viewBox='0 0 32 8' aria-hidden='true'><path d='M0 4H32' stroke='{colour_of(line)}' "
+        f"{dash_of(line)}/></svg>"
+    )
+
+
+def legend(lines: Mapping[str, Line]) -> str:
+    """The names of curves beside a piece of each, as HTML."""
+    return "".join(f"<span class='key'>{swatch(line)}{escape(name)}</span>" for name, line in lines.items())

@@ -1,0 +1,111 @@
+"""Inputs of the page as plain data: the page's script makes them, and each tells its name and what was typed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from math import degrees, isfinite
+from typing import Any
+
+from ..checks import shown
+from ..io.units import parse
+from ..kinds import Kind
+
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
+_COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
+
+Field = dict[str, Any]
+"""One input: its name, kind, label, value, and what its kind needs."""
+
+
+def choice(name: str, label: str, options: Iterable[tuple[str, str]], value: str) -> Field:
+    """A list of which one is taken: pairs of a value and its words."""
+    return {"name": name, "kind": "choice", "label": label, "options": [list(each) for each in options], "value": value}
+
+
+def segments(name: str, label: str, options: Iterable[tuple[str, str]], value: str) -> Field:
+    """A row of buttons of which one is taken."""
+    return {**choice(name, label, options, value), "kind": "segments"}
+
+
+def several(
+    name: str, label: str, options: Iterable[tuple[str, str]], value: Iterable[str], pieces: Mapping[str, str]
+) -> Field:
+    """A row of boxes of which any are ticked, each with HTML before its words."""
+    return {**choice(name, label, options, ""), "kind": "several", "value": list(value), "pieces": dict(pieces)}
+
+
+def tick(name: str, label: str, value: bool) -> Field:
+    """A box that is ticked or not."""
+    return {"name": name, "kind": "tick", "label": label, "value": value}
+
+
+def number(name: str, label: str, unit: str, ends: tuple[float, float], step: float, value: float) -> Field:
+    """A number with a slider over what is usual; what lies outside widens it."""
+    return {
+        "name": name,
+        "kind": "number",
+        "label": label,
+        "unit": unit,
+        "low": min(ends[0], value),
+        "high": max(ends[1], value),
+        "step": step,
+        "value": value,
+        "text": plain(value),
+    }
+
+
+def plain(value: float) -> str:
+    """A number as it stands in a box: up to six digits, no power of ten where it can be avoided."""
+    text = f"{value:.6g}"
+    return f"{value:.0f}" if "e+" in text and isfinite(value) and abs(value) < 1e12 else text
+
+
+def typed(name: str, text: Any, unit: str, factor: float, kind: str) -> float:
+    """The number of a file's table that was meant by what was typed: in the unit beside the box, or with its own.
+
+    Parameters
+    ----------
+    name : str
+        What it is, for a refusal.
+    text : str or float
+        "0.2", "0,2", "0.2 mm".
+    unit : str
+        Of a bare number, for the refusal.
+    factor : float
+        From the number in the table to the one in the box.
+    kind : str
+        What it measures, for text with a unit.
+
+    Raises
+    ------
+    ValueError
+        No number, or one that could be two.
+
+    Examples
+    --------
+    >>> typed("clearance", "0,2", "mm", 2.0, "length")
+    0.1
+    """
+    if isinstance(text, int | float) and not isinstance(text, bool):
+        return round(float(text) / factor, 12)
+    if not isinstance(text, str):
+        raise ValueError(f"{name} = {shown(text)} is no number")
+    said = text.strip()
+    if _THOUSANDS.match(said):
+        raise ValueError(
+            f"{name} = {shown(said)} could be two numbers: write {said.replace(',', '')} or {said.replace(',', '.', 1)}"
+        )
+    bare = _COMMA.sub(".", said, count=1)
+    try:
+        return round(float(bare) / factor, 12)
+    except ValueError:
+        pass
+    try:
+        value = parse(name, bare, kind)
+    except ValueError as error:
+        inside = f" in {unit}" if unit else ""
+        raise ValueError(
+            f"{name} = {shown(said)} is no number{inside}, and {str(error).partition(' is ')[2]}"
+        ) from error
+    return round(degrees(value) if kind == Kind.ANGLE else value, 12)

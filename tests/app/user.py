@@ -1,0 +1,98 @@
+"""Somebody at a browser: what they do, and what they see."""
+
+import os
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+PICTURES = Path(os.environ.get("BALLSOCKET_SCREENSHOTS", "build/screenshots"))
+WIDE, NARROW = 1280, 390
+WAIT = 90_000
+"""Milliseconds until something that does not happen is taken for a fault: a machine may be slow."""
+
+
+@contextmanager
+def opened_profile(browser, address, width=WIDE, dark=False):
+    """A browser of one user, who has opened nothing yet."""
+    scheme = "dark" if dark else "light"
+    profile = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme, accept_downloads=True)
+    profile.grant_permissions(["clipboard-read", "clipboard-write"], origin=address)
+    profile.set_default_timeout(WAIT)
+    yield profile
+    profile.close()
+
+
+class User:
+    """One browser window, which notes every request and every error of the page."""
+
+    def __init__(self, profile, address):
+        self.page, self.address = profile.new_page(), address
+        self.requests, self.errors = [], []
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+
+    def open(self, query=""):
+        self.page.goto(self.address + query)
+        return self.answered()
+
+    def answered(self):
+        """Wait until the page is complete, and nothing that was asked is on its way."""
+        self.page.locator(".app[data-idle=yes][data-shown]").wait_for()
+        return self
+
+    def number(self, name):
+        return float(self.page.locator(f"dd[data-name={name}]").get_attribute("data-value"))
+
+    def shows(self, name, value, tolerance=1e-9):
+        """Wait until a number on the page is this one."""
+        deadline = time.monotonic() + WAIT / 1000
+        while time.monotonic() < deadline:
+            if self.number(name) == pytest.approx(value, rel=tolerance):
+                return True
+            time.sleep(0.02)
+        return False
+
+    def nudge(self, slider, key="ArrowRight", times=1):
+        handle = self.page.locator(f"[data-name={slider}] input[type=range]")
+        handle.focus()
+        for _ in range(times):
+            handle.press(key)
+
+    def view(self, title):
+        self.page.locator("nav button", has_text=title).click()
+        self.answered()
+
+    def types(self, name, text):
+        """Fill the box of a number, and confirm it."""
+        box = self.page.locator(f"[data-name={name}] input[type=text]")
+        box.fill(text)
+        box.press("Enter")
+        return box
+
+    def says(self, words):
+        self.page.locator(f"text={words}").first.wait_for()
+        return True
+
+    def map(self):
+        """The chart of the map that is seen, as a box on the screen."""
+        assert self.says("of the map is allowed by the limits")
+        return self.page.locator("#view .bk-Figure:visible").first.bounding_box()
+
+    def saved(self, kind):
+        with self.page.expect_download() as coming:
+            self.page.locator(".files button", has_text=kind).click()
+        return Path(coming.value.path()).read_bytes()
+
+
+AT_REST = """async () => {
+  const frame = () => new Promise(requestAnimationFrame);
+  const place = document.documentElement;
+  const size = () => `${place.scrollWidth} ${place.scrollHeight} ${Bokeh.documents.every((one) => one.is_idle)}`;
+  for (let same = 0, last = ""; same < 20; await frame()) {
+    [same, last] = size() === last ? [same + 1, last] : [0, size()];
+  }
+  return place.scrollWidth;
+}"""
+"""The width of what is on the page, once twenty frames have changed nothing."""
