@@ -38,7 +38,7 @@ def colour_of(line: Line) -> str:
 
 
 def dash_of(line: Line, width: float = THICK) -> str:
-    """Its dashes, as an attribute; none for a line drawn through."""
+    """Width and dashes of a line, as attributes; no dashes for one drawn through."""
     lengths = " ".join(f"{THICK * length:g}" for length in line.dash)
     return f'stroke-width="{width:g}"' + (f' stroke-dasharray="{lengths}"' if lengths else "")
 

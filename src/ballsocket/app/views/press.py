@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from html import escape
 from typing import Any
 
@@ -24,6 +25,7 @@ from ..words import headline, models_table, number_rows
 
 _EVERY = tuple(catalogue)
 _PATIENCE = 300  # ms until the table of all models follows
+_LATE, _WAITS = 0.05, 10  # s: a server that comes so late has others to answer first; how often it may
 
 
 class Press:
@@ -52,18 +54,22 @@ class Press:
         self._channel.put_fields(_fields(screen))
         self._fill_later(screen)
 
-    def _fill_later(self, screen: Screen) -> None:
-        """The table of all models follows when nothing has moved for a while."""
+    def _fill_later(self, screen: Screen, waits: int = _WAITS) -> None:
+        """The table of all models follows when nothing has moved for a while, and others need not wait for it."""
         document = pn.state.curdoc
         if document is None:
             self._fill(screen)
             return
         if self._later is not None:
             document.remove_timeout_callback(self._later)
-        self._later = document.add_timeout_callback(lambda: self._filled(screen), _PATIENCE)
+        due = time.monotonic() + _PATIENCE / 1e3
+        self._later = document.add_timeout_callback(lambda: self._due(screen, due, waits), _PATIENCE)
 
-    def _filled(self, screen: Screen) -> None:
+    def _due(self, screen: Screen, due: float, waits: int) -> None:
         self._later = None
+        if waits and time.monotonic() - due > _LATE:
+            self._fill_later(screen, waits - 1)
+            return
         self._fill(screen)
         self._channel.send()
 
