@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Wheel and sdist as users have them (`.ci/installed.py dist`): the sdist on this Python, the wheel on the newest, tried elsewhere."""
+"""Wheel and sdist as users have them (`.ci/installed.py dist`): tried away from the sources.
+
+The sdist on this Python, the wheel on the newest there is.
+"""
 
 import json
 import os
