@@ -23,6 +23,7 @@ from . import elements
 from .files import Files
 from .groups import grouped
 from .off_axis import AimWords, Watched, aimed, along, remark
+from .report import ReportWords
 from .root import FAILURE, app, complain
 from .words import AsJson, JointWords, LoadWords, echo_json
 
@@ -65,6 +66,7 @@ def press(
     units: Annotated[Units, typer.Option(case_sensitive=False, help="Of the table; JSON has mm, N, MPa.")] = Units.SI,
     as_json: AsJson = False,
     files: Files,
+    page: ReportWords,
     aim: AimWords,
     cup: elements.CupWords,
     mesh: Annotated[elements.MeshWords, "fem"],
@@ -80,6 +82,7 @@ def press(
     if not models.judged:
         elements.refuse({**vars(mesh), "meshes": meshes})
     files.check()
+    page.check()
     file = words.or_named(joint)
     at = load.or_of(file)
     toward, remarks = aim.or_of(file), []
@@ -102,6 +105,7 @@ def press(
     if off_axis.name in comparison:
         remarks.append(remark(comparison[off_axis.name], watched.seconds))
     files.write(comparison, next(iter(chosen)))
+    page.write(comparison, replace(file, cup=around, load=at, aim=toward), units)
     if as_json:
         echo_json(comparison.summary())
     else:

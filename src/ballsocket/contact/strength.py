@@ -73,7 +73,7 @@ def between(contact: Any, von_mises: Array) -> tuple[Array, Array]:
 
 def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
     """Von Mises stress over yield stress of liner or ball, whichever is more, for so much of it in the liner."""
-    shares = ((joint.liner, von_mises, 1.0), (joint.ball, pressure, _share_of_ball(joint)))
+    shares = ((joint.liner, von_mises, 1.0), (joint.ball, pressure, ball_share(joint)))
     ratios = [
         stress * share / material.yield_stress
         for material, stress, share in shares
@@ -82,7 +82,8 @@ def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
     return reduce(larger, ratios) if ratios else nan * von_mises  # which may be infinite
 
 
-def _share_of_ball(joint: Joint) -> Array:
+def ball_share(joint: Joint) -> Array:
+    """Largest von Mises stress in the ball over the largest pressure; of a rigid ball 0."""
     return 0.0 if joint.ball is None else share_of_ball(joint.ball.poisson)
 
 
@@ -108,7 +109,7 @@ def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
     joint, pressure = contact.joint, contact.max_pressure
     yield from _told("liner", joint.liner, contact.von_mises_between[1], lambda: contact.von_mises, pressure)
     if joint.ball is not None:
-        stress = _share_of_ball(joint) * pressure
+        stress = ball_share(joint) * pressure
         yield from _told("ball", joint.ball, stress, lambda: stress, pressure)
 
 

@@ -26,9 +26,7 @@ _LIMITS = (
     "Loads do not change in time; what wear says is in its own section.",
 )
 _FINE = 1e-5
-_PRINT = """<style>@media print { @page { margin: 18mm 15mm; } body { max-width: none; font-size: 10pt; }
-nav { display: none; } h2 { break-after: avoid; } table { font-size: 8pt; } tr, figure { break-inside: avoid; }
-.wide { overflow: visible; } .sign td { height: 2.5rem; } }
+_STYLE = """<style>@media print { .sign td { height: 2.5rem; } }
 .sign td { min-width: 14rem; }
 .words td, .words th { text-align: left; vertical-align: top; }
 .call { font-family: monospace; font-size: 0.8rem; color: #555; }</style>"""
@@ -50,7 +48,7 @@ def evidence_page(record: Record, day: date | None = None) -> str:
         "credibility": ("Credibility factors (ASME V&V 40)", _credibility(record)),
         "signed": ("Signatures", _signed(record, day or date.today())),
     }
-    lede = f"{_PRINT}<p>{escape(record['question'])}</p>{_list(conclusions(record))}"
+    lede = f"{html.PRINT}{_STYLE}<p>{escape(record['question'])}</p>{_list(conclusions(record))}"
     return html.page("Evidence", lede, sections)
 
 

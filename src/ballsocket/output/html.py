@@ -42,11 +42,17 @@ def page(title: str, lede: str, sections: Mapping[str, tuple[str, str]]) -> str:
     )
 
 
-def picture(data: bytes, title: str, caption: str = "") -> str:
-    """A PNG inside the page; the caption is HTML."""
+PRINT = """<style>@media print { @page { margin: 18mm 15mm; } body { max-width: none; font-size: 10pt; }
+nav { display: none; } h2 { break-after: avoid; } table { font-size: 8pt; } tr, figure { break-inside: avoid; }
+.wide { overflow: visible; } }</style>"""
+"""For the head of a page that is printed on A4 and Letter."""
+
+
+def picture(data: bytes, title: str, caption: str = "", form: str = "png") -> str:
+    """A PNG, or a picture of another form such as "svg+xml", inside the page; the caption is HTML."""
     code = b64encode(data).decode("ascii")
     return (
-        f"<figure><img alt='{escape(title)}' src='data:image/png;base64,{code}'>"
+        f"<figure><img alt='{escape(title)}' src='data:image/{form};base64,{code}'>"
         f"<figcaption>{caption}</figcaption></figure>"
     )
 
@@ -63,3 +69,8 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     head = "".join(f"<th>{escape(text)}</th>" for text in heads)
     body = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows)
     return f"<div class='wide' tabindex='0' role='region' aria-label='table'><table><tr>{head}</tr>{body}</table></div>"
+
+
+def words(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of sentences rather than numbers."""
+    return f"<div class='text'>{table(heads, rows)}</div>"

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from math import inf
 from types import MappingProxyType
 
 from ..contact.describe import UTILISATION, Column
 from ..kinds import Kind, Unit
-from ..quantities import CONTACT
+from ..quantities import CONTACT, Quantity
+
+_LARGE = 1e4
+"""Numbers from here on are written out."""
 
 _INCH, _POUND = 25.4, 4.4482216152605  # mm, N
 _PSI = _INCH**2 / _POUND
@@ -32,8 +36,24 @@ class Units(StrEnum):
     SI = "SI"
     IMPERIAL = "imperial"
 
+    def length(self, millimetres: float) -> str:
+        """A length of a drawing, in mm or in."""
+        if self is Units.IMPERIAL:
+            return f"{millimetres / _INCH:.4g} in"
+        return f"{millimetres:.4g} mm"
+
+    def of(self, quantity: Quantity) -> Unit:
+        """The unit of a contact's quantity."""
+        return _IMPERIAL.get(quantity.kind, quantity.shown) if self is Units.IMPERIAL else quantity.shown
+
+    def told(self, quantity: Quantity, number: float) -> str:
+        """A number from the unit inside with its unit; degrees and plain numbers as they are read."""
+        unit = self.of(quantity)
+        shown = number * unit.factor
+        text = f"{shown:.0f}" if _LARGE <= abs(shown) < inf else f"{shown:.4g}"
+        return text if not unit.text else f"{text}{'' if unit.text == '°' else ' '}{unit.text}"
+
     @property
     def columns(self) -> tuple[Column, ...]:
         """What is shown of a contact, each in its unit."""
-        units = _IMPERIAL if self is Units.IMPERIAL else {}
-        return (*(Column(each, units.get(each.kind, each.shown)) for each in CONTACT.values()), UTILISATION)
+        return (*(Column(each, self.of(each)) for each in CONTACT.values()), UTILISATION)

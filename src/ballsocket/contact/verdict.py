@@ -1,0 +1,73 @@
+"""A contact in one sentence: whether its materials bear it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..joint import Material
+from ..quantities import STRENGTH
+from .strength import ball_share
+
+if TYPE_CHECKING:
+    from .contact import Contact
+
+
+@dataclass(frozen=True, kw_only=True)
+class Share:
+    """What a contact takes of a strength of its liner or its ball."""
+
+    part: str
+    strength: str
+    stress: float
+    allowed: float
+
+    @property
+    def ratio(self) -> float:
+        return self.stress / self.allowed
+
+    def __str__(self) -> str:
+        much = f"{100 * self.ratio:.0f} %" if self.ratio <= 1 else f"{self.ratio:.3g} times"
+        return f"{much} {'of ' if self.ratio <= 1 else ''}the {STRENGTH[self.strength].title} of the {self.part}"
+
+
+def shares(contact: Contact) -> tuple[Share, ...]:
+    """Every strength that is known, largest share first; of a contact of plain numbers."""
+    joint, pressure = contact.joint, float(contact.max_pressure)
+    found = list(_of("liner", joint.liner, pressure, contact.von_mises if joint.liner.strengths else 0.0))
+    if joint.ball is not None:
+        found += _of("ball", joint.ball, pressure, ball_share(joint) * pressure)
+    return tuple(sorted(found, key=lambda share: -share.ratio))
+
+
+def _of(part: str, material: Material, pressure: float, von_mises: float) -> Iterator[Share]:
+    for name, strength in material.strengths.items():
+        stress = pressure if name == "allowable_pressure" else von_mises
+        yield Share(part=part, strength=name, stress=float(stress), allowed=float(strength))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """Whether the materials bear a contact (None where nothing can be said), and why."""
+
+    bears: bool | None
+    words: str
+
+
+def verdict(contact: Contact) -> Verdict:
+    """The verdict on a contact of plain numbers.
+
+    An answer outside its model's validity bears nothing, and nothing is said where no strength is known.
+    """
+    if contact.status.failed:
+        return Verdict(bears=None, words=f"no answer: {contact.status.sentence}")
+    found = shares(contact)
+    worst = found[0] if found else None
+    if worst is not None and worst.ratio > 1:
+        return Verdict(bears=False, words=f"does not bear it: {worst}")
+    if not contact.valid:
+        return Verdict(bears=None, words=f"not to be trusted here: {'; '.join(contact.notes)}")
+    if worst is None:
+        return Verdict(bears=None, words="no strength of its materials is known")
+    return Verdict(bears=True, words=f"bears it: {worst}")

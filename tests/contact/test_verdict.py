@@ -1,0 +1,39 @@
+"""Whether the materials bear a contact, in a sentence."""
+
+from dataclasses import replace
+
+import pytest
+
+import ballsocket as bs
+from ballsocket.contact.verdict import shares, verdict
+
+HIP = bs.joints["hip-36"]
+
+
+def test_a_share_is_that_of_the_strength_it_names():
+    liner = replace(HIP.liner, allowable_pressure=20.0)
+    contact = bs.Exact().press(replace(HIP, liner=liner), force=3000.0)
+    by_name = {share.strength: share for share in shares(contact)}
+    assert by_name["allowable_pressure"].ratio == pytest.approx(contact.max_pressure / 20.0)
+    assert by_name["yield_stress"].ratio == pytest.approx(contact.utilisation)
+    assert str(shares(contact)[0]) == "56 % of the allowable pressure of the liner"
+
+
+@pytest.mark.parametrize(
+    ("contact", "bears", "words"),
+    [
+        (bs.Exact().press(HIP, force=3000.0), True, "bears it: 33 % of the yield stress of the liner"),
+        (bs.Exact().press(HIP, force=30e3), False, "does not bear it: 1.61 times the yield stress of the liner"),
+        (bs.Hertz().press(HIP, force=3000.0), None, "not to be trusted here: outside ε ≤ 7°"),
+        (bs.Exact().press(HIP, half_angle=1.55), None, "no answer"),
+    ],
+)
+def test_what_is_said(contact, bears, words):
+    said = verdict(contact)
+    assert said.bears is bears
+    assert said.words.startswith(words)
+
+
+def test_without_a_strength_nothing_is_said():
+    joint = replace(HIP, liner=HIP.liner.without_strengths(), ball=None)
+    assert verdict(bs.HessForsbach().press(joint, force=3000.0)).bears is None
