@@ -146,7 +146,7 @@ def _answers(comparison: Comparison, units: Units) -> str:
 
 
 def _curves(comparison: Comparison, leading: Contact) -> str:
-    """Of a contact beside the cup's axis the cup, seen from its opening."""
+    """The curves; the cup seen from its opening for a contact beside its axis."""
     shown = {leading.model.name: leading} if isinstance(leading, OffAxisContact) else answered(comparison)
     if not shown or leading.status.failed:
         return "<p>There is nothing to draw.</p>"
