@@ -4,6 +4,7 @@ import ctypes
 import sys
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from math import exp, pi, sqrt
+from pathlib import Path
 from xml.etree.ElementTree import fromstring
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import ballsocket as bs
-from ballsocket.cli.force_elements import ElementWords
+from ballsocket.cli.force_elements import ElementWords, identifier
 from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
 from ballsocket.export import TARGETS, CElement, Job
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
@@ -59,6 +60,9 @@ def test_the_module_in_python_answers_as_the_element_and_needs_no_package(tools,
         assert_allclose(joint.contact(STATE[0]), (wanted.half_angle, 1e6 * wanted.max_pressure), rtol=1e-12)
         with pytest.raises(joint.NoForce, match="the ball is deeper than the wall"):
             joint.load((0.0, 0.0, 0.1))
+        joint.parameters[0] = -1.0
+        with pytest.raises(ValueError, match="hysteresis must be finite and 0 or more"):
+            joint.load(*STATE)
 
 
 @needs_compiler
@@ -66,7 +70,7 @@ def test_what_modelica_calls_answers_as_the_element(tmp_path):
     written("modelica", LOSSY, tmp_path)
     package = (tmp_path / "bouncing" / "package.mo").read_text()
     assert package.count("end bouncing;") == package.count("package bouncing ") == 1
-    assert 'parameter Real friction_coefficient(unit="1") = 0.05 ' in package
+    assert 'parameter Real friction_coefficient(unit="1", min=0) = 0.05 ' in package
     folder = tmp_path / "bouncing" / "Resources" / "Include"
     path = shared_library(["bouncing_modelica.c"], folder / f"called{LIBRARY_ENDING}", folder)
     load = (ctypes.c_double * 9)()
@@ -76,6 +80,19 @@ def test_what_modelica_calls_answers_as_the_element(tmp_path):
     assert_allclose(load[:3], wanted.force, rtol=1e-12, atol=1e-9)
     assert_allclose(load[3:7], 1e-3 * np.array([*wanted.moment, wanted.energy]), rtol=1e-12, atol=1e-12)
     assert_allclose(load[7:], (wanted.half_angle, 1e6 * wanted.max_pressure), rtol=1e-12)
+
+
+def test_a_parser_of_modelica_reads_the_package_and_each_unknown_has_one_equation(tmp_path):
+    parse = pytest.importorskip("pymoca.parser").parse
+    written("modelica", LOSSY, tmp_path)
+    package = parse((tmp_path / "bouncing" / "package.mo").read_text()).classes["bouncing"]
+    assert [(each.name, each.type) for each in package.classes.values()] == [("load", "function"), ("Joint", "model")]
+    joint = package.classes["Joint"]
+    own = [each.name for each in joint.symbols.values() if "parameter" not in each.prefixes]
+    flows = ["frame_a.f", "frame_a.t", "frame_b.f", "frame_b.t"]
+    own.remove("turn")  # it is bound where it is declared
+    assert sorted(str(each.left) for each in joint.equations) == sorted(own + flows)
+    assert [each.name for each in package.classes["load"].symbols.values()][-1] == "load"
 
 
 def test_the_expression_of_a_closed_form_is_the_closed_form():
@@ -155,6 +172,30 @@ def test_every_target_takes_a_joint_without_a_load_and_says_what_is_missing(targ
         compile(path.read_text(), path.name, "exec")
     for path in (tmp_path / "hip").glob("*.[ox][sm][il]*"):
         fromstring(path.read_bytes())
+
+
+def test_what_a_program_has_no_words_for_is_said(tmp_path):
+    element = ForceElement(bs.HessForsbach(), HIP, damping=Damping(time=1e-4), friction=LOSSY.friction, cup=bs.Cup())
+    lost = "friction and a liner that takes its time and the cup's rim: left out"
+    for target in ("c", "modelica", "opensim", "table"):
+        wanted = f"{target} has no words for {lost}" if target in ("opensim", "table") else ""
+        assert written(target, element, tmp_path, name="lost")[1] == wanted
+    assert written("opensim", DAMPED, tmp_path)[1] == written("table", PLAIN, tmp_path)[1] == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "taken"), [("class", True), ("end", True), ("mujoco", True), ("1 hip", True), ("hip", False)]
+)
+def test_a_name_is_no_word_of_the_languages_it_is_written_in(name, taken):
+    assert (identifier(Path(name)) != name) == taken
+
+
+@pytest.mark.parametrize(("variable", "value"), [("CC", "'"), ("CFLAGS", "'")])
+def test_what_is_no_command_is_a_sentence_and_the_sources_are_there(variable, value, tmp_path, monkeypatch):
+    monkeypatch.setenv(variable, value)
+    paths, missing = written("drake", PLAIN, tmp_path)
+    assert f'{variable} is "\'", which is no command; the sources are there' in missing
+    assert all(path.exists() for path in paths)
 
 
 @pytest.mark.parametrize(

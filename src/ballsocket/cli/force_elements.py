@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import keyword
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -71,6 +73,12 @@ def checked_out(out: Path, ending: str) -> Path:
 
 
 def identifier(path: Path) -> str:
-    """A file's name as programs take it: letters, digits and _."""
+    """A file's name as programs take it: letters, digits and _, and no word that C, Python or Modelica have."""
     name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem)[:40]
-    return name if name[:1].isalpha() else f"joint_{name}"[:40]
+    return name if name[:1].isalpha() and name not in _TAKEN else f"joint_{name}"[:40]
+
+
+_MODELICA = "algorithm block connect constant discrete each encapsulated end equation external function initial inner"
+_MORE = "input loop model Modelica outer output package parameter partial record redeclare then type when within"
+_PROGRAMS = "exudyn mujoco numpy opensim pydrake assert errno float limits stdio stdlib string"
+_TAKEN = {*keyword.kwlist, *sys.stdlib_module_names, *f"{_MODELICA} {_MORE} {_PROGRAMS}".split()}

@@ -28,7 +28,7 @@ def compiler() -> list[str]:
     NoCompiler
         None of them is there.
     """
-    chosen = shlex.split(os.environ.get("CC", ""))
+    chosen = _words("CC")
     if chosen and shutil.which(chosen[0]):
         return chosen
     found = next(filter(None, map(shutil.which, _NAMES)), None)
@@ -46,13 +46,23 @@ def shared_library(sources: Sequence[str], library: Path, folder: Path, options:
     NoCompiler
         There is no compiler, or it refuses, with its first complaint.
     """
-    chosen = shlex.split(os.environ.get("CFLAGS", ""))
+    chosen = _words("CFLAGS")
     words = [*compiler(), "-std=c99", "-O2", *chosen, *_SHARED, *options, *sources, "-o", str(library), "-lm"]
     try:
         done = subprocess.run(words, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
     except (OSError, subprocess.TimeoutExpired) as error:
         raise NoCompiler(f"the compiler {words[0]} could not be run: {error}") from error
     if done.returncode:
-        said = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines() or [""]
-        raise NoCompiler(f"the compiler {words[0]} ended with {done.returncode}: {said[0]:.200}")
+        told = done.stderr.splitlines() or ["it says nothing"]
+        said = next((line for line in told if "error" in line), told[0])
+        raise NoCompiler(f"the compiler {words[0]} ended with {done.returncode}: {said:.200}")
     return library
+
+
+def _words(name: str) -> list[str]:
+    """A variable of the environment as the words of a command."""
+    value = os.environ.get(name, "")
+    try:
+        return shlex.split(value)
+    except ValueError as error:
+        raise NoCompiler(f"no compiler of C: {name} is {value!r:.60}, which is no command") from error

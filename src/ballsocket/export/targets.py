@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ..atomic import write_text
 from ..dynamics import ForceElement, Touch
+from ..dynamics.reaction import Constants
 from ..version import __version__
 from .c_element import CElement, filled
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
@@ -61,12 +62,16 @@ class Job:
 
 @dataclass(frozen=True, kw_only=True)
 class Target:
-    """A program: what it is called, its files, and what is compiled for it; a sentence says what could not be."""
+    """A program: what it is called, its files, and what is compiled for it; a sentence says what could not be.
+
+    `without` is what it has no words for, of `_LOSSES`.
+    """
 
     name: str
     title: str
     texts: Callable[[Job], Texts]
     compiled: Callable[[Job, Path], str] = lambda job, folder: ""
+    without: tuple[str, ...] = ()
 
     def write(self, job: Job, folder: Path) -> tuple[list[Path], str]:
         """Write the files into a folder; the paths, and a sentence on what is missing, empty where nothing is.
@@ -81,7 +86,21 @@ class Target:
         for name, text in self.texts(job).items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             paths.append(write_text(folder / name, text))
-        return paths, self.compiled(job, folder)
+        return paths, "; ".join(filter(None, (self.compiled(job, folder), self._left_out(job))))
+
+    def _left_out(self, job: Job) -> str:
+        lost = [name for name in self.without if _LOSSES[name](job.element.constants)]
+        return f"{self.name} has no words for {' and '.join(lost)}: left out" if lost else ""
+
+
+_LOSSES: Mapping[str, Callable[[Constants], bool]] = {
+    "friction": lambda given: given.static + given.viscous > 0.0,
+    "damping": lambda given: given.hysteresis > 0.0,
+    "a liner that takes its time": lambda given: given.time > 0.0,
+    "the cup's rim": lambda given: given.rim > 0.0,
+    "a smooth touch-down": lambda given: given.smoothing > 0.0,
+}
+_LINE_OF_CENTRES = tuple(name for name in _LOSSES if name != "damping")
 
 
 def _module(job: Job) -> dict[str, str]:
@@ -152,7 +171,7 @@ def _exudyn(job: Job) -> Texts:
 def _modelica(job: Job) -> Texts:
     constants = job.element.constants
     declared = "\n".join(
-        f'    parameter Real {each.name}(unit="{each.si_unit}") = {start * each.si!r} "{each.meaning}";'
+        f'    parameter Real {each.name}(unit="{each.si_unit}", min=0) = {start * each.si!r} "{each.meaning}";'
         for each in TUNABLES
         for start in (getattr(constants, each.constant),)
     )
@@ -177,12 +196,17 @@ TARGETS: Mapping[str, Target] = {
     target.name: target
     for target in (
         Target(name="c", title="sources of C99 that need no library", texts=Job.program_texts),
-        Target(name="opensim", title="an expression force in an .osim file", texts=_opensim),
+        Target(name="opensim", title="an expression force in an .osim file", texts=_opensim, without=_LINE_OF_CENTRES),
         Target(name="mujoco", title="a passive plug-in, and a callback", texts=_mujoco, compiled=_plugin),
         Target(name="drake", title="a LeafSystem", texts=_drake, compiled=_library),
         Target(name="exudyn", title="a user function, and its hollow sphere", texts=_exudyn, compiled=_library),
         Target(name="modelica", title="a package around the law in C", texts=_modelica),
-        Target(name="table", title="a table, and k and n for Adams, MotionSolve, Simpack", texts=_table),
+        Target(
+            name="table",
+            title="a table, and k and n for Adams, MotionSolve, Simpack",
+            texts=_table,
+            without=tuple(_LOSSES),
+        ),
     )
 }
 """All of them, by name."""
