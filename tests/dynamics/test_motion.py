@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.dynamics import Damping, Flores, Friction, of_restitution, relations, simulate
+from ballsocket.dynamics import Bristles, Damping, Flores, Friction, of_restitution, relations, simulate
 from ballsocket.dynamics.restitution import restitution_of
 
 from ..joints import HIP
@@ -114,8 +114,31 @@ def test_a_step_through_the_wall_ends_the_motion_and_names_the_state():
     assert "deeper than the wall" in motion.ended
     lost = simulate(FREE, mass=1.0, position=(nan, 0.0, 0.0), duration=1e-3, step=1e-5)
     assert "no finite number" in lost.ended
-    with pytest.raises(ValueError, match="mass = -1 is not allowed"):
-        simulate(FREE, mass=-1.0, position=(0.0, 0.0, 0.0), duration=1e-3, step=1e-5)
+    assert "r = (0, 0, 20) mm" in simulate(FREE, **{**THROW, "position": (0.0, 0.0, 20.0)}, duration=1e-3).ended
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ({"mass": -1.0}, "mass = -1 is not allowed"),
+        ({"duration": 1e300}, "the number of steps = 5e.304 is not allowed"),
+        ({"pull": (0.0, 1.0)}, "a pull has three components"),
+        ({"position": (0.0, 1.0)}, "a state has three components"),
+    ],
+)
+def test_what_cannot_be_simulated_is_refused(words, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        simulate(FREE, **{**THROW, "duration": 1e-3, **words})
+    with pytest.raises(TypeError, match="element must be a ForceElement, got 3"):
+        simulate(3, duration=1e-3, **THROW)
+
+
+@pytest.mark.parametrize("friction", [Friction(coefficient=0.1), Bristles(coefficient=0.1)])
+def test_a_ball_that_leaves_its_cup_ends_the_motion_there(friction):
+    element = replace(FREE, cup=bs.Cup(), friction=friction)
+    motion = simulate(element, duration=0.01, **{**THROW, "velocity": (0.0, 0.0, -300.0)})
+    assert "has left the cup over its rim" in motion.ended
+    assert len(motion.time) == pytest.approx(HIP.clearance / 300.0 / 2e-5, abs=2)
 
 
 def test_damping_at_another_speed_keeps_another_share():

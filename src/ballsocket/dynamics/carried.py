@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy
@@ -12,7 +13,6 @@ from ..arrays import Numbers
 from .element import ForceElement, three
 from .load import Load
 from .reaction import Three
-from .touch import Touch
 
 _TOLERANCE = 1e-10
 _RATES = 15  # position, velocity, spin, four deflections, what was lost, and the work of the pull
@@ -60,38 +60,31 @@ class Carrier:
 
     def _stretches(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
         """The state at each time after the first, in stretches between snapping in and letting go."""
-        from scipy.integrate import solve_ivp
+        from scipy.integrate import LSODA
 
-        now, end, attached = float(times[0]), float(times[-1]), self._touches(state)
-        begun = self._load(state, attached)
-        if Touch(begun.status).failed:
-            raise _Stopped(begun)
-        while now < end:
-            done = solve_ivp(
-                self._rates(attached),
-                (now, end),
-                state,
-                method="LSODA",
-                t_eval=times[times > now],
-                events=self._change(attached),
-                max_step=step,
-                rtol=_TOLERANCE,
-                atol=_TOLERANCE,
-            )
-            rows = numpy.reshape(done.y, (_RATES, -1)).T
-            yield from ((row, attached) for row in rows)
-            if done.status < 0:
-                raise _Stopped(self._load(rows[-1] if len(rows) else state, attached))
-            if done.status == 0:
-                return
-            now, state, attached = float(done.t_events[0][0]), done.y_events[0][0], not attached
-            if attached:  # what the energy falls by is lost
+        now, attached, change = float(times[0]), self._touches(state), 0.0
+        given = {"max_step": step, "rtol": _TOLERANCE, "atol": _TOLERANCE}
+        while now < times[-1]:
+            solver = LSODA(self._rates(attached), now, state, float(times[-1]), **given)
+            while solver.status == "running":
+                solver.step()
+                if solver.status == "failed":
+                    raise _Stopped(self._load(solver.y, attached))
+                path = solver.dense_output()
+                change = self._change(path, attached)
+                for time in times[slice(*numpy.searchsorted(times, (path.t_old, min(path.t, change)), "right"))]:
+                    yield path(time), attached
+                now = solver.t
+                if change < inf:
+                    now, state, attached = change, path(change), not attached
+                    break
+            if attached and change < inf:  # what the energy falls by is lost
                 state[13] -= self._load(state, attached).energy
 
     def _rates(self, attached: bool) -> Callable[[float, Numbers], list[float]]:
         def rates(time: float, state: Numbers) -> list[float]:
             load, pull = self._load(state, attached), self.pull(time)
-            if load.force[0] != load.force[0]:
+            if load.force[0] != load.force[0] or load.contact.covered <= -1.0:
                 raise _Stopped(load)
             push = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
             turn = [a / self.inertia for a in load.moment]
@@ -110,24 +103,27 @@ class Carrier:
     def _depth(self, state: Numbers) -> float:
         return float(numpy.linalg.norm(state[:3])) - float(self.element.joint.clearance)
 
-    def _change(self, attached: bool) -> Callable[[float, Numbers], float] | None:
-        """Where a ball that sticks snaps in, or lets go."""
+    def _change(self, path: Any, attached: bool) -> float:
+        """When a ball that sticks snaps in, or lets go, along a piece of its way; infinite where it does not."""
+        from scipy.optimize import brentq
+
         stretch = self.element.stretch
         if stretch == 0.0:
-            return None
+            return inf
 
-        def change(_: float, state: Numbers) -> float:
-            return self._depth(state) + (stretch if attached else 0.0)
+        def beyond(time: float) -> float:
+            return self._depth(path(time)) + (stretch if attached else 0.0)
 
-        change.terminal, change.direction = True, -1.0 if attached else 1.0  # type: ignore[attr-defined]
-        return change
+        before, after = beyond(path.t_old), beyond(path.t)
+        changes = before > 0.0 >= after if attached else before < 0.0 <= after
+        return float(brentq(beyond, path.t_old, path.t, xtol=1e-15)) if changes else inf
 
 
 def pull_of(pull: Any) -> Callable[[float], Three]:
     """A force, or a function of the time, as such a function."""
     if callable(pull):
-        return lambda time: three(pull(time))
-    always = three(pull)
+        return lambda time: three(pull(time), "a pull")
+    always = three(pull, "a pull")
     return lambda time: always
 
 

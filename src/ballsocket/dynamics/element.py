@@ -234,14 +234,14 @@ class ForceElement:
         return read(self.curves[1], indentation)
 
 
-def three(value: Any) -> Three:
+def three(value: Any, name: str = "a state") -> Three:
     try:
         x, y, z = value
         if type(x) is numpy.float64:  # numbers of Python are quicker
             return float(x), float(y), float(z)
         return x + 0.0, y + 0.0, z + 0.0
     except (TypeError, ValueError) as error:
-        raise ValueError(f"a state has three components, x, y and z, all numbers, got {shown(value)}") from error
+        raise ValueError(f"{name} has three components, x, y and z, all numbers, got {shown(value)}") from error
 
 
 def _beside(position: Any, value: Any) -> Any:

@@ -10,13 +10,14 @@ from typing import Any, ClassVar
 import numpy
 
 from ..arrays import Numbers
-from ..checks import one_number, require
+from ..checks import one_number, require, shown
 from ..sources import Source
 from . import stepping
 from .carried import Carrier, pull_of
 from .element import ForceElement, three
 from .load import Load
 from .stepping import Ball
+from .touch import Touch
 
 TONNE = 1e-3
 """Of a kilogram, so that N, mm and s fit each other."""
@@ -73,8 +74,9 @@ class Motion:
     @cached_property
     def kinetic(self) -> Numbers:
         """In N mm: (steps,)."""
-        turning = self.inertia * numpy.sum(self.spin**2, axis=1)
-        return TONNE / 2 * (self.mass * numpy.sum(self.velocity**2, axis=1) + turning)
+        with numpy.errstate(over="ignore"):
+            turning = self.inertia * numpy.sum(self.spin**2, axis=1)
+            return TONNE / 2 * (self.mass * numpy.sum(self.velocity**2, axis=1) + turning)
 
     @cached_property
     def total(self) -> Numbers:
@@ -83,8 +85,9 @@ class Motion:
 
     @property
     def drift(self) -> float:
-        """How far the total strays, over the largest kinetic energy."""
-        return float(numpy.max(abs(self.total - self.total[0])) / max(self.kinetic.max(), self.energy.max()))
+        """How far the total strays, over the largest energy that moves or is stored."""
+        with numpy.errstate(all="ignore"):
+            return float(numpy.max(abs(self.total - self.total[0])) / max(self.kinetic.max(), self.energy.max()))
 
     @cached_property
     def depth(self) -> Numbers:
@@ -152,13 +155,25 @@ def simulate(
     ------
     ValueError
         A number that is not allowed, named with its value.
+    TypeError
+        What is no force element.
     """
+    plain = getattr(element, "element", element)
+    if not isinstance(plain, ForceElement):
+        raise TypeError(f"element must be a ForceElement, got {shown(element)}")
     heavy = _above_nothing("mass", mass)
     turning = 0.4 * heavy * element.constants.ball_radius**2 if inertia is None else _above_nothing("inertia", inertia)
-    count = int(numpy.ceil(_above_nothing("duration", duration) / _above_nothing("step", step) - 1e-9))
+    steps = _above_nothing("duration", duration) / _above_nothing("step", step)
+    require("the number of steps", steps, steps <= _MOST, f"there is room for {_MOST:g}")
+    count = max(int(numpy.ceil(steps - 1e-9)), 1)
     begun = Ball(*three(position), *three(velocity), *three(spin))
-    ball = _Thrown(element, heavy, turning, begun, pull, duration / count, count)
-    return ball.carried() if ball.plain.remembers else ball.stepped()
+    ball = _Thrown(element, plain, heavy, turning, begun, pull, duration / count, count)
+    if Touch(plain(begun[:3], begun[3:6], begun[6:]).status).failed:
+        return ball.stopped()
+    return ball.carried() if plain.remembers else ball.stepped()
+
+
+_MOST = 1e8
 
 
 @dataclass(frozen=True)
@@ -166,6 +181,7 @@ class _Thrown:
     """A ball that begins to move, `count` steps of `step` seconds."""
 
     element: Any
+    plain: ForceElement
     mass: float
     inertia: float
     begun: Ball
@@ -173,9 +189,10 @@ class _Thrown:
     step: float
     count: int
 
-    @property
-    def plain(self) -> ForceElement:
-        return getattr(self.element, "element", self.element)
+    def stopped(self) -> Motion:
+        """Where it began: there is no load to go on with."""
+        states, none = numpy.array([self.begun]), numpy.zeros(1)
+        return self._moved(states, self.plain(states[:, :3]), lost=none, work=none, ended=_why(self.plain, states[0]))
 
     def stepped(self) -> Motion:
         """By steps that keep the energy."""
@@ -221,11 +238,11 @@ class _Thrown:
 def _pulls(pull: Any, time: Numbers) -> Numbers:
     """The force at times: (times, 3)."""
     if callable(pull):
-        return numpy.array([three(pull(instant)) for instant in time.tolist()])
-    return numpy.tile(numpy.array(three(pull)), (len(time), 1))
+        return numpy.array([three(pull(instant), "a pull") for instant in time.tolist()])
+    return numpy.tile(numpy.array(three(pull, "a pull")), (len(time), 1))
 
 
-def _why(element: ForceElement, state: Numbers, time: float, step: float) -> str:
+def _why(element: ForceElement, state: Numbers, time: float = 0.0, step: float = 0.0) -> str:
     """What stopped a motion, with the state that the last step led to."""
     x, y, z, *rates = state.tolist()
     notes = element((x, y, z), rates[:3], rates[3:]).notes
