@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
@@ -46,6 +46,7 @@ class Page:
         self.channel = Channel(self._asked)
         self.screen = self._read(query)
         self._views: dict[str, View] = {}
+        self._ears: dict[str, Callable[[str, Any], None]] = {}
         self.main = pn.Column(sizing_mode="stretch_width")
         self._errand = Errand(self._refresh)
         pn.state.onload(self._refresh)  # whoever only looks at the address makes nothing work
@@ -88,7 +89,17 @@ class Page:
             self.refuse(str(error))
             self.channel.once("reset", True)
 
+    def listen(self, view: str, told: Callable[[str, Any], None]) -> None:
+        """Tell a view of its own inputs, which are named by it and a dot."""
+        self._ears[view] = told
+
     def _edit(self, words: Mapping[str, Any]) -> None:
+        view, _, key = str(words.get("name")).partition(".")
+        if key:
+            check_names([view], self._ears, "among the views that have inputs")
+            self.refuse("")
+            self._ears[view](key, words.get("value"))
+            return
         self.ask(file=edited(self.screen, str(words.get("name")), words.get("value"), self._same_load))
         self.refuse("")
 

@@ -19,11 +19,14 @@ from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS
 from ..studies.phrases import limit_of, range_of
 
-VIEWS = ("press", "map", "compare", "judge")
+VIEWS = ("press", "cup", "map", "compare", "judge")
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
 """Models that press a map's points at once."""
+
+STANDINGS = ("edge_distance", "max_pressure")
+"""What a map of how a cup may stand can show."""
 
 MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")
 """What a map can show."""
@@ -79,6 +82,8 @@ class Screen:
         What the map shows, by which model.
     limits : tuple of Limit
         Of the map.
+    standing : str
+        What the map of how a cup may stand shows.
     angle, size, theme : str
         "degrees" or "radians"; balls by "radius" or "diameter"; "light" or "dark".
     """
@@ -93,6 +98,7 @@ class Screen:
     map_model: str = "tabulated"
     quantity: str = "max_pressure"
     limits: tuple[Limit, ...] = ()
+    standing: str = "edge_distance"
     angle: str = "degrees"
     size: str = "radius"
     theme: str = "light"
@@ -117,6 +123,7 @@ _KNOWN: Mapping[str, Sequence[str]] = {
     "shown": tuple(catalogue),
     "map_model": QUICK,
     "quantity": MAPPED,
+    "standing": STANDINGS,
     "angle": ANGLES,
     "size": SIZES,
     "theme": THEMES,
@@ -129,7 +136,7 @@ START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
 def link_of(screen: Screen) -> str:
     """The part of a link after the question mark: what differs from the start, and the joint."""
     pairs: list[tuple[str, str]] = []
-    for name in ("view", "answered_by", "map_model", "quantity", "angle", "size"):
+    for name in ("view", "answered_by", "map_model", "quantity", "standing", "angle", "size"):
         if getattr(screen, name) != getattr(START, name):
             pairs.append((name, getattr(screen, name)))
     if screen.shown != START.shown:

@@ -14,7 +14,7 @@ from .page import Page
 from .style import asset
 from .views import KINDS as VIEWS
 
-_SCRIPTS = ("fields.js", "page.js", "charts.js")
+_SCRIPTS = ("fields.js", "page.js", "charts.js", "bowl.js", "views.js")
 
 
 class Template(pn.Template):
@@ -32,10 +32,11 @@ class Template(pn.Template):
 def template(page: Page) -> Any:
     """The page before its first answer: every input is there, and none can be used."""
     made = Template(asset("page.html"))
-    made.add_variable("style", asset("page.css") + asset("parts.css").replace(":host {", ".app {"))
+    made.add_variable("style", asset("page.css") + asset("parts.css").replace(":host {", ".app {") + asset("views.css"))
     made.add_variable("script", "\n".join(asset(name) for name in _SCRIPTS))
     made.add_variable("theme", page.screen.theme)
     made.add_variable("views", _buttons({name: kind.title for name, kind in VIEWS.items()}, "view"))
+    made.add_variable("sections", _sections())
     made.add_variable("files", _buttons({kind: kind for kind in FILES}, "file"))
     made.add_variable("start", _safe(json.dumps(page.start())))
     made.add_panel("ears", pn.pane.Bokeh(page.channel.ears))
@@ -49,6 +50,17 @@ def _buttons(words: dict[str, str], kind: str) -> Markup:
         "".join(
             f'<button type="button" data-{kind}="{escape(name)}">{escape(said)}</button>'
             for name, said in words.items()
+        )
+    )
+
+
+def _sections() -> Markup:
+    """The places of those views that the page itself shows."""
+    bodies = {name: (kind.title, kind.body) for name, kind in VIEWS.items() if hasattr(kind, "body")}
+    return Markup(
+        "".join(
+            f'<section class="view" data-view="{name}" aria-label="{title}" hidden>{body}</section>'
+            for name, (title, body) in bodies.items()
         )
     )
 

@@ -35,6 +35,10 @@ class Host(Protocol):
         """Change the screen: called with fields of `Screen` by name."""
         ...
 
+    def listen(self, view: str, told: Callable[[str, Any], None]) -> None:
+        """Tell a view of its own inputs, which are named by it and a dot."""
+        ...
+
 
 class View(Protocol):
     """One question, answered for the screen; made with its `Host` when it is first looked at.

@@ -64,6 +64,24 @@ def _cell(each: Column, contact: Contact, errors: Mapping[str, Any]) -> str:
     )
 
 
+def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
+    """One number with its unit, and what is to be said of it below."""
+    behind = "" if isnan(value) else f" <span class='unit'>{escape(unit)}</span>"
+    small = f"<small>{escape(more)}</small>" if more else ""
+    return f"<div><dt>{escape(title)}</dt><dd>{number_text(value)}{behind}{small}</dd></div>"
+
+
+def progress(words: str, share: float | None, stop: str = "", again: str = "") -> str:
+    """How far something is, with a button that stops it or begins it again: what it tells the view."""
+    bar = "" if share is None else f"<progress max='1' value='{share:.3f}' aria-label='progress'></progress> "
+    buttons = "".join(
+        f" <button type='button' class='plain' data-tell='{told}'>{said}</button>"
+        for told, said in ((stop, "Stop"), (again, "Go on"))
+        if told
+    )
+    return f"<p class='quiet'>{bar}{escape(words)}{buttons}</p>"
+
+
 def trust(contact: Contact) -> str:
     """Whether the model trusts itself here, and if not why, in words and not by colour alone."""
     if bool(contact.valid):

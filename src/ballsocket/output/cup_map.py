@@ -95,7 +95,7 @@ def _draw_pressure(axes: Axes, contact: OffAxisContact, reach: float) -> Any:
     edge = 2 * sin(reach / 2)
     line = numpy.linspace(-edge, edge, _POINTS)
     place, most = numpy.meshgrid(line, line), highest(contact)
-    pressure = drawn(contact, _from_page(*place, reach))
+    pressure = drawn(contact, from_page(*place, reach))
     ticks = MaxNLocator(_LEVELS).tick_values(0.0, most)
     levels = [1e-3 * most, *ticks[1:]]
     beyond = "neither" if numpy.isfinite(contact.max_pressure) else "max"
@@ -107,7 +107,7 @@ def _draw_pressure(axes: Axes, contact: OffAxisContact, reach: float) -> Any:
     return filled
 
 
-def _from_page(right: Numbers, up: Numbers, reach: float) -> Numbers:
+def from_page(right: Numbers, up: Numbers, reach: float) -> Numbers:
     """Unit vectors (..., 3) of places on the page; of those beyond the rim the rim's own there."""
     polar = numpy.minimum(2 * numpy.arcsin(numpy.minimum(numpy.hypot(right, up) / 2, 1.0)), reach)
     return numpy.moveaxis(unit_vectors(polar, numpy.arctan2(right, up)), 0, -1)

@@ -131,6 +131,7 @@
       fields.set(name, found);
     }
     found.said = said;
+    found.made.hidden = Boolean(said.hidden);
     found.put(said);
   };
   app.order = function (names) {

@@ -1,12 +1,14 @@
 """Views: one question each."""
 
 from .compare import Compare
+from .cup import Cup
 from .design_map import DesignMap
 from .judge import Judge
 from .press import Press
 
-KINDS: dict[str, type[Press] | type[DesignMap] | type[Compare] | type[Judge]] = {
+KINDS: dict[str, type[Press] | type[Cup] | type[DesignMap] | type[Compare] | type[Judge]] = {
     "press": Press,
+    "cup": Cup,
     "map": DesignMap,
     "compare": Compare,
     "judge": Judge,

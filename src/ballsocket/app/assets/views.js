@@ -1,0 +1,16 @@
+// What views have in common: buttons that tell a view something, and maps on which a place is picked.
+(function () {
+  const app = (window.ballsocket = window.ballsocket || {});
+  document.addEventListener("click", (event) => {
+    const button = event.target.closest("[data-tell]");
+    if (button) { app.tell("edit", button.dataset.tell, button.dataset.value || true); return; }
+    const map = event.target.closest("svg[data-pick]");
+    if (!map) return;
+    const [left, top, right, foot] = map.dataset.box.split(" ").map(Number);
+    const [low, high, least, most] = map.dataset.pick.split(" ").map(Number);
+    const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(map.getScreenCTM().inverse());
+    const across = (place.x - left) / (right - left), up = (foot - place.y) / (foot - top);
+    if (across < 0 || across > 1 || up < 0 || up > 1) return;
+    app.tell("edit", "cup.pick", [low + across * (high - low), least + up * (most - least)]);
+  });
+})();

@@ -1,0 +1,251 @@
+"""Cup: the load in the cup as it stands, how near it comes to the rim, and cups that stand otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from concurrent.futures import Future
+from dataclasses import replace
+from functools import partial
+from html import escape
+from math import degrees, radians
+from typing import Any
+
+from ...checks import shown
+from ...io.joint_file import JointFile
+from ...output import html as page
+from ...output.cup_plot import cup_figure
+from ...quantities import CONTACT, CUP, DERIVED, QUANTITIES
+from ...sphere.contact import OffAxisContact
+from ...validity import OutsideDomainError
+from ..angle_map import angle_map
+from ..beside import beside
+from ..bore_map import pressed_bore
+from ..bowl import pressed_bowl
+from ..cup_fields import cup_edited, cup_fields
+from ..cupping import SOLVED, Stood, bore_of, pressed_in_cup, set_up, stand_of, stood
+from ..fields import segments
+from ..jobs import Job, Kept
+from ..running import Done, Reached, Refused
+from ..screen import STANDINGS, Screen
+from ..view import Document, Host
+from ..words import alert, number_cell, progress, trust, unit_of
+
+_STOOD: Kept = Kept(most=32)
+_FIELDS = (
+    *("inclination", "anteversion", "tilt", "inwards", "forwards"),
+    *("arc_of_cover", "chamfer", "aim", "side"),
+)
+_USUAL = {"inclination": 45.0, "anteversion": 15.0}
+
+
+class Cup:
+    """The press at once, in a bore that has been set up; the map of orientations when nothing else is to be done."""
+
+    title = "Cup"
+    panel = None
+    body = f"""
+<div class="inputs-row">{"".join(f'<div data-field="cup.{each}"></div>' for each in _FIELDS)}</div>
+<div id="cup-trouble" role="alert"></div>
+<div id="cup-progress" role="status"></div>
+<div id="cup-numbers"></div>
+<div class="beside">
+  <figure><figcaption>Pressure on the cup, seen from its opening</figcaption><div id="cup-map"></div></figure>
+  <figure><figcaption>In three dimensions: drag it, or use the arrow keys</figcaption><div id="cup-bowl"></div></figure>
+</div>
+<figure>
+  <figcaption>How the cup may stand</figcaption>
+  <div data-field="cup.show"></div>
+  <div id="cup-stood"></div>
+</figure>
+"""
+
+    def __init__(self, page: Host) -> None:
+        self._page, self._screen = page, page.screen
+        self._job = Job(self._heard)
+        self._stopped: Hashable = None
+        page.listen("cup", self._edited)
+
+    def show(self, screen: Screen) -> None:
+        self._screen = screen
+        self._put("trouble", "")
+        self._fields()
+        self._put_map()
+        self._work()
+
+    def _put(self, place: str, html: str) -> None:
+        self._page.channel.put(f"#cup-{place}", html)
+
+    def _fields(self) -> None:
+        maps = [(name, QUANTITIES[name].title) for name in STANDINGS]
+        show = segments("cup.show", "Map of", maps, self._screen.standing)
+        self._page.channel.put_fields({**cup_fields(self._screen), "cup.show": show})
+
+    def _edited(self, key: str, value: Any) -> None:
+        if key == "stop":
+            self._stopped = stand_of(self._screen.file)
+            self._job.stop()
+            self._put("progress", progress("Stopped.", None, again="cup.again"))
+        elif key == "again":
+            self._stopped = None
+            self._work()
+        elif key == "show":
+            self._page.ask(standing=str(value))
+        elif key == "usual":
+            self._stand(**_USUAL)
+        elif key == "pick":
+            self._stand(**dict(zip(_USUAL, _picked(value), strict=True)))
+        else:
+            self._page.ask(file=cup_edited(self._screen, key, value))
+
+    def _stand(self, **angles: float) -> None:
+        """Have the cup stand so, in degrees."""
+        screen = self._screen
+        factor = 1.0 if screen.angle == "degrees" else radians(1.0)
+        for name, angle in angles.items():
+            screen = _with(screen, cup_edited(screen, name, angle * factor))
+        self._page.ask(file=screen.file)
+
+    def _work(self) -> None:
+        """What comes next: set up the bore, press, map the orientations."""
+        file = self._screen.file
+        if SOLVED.get(bore_of(file)) is None:
+            self._clear()
+            self._job.ask(("bore", bore_of(file)), partial(set_up, file))
+            return
+        beside(lambda: _drawn(file) if file is self._screen.file else None, partial(self._pressed, file))
+        self._map()
+
+    def _map(self) -> None:
+        file = self._screen.file
+        if _STOOD.get(stand_of(file)) is not None or "tilt" in file.aim or self._stopped == stand_of(file):
+            self._job.stop()
+        else:
+            self._job.ask(("map", stand_of(file)), partial(stood, file))
+
+    def _heard(self, key: Any, news: Any) -> None:
+        """News of the bore or of the map, which the page is told of its own accord."""
+        what, of = key
+        if isinstance(news, Reached):
+            self._put("progress", progress(news.words, news.share, stop="cup.stop"))
+        elif isinstance(news, Refused):
+            self._put("progress", "")
+            self._put("trouble", alert(news.why))
+        elif isinstance(news, Done):
+            self._put("progress", "")
+            if what == "bore":
+                SOLVED.put(of, True)
+                self._work()
+            else:
+                _STOOD.put(of, news.value)
+                self._put_map()
+        self._page.channel.send()
+
+    def _pressed(self, file: JointFile, outcome: Future[Any]) -> None:
+        if file is not self._screen.file:
+            return
+        try:
+            contact, around, bowl = outcome.result()
+        except (ValueError, OutsideDomainError) as error:
+            self._clear()
+            self._put("trouble", alert(str(error)))
+        else:
+            self._put("numbers", _numbers(contact, self._screen))
+            self._put("map", around)
+            self._put("bowl", bowl)
+        self._page.channel.send()
+
+    def _clear(self) -> None:
+        for place in ("numbers", "map", "bowl"):
+            self._put(place, "")
+
+    def _put_map(self) -> None:
+        """The map of orientations, if it has been made of what is on the screen."""
+        found: Stood | None = _STOOD.get(stand_of(self._screen.file))
+        if "tilt" in self._screen.file.aim:
+            self._put("stood", _TURNS)
+        else:
+            self._put(
+                "stood",
+                "" if found is None else f"{angle_map(found, self._screen.file.cup, self._screen.standing)}{_KEY}",
+            )
+
+    def document(self, screen: Screen) -> Document:
+        if SOLVED.get(bore_of(screen.file)) is None:
+            raise ValueError("this bore is still being set up: wait until its pressure is there")
+        contact = pressed_in_cup(screen.file)
+        found: Stood | None = _STOOD.get(stand_of(screen.file))
+        stands = {} if found is None else {"orientations": ("How the cup may stand", page.picture(found.figure, "map"))}
+        rows = [["quantity", "value"], *([name, value] for name, value in _told(contact).items())]
+        listed = page.table(rows[0], [[str(cell) for cell in row] for row in rows[1:]])
+        return Document(
+            picture=lambda form: page.drawn(cup_figure(contact), form),
+            rows=lambda: rows,
+            sections=lambda: {"cup": ("In the cup", listed), **stands},
+        )
+
+    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
+        return [], ()
+
+    def leave(self) -> None:
+        self._job.stop()
+
+
+_TURNS = (
+    "<p class='quiet'>A load that is aimed from the cup's axis turns with the cup: there is no map of orientations.</p>"
+)
+_KEY = (
+    "<p class='quiet'>Dotted: where the contact reaches the rim. Dashed: Lewinnek's zone (1978). Ring: this cup. "
+    "Blank: the load leaves the bore, or the rim digs in. Click to have the cup stand there.</p>"
+)
+
+
+def _picked(value: Any) -> list[float]:
+    """Two angles of a place on the map, in degrees."""
+    numbers = value if isinstance(value, list) else []
+    if len(numbers) != len(_USUAL) or not all(isinstance(each, int | float) for each in numbers):
+        raise ValueError(f"{shown(value)} is no place on the map: it has two angles")
+    return [round(float(each), 1) for each in numbers]
+
+
+def _with(screen: Screen, file: JointFile) -> Screen:
+    return replace(screen, file=file)
+
+
+def _drawn(file: JointFile) -> tuple[OffAxisContact, str, str]:
+    contact = pressed_in_cup(file)
+    return contact, pressed_bore(contact), pressed_bowl(contact)
+
+
+def _told(contact: OffAxisContact) -> dict[str, Any]:
+    """Plain numbers of a file, by the names and units of JSON."""
+    return {name: value for name, value in contact.summary().items() if isinstance(value, float | int | str | bool)}
+
+
+def _numbers(contact: OffAxisContact, screen: Screen) -> str:
+    angle = unit_of(CUP["inclination"], screen.angle)
+    degree = angle.text if angle.text == "°" else f" {angle.text}"
+    margin = f"{float(contact.edge_margin) * angle.factor:.3g}{degree} of arc"
+    cells = [
+        number_cell(DERIVED["edge_distance"].title, float(contact.edge_distance), "mm", margin),
+        number_cell(CONTACT["max_pressure"].title, float(contact.max_pressure), CONTACT["max_pressure"].unit),
+        number_cell("load from the cup's axis", float(contact.tilt) * angle.factor, angle.text),
+        number_cell(CONTACT["half_angle"].title, float(contact.half_angle) * angle.factor, angle.text),
+        number_cell(CONTACT["force"].title, float(contact.force), CONTACT["force"].unit),
+    ]
+    return f"{_verdict(contact)}<dl class='numbers'>{''.join(cells)}</dl>{trust(contact)}{_hint(contact)}"
+
+
+def _verdict(contact: OffAxisContact) -> str:
+    """Whether the contact stays on the bore, in words."""
+    apart, margin = float(contact.edge_distance), degrees(float(contact.edge_margin))
+    if contact.edge_loaded:
+        return "<p class='trust no'>✗ Edge loading: the contact reaches the rim of the cup</p>"
+    return f"<p class='trust yes'>✓ The contact ends {apart:.1f} mm ({margin:.1f}°) before the rim</p>"
+
+
+def _hint(contact: OffAxisContact) -> str:
+    cup = contact.model.cup
+    if cup.inclination or cup.anteversion:
+        return ""
+    words = escape(f"This cup opens straight down. Put it at {_USUAL['inclination']:g}° / {_USUAL['anteversion']:g}°")
+    return f"<p><button type='button' class='plain' data-tell='cup.usual'>{words}</button></p>"

@@ -1,0 +1,164 @@
+"""The cup's view without a browser: what it shows is what a press of the sphere says, and it refuses in a sentence."""
+
+import re
+from dataclasses import replace
+from math import degrees, radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from .asking import does, edits, saved, trouble
+
+pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("skfem")
+from ballsocket.app import cupping
+from ballsocket.app.angle_map import angle_map
+from ballsocket.app.cupping import Stood
+from ballsocket.app.jobs import Job
+from ballsocket.app.page import Page
+from ballsocket.app.running import Done
+from ballsocket.cup import Cup, Side
+
+LINK = "view=cup&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
+JOINT = bs.joints["hip-36"]
+
+
+@pytest.fixture
+def at_once(monkeypatch):
+    """A bore is set up here and now, in place of in a process; the map of orientations is only asked for."""
+    asked = []
+
+    def ask(self, key, work):
+        asked.append(key[0])
+        if key[0] == "bore":
+            self._heard(key, Done(work(lambda news: self._heard(key, news))))
+
+    monkeypatch.setattr(Job, "ask", ask)
+    return asked
+
+
+def told(page, name):
+    return page.channel.told(f"#cup-{name}") or ""
+
+
+def opened(link=LINK):
+    page = Page(link)
+    page._refresh()  # the page has loaded
+    return page
+
+
+def test_the_view_says_what_the_sphere_says(at_once):
+    page = opened()
+    contact = bs.Sphere(cup=page.screen.file.cup).press(JOINT, force=3000.0)
+    assert f"{float(contact.edge_distance):.4g} <span class='unit'>mm" in told(page, "numbers")
+    assert f"{degrees(contact.edge_margin):.3g}° of arc" in told(page, "numbers")
+    assert f"{float(contact.max_pressure):.4g} <span class='unit'>MPa" in told(page, "numbers")
+    assert f"{float(contact.edge_distance):.2g} mm from the rim" in told(page, "map")
+    assert 'role="img"' in told(page, "bowl")
+    assert saved(page, "CSV").decode().splitlines()[0] == "quantity,value"
+    assert at_once[-1] == "map"  # the orientations follow
+
+    edits(page, "cup.inwards", "20")
+    way = page.screen.file.aim["direction"]
+    assert degrees(np.arctan2(-way[0], way[2])) == pytest.approx(20)  # the middle is to the left of a right hip
+    leaning = bs.Sphere(cup=page.screen.file.cup).press(JOINT, force=3000.0, direction=way)
+    assert f"{degrees(leaning.tilt):.4g} <span class='unit'>°" in told(page, "numbers")
+    edits(page, "cup.side", "left")
+    assert page.screen.file.aim["direction"][0] == pytest.approx(-way[0])
+    assert f"{degrees(leaning.tilt):.4g} <span class='unit'>°" in told(page, "numbers")  # a mirror changes nothing
+    assert "load.direction=" in page.channel.told("link")
+    assert opened(page.channel.told("link")).screen == page.screen
+
+    edits(page, "cup.inwards", 0)
+    edits(page, "cup.pick", [75.0, 12.34])
+    assert degrees(page.screen.file.cup.anteversion) == pytest.approx(12.3)
+    assert "Edge loading" in told(page, "numbers")
+    edits(page, "cup.inclination", 90)
+    assert "dislocated: the load pushes the ball out" in told(page, "trouble")
+    assert told(page, "numbers") == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        ("inclination", "91", "inclination = 91"),
+        ("arc_of_cover", "0", "arc_of_cover = 0"),
+        ("inwards", "85", "load leans to the middle = 85"),
+        ("chamfer", "wide", "chamfer = 'wide' is no number"),
+        ("side", "middle", "side = 'middle' is not allowed"),
+        ("aim", "up", "'up' as aim is not known"),
+        ("pick", [1.0], "is no place on the map"),
+        ("show", "area", "'area' as standing is not known"),
+        ("colour", "red", "'colour' among the inputs of a cup"),
+    ],
+)
+def test_what_a_cup_cannot_be_is_told(name, value, sentence, monkeypatch):
+    monkeypatch.setattr(Job, "ask", lambda *words: None)
+    page = opened()
+    before = page.screen
+    edits(page, f"cup.{name}", value)
+    assert sentence in trouble(page).replace("&#x27;", "'")
+    assert page.screen == before
+
+
+def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(monkeypatch):
+    monkeypatch.setattr(Job, "ask", lambda *words: None)
+    page = opened()
+    assert page.channel.told("=cup.tilt")["hidden"]
+    assert not page.channel.told("=cup.inclination")["hidden"]
+    edits(page, "cup.aim", "axis")
+    assert page.screen.file.aim["tilt"] == pytest.approx(page.screen.file.cup.tilt((0.0, 0.0, 1.0)))
+    assert page.channel.told("=cup.inclination")["hidden"]
+    assert "turns with the cup" in told(page, "stood")
+    edits(page, "cup.tilt", 30)
+    assert page.screen.file.aim == {"tilt": pytest.approx(radians(30))}
+    does(page, "choose", name="angle", value="radians")
+    edits(page, "cup.tilt", 0.5)
+    assert page.screen.file.aim == {"tilt": pytest.approx(0.5)}
+    edits(page, "cup.aim", "body")
+    assert page.screen.file.aim == {}
+
+
+def test_work_can_be_stopped_and_begun_again(monkeypatch):
+    asked, ended = [], []
+    monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key[0]))
+    monkeypatch.setattr(Job, "stop", lambda self: ended.append(True))
+    page = opened()
+    edits(page, "cup.stop", True)
+    assert ended
+    assert "Stopped." in told(page, "progress")
+    count = len(asked)
+    edits(page, "cup.again", True)
+    assert len(asked) == count + 1
+
+
+def made(**changes):
+    x, y = np.radians([20.0, 40.0, 60.0]), np.radians([0.0, 20.0])
+    apart = np.array([[5.0, 4.0], [2.0, 1.0], [-2.0, -3.0]])
+    held = np.ones((3, 2), dtype=bool)
+    known = {"edge_distance": apart, "max_pressure": 10 + apart**2, "held": held, "summary": {}, "figure": b""}
+    return replace(Stood(inclination=x, anteversion=y, **known), **changes)
+
+
+def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
+    picture = angle_map(made(), Cup(inclination=radians(40.0)), "edge_distance")
+    assert "67 % of the orientations keep the contact off the rim" in picture
+    assert "furthest, 5 mm, at inclination 20°, anteversion 0°" in picture
+    assert 'class="here"' in picture
+    ends = re.search(r'class="limit" d="M([\d.]+),.*L([\d.]+),', picture).groups()
+    assert {float(x) for x in ends} == {58 + 368 * 0.75, 58 + 368 * 0.625}  # at 50° without anteversion, 45° with 20°
+    assert 'class="here"' not in angle_map(made(), Cup(), "edge_distance")
+    lost = made(held=np.zeros((3, 2), dtype=bool))
+    assert "in every orientation of the map the contact reaches the rim" in angle_map(lost, Cup(), "max_pressure")
+
+
+@pytest.mark.long
+def test_the_map_is_that_of_python():
+    page = opened()
+    found = cupping.stood(page.screen.file, lambda news: None)
+    angles = {"inclination": cupping.INCLINATIONS[::5], "anteversion": cupping.ANTEVERSIONS[::5]}
+    asked = bs.orient(JOINT, model=bs.Sphere(cup=Cup(side=Side.RIGHT)), force=3000.0, **angles)
+    assert found.edge_distance[::5, ::5] == pytest.approx(asked.edge_distance, rel=1e-5)  # as far as a press is solved
+    assert found.figure.startswith(b"\x89PNG")
