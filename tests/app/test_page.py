@@ -16,6 +16,7 @@ pytest.importorskip("tomli_w")
 from bokeh.events import Tap
 
 from ballsocket.app import serve
+from ballsocket.app.files import made
 from ballsocket.app.mapping import mapped
 from ballsocket.app.page import Page
 from ballsocket.app.views.press import Press
@@ -217,3 +218,15 @@ def test_a_word_that_no_page_of_ours_knows_is_refused():
     does(page, "choose", name="shown", value="exact")
     assert "shown takes words" in trouble(page)
     assert page.screen == Page("").screen
+
+
+@pytest.mark.parametrize("view", ["press", "compare"])
+def test_a_report_has_the_joint_its_inputs_and_no_machine(view):
+    name, page = made(Page(f"view={view}").seen(), "HTML")
+    text = page.decode()
+    assert name.endswith(".html")
+    for part in ("Drawing", "Inputs", "head diameter", "SHA-256", "In the explorer: <code>?"):
+        assert part in text, part
+    assert ("<span class='holds'>bears it: " in text) == (view == "press")
+    assert "localhost" not in text
+    assert "http" not in text.replace("http://www.w3.org", "")

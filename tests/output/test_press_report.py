@@ -104,3 +104,12 @@ def test_what_cannot_be_written_is_told_first(words, sentence):
     done = run("press", "hip-36", "--force", "3 kN", *words)
     assert done.returncode == 2
     assert sentence in done.stderr
+
+
+def test_a_ball_that_sits_above_its_first_touch_is_drawn_in_its_cup(tmp_path):
+    """An interference lifts the ball out of a hemisphere: its indentation is below 0."""
+    joint = ("--ball-radius", "10", "--interference", "0.01", "--liner-thickness", "3", "--liner", "pom")
+    words = ("--ring-width", "5 deg", "--figure", str(tmp_path / "a.png"), "--report", str(tmp_path / "a.html"))
+    assert run("press", *joint, "--force", "500 N", *words).returncode == 0
+    assert (tmp_path / "a.png").stat().st_size > 1000
+    assert "by sphere" in (tmp_path / "a.html").read_text("utf-8")

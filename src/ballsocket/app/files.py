@@ -12,14 +12,14 @@ from typing import Any
 from ..checks import check_names
 from ..io.joint_file import JointFile
 from ..io.joint_toml import toml_of
-from ..output.html import page as html_page
 from ..output.html import picture
+from ..output.joint_report import joint_report
 from .view import Document
 
 
 @dataclass(frozen=True, kw_only=True)
 class Seen:
-    """What is on the screen: the view's title, the joint, the link that leads back, and the view as a document."""
+    """What is on the screen: the view's title, the joint, the words of its address, and the view as a document."""
 
     title: str
     file: JointFile
@@ -53,15 +53,13 @@ def _numbers(seen: Seen) -> bytes:
 
 
 def _report(seen: Seen) -> bytes:
-    """One page: the joint, the figure, the numbers, and the link that leads back."""
+    """One page: the joint and its inputs, the figure, the numbers, and the words of the address that lead back."""
     document, joint = seen.document, seen.file.joint
     title = f"{seen.title}: {joint.name or 'a joint'}"
     figure = "" if document.picture is None else picture(document.picture("png"), title)
-    lede = (
-        f"<p>{escape(str(joint))}</p><pre>{escape(toml_of(seen.file))}</pre>"
-        f"<p class='quiet'>Seen in the explorer: <code>{escape(seen.link)}</code></p>"
-    )
-    return html_page(title, lede, {"figure": ("Figure", figure), **document.sections()}).encode("utf-8")
+    lede = f"{document.lede()}<p class='quiet'>In the explorer: <code>{escape(seen.link)}</code></p>"
+    sections = {"figure": ("Figure", figure), **document.sections()}
+    return joint_report(seen.file, sections, lede, contact=document.contact, title=title).encode("utf-8")
 
 
 def _safe(row: Sequence[Any]) -> list[Any]:

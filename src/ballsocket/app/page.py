@@ -186,7 +186,7 @@ class Page:
         return Seen(
             title=self.view.title,
             file=self.screen.file,
-            link=self._whole_link(),
+            link=f"?{link_of(self.screen)}",
             document=self.view.document(self.screen),
         )
 
@@ -197,12 +197,6 @@ class Page:
         value = float("nan") if contact is None else float(getattr(contact, kind))
         usual = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}
         return {kind: float(f"{value:.6g}") if value > 0 else usual[kind]}
-
-    def _whole_link(self) -> str:
-        """The whole address of what is on the screen."""
-        place = pn.state.location
-        base = "" if place is None else f"{place.protocol}//{place.hostname}:{place.port}{place.pathname}"
-        return f"{base}?{link_of(self.screen)}"
 
     def leave(self) -> None:
         """The page is closed."""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from ..contact import Contact
 from ..io.joint_file import JointFile
 from .channel import Channel
 from .screen import Screen
@@ -17,12 +18,14 @@ class Document:
 
     Each is made when it is asked for. `picture` draws it as "png" or "svg" with the figures of the command line, where
     there is something to draw; `rows` are a table with its head first; `sections` are the parts of a page of HTML, a
-    title and HTML by their id.
+    title and HTML by their id, and `lede` what stands above them; `contact` is painted on the page's drawing.
     """
 
     picture: Callable[[str], bytes] | None = None
     rows: Callable[[], Sequence[Sequence[Any]]]
     sections: Callable[[], Mapping[str, tuple[str, str]]]
+    lede: Callable[[], str] = str
+    contact: Contact | None = None
 
 
 class Host(Protocol):

@@ -62,7 +62,7 @@ class Files:
         if self.figure is not None and shown:
             alone = leading == off_axis.name and leading in shown
             save(quick_plot.plot({leading: shown[leading]} if alone else shown), self.figure)
-        loaded = {name: contact for name, contact in shown.items() if contact.indentation > 0}
+        loaded = {name: contact for name, contact in shown.items() if contact.max_pressure > 0}
         meshed, tilted = loaded.get(judge.name), loaded.get(off_axis.name)
         exact = shown.get(reference.name)
         _write(self.section, meshed, lambda contact, path: save(section_figure(contact, exact), path))

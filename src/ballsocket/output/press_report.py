@@ -8,7 +8,7 @@ from html import escape
 from ..compare import Comparison, answered
 from ..contact import Contact
 from ..contact.describe import number_text
-from ..contact.verdict import Verdict, verdict
+from ..contact.verdict import verdict
 from ..io.joint_file import JointFile
 from ..quantities import CONTACT
 from ..sources import Source
@@ -52,20 +52,28 @@ def press_report(
         HTML that needs nothing beside it.
     """
     contact = comparison[leading]
-    sections = {
-        "answers": ("Answers", _answers(comparison, units)),
-        "figures": ("Pressure and force", _curves(comparison, contact)),
-        "tolerances": ("What tolerances do", _around(surroundings, units)),
-        "sources": ("Sources", _sources(comparison)),
-    }
-    return joint_report(file, sections, _lede(contact, verdict(contact), units), units, contact, day)
+    answers, *rest = press_sections(comparison, units, surroundings).items()
+    drawn = ("figures", ("Pressure and force", _curves(comparison, contact)))
+    return joint_report(file, dict([answers, drawn, *rest]), press_lede(contact, units), units, contact, day)
 
 
-def _lede(contact: Contact, said: Verdict, units: Units) -> str:
-    """The first number with its verdict in words."""
+def press_lede(contact: Contact, units: Units = Units.SI) -> str:
+    """The first number of a contact with the verdict in words, as HTML."""
+    said = verdict(contact)
     pressure, load = (escape(_number(contact, name, units)) for name in ("max_pressure", "force"))
     told = f"<strong>{pressure}</strong> largest pressure under {load}, by {escape(contact.model.name)}"
     return f"<p>{told}: <span class='{_CLASSES[said.bears]}'>{escape(said.words)}.</span></p>"
+
+
+def press_sections(
+    comparison: Comparison, units: Units = Units.SI, surroundings: Around | None = None
+) -> dict[str, tuple[str, str]]:
+    """What a press puts on a page, without its figures: by id a title and HTML."""
+    return {
+        "answers": ("Answers", _answers(comparison, units)),
+        "tolerances": ("What tolerances do", _around(surroundings, units)),
+        "sources": ("Sources", _sources(comparison)),
+    }
 
 
 def _number(contact: Contact, name: str, units: Units) -> str:

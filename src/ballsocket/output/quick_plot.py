@@ -40,7 +40,7 @@ def plot(contacts: Mapping[str, Contact]) -> Figure:
     if not shown:
         raise ValueError("there is nothing to draw: no model has an answer")
     alone = next(iter(shown.values())) if len(shown) == 1 else None
-    if isinstance(alone, OffAxisContact) and alone.indentation > 0:
+    if isinstance(alone, OffAxisContact) and alone.max_pressure > 0:
         return cup_figure(alone)
     kept = telling(shown)
     models: Any = {name: contact.model for name, contact in kept.items()}

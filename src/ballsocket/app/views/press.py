@@ -9,11 +9,13 @@ from typing import Any
 import panel as pn
 
 from ...catalogue import catalogue
-from ...compare import HEADS, Comparison, answered
+from ...compare import Comparison, answered
 from ...io.joint_file import JointFile
 from ...output import html as page
 from ...output.press_plot import press_figure
+from ...output.press_report import press_lede, press_sections
 from ...output.style import line_of
+from ...studies.around import Around, around
 from ..chart import swatch
 from ..drawing import section
 from ..fields import choice, several
@@ -78,13 +80,16 @@ class Press:
 
     def document(self, screen: Screen) -> Document:
         found = pressed(screen.file, _EVERY)
+        by = found.contacts.get(screen.answered_by)
         drawn = {name: found[name] for name in screen.shown if name in answered(found)}
         return Document(
             picture=(lambda form: page.drawn(press_figure(drawn, fine_curves(drawn, catalogue)), form))
             if drawn
             else None,
             rows=lambda: _rows(found),
-            sections=lambda: {"models": ("Every model", page.table(HEADS, found.rows()) + _notes(found))},
+            sections=lambda: press_sections(found, surroundings=_around(screen.file)),
+            lede=lambda: "" if by is None else press_lede(by),
+            contact=by,
         )
 
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
@@ -110,5 +115,7 @@ def _rows(found: Comparison) -> list[list[Any]]:
     return [[*heads, "notes"], *([*row, "; ".join(found[row[0]].notes)] for row in rows)]
 
 
-def _notes(found: Comparison) -> str:
-    return "".join(f"<p class='quiet'>{escape(note)}</p>" for note in found.notes())
+def _around(file: JointFile) -> Around | None:
+    """What a percent of each number does; without a load nothing."""
+    pressing = any(float(load) > 0 for load in file.load.values())
+    return around(file.joint, file.cup, file.load, {}) if pressing else None
