@@ -1,5 +1,6 @@
 """One model has one line, wherever it is drawn."""
 
+import re
 from importlib.util import find_spec
 
 import pytest
@@ -91,17 +92,20 @@ def test_the_papers_figures_draw_a_model_as_the_press_does(contacts, pressed):
 
 
 @pytest.mark.skipif(find_spec("panel") is None, reason="the explorer's extra is not installed")
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_the_explorer_draws_a_model_as_the_press_does(pressed, theme):
-    from ballsocket.app.look import PALETTES
+def test_the_explorer_draws_a_model_as_the_press_does(pressed):
     from ballsocket.app.page import Page
 
-    page = Page(f"theme={theme}&preset=hess-forsbach&shown={','.join(pressed)}")
-    drawn = page.view._charts._pressure._lines.data
-    for name, colour, dash in zip(drawn["name"], drawn["colour"], drawn["dash"], strict=True):
+    page = Page(f"preset=hess-forsbach&shown={','.join(pressed)}")
+    page.view.show(page.screen)
+    curves = re.findall(
+        r'stroke="([^"]+)" data-name="([^"]+)" stroke-width="\S+"(?: stroke-dasharray="([^"]+)")?/>',
+        page.channel.told("#press-charts"),
+    )
+    assert {name for _, name, _ in curves} == set(pressed)
+    for colour, name, dash in curves:
         line = pressed[name]
-        assert colour == (PALETTES[theme].text if line.colour == INK else line.colour)
-        assert dash == (" ".join(f"{2 * length:.0f}" for length in line.dash) or "solid")
+        assert colour == ("var(--text)" if line.colour == INK else line.colour)
+        assert dash == " ".join(f"{2 * length:g}" for length in line.dash)
 
 
 def test_the_finite_elements_are_circles_of_their_own_colour_in_the_papers_figures(contacts):
