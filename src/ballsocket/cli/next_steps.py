@@ -72,7 +72,7 @@ def _after_press(answer: Answer, words: Words) -> Iterator[Step]:
     yield from (Step(("cite", name), "what it is made of") for name in trusted[:1] if name in asked)
 
 
-_SHOWN = ("--units", "--figure", "--section", "--view", "--vtk")
+_SHOWN = ("--units", "--figure", "--section", "--view", "--vtk", "--report", "--tolerance")
 """How an answer is shown, which the next one need not be."""
 
 
