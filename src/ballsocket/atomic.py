@@ -33,12 +33,17 @@ def at_once(path: Path) -> Iterator[Path]:
     Raises
     ------
     OSError
-        A folder that cannot be written to.
+        A folder that cannot be written to, a disk that is full: of `path`.
     """
     with draft_folder(path) as folder:
         draft = folder / path.name
-        yield draft
-        os.replace(draft, path)
+        try:
+            yield draft
+            os.replace(draft, path)
+        except OSError as error:
+            if error.errno is None or error.filename not in (None, str(draft)):
+                raise
+            raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 @contextmanager

@@ -1,10 +1,13 @@
 """A run that is stopped goes on; what it is kept in; the page of a run."""
 
+import json
 import re
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from ballsocket.cli.root import app
 from ballsocket.hip import Archard, OwnLaw, logarithmic
 from ballsocket.output.hip_report import write_hip_report
 
@@ -97,6 +100,17 @@ def test_a_page_that_cannot_be_written_is_said_before_the_run(tmp_path):
     assert (
         "is no folder to write hip.html into" in run("hip", file, "--report", str(tmp_path / "no" / "hip.html")).stderr
     )
+
+
+def test_a_page_on_a_full_disk_takes_no_answer_with_it(tmp_path, monkeypatch):
+    def full(path, *rest):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("ballsocket.cli.hip.write_hip_report", full)
+    words = ["hip", str(told(tmp_path, ("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]"))), "--json"]
+    done = CliRunner().invoke(app, [*words, "--report", str(tmp_path / "hip.html")])
+    assert isinstance(done.exception, OSError)
+    assert json.loads(done.stdout)["history"][0]["cycles"] == 1e4
 
 
 def test_figures_show_what_the_run_has(tmp_path):

@@ -142,6 +142,14 @@ def test_storages_that_are_no_cycle(tmp_path, make, refused):
         read_cycle(make(tmp_path / "walk.sto"))
 
 
+def test_degrees_under_a_head_in_radians_are_no_hips(tmp_path):
+    file = tmp_path / "walk.csv"
+    lines = [f"{t:g},1000,{25 * np.cos(2 * np.pi * t):.6f}" for t in np.linspace(0, 1, 21)]
+    file.write_text("\n".join(["time [s],force [N],flexion [rad]", *lines]), encoding="utf-8")
+    with pytest.raises(ValueError, match="flexion goes to 1432°, and no hip turns further than 180°"):
+        read_cycle(file)
+
+
 def test_files_that_do_not_go_together(tmp_path):
     angles = coordinates(tmp_path / "ik.mot")
     short = reactions(tmp_path / "loads.sto", time=0.9 * PHASES)

@@ -236,6 +236,12 @@ def test_a_ball_that_lifts_off_wears_only_where_it_presses():
     assert half.after(1e6).last.volume > 0
 
 
+def test_the_finest_steps_tell_their_error_too():
+    """They cannot be halved, which was refused when the run was done."""
+    assert 0 < hip(cycle=flexion(8), ring_width=radians(0.6)).halved[0] < 0.05
+    assert flexion(6000).finer().instants == 10_000
+
+
 def test_a_liner_that_is_worn_through_is_told():
     thin = hip(liner=2.0, wear=Archard(coefficient=1e-5))
     assert any(note.startswith("worn through: after 5e+06 cycles") for note in thin.after(5e6, [1e5]).notes)
@@ -247,6 +253,7 @@ def test_a_cycle_without_a_load_wears_nothing():
     history = hip(cycle=walked(0.0, 0.0)).after(1e6)
     assert history.last.volume == 0
     assert history.last.penetration == 0
+    assert any(note.startswith("nothing is ever pressed or worn") for note in history.notes)
     assert history.settled
 
 
@@ -287,6 +294,7 @@ def test_hips_that_are_none(words, refused):
         (0.0, [], "cycles = 0 is not allowed"),
         (np.nan, [], "cycles = nan"),
         (1e6, [2e6], "report_at = 2e.06 is not allowed"),
+        (1e12, [], r"1e\+12 cycles as the first one would wear 1\.9.*e\+05 mm away, and 8 mm are there"),
     ],
 )
 def test_numbers_of_cycles_that_are_none(cycles, looks, refused):

@@ -257,6 +257,15 @@ def test_what_is_being_written_stays(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
 
 
+def test_a_full_disk_is_said_of_the_file_that_was_asked_for(tmp_path):
+    from ballsocket.atomic import at_once
+
+    with pytest.raises(OSError, match="No space left on device: .*a.txt") as told, at_once(tmp_path / "a.txt"):
+        raise OSError(28, "No space left on device")
+    assert told.value.filename == str(tmp_path / "a.txt")
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_disk_that_is_full_stops_with_one_sentence_and_keeps_what_is_done(store, monkeypatch):
     from ballsocket.studies.store import Store
 

@@ -54,14 +54,14 @@ def hip(
         return
     history = _worn(given, store)
     bands = _bands(given, history, engine)
-    if report is not None:
-        write_hip_report(history, report, bands)
     if as_json:
         _echo(history, bands)
     else:
         print_hip(history)
         if bands is not None:
             print_bands(bands)
+    if report is not None:  # last: what was computed is told, should the page not be written
+        write_hip_report(history, report, bands)
     if not history.settled:
         typer.echo("ballsocket: a contact did not balance its load (see the notes)", err=True)
         raise typer.Exit(FAILURE)

@@ -164,8 +164,8 @@ class Cycle:
         return f"{100 * self.phases[instant]:.1f} % of the cycle"
 
     def finer(self) -> Cycle:
-        """This cycle in twice as many instants."""
-        return replace(self, instants=2 * self.instants)
+        """This cycle in twice as many instants, if so many are allowed."""
+        return replace(self, instants=min(2 * self.instants, _MOST))
 
     def mirrored(self) -> Cycle:
         """What the other side of the body goes through: to the left what was to the right."""

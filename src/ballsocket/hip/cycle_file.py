@@ -114,6 +114,8 @@ def _cycle(found: Measured, order: str, reading: Reading) -> Cycle:
     for title, values in columns.items():
         if title != clock_of(columns):
             check_closed(title, values, reading.closing, *(("°", 180 / pi) if title in ANGLES else (" N", 1.0)))
+        if title in ANGLES:
+            _check_turn(title, values)
     angles = _angles(phase, columns, motion)
     frame = known_name("frame", reading.frame or found.frame or FRAMES[0], FRAMES)
     on = known_name("force_on", reading.force_on or found.force_on or BODIES[0], BODIES)
@@ -127,6 +129,15 @@ def _cycle(found: Measured, order: str, reading: Reading) -> Cycle:
         frame=Frame.CUP if frame == "cup" else Frame.BODY,
         notes=() if motion is None else (f"the motion is that of {motion.name}",),
     )
+
+
+def _check_turn(title: str, values: Numbers) -> None:
+    """Raise ValueError where an angle (rad) is one to which no hip turns, as of degrees under a head in rad."""
+    furthest = float(values[abs(values).argmax()])
+    if abs(furthest) > pi:
+        raise ValueError(
+            f"{title} goes to {180 / pi * furthest:.4g}°, and no hip turns further than 180°: is its unit right?"
+        )
 
 
 def _angles(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> Course:

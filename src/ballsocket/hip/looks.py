@@ -16,6 +16,9 @@ from .history import Report
 from .set_up import SetUp
 from .springs import Rest
 
+_LINERS = 10.0
+"""May be worn through by the rate of the first cycle: later ones wear less deep, and a run beyond has no meaning."""
+
 
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
     """Numbers of cycles in order, the last one at the end.
@@ -29,6 +32,24 @@ def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
     for count in report_at:
         require("report_at", count, 0 <= count <= cycles, f"it lies between 0 and the {cycles:g} cycles of the run")
     return sorted({float(count) for count in (*report_at, cycles)})
+
+
+def check_meant(use: SetUp, cycles: float) -> None:
+    """Whether so many cycles can be meant.
+
+    Raises
+    ------
+    ValueError
+        By what the first of them wears, all of them would wear the liner through many times over.
+    """
+    done = use.passed(use.unworn)
+    whole = float(min(use.joint.liner_thickness, use.joint.socket_radius))
+    worn = cycles * max(float(law.depth(done).max(initial=0.0)) for law in (use.wear, use.ball_wear) if law is not None)
+    if not worn <= _LINERS * whole:
+        raise ValueError(
+            f"{cycles:g} cycles as the first one would wear {worn:.3g} mm away, and {whole:g} mm are there: "
+            "a coefficient of wear or a number of cycles is not what was meant"
+        )
 
 
 def looks(

@@ -18,7 +18,7 @@ from .blocks import Run
 from .cycle import Cycle
 from .history import Report
 from .laws import CrossShear, Law
-from .looks import report_of
+from .looks import check_meant, report_of
 from .mix import Mix
 from .use import InUse
 
@@ -173,8 +173,9 @@ class Patient:
         Raises
         ------
         ValueError
-            A contact that did not balance its load.
+            A contact that did not balance its load; a liner that would be worn through many times over.
         """
+        check_meant(self.use, self.pace * counts[-1])
         run = Run(use=self.use)
         found = tuple(report_of(run.until(self.pace * count, lambda done: None)) for count in counts)
         if not all(report.settled for report in found):

@@ -166,10 +166,13 @@ class Placed:
     def _lifted(self) -> tuple[str, ...]:
         """When the ball is lifted off, in a sentence."""
         off = numpy.flatnonzero(~self._pressed)
+        if len(off) == self.cycle.instants:
+            return (_NEVER,)
         return (_LIFTS.format(self.cycle.told(int(off[0])), len(off), self.cycle.instants),) if len(off) else ()
 
 
 _PLACED = "the cup is tilted by {:g}° from the load, as the cycle's standard has it"
+_NEVER = "nothing is ever pressed or worn: the loads are zero, or pull the ball off its socket all the time"
 _LIFTS = "the ball lifts off, first at {}, and comes down again: in {} of {} instants nothing is pressed or worn"
 
 

@@ -28,6 +28,9 @@ from .sliding import Sliding
 from .spots import ball_grid
 from .springs import CycleBed, Rest, spring_bed
 
+FINEST = radians(0.5)
+"""The narrowest rings."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SetUp(Placed):
@@ -44,7 +47,7 @@ class SetUp(Placed):
     def __post_init__(self) -> None:
         if not all(map(is_plain, self.joint.numbers())):
             raise ValueError("a hip in use is one joint, and this one has arrays of numbers")
-        require("ring_width", self.ring_width, radians(0.5) <= self.ring_width <= radians(10.0), "0.5 to 10 degrees")
+        require("ring_width", self.ring_width, FINEST <= self.ring_width <= radians(10.0), "0.5 to 10 degrees")
         require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
         if not isinstance(self.surface, Springs):
             inside(Sphere(cup=self._around).domain, self.joint, "full elasticity")

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from .blocks import Run
 from .checkpoint import checkpoint
 from .film import Lubricant
 from .history import Error, History
-from .looks import check_cycles, looks
-from .set_up import SetUp
+from .looks import check_cycles, check_meant, looks
+from .set_up import FINEST, SetUp
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,22 +82,26 @@ class InUse(SetUp):
         Raises
         ------
         ValueError
-            Numbers of cycles that are not allowed; a store that keeps another run.
+            Numbers of cycles that are not allowed, or cannot be meant; a store that keeps another run.
         """
         counts = check_cycles(cycles, report_at)
+        check_meant(self, cycles)
+        kept, volume, depth = None if store is None else checkpoint(self, store), *self.halved
         run = Run(use=self)
-        reports = looks(run, counts, listen, None if store is None else checkpoint(self, store))
-        return History(use=self, reports=reports, error=self.error(run.missed), steps=run.steps, lubricant=lubricant)
+        reports = looks(run, counts, listen, kept)
+        error = Error(blocks=run.missed, volume=run.missed + volume, depth=run.missed + depth)
+        return History(use=self, reports=reports, error=error, steps=run.steps, lubricant=lubricant)
 
-    def error(self, blocks: float) -> Error:
-        """What the volume may be off by: blocks as they estimate it, rings and instants by halving them once."""
-        finer = replace(self, ring_width=self.ring_width / 2, cycle=self.cycle.finer())
+    @cached_property
+    def halved(self) -> tuple[float, float]:
+        """How far volume and depth of the first cycle are from those with rings and instants halved, relative to them.
+
+        As far as they may be halved.
+        """
+        finer = replace(self, ring_width=max(self.ring_width / 2, FINEST), cycle=self.cycle.finer())
         mine, other = self.first, finer.first
-        rates = (
-            abs(getattr(mine, name) / getattr(other, name) - 1) if getattr(other, name) else 0.0 for name in _RATES
-        )
-        volume, depth = rates
-        return Error(blocks=blocks, volume=blocks + volume, depth=blocks + depth)
+        return _off(mine.volume, other.volume), _off(mine.depth, other.depth)
 
 
-_RATES = ("volume", "depth")
+def _off(mine: float, other: float) -> float:
+    return abs(mine / other - 1) if other else 0.0
