@@ -2,18 +2,20 @@
 
 import json
 import re
+from dataclasses import replace
+from math import radians
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from ballsocket.cli.root import app
-from ballsocket.hip import Archard, OwnLaw, logarithmic
+from ballsocket.hip import Activity, Archard, Mix, OwnLaw, logarithmic
 from ballsocket.output.hip_report import write_hip_report
 
 from ..cli.command import run
 from .test_file import told
-from .test_wear import K, hip
+from .test_wear import K, hip, walked
 
 
 class KilledError(Exception):
@@ -88,8 +90,6 @@ def test_the_page_of_a_run(tmp_path):
 
 
 def test_a_page_of_nothing_that_is_pressed(tmp_path):
-    from .test_wear import walked
-
     write_hip_report(hip(cycle=walked(0.0, 0.0)).after(1e5), tmp_path / "none.html")
     assert "data:image" not in (tmp_path / "none.html").read_text(encoding="utf-8")
 
@@ -116,9 +116,13 @@ def test_a_page_on_a_full_disk_takes_no_answer_with_it(tmp_path, monkeypatch):
 def test_figures_show_what_the_run_has(tmp_path):
     from ballsocket.output import hip_plots
 
+    walk = Activity(cycle=replace(walked(2000.0, -1.0), instants=40), per_year=1e6)
     history = hip(creep=logarithmic()).after(1e5, [5e4])
     lines = hip_plots.penetration_curve(history).axes[0].get_lines()
     assert [line.get_label() for line in lines] == ["penetration", "wear alone", "creep alone", "deepest wear"]
     assert np.asarray(lines[0].get_ydata())[1:] == pytest.approx([report.penetration for report in history.reports])
+    mixed = hip_plots.edge_figure(hip(cycle=Mix(activities=(walk, walk)), ring_width=radians(9.0)).after(1e4)).axes[0]
+    assert np.isnan(mixed.get_lines()[0].get_ydata()).sum() == 1 + 2 * 20  # where it parts, and lifts off
+    assert [label.get_text() for label in mixed.get_xticklabels()] == ["iso-14242-1"] * 2
     film = hip_plots.film_figure(history).axes[0].get_lines()[0]
     assert np.asarray(film.get_ydata()) == pytest.approx(1e6 * history.use.film(history.lubricant).least)

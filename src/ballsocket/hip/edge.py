@@ -60,12 +60,18 @@ class Edge:
     distance: Numbers
     place: Numbers
 
-    def worst(self, use: Placed) -> Worst | None:
-        """The worst instant; None where nothing is pressed."""
+    def nearest(self, use: Placed) -> int | None:
+        """Which of the contacts comes nearest; of several, that of the largest load; None where nothing is pressed."""
         if not len(self.distance):
             return None
         near = numpy.flatnonzero(self.distance <= self.distance.min())
-        chosen = int(near[numpy.linalg.norm(use.loads[near], axis=1).argmax()])
+        return int(near[numpy.linalg.norm(use.loads[near], axis=1).argmax()])
+
+    def worst(self, use: Placed) -> Worst | None:
+        """The worst instant; None where nothing is pressed."""
+        chosen = self.nearest(use)
+        if chosen is None:
+            return None
         return Worst(
             distance=float(self.distance[chosen]),
             place=float(self.place[chosen]),

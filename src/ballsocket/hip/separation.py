@@ -43,9 +43,15 @@ class Separation:
     def _furthest(self) -> int:
         return int(numpy.linalg.norm(self.displacement, axis=1).argmax())
 
+    def _ends(self, whole: int) -> tuple[int, int]:
+        """The first and the last of the instants of so many in a cycle, which may pass from one into the next."""
+        away = numpy.diff(self.instants, append=self.instants[0] + whole)
+        longest = int(away.argmax())
+        return int(self.instants[(longest + 1) % len(away)]), int(self.instants[longest])
+
     def summary(self, cycle: Cycle | Mix) -> dict[str, Any]:
         """For JSON."""
-        first, last = (cycle.told(int(instant)) for instant in self.instants[[0, -1]])
+        first, last = (cycle.told(instant) for instant in self._ends(cycle.instants))
         return {"from": first, "to": last, "largest_mm": self.largest, "place_deg": degrees(self.place[self._furthest])}
 
     def told(self, cycle: Cycle | Mix) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import accumulate
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from ..hip.history import History, Report
+from ..hip.mix import Mix
 from ..hip.sliding import tracks
 from ..hip.spots import ball_directions, ball_grid
 from ..hip.uncertainty import Bands
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 
 _INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"
 _SIZE = (6.4, 4.2)
+_HEADROOM = 1.2
+"""Of what is drawn, for a legend above it."""
 
 
 def _figure(size: tuple[float, float] = _SIZE, polar: bool = False) -> tuple[Figure, Any]:
@@ -69,8 +73,11 @@ def _map(use: SetUp, field: Numbers, label: str, title: str) -> Figure:
     """A field (rings, meridians) over the bore, with a cross where the largest load points."""
     figure, axes = _figure((5.6, 4.8), polar=True)
     around = numpy.append(use.grid.azimuth, use.grid.azimuth[0] + 2 * pi)
-    closed = numpy.hstack([field, field[:, :1]])
-    shown = axes.contourf(around, numpy.degrees(use.grid.polar), closed, levels=20, cmap="cividis")
+    pole = numpy.full_like(field[:1], field[0].mean())
+    whole = numpy.maximum(numpy.vstack([pole, field, field[-1:]]), 0.0)  # rounding leaves less than nothing
+    polar = numpy.degrees([0.0, *use.grid.polar, use.reach])
+    closed = numpy.hstack([whole, whole[:, :1]])
+    shown = axes.contourf(around, polar, closed, levels=20, cmap="cividis")
     sizes = numpy.linalg.norm(use.loads, axis=1)
     if len(sizes):
         x, y, z = use.loads[sizes.argmax()] / sizes.max()
@@ -137,33 +144,60 @@ def _points(reach: float) -> Numbers:
 
 def film_figure(history: History) -> Figure:
     """Film thickness and the moment of friction over the first cycle."""
-    film = history.use.film(history.lubricant)
+    use, film = history.use, history.use.film(history.lubricant)
     figure, axes = _figure()
-    axes.plot(100 * film.phases, 1e6 * film.least, color=_INK, label="least film")
-    axes.plot(100 * film.phases, 1e6 * film.central, "--", color=_INK, label="central film")
-    axes.set_xlabel("% of the cycle")
+    axes.plot(*_course(use, 1e6 * film.least), color=_INK, label="least film")
+    axes.plot(*_course(use, 1e6 * film.central), "--", color=_INK, label="central film")
     axes.set_ylabel("film [nm]")
-    axes.set_ylim(bottom=0)
     other = axes.twinx()
-    other.plot(100 * film.phases, 1e-3 * numpy.linalg.norm(film.moment, axis=1), ":", color=_SECOND)
+    other.plot(*_course(use, 1e-3 * numpy.linalg.norm(film.moment, axis=1)), ":", color=_SECOND)
     other.set_ylabel("moment of friction [N m], dotted", color=_SECOND)
-    other.set_ylim(bottom=0)
-    axes.legend(frameon=False, loc="lower right")
+    for each in (axes, other):
+        each.set_ylim(0, _HEADROOM * each.dataLim.ymax or 1.0)
+    _over_the_cycle(axes, use)
     return figure
 
 
 def edge_figure(history: History) -> Figure:
     """The distance from the contact's edge to the rim over the cycle, unworn and at the end."""
-    use = history.use
+    use, last = history.use, history.last
     figure, axes = _figure()
-    phase = 100 * use.cycle.phases[use.loaded]
-    axes.plot(phase, use.edge_distance(use.unworn), color=_INK, label="unworn")
-    last = history.last
-    axes.plot(phase, last.edge_distance, "--", color=_SECOND, label=f"after {last.cycles / 1e6:g} million cycles")
-    worst = last.edge_distance.argmin()
-    axes.plot(phase[worst], last.edge_distance[worst], "o", color=_SECOND, ms=5)
-    axes.set_xlabel("% of the cycle")
+    axes.plot(*_course(use, use.edge_distance(use.unworn)), color=_INK, label="unworn")
+    told = f"after {last.cycles / 1e6:g} million cycles"
+    axes.plot(*_course(use, last.edge_distance), "--", color=_SECOND, label=told)
+    worst = last.edge.nearest(use)
+    if worst is not None:
+        at = 100 * use.cycle.phases[use.loaded[worst]]
+        axes.plot(at, last.edge_distance[worst], "o", color=_SECOND, ms=5)
     axes.set_ylabel("contact's edge to the rim [mm]")
-    axes.set_ylim(bottom=-0.2)  # a line at 0 is seen
-    axes.legend(frameon=False)
+    axes.set_ylim(-0.2, _HEADROOM * axes.dataLim.ymax or 1.0)  # a line at 0 is seen
+    _over_the_cycle(axes, use)
     return figure
+
+
+def _course(use: SetUp, values: Numbers) -> tuple[Numbers, Numbers]:
+    """% of the cycle, and values (loaded,) over it: a line ends where nothing is pressed and where activities part."""
+    whole = numpy.full(use.cycle.instants, numpy.nan)
+    whole[use.loaded] = values
+    parted = _ends(use)[:-1]
+    return numpy.insert(100 * use.cycle.phases, parted, numpy.nan), numpy.insert(whole, parted, numpy.nan)
+
+
+def _ends(use: SetUp) -> list[int]:
+    """Instants after which a cycle, or an activity of a mix, ends."""
+    parts = [each.cycle for each in use.cycle.activities] if isinstance(use.cycle, Mix) else [use.cycle]
+    return list(accumulate(part.instants for part in parts))
+
+
+def _over_the_cycle(axes: Any, use: SetUp) -> None:
+    """The horizontal axis and a legend; where it is a mix, its activities side by side with their names."""
+    axes.legend(frameon=False, loc="upper center", ncol=2)
+    axes.set_xlim(0, 100)
+    if not isinstance(use.cycle, Mix):
+        axes.set_xlabel("% of the cycle")
+        return
+    ends = 100 * numpy.array([0, *_ends(use)]) / use.cycle.instants
+    axes.set_xticks((ends[1:] + ends[:-1]) / 2, [each.cycle.name for each in use.cycle.activities])
+    axes.set_xlabel("each activity from its beginning to its end")
+    for end in ends[1:-1]:
+        axes.axvline(end, color="0.6", linewidth=0.8)

@@ -119,8 +119,12 @@ def _rim(history: History) -> str:
     """How near the contact comes to the rim, when and where, new and at the end."""
     seen = {"New": history.worst, "at the end": history.last.edge.worst(history.use)}
     told = (
-        f"{name} the contact comes within {worst.distance:.3g} mm of the rim at {worst.where}"
+        f"{name} the contact {_how_near(worst.distance)} at {worst.where}"
         for name, worst in seen.items()
         if worst is not None
     )
     return "; ".join(told) or "nothing is pressed"
+
+
+def _how_near(distance: float) -> str:
+    return f"comes within {distance:.3g} mm of the rim" if distance > 0 else "reaches the rim"
