@@ -113,7 +113,7 @@ def test_the_terminal_says_where_the_contact_lies():
         run("press", path, *COARSE, *words, columns=200).stdout
         for words in ((), ("--tilt", "75"), ("--tilt", "75", "--chamfer", "1 mm"))
     )
-    assert "sphere: load 36.5° from the cup's axis, contact 1.1 mm from the rim, largest pressure 37" in inside
+    assert "sphere: load 36.5° from the cup's axis, contact 1.0 mm from the rim, largest pressure 37" in inside
     assert "° from the axis; rings of 4°, " in inside
     assert " s; error of the rings: d ±0.2 %, ε ±3 %, pmax ±0.2 %" in inside
     assert "mm at the rim, largest pressure 8" in over

@@ -13,7 +13,7 @@ from ..arrays import Numbers
 from .directions import polar_angle, unit_vectors
 from .grid import Grid
 
-_RAYS = 90
+_RAYS, _WAVES = 90, 2
 _NEAR = 2.2  # widths of a ring: cells that far tell where the largest pressure is
 _LATTICE = 25
 
@@ -95,8 +95,11 @@ class Patch:
     @cached_property
     def outline(self) -> Numbers:
         """Unit vectors (rays, 3) to the edge of the contact, where rays from its middle leave it."""
-        turns = numpy.arange(_RAYS) * (2 * pi / _RAYS)
-        return _ray(self._middle, self._edges, turns)
+        return _ray(self._middle, self._edges, self._turns)
+
+    @property
+    def _turns(self) -> Numbers:
+        return numpy.arange(_RAYS) * (2 * pi / _RAYS)
 
     @cached_property
     def _middle(self) -> Numbers:
@@ -108,7 +111,7 @@ class Patch:
     @cached_property
     def _edges(self) -> Numbers:
         """Angles from the middle to the edge along each ray: where the bore ends, or where the power falls to 0."""
-        step, turns = self.grid.width / 2, numpy.arange(_RAYS) * (2 * pi / _RAYS)
+        step, turns = self.grid.width / 2, self._turns
         out = numpy.arange(1, int(pi / step)) * step
         points = _ray(self._middle, out[:, None] + 0 * turns, turns)
         values = self._powers(_angles(points))
@@ -144,10 +147,16 @@ class Patch:
 
     @cached_property
     def edge_margin(self) -> float:
-        """The angle (rad) from the outline to the end of the bore where that is nearest; 0 where it is reached."""
+        """The angle (rad) from the outline to the end of the bore where that is nearest; 0 where it is reached.
+
+        As the load turns, cells come to the contact one by one: few waves around even that out.
+        """
         if self.edge_loaded:
             return 0.0
-        ends = numpy.arccos(numpy.clip(self.outline[:, 2].min(), -1, 1))
+        waves = numpy.fft.rfft(self._edges)
+        waves[_WAVES + 1 :] = 0
+        outline = _ray(self._middle, numpy.fft.irfft(waves, _RAYS), self._turns)
+        ends = numpy.arccos(numpy.clip(outline[:, 2].min(), -1, 1))
         return float(max(self.grid.reach - ends, numpy.diff(self.grid.edges)[-1]))  # the last ring is free
 
 

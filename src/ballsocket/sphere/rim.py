@@ -12,8 +12,11 @@ from .directions import polar_angle, unit_vectors
 if TYPE_CHECKING:
     from .states import States
 
-_TURNS = 2
-"""A contact comes nearer to the rim by what its load turns; near to it, where that gives way, by a little less."""
+_TURNS, _SHUT = 6, 0.3
+"""A contact comes nearer to the rim by what its load turns; near to it, where that gives way, by less.
+
+It is turned again while more is left than such a share of a ring.
+"""
 
 _POLE = 1e-6  # rad: a load along the axis that knows its meridian
 
@@ -42,12 +45,16 @@ def _touching_at(states: States, cut: Numbers) -> Numbers:
 
 def _touching(states: States, load: Numbers, azimuth: Numbers) -> Numbers:
     """From the dome turned on by what is left to the rim; beyond it where the dome's own contact fills the bore."""
-    tilt = numpy.full(len(load), _POLE)
+    tilt, some = numpy.full(len(load), _POLE), numpy.arange(len(load))
     for _ in range(_TURNS):
-        there = states.press(states.bed, load, unit_vectors(tilt, azimuth).T, states.edges)
+        here = tilt[some]
+        there = states.press(states.bed, load[some], unit_vectors(here, azimuth[some]).T, states.edges)
         free = there.rest.found & (there.edge_loaded == 0)
-        left = numpy.array([patch.edge_margin for patch in there.patches])
-        tilt = numpy.where(free, tilt + left, numpy.where(tilt > _POLE, tilt, _filled(there)))
+        left = numpy.where(free, [patch.edge_margin for patch in there.patches], 0.0)
+        tilt[some] = numpy.where(free | (here > _POLE), here + left, _filled(there))
+        some = some[left > _SHUT * states.bed.compliance.grid.width]
+        if not len(some):
+            break
     return tilt
 
 
