@@ -25,7 +25,7 @@ CLEARANCES = (0.05, 0.2)  # mm, beside 0.1
 
 
 def shaken(clearance: float, spring: float):
-    """A tenth of a second of it, in steps of 50 µs."""
+    """A tenth of a second of it, in steps of 20 µs."""
     joint = bs.Joint(ball_radius=13.5, clearance=clearance, liner_thickness=2.0, liner=bs.POM, ball=bs.STEEL)
     element = bs.ForceElement(bs.BondedLayer(), joint, damping=Gonthier(restitution=0.6, impact_speed=100.0))
     rest = bs.BondedLayer().press(joint, force=spring).indentation
@@ -35,7 +35,7 @@ def shaken(clearance: float, spring: float):
         position=(0.0, 0.0, clearance + rest),
         pull=lambda t: (0.0, 0.0, spring + SHAKING * sin(2 * pi * FREQUENCY * t)),
         duration=0.1,
-        step=5e-5,
+        step=2e-5,
     )
 
 

@@ -108,6 +108,19 @@ def test_the_exact_relation_is_an_identity_of_h_and_e():
         assert h * (1 + e) == pytest.approx(log1p(h) - log1p(-h * e), rel=1e-12)
 
 
+@pytest.mark.parametrize("step", [2e-5, 2e-6, 2e-7])
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)
+def test_a_ball_that_lies_under_its_load_moves_in_steps_as_short_as_one_likes(model, step):
+    """The less it moves the less of the energy's fall is more than rounding, which a short way would divide."""
+    rest = HIP.clearance + model.press(HIP, force=500.0).indentation
+    lying = {"mass": 3.0, "position": (0.0, 0.0, rest), "duration": 200 * step, "step": step}
+    for damping in (None, Damping(hysteresis=0.01)):
+        element = bs.ForceElement(model, HIP, damping=damping)
+        motion = simulate(element, pull=lambda t: (0.0, 0.0, 500.0 + 400.0 * np.sin(150.0 * t)), **lying)
+        assert motion.ended == ""
+        assert motion.drift < 1e-11
+
+
 def test_a_step_through_the_wall_ends_the_motion_and_names_the_state():
     motion = simulate(FREE, mass=1.0, position=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 1e7), duration=1e-3, step=1e-5)
     assert len(motion.time) == 1

@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import NamedTuple
 
-from ..arrays import divisor
+from ..arrays import divisor, sqrt
 from .reaction import (
     Constants,
     Elastic,
@@ -91,6 +91,11 @@ _NOISE = 1e-10
 """Of the speeds in a step: rounds that move them by less, and do not get better, have met rounding."""
 
 
+_UNSURE = 1e-14
+"""Of the indentation cubed: over so short a way what the middle misses is less than rounding, which would be divided
+by the way."""
+
+
 class Middle(NamedTuple):
     """Velocity and spin at the middle of a step."""
 
@@ -154,7 +159,10 @@ def missing(  # type: ignore[no-untyped-def]
     # what the middle's force misses of the energy's fall
     speed = ax * place.x + ay * place.y + az * place.z
     fall = contact.normal * speed - contact.polar * (ax * contact.px + ay * contact.py + az * contact.pz)
-    along = ((end.energy - before) / h - fall) / divisor(ax * ax + ay * ay + az * az)
+    size = ax * ax + ay * ay + az * az
+    way, depth = h * sqrt(size), abs(place.indentation)
+    sure = way * way * way / divisor(way * way * way + _UNSURE * depth * depth * depth)
+    along = sure * ((end.energy - before) / h - fall) / divisor(size)
     return Missing(
         heavy * (ax - ball.vx) - fx + along * ax - pull[0],
         heavy * (ay - ball.vy) - fy + along * ay - pull[1],
