@@ -52,7 +52,7 @@ def swing(joint: bs.ForceElement):
 
 
 figure = Figure(figsize=(9.0, 3.9), layout="constrained")
-swung, climbed = figure.subplots(1, 2)
+swung, climbed, went = figure.subplots(1, 3)
 for coefficient, colour in ((0.0, "#0072B2"), (0.1, "#D55E00"), (0.3, "#009E73")):
     joint = element(coefficient)
     times, y = swing(joint)
@@ -64,6 +64,8 @@ for coefficient, colour in ((0.0, "#0072B2"), (0.1, "#D55E00"), (0.3, "#009E73")
     label = f"friction {coefficient:g}" if coefficient else "no friction"
     swung.plot(times, np.degrees(y[2]), color=colour, label=label)
     climbed.plot(times, np.degrees(np.arctan2(x, -z) - y[2]), color=colour)
+    went.plot(times, y[6], color=colour)
+    went.plot(times[::20], (stored + moving)[0] - (stored + moving)[::20], "o", color=colour, fillstyle="none")
     print(
         f"{label:12s}: swings back to {np.degrees(y[2].max(where=times > 0.6, initial=0.0)):.1f}°, "
         f"{y[6, -1]:6.2f} N mm lost, moment up to {max(abs(load.moment[2]) for load in loads):4.1f} N mm, "
@@ -72,9 +74,11 @@ for coefficient, colour in ((0.0, "#0072B2"), (0.1, "#D55E00"), (0.3, "#009E73")
 swung.set_xlabel("time [s]")
 swung.set_title("angle of the rod [°]", fontsize=10)
 climbed.set_xlabel("time [s]")
-climbed.set_title("where the contact lies, less where the rod points [°]", fontsize=10)
-for panel in (swung, climbed):
+climbed.set_title("the contact, less where the rod points [°]", fontsize=10)
+went.set_xlabel("time [s]")
+went.set_title("energy lost; circles: balance [N mm]", fontsize=10)
+for panel in (swung, climbed, went):
     panel.grid(color="0.9", linewidth=0.6)
     panel.spines[["top", "right"]].set_visible(False)
-swung.legend(frameon=False, fontsize=8)
+went.legend(*swung.get_legend_handles_labels(), frameon=False, fontsize=8)
 figure.savefig("what_does_clearance_do_to_a_pendulum.png", dpi=150)
