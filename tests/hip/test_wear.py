@@ -154,6 +154,19 @@ def test_a_law_of_ones_own():
     assert hip(wear=law).after(1e6).last.volume == pytest.approx(hip().after(1e6).last.volume, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("law", "refused"),
+    [
+        (lambda done: np.nan * done.work, "gave a depth of nan mm"),
+        (lambda done: -1e-9 * done.work - 1e-9, "gave a depth of -.* mm: it is at least 0, and finite"),
+        (lambda done: 1e-9, r"gave depths of shape \(\), and the points have \(\d+,\)"),
+    ],
+)
+def test_laws_of_ones_own_that_are_none(law, refused):
+    with pytest.raises(ValueError, match=refused):
+        hip(wear=OwnLaw(of=law)).after(1e4)
+
+
 def test_the_exponent_of_the_pressure_is_one_of_the_mean_pressure():
     """At an exponent of -1/2 half the reference wears 0.7071 as much, whatever the pressures are."""
     first, other = (

@@ -198,7 +198,12 @@ class OwnLaw:
     Parameters
     ----------
     of : function
-        From a `Pass` (its `pressure`, `sliding.steps`, `work`, `cross_shear`) to depths in mm (points,).
+        From a `Pass` (its `pressure`, `sliding.steps`, `work`, `cross_shear`) to depths in mm (points,), at least 0.
+
+    Raises
+    ------
+    ValueError
+        When it is asked, and gives something else.
 
     Examples
     --------
@@ -210,7 +215,13 @@ class OwnLaw:
     of: Callable[[Pass], Numbers]
 
     def depth(self, cycle: Pass) -> Numbers:
-        return numpy.asarray(self.of(cycle), dtype=float)
+        found, points = numpy.asarray(self.of(cycle), dtype=float), cycle.pressure.shape[1:]
+        if found.shape != points:
+            raise ValueError(f"a law of one's own gave depths of shape {found.shape}, and the points have {points}")
+        good = (found >= 0) & (found < numpy.inf)
+        if not good.all():
+            raise ValueError(f"a law of one's own gave a depth of {found[~good][0]:g} mm: it is at least 0, and finite")
+        return found
 
     @property
     def notes(self) -> tuple[str, ...]:
