@@ -3,8 +3,10 @@
 import json
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+import ballsocket as bs
 from ballsocket.cli import off_axis
 
 from ..places import EXAMPLES
@@ -68,6 +70,8 @@ def test_nothing_is_minus_nothing(distance, loaded):
 def test_a_file_says_where_the_load_points_and_the_words_win():
     path = str(EXAMPLES / "tilted_hip.toml")
     inside, over = (answered(path, *COARSE, *more)["sphere"] for more in ((), ("--tilt", "75 deg")))
+    direction = np.array(bs.read_joint(path).aim["direction"])
+    assert inside["force_vector_in_body"] == pytest.approx(3000 * direction / np.linalg.norm(direction), abs=0.01)
     assert inside["force"] == over["force"] == 3000
     assert not inside["edge_loaded"]
     assert over["edge_loaded"]

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..catalogue import judge, off_axis, reference
-from ..joint.dimensions import LENGTHS
+from ..joint.dimensions import DIAMETERS, LENGTHS
 from ..quantities import QUANTITIES
 
 Answer = Mapping[str, Any]
@@ -89,7 +89,19 @@ def _after_best(answer: Answer, words: Words) -> Iterator[Step]:
     chosen = [each for part, name in answer.get("materials", {}).items() for each in (f"--{part}", name)]
     numbers = [each for name, value in place.items() for each in _option(name, value)]
     loads = [] if any(name in place for name in ("force", "indentation")) else _kept(words, "--force", "--indentation")
-    yield Step(("press", *_joint(words), *chosen, *numbers, *loads, "--all"), "that joint by every model")
+    left = _without(words, *(option for option in _OF_JOINT if _fixes(option) & set(map(_fixed_by, place))))
+    yield Step(("press", *_joint(left), *chosen, *numbers, *loads, "--all"), "that joint by every model")
+
+
+def _fixed_by(name: str) -> str:
+    """What a parameter fixes: a diameter the radius, an outer radius the thickness of the liner."""
+    own = DIAMETERS.get(name, name)
+    return "liner_thickness" if own == "outer_radius" else own
+
+
+def _fixes(option: str) -> set[str]:
+    name = option.removeprefix("--").replace("-", "_")
+    return {_fixed_by(name), _fixed_by(f"liner_{name}")}
 
 
 def _least(answer: Answer) -> Mapping[str, Any]:

@@ -160,7 +160,10 @@ class OffAxisContact(SolvedContact):
         return arrays.namespace(rows).moveaxis(rows, 0, -1)
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON: vectors in the cup's frame, `max_pressure_at_deg` as polar angle and azimuth."""
+        """One dictionary for JSON: vectors in the cup's frame, `max_pressure_at_deg` as polar angle and azimuth.
+
+        `force_vector_in_body` (to the right, to the front, up) where the cup's orientation is known.
+        """
         at = arrays.to_numpy(self.max_pressure_at)
         angles = numpy.stack([polar_angle(numpy.moveaxis(at, -1, 0)), numpy.arctan2(at[..., 1], at[..., 0])], axis=-1)
         status = arrays.to_numpy(self.status)
@@ -177,7 +180,15 @@ class OffAxisContact(SolvedContact):
             "rim_distance": arrays.to_list(self.rim_distance),
             "edge_loaded": self.edge_loaded if self._is_plain else arrays.to_numpy(self.edge_loaded).tolist(),
             "stiffness_matrix": arrays.to_list(self.stiffness_matrix),
+            **self._in_body(),
         }
+
+    def _in_body(self) -> dict[str, Any]:
+        """The load in the body's axes, of a cup that faces somewhere there."""
+        cup = self.model.cup
+        if not (cup.inclination or cup.anteversion):
+            return {}
+        return {"force_vector_in_body": (arrays.to_numpy(self.force_vector) @ numpy.asarray(cup.frame)).tolist()}
 
 
 _REACHES = "edge loading: the contact reaches the rim"
