@@ -13,6 +13,7 @@ from ballsocket.evidence.folder import QUESTION, RECORD, differences, write
 from ballsocket.evidence.inputs import inputs
 from ballsocket.evidence.pack import gathered
 from ballsocket.evidence.question import read_question
+from ballsocket.evidence.wear import rates, worn
 from ballsocket.paper.plan import Plan
 
 from ..places import EXAMPLES, ROOT
@@ -166,6 +167,29 @@ def test_a_pack_is_computed_again_and_what_was_changed_is_named(pack):
     count, found = differences(folder / "out")
     assert count > 200
     assert [each.where for each in found] == [RECORD, "matrix[1].numbers.max_pressure"]
+
+
+def test_wear_stands_in_the_matrix_and_the_joint_that_wears_most_is_worn_to_the_end(asked):
+    """A larger head slides farther under the same load."""
+    hip = "[joint]\nhead_diameter = 28\nclearance = 0.1\nliner_thickness = 8\n[liner]\nyoung = 1000\npoisson = 0.4\n"
+    hip = "cycles = 1e5\n" + hip + "[cup]\ntilt = 30\n[cycle]\nname = 'iso-14242-1'\ninstants = 16\n"
+    hip += "[wear]\nlaw = 'archard'\ncoefficient = '1e-6 mm^3/(N m)'\nring_width = 8\n"
+    hip += "[uncertainty]\ncoefficient = {median = '1e-6 mm^3/(N m)', factor = 1.5}\ncount = 4\n"
+    (asked.parent / "hip.toml").write_text(hip, encoding="utf-8")
+    text = ASKED.replace('clearance = ["0.05 mm", "0.15 mm"]', 'head_diameter = ["32 mm", "36 mm"]')
+    asked.write_text(text + '\n[wear]\nfile = "hip.toml"\n', encoding="utf-8")
+    question = read_question(asked)
+    cases = matrix.cases(question)
+    found = rates(question, cases)
+    assert found[0] == found[1] < found[2] == found[3]
+    rows = [row.with_wear(rate) for row, rate in zip(matrix.rows(question, cases), found, strict=True)]
+    assert matrix.Row.of(rows[0].summary()).numbers["wear_rate"] == pytest.approx(found[0])
+    worst = matrix.worst(rows)["wear_rate"]
+    assert worst.case["head_diameter"] == 36.0
+    told = worn(question, worst.case)
+    assert told["history"][-1]["volume"] == pytest.approx(0.1 * found[2], rel=0.05)
+    band = told["bands"][-1]["volume"]
+    assert band["low"] < told["history"][-1]["volume"] < band["high"]
 
 
 def test_a_folder_without_a_pack_is_told(tmp_path):

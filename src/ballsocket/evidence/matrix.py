@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from math import isfinite
 from typing import Any
@@ -26,14 +26,22 @@ ANSWERED = ("max_pressure", "half_angle", "area", "von_mises", "utilisation", "i
 TORQUE = Quantity(
     "friction_torque", "Mf", "friction torque", Kind.ENERGY, "About an axis across the load, sliding all over, in N mm."
 )
+WEAR = Quantity(
+    "wear_rate",
+    "wear [mm³/10⁶]",
+    "wear of a new bore, mm³ a million cycles",
+    Kind.NUMBER,
+    "Volume, in the first cycles of a hip.",
+)
 NAMES: Mapping[str, Quantity] = {
     **{name: QUANTITIES[name] for name in (*ANSWERED, "edge_distance")},
     TORQUE.name: TORQUE,
+    WEAR.name: WEAR,
 }
 LEAST = ("edge_distance",)
 """What is worst where it is smallest."""
 
-_WORST = ("max_pressure", "half_angle", "area", "utilisation", "edge_distance", "friction_torque")
+_WORST = ("max_pressure", "half_angle", "area", "utilisation", "edge_distance", TORQUE.name, WEAR.name)
 
 Case = dict[str, float]
 
@@ -47,6 +55,10 @@ class Row:
     errors: Mapping[str, float]
     status: str
     valid: bool
+
+    def with_wear(self, rate: float | None) -> Row:
+        """The row with its wear beside the other numbers."""
+        return replace(self, numbers={**self.numbers, WEAR.name: numpy.nan if rate is None else rate})
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON, with the units of files."""
@@ -184,10 +196,16 @@ class Kept:
             return "not known"
         return "kept, but nearer than the required accuracy" if self.near else "kept"
 
+    def _end(self, end: float) -> float | None:
+        return written({**PARAMETERS, **NAMES, **QUANTITIES}[self.limit.name], end)
+
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
         return {
             "limit": str(self.limit),
+            "name": self.limit.name,
+            "low": self._end(self.limit.low),
+            "high": self._end(self.limit.high),
             "verdict": self.verdict,
             "beyond": self.beyond,
             "unknown": self.unknown,

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from hashlib import sha256
+from math import degrees
 from pathlib import Path
 from typing import Any
 
 from ..engines.local import Engine, Serial
 from ..fingerprint import fingerprint
 from ..paper.plan import Piece, Plan, Results, Summary
+from ..studies.parameters import pressable
 from . import matrix
 from .calculation import beside, largest_deviation, rival
 from .code_checks import CHECKS
@@ -20,7 +22,7 @@ from .credibility import FACTORS
 from .inputs import inputs, made_with
 from .question import Question
 from .scatter import scattered
-from .wear import worn
+from .wear import rates, worn
 
 _HERE = Serial()
 
@@ -50,6 +52,8 @@ def gathered(question: Question, folder: Path, listen: Listener = silent, engine
     """
     first = plan(question).results(folder, listen, engine)
     found = [matrix.Row.of(row) for block in first["matrix"] for row in block]
+    worn_away = [rate for block in first["wear_rates"] for rate in block]
+    found = [row.with_wear(rate) for row, rate in zip(found, worn_away, strict=True)] if worn_away else found
     worst = matrix.worst(found)
     second = later(question, worst).results(folder, listen, engine)
     return _record(question, found, worst, {**first, **second})
@@ -64,6 +68,11 @@ def plan(question: Question) -> Plan:
         name=f"first-{_digest(question)}",
         parts={
             "matrix": {f"block {number}": partial(_block, question, block) for number, block in enumerate(blocks)},
+            "wear_rates": {
+                f"block {number}": partial(rates, question, block)
+                for number, block in enumerate(blocks)
+                if question.hip is not None
+            },
             "code_verification": {name: Summary(check) for name, check in CHECKS.items()},
             "claims": {name: partial(claim, name) for name in CLAIMS},
             "comparators": {name: Summary(found) for name, found in PUBLISHED.items()},
@@ -85,8 +94,8 @@ def later(question: Question, places: Mapping[str, matrix.Row]) -> Plan:
     }
     if question.tolerances and worst is not None:
         parts["uncertainty"] = {"": partial(scattered, question, worst)}
-    if question.hip is not None:
-        parts["wear"] = {"": partial(worn, question.hip)}
+    if matrix.WEAR.name in places:
+        parts["wear"] = {"": partial(worn, question, places[matrix.WEAR.name].case)}
     return Plan(name=f"later-{_digest(question)}", parts=parts)
 
 
@@ -111,8 +120,9 @@ def _rival(question: Question, case: matrix.Case) -> list[dict[str, Any]]:
 
 
 def _distinct(places: Mapping[str, matrix.Row]) -> list[matrix.Case]:
-    """The cases in which some number is worst, each once."""
-    return list({tuple(row.case.items()): row.case for row in places.values()}.values())
+    """The cases in which some number of a press is worst, each once."""
+    pressed = [row.case for name, row in places.items() if name != matrix.WEAR.name]
+    return list({tuple(case.items()): case for case in pressed}.values())
 
 
 def _compared(names: list[str], methods: list[Any], others: list[Any]) -> dict[str, Any]:
@@ -134,7 +144,7 @@ def _record(
 ) -> dict[str, Any]:
     others: list[Any] = next(iter(results["rival"]), [])
     calculation = [
-        _compared([name for name, row in worst.items() if row.case == one], piece, others)
+        _compared([name for name, row in worst.items() if row.case == one and name != matrix.WEAR.name], piece, others)
         for one, piece in zip(_distinct(worst), results["calculation"], strict=True)
     ]
     record: dict[str, Any] = {
@@ -148,6 +158,7 @@ def _record(
         "model": {"name": question.model.name, "call": _CALL},
         "matrix": [row.summary() for row in found],
         "worst": {name: row.summary() for name, row in worst.items()},
+        "drawn": _drawn(question, worst),
         "limits": [matrix.kept(limit, found, question.accuracy).summary() for limit in question.limits],
         "code_verification": results["code_verification"],
         "calculation": calculation,
@@ -162,6 +173,19 @@ def _record(
     record["accurate"] = _accurate(record)
     record["credibility"] = [factor.summary(record) for factor in FACTORS]
     return record
+
+
+def _drawn(question: Question, worst: Mapping[str, matrix.Row]) -> dict[str, Any] | None:
+    """The joint and its contact where the pressure is worst, for a drawing; None where nothing answered."""
+    row = worst.get("max_pressure")
+    if row is None:
+        return None
+    joint, _, _ = pressable(question.file.joint, row.case)
+    return {
+        "joint": joint.summary(),
+        "arc_of_cover_deg": degrees(question.file.cup.arc_of_cover),
+        "half_angle_deg": degrees(row.numbers["half_angle"]),
+    }
 
 
 _CALL = "question = read_question('question.toml'); rows(question, cases(question))"

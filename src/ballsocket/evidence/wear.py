@@ -1,20 +1,65 @@
-"""Wear in the evidence: the hip file that the question names, worn, with the bands of what scatters there."""
+"""Wear in the evidence: what the named hip goes through, by every joint of the matrix, and to its end by the worst."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
-from ..hip.file import read_hip
+from ..hip.file import HipFile, read_hip
 from ..hip.uncertainty import uncertainty
+from ..hip.use import InUse
+from ..studies.parameters import LOADS, pressable
+from .matrix import Case
+from .question import Question
+
+_FACING = ("inclination", "anteversion")
+"""What of a case is the cup's; the cycle says where its own loads point."""
 
 
-def worn(path: Path) -> dict[str, Any]:
-    """What becomes of the hip of a file, with bands of 95 % where the file says what scatters."""
-    given = read_hip(path)
-    history = given.use.after(given.cycles, given.report_at, lubricant=given.lubricant)
-    answer: dict[str, Any] = {**history.summary(), "file": path.name, "call": f"ballsocket hip {path.name} --json"}
+def rates(question: Question, those: Sequence[Case]) -> list[float | None]:
+    """Wear of a new bore in mm³ a million cycles, for each of some cases; None where the hip cannot be worn.
+
+    Loads are those of the cycle: cases that differ in their load alone are worn once.
+    """
+    assert question.hip is not None
+    given, known = read_hip(question.hip), dict[tuple[Any, ...], float | None]()
+    for case in those:
+        if _shape(case) not in known:
+            known[_shape(case)] = _rate(question, given, case)
+    return [known[_shape(case)] for case in those]
+
+
+def _shape(case: Case) -> tuple[Any, ...]:
+    return tuple((name, value) for name, value in case.items() if name not in LOADS)
+
+
+def _rate(question: Question, given: HipFile, case: Case) -> float | None:
+    try:
+        return float(_use(question, given, case).first.volume)
+    except ValueError:  # pressed together, or pushed over the rim
+        return None
+
+
+def _use(question: Question, given: HipFile, case: Case) -> InUse:
+    """The hip of the file with the joint of a case, its cup as the case turns it."""
+    joint, _, _ = pressable(question.file.joint, dict(_shape(case)))
+    facing: dict[str, Any] = {name: case[name] for name in _FACING if name in case}
+    return replace(given.use, joint=joint, cup=replace(given.use.cup, **facing))
+
+
+def worn(question: Question, case: Case) -> dict[str, Any]:
+    """What becomes of a case over the cycles of the hip's file, with bands of 95 % where that says what scatters."""
+    assert question.hip is not None
+    given = read_hip(question.hip)
+    use = _use(question, given, case)
+    history = use.after(given.cycles, given.report_at, lubricant=given.lubricant)
+    answer: dict[str, Any] = {**history.summary(), "file": question.hip.name, "call": _CALL}
     if given.uncertain is not None:
         said = given.uncertain
-        answer |= uncertainty(said.scatter, history, count=said.count, seed=said.seed).summary()
+        scatter = replace(said.scatter, use=use)
+        answer |= uncertainty(scatter, history, count=said.count, seed=said.seed).summary()
     return answer
+
+
+_CALL = "ballsocket.evidence.wear.worn(question, case)"

@@ -57,6 +57,11 @@ def picture(data: bytes, title: str, caption: str = "", form: str = "png") -> st
     )
 
 
+def vector(figure: Figure, title: str, caption: str = "") -> str:
+    """A figure inside the page as SVG, a document of its own: no name inside it is another's."""
+    return picture(drawn(figure, "svg"), title, caption, "svg+xml")
+
+
 def drawn(figure: Figure, form: str = "png") -> bytes:
     """A figure as the bytes of a PNG or SVG."""
     stream = BytesIO()
