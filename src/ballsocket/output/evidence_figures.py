@@ -12,7 +12,7 @@ import numpy
 from ..arrays import Numbers
 from ..cup import Cup
 from ..evidence.matrix import NAMES
-from ..joint import Joint, Layer, Material
+from ..joint import Joint, Layer, Material, Support
 from ..quantities import QUANTITIES, Quantity
 from ..studies.parameters import PARAMETERS
 from .joint_section import joint_section
@@ -56,6 +56,8 @@ def _joint(summary: Record) -> Joint:
         liner=Material(**summary["liner"]),
         ball=None if ball is None else Material(**ball),
         backing=tuple(Layer(thickness=float(each.pop("thickness")), material=Material(**each)) for each in layers),
+        support=Support(summary["support"]),
+        name=summary["name"],
     )
 
 
