@@ -65,7 +65,7 @@ def matrix_section(record: Record) -> str:
 
 def _maps(record: Record) -> str:
     """The joint where it is pressed hardest, and the numbers over the matrix."""
-    section = html.vector(figures.joint_figure(record), "section", "The joint where the pressure is worst, to scale.")
+    section = html.vector(figures.joint_figure(record), "section", "The joint where the pressure is worst.")
     names = [name for name in _MAPPED if name in record["worst"]] if len(record["matrix"]) > 1 else []
     return section + "".join(
         html.vector(figures.matrix_figure(record, name), NAMES[name].title, _mapped(record, name)) for name in names
