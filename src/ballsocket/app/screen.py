@@ -18,8 +18,9 @@ from ..quantities import QUANTITIES
 from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS
 from ..studies.phrases import limit_of, range_of
+from .in_use import WHOLE, Use, pairs_of, use_of
 
-VIEWS = ("press", "cup", "map", "compare", "judge")
+VIEWS = ("press", "cup", "gait", "map", "compare", "judge")
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
@@ -84,6 +85,8 @@ class Screen:
         Of the map.
     standing : str
         What the map of how a cup may stand shows.
+    use : Use
+        What the hip goes through.
     angle, size, theme : str
         "degrees" or "radians"; balls by "radius" or "diameter"; "light" or "dark".
     """
@@ -99,6 +102,7 @@ class Screen:
     quantity: str = "max_pressure"
     limits: tuple[Limit, ...] = ()
     standing: str = "edge_distance"
+    use: Use = WHOLE
     angle: str = "degrees"
     size: str = "radius"
     theme: str = "light"
@@ -145,6 +149,7 @@ def link_of(screen: Screen) -> str:
         if getattr(screen, name) != getattr(START, name):
             pairs.append((name, str(getattr(screen, name))))
     pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
+    pairs += pairs_of(screen.use)
     pairs += _flat(_tables(screen.file), "")
     for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
         pairs += _flat(_tables(file), f"{prefix}.")
@@ -166,7 +171,7 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     """
     if sum(len(name) + len(value) for name, values in pairs.items() for value in values) > LONGEST_LINK:
         raise ValueError(f"the link is longer than {LONGEST_LINK} characters")
-    plain = {name: values for name, values in pairs.items() if name.split(".")[0] not in (*_TABLES, *_PREFIXES)}
+    plain = {name: values for name, values in pairs.items() if name.split(".")[0] not in (*_TABLES, *_PREFIXES, "use")}
     check_names(plain, (*_KNOWN, "across", "up", "limit"), "in the link")
     for name, values in pairs.items():
         if len(values) != 1 and name != "limit":
@@ -175,6 +180,7 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     if "shown" in words:
         words["shown"] = tuple(dict.fromkeys(words["shown"].split(",")))
     words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
+    words["use"] = use_of(_part(pairs, "use"))
     words["limits"] = tuple(map(limit_of, pairs.get("limit", ())))
     joint = {name: values[0] for name, values in pairs.items() if name.split(".")[0] in _TABLES}
     others = [_part(pairs, prefix) for prefix in _PREFIXES]

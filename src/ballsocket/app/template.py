@@ -14,7 +14,7 @@ from .page import Page
 from .style import asset
 from .views import KINDS as VIEWS
 
-_SCRIPTS = ("fields.js", "page.js", "charts.js", "bowl.js", "views.js")
+_SCRIPTS = ("fields.js", "page.js", "charts.js", "bowl.js", "player.js", "views.js")
 
 
 class Template(pn.Template):

@@ -38,9 +38,10 @@
     const pen = canvas.getContext("2d"), scale = (0.46 * size * sharp) / data.outer, middle = (size * sharp) / 2;
     const at = (place) => [middle + scale * place[0], middle - scale * place[1]];
     const liner = style.getPropertyValue("--bowl").trim().split(",").map(Number);
-    const values = data.frames ? data.frames[canvas.bowl.frame || 0] : data.values;
+    const full = canvas.bowl.bytes ? 255 : 1;
+    const { values, load, size: share } = now(canvas.bowl);
     function arrow() {
-      const tip = at(seen(data.load.map((part) => 0.97 * part), turn)), tail = at(seen(data.load.map((part) => -0.35 * part), turn));
+      const tip = at(seen(load.map((part) => 0.97 * part), turn)), tail = at(seen(load.map((part) => (0.67 - 1.02 * share) * part), turn));
       const angle = Math.atan2(tip[1] - tail[1], tip[0] - tail[0]), head = 9 * sharp;
       pen.strokeStyle = pen.fillStyle = style.getPropertyValue("--load").trim();
       pen.lineWidth = 3 * sharp;
@@ -50,7 +51,7 @@
       pen.fill();
     }
     const behind = seen([0, 0, -1], turn)[2] < 0; // the dome is nearer than the opening
-    if (data.load && behind) arrow();
+    if (share && behind) arrow();
     const placed = quads.map((one) => ({ ...one, places: one.corners.map((corner) => seen(corner, turn)) }));
     for (const one of placed) one.deep = one.places.reduce((sum, place) => sum + place[2], 0);
     placed.sort((one, other) => one.deep - other.deep);
@@ -59,7 +60,7 @@
       const u = [c[0] - a[0], c[1] - a[1], c[2] - a[2]], v = [d[0] - b[0], d[1] - b[1], d[2] - b[2]];
       const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
       const light = 0.72 + 0.28 * Math.abs((normal[2] + 0.4 * normal[1]) / (Math.hypot(...normal) || 1) / 1.08);
-      const value = one.cell === undefined ? 0 : values[one.cell];
+      const value = one.cell === undefined ? 0 : values[one.cell] / full;
       const colour = (value > 0.004 ? heat(value) : liner).map((part) => Math.round(part * light));
       pen.fillStyle = pen.strokeStyle = `rgb(${colour})`;
       pen.lineWidth = 0.7 * sharp;
@@ -67,7 +68,13 @@
       one.places.forEach((place, number) => pen[number ? "lineTo" : "moveTo"](...at(place)));
       pen.closePath(); pen.fill(); pen.stroke();
     }
-    if (data.load && !behind) arrow();
+    if (share && !behind) arrow();
+  }
+  // what is drawn now: of a bore that moves an instant of its cycle
+  function now({ data, bytes, frame = 0 }) {
+    if (!bytes) return { values: data.values, load: data.load, size: data.load ? 1 : 0 };
+    const count = bytes.length / data.loads.length;
+    return { values: bytes.subarray(frame * count, (frame + 1) * count), load: data.loads[frame], size: data.sizes[frame] };
   }
   function turn(canvas, yaw, pitch) {
     const [was, high] = turned.get(canvas.dataset.name);
@@ -76,7 +83,8 @@
   }
   function begin(canvas) {
     const data = JSON.parse(canvas.dataset.bowl);
-    canvas.bowl = { data, quads: cells(data) };
+    const bytes = data.bytes && Uint8Array.from(atob(data.bytes), (one) => one.charCodeAt(0));
+    canvas.bowl = { data, bytes, quads: cells(data) };
     if (!turned.has(canvas.dataset.name)) turned.set(canvas.dataset.name, data.turned);
     let from = null;
     canvas.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
@@ -95,7 +103,11 @@
     });
     new ResizeObserver(() => draw(canvas)).observe(canvas);
   }
-  app.frame = function (canvas, number) { canvas.bowl.frame = number; draw(canvas); };
+  app.frame = function (canvas, number) {
+    if (!canvas.bowl) begin(canvas);
+    canvas.bowl.frame = number;
+    draw(canvas);
+  };
   document.addEventListener("shown", () => {
     for (const canvas of document.querySelectorAll("canvas.bowl")) if (!canvas.bowl) begin(canvas);
   });

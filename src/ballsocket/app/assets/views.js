@@ -1,6 +1,14 @@
 // What views have in common: buttons that tell a view something, and maps on which a place is picked.
 (function () {
   const app = (window.ballsocket = window.ballsocket || {});
+  const LARGEST = 100000; // bytes of a table
+  document.addEventListener("change", async (event) => {
+    const input = event.target.closest("input[data-tell-file]"), file = input && input.files[0];
+    if (!file) return;
+    input.value = "";
+    const text = file.size > LARGEST ? "" : await file.text();
+    app.tell("edit", input.dataset.tellFile, { name: file.name, size: file.size, text });
+  });
   document.addEventListener("click", (event) => {
     const button = event.target.closest("[data-tell]");
     if (button) { app.tell("edit", button.dataset.tell, button.dataset.value || true); return; }

@@ -3,12 +3,14 @@
 from .compare import Compare
 from .cup import Cup
 from .design_map import DesignMap
+from .gait import Gait
 from .judge import Judge
 from .press import Press
 
-KINDS: dict[str, type[Press] | type[Cup] | type[DesignMap] | type[Compare] | type[Judge]] = {
+KINDS: dict[str, type[Press] | type[Cup] | type[Gait] | type[DesignMap] | type[Compare] | type[Judge]] = {
     "press": Press,
     "cup": Cup,
+    "gait": Gait,
     "map": DesignMap,
     "compare": Compare,
     "judge": Judge,

@@ -1,0 +1,178 @@
+"""Gait: a cycle of the hip, instant by instant: load, pressure, film, distance to the rim."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import replace
+from functools import partial
+from html import escape
+from typing import Any
+
+import numpy
+
+from ...checks import check_names
+from ...hip.in_vivo import IN_VIVO
+from ...io.joint_file import JointFile
+from ...kinds import Kind
+from ...output import html as page
+from ...output.gait_plot import course_figure
+from ..fields import Field, choice, number, segments, typed
+from ..gaiting import Gaited, gait_of, gaited
+from ..in_use import CHOICES, Own, Use
+from ..jobs import Job, Kept
+from ..player import COURSES, player
+from ..running import Done, Reached, Refused
+from ..screen import Screen
+from ..view import Document, Host
+from ..words import alert, notes_list, number_cell, progress
+
+_FOUND: Kept = Kept(most=24)
+_LARGEST = 100_000  # characters of a table
+_BEDS = {"springs": "springs", "shell": "closed shell", "cup": "real cup"}
+
+
+class Gait:
+    """The cycle is pressed when it is first looked at, in a process; the page plays it by itself."""
+
+    title = "Gait"
+    panel = None
+    body = """
+<div class="inputs-row"><div data-field="gait.cycle"></div><div data-field="gait.body_weight"></div>
+<div data-field="gait.contact"></div>
+<div class="field"><label class="label" for="gait-own">A cycle of your own (table: phase or time, force, angles)</label>
+<input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own"></div></div>
+<p class="quiet" id="gait-said"></p>
+<div id="gait-trouble" role="alert"></div>
+<div id="gait-progress" role="status"></div>
+<div id="gait-numbers"></div>
+<span id="gait-at" hidden></span>
+<div id="gait-player"></div>
+"""
+
+    def __init__(self, page: Host) -> None:
+        self._page, self._screen = page, page.screen
+        self._job = Job(self._heard)
+        self._own: Own | None = None
+        page.listen("gait", self._edited)
+
+    def show(self, screen: Screen) -> None:
+        if screen.use.cycle != self._screen.use.cycle:
+            self._own = None
+        self._screen = screen
+        self._put("trouble", "")
+        self._page.channel.put_fields(_fields(screen))
+        self._put("said", self._words())
+        found = _FOUND.get(self._key)
+        if found is None:
+            self._put("numbers", "")
+            self._put("player", "")
+            self._job.ask(self._key, partial(gaited, screen.file, screen.use, self._own))
+        else:
+            self._job.stop()
+            self._put("progress", "")
+            self._put_found(found)
+
+    @property
+    def _key(self) -> Hashable:
+        return gait_of(self._screen.file, self._screen.use, self._own)
+
+    def _words(self) -> str:
+        aside = "The load is that of the cycle; the force beside the joint is not used."
+        own = "" if self._own is None else f" {escape(self._own.name)}: a link does not hold it."
+        return f"{aside}{own}"
+
+    def _put(self, place: str, html: str) -> None:
+        self._page.channel.put(f"#gait-{place}", html)
+
+    def _put_found(self, found: Gaited) -> None:
+        instant = self._screen.use.instant
+        self._put("at", str(found.heaviest if instant is None else min(instant, len(found.phase) - 1)))
+        self._put("numbers", _numbers(found))
+        self._put("player", player(found))
+
+    def _edited(self, key: str, value: Any) -> None:
+        if key == "stop":
+            self._job.stop()
+            self._put("progress", progress("Stopped.", None, again="gait.again"))
+        elif key == "again":
+            self.show(self._screen)
+        elif key == "own":
+            self._own = _own(value)
+            self.show(self._screen)
+        else:
+            self._page.ask(use=_changed(self._screen, key, value))
+
+    def _heard(self, key: Hashable, news: Any) -> None:
+        if isinstance(news, Reached):
+            self._put("progress", progress(news.words, news.share, stop="gait.stop"))
+        elif isinstance(news, Refused):
+            self._put("progress", "")
+            self._put("trouble", alert(news.why))
+        elif isinstance(news, Done):
+            _FOUND.put(key, news.value)
+            self._put("progress", "")
+            self._put_found(news.value)
+        self._page.channel.send()
+
+    def document(self, screen: Screen) -> Document:
+        found: Gaited | None = _FOUND.get(self._key)
+        if found is None:
+            raise ValueError("this cycle has not been pressed yet: wait until it is there")
+        courses = {each.label: each.of(found) for each in COURSES}
+        heads = ["phase [%]", *courses]
+        rows = numpy.stack([found.phase, *courses.values()], axis=1).tolist()
+        listed = page.table(["quantity", "value"], [[name, str(value)] for name, value in found.numbers.items()])
+        return Document(
+            picture=lambda form: page.drawn(course_figure(found.phase, courses, found.name), form),
+            rows=lambda: [heads, *rows],
+            sections=lambda: {"gait": (f"A cycle: {found.name}", listed + notes_list(found.notes))},
+        )
+
+    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
+        return [], ()
+
+    def leave(self) -> None:
+        self._job.stop()
+
+
+def _fields(screen: Screen) -> dict[str, Field]:
+    use = screen.use
+    cycles = [(name, name) for name in CHOICES["cycle"]]
+    weight = number("gait.body_weight", "Body weight", "N", (300.0, 1500.0), 10.0, use.body_weight)
+    return {
+        "gait.cycle": choice("gait.cycle", "Cycle", cycles, use.cycle),
+        "gait.body_weight": {**weight, "hidden": use.cycle not in IN_VIVO},
+        "gait.contact": segments("gait.contact", "The bore gives way as", list(_BEDS.items()), use.contact),
+    }
+
+
+def _changed(screen: Screen, key: str, value: Any) -> Use:
+    """What the hip goes through, after one input has been changed."""
+    check_names([key], ("instant", "body_weight", "cycle", "contact"), "among the inputs of a cycle")
+    if key == "instant" and not (isinstance(value, int) and not isinstance(value, bool)):
+        raise ValueError("an instant of a cycle is a whole number")
+    if key == "body_weight":
+        value = typed(key, value, "N", 1.0, Kind.FORCE)
+    changes: dict[str, Any] = {key: value if key in ("instant", "body_weight") else str(value)}
+    return replace(screen.use, **changes)
+
+
+def _own(value: Any) -> Own:
+    """A table from the browser."""
+    given = value if isinstance(value, dict) else {}
+    name, text, size = str(given.get("name", "")), given.get("text"), given.get("size")
+    if not isinstance(text, str) or (isinstance(size, int) and size > _LARGEST) or len(text) > _LARGEST:
+        raise ValueError(f"the table is longer than {_LARGEST} characters: a cycle needs some hundred lines")
+    return Own(name, text)
+
+
+def _numbers(found: Gaited) -> str:
+    film = found.film[numpy.isfinite(found.film)]
+    cells = [
+        number_cell("largest load", float(found.force.max(initial=0.0)), "N"),
+        number_cell("largest pressure", float(numpy.nanmax(found.pressure, initial=0.0)), "MPa"),
+        number_cell("least film", float(film.min()) if len(film) else float("nan"), "nm", found.regime),
+        number_cell("nearest to the rim", float(numpy.nanmin(found.edge, initial=numpy.inf)), "mm", found.worst),
+        number_cell("sliding in a cycle", found.numbers["slide_mm"], "mm"),
+    ]
+    return f"<dl class='numbers'>{''.join(cells)}</dl>{notes_list(found.notes) if found.notes else ''}"

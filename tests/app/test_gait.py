@@ -1,0 +1,156 @@
+"""The gait's view without a browser: a cycle as `hip` presses it, played from plain numbers."""
+
+import base64
+import json
+import re
+from html import unescape
+from math import radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.hip import Archard, InUse, Lubricant, iso_14242_1, named_cycle
+
+from .asking import edits, saved, trouble
+
+pytest.importorskip("panel", reason="the explorer's extra is not installed")
+from ballsocket.app.gaiting import MERIDIANS, RINGS, gaited
+from ballsocket.app.in_use import WHOLE
+from ballsocket.app.jobs import Job
+from ballsocket.app.page import Page
+from ballsocket.app.running import Done, Refused
+
+LINK = "view=gait&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
+CUP = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
+OWN = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n50, 2500, -20\n75, 300, 0\n100, 300, 20\n"
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch):
+    """The work of a process is done here and now."""
+
+    def ask(self, key, work):
+        try:
+            self._heard(key, Done(work(lambda news: self._heard(key, news))))
+        except ValueError as error:
+            self._heard(key, Refused(why=str(error)))
+
+    monkeypatch.setattr(Job, "ask", ask)
+
+
+def opened(link=LINK):
+    page = Page(link)
+    page._refresh()  # the page has loaded
+    return page
+
+
+def told(page, name):
+    return page.channel.told(f"#gait-{name}") or ""
+
+
+def test_a_cycle_is_that_of_python():
+    page = opened()
+    found = gaited(page.screen.file, WHOLE, None, lambda news: None)
+    hip = InUse(joint=page.screen.file.joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6), cup=CUP)
+    film = hip.film(Lubricant())
+    assert found.force == pytest.approx(hip.cycle.sizes)
+    assert found.pressure == pytest.approx(hip.unworn.pressure.max(axis=1))
+    assert found.film == pytest.approx(1e6 * film.least)
+    assert found.edge == pytest.approx(hip.edge_distance(hip.unworn))
+    assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.forces[:, 0] / hip.cycle.sizes)
+    cells = np.frombuffer(found.cells, dtype=np.uint8).reshape(100, RINGS, MERIDIANS)
+    assert 240 <= cells.max() <= 255
+    assert cells[found.heaviest].sum() == cells.sum(axis=(1, 2)).max()
+    around = 2 * np.pi * (np.arange(MERIDIANS) + 0.5) / MERIDIANS
+    lean = (cells[found.heaviest].sum(axis=0) * np.exp(1j * around)).sum()  # towards the load, around the axis
+    assert np.angle(lean) == pytest.approx(np.arctan2(*found.load[found.heaviest, 1::-1]), abs=radians(3))
+
+
+def test_the_page_plays_what_the_process_found():
+    page = opened()
+    found = gaited(page.screen.file, WHOLE, None, lambda news: None)
+    data = json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "player"))[1]))
+    assert [course["unit"] for course in data["courses"]] == ["kN", "MPa", "nm", "mm"]
+    assert data["courses"][1]["values"] == pytest.approx(found.pressure, rel=1e-4)
+    bowl = json.loads(re.search(r"data-bowl='([^']*)'", told(page, "player"))[1])
+    assert base64.b64decode(bowl["bytes"]) == found.cells
+    assert told(page, "at") == str(found.heaviest)
+    edits(page, "gait.instant", 7)
+    assert told(page, "at") == "7"
+    assert "use.instant=7" in page.channel.told("link")
+    assert opened(page.channel.told("link")).screen == page.screen
+    head, first, *_ = saved(page, "CSV").decode().splitlines()
+    assert head == "phase [%],load [kN],largest pressure [MPa],least film [nm],edge distance [mm]"
+    assert float(first.split(",")[2]) == pytest.approx(found.pressure[0])
+
+
+def test_a_patients_load_needs_a_weight():
+    page = opened()
+    assert page.channel.told("=gait.body_weight")["hidden"]
+    edits(page, "gait.cycle", "jogging")
+    assert not page.channel.told("=gait.body_weight")["hidden"]
+    edits(page, "gait.body_weight", "700")
+    largest = named_cycle("jogging", body_weight=700.0).sizes.max()
+    assert f"{largest:.4g} <span class='unit'>N" in told(page, "numbers")
+
+
+def test_a_cycle_of_ones_own_is_read_and_is_in_no_link():
+    page = opened()
+    edits(page, "gait.own", {"name": "walk <1>.csv", "size": len(OWN), "text": OWN})
+    assert "2500 <span class='unit'>N" in told(page, "numbers")
+    assert "walk &lt;1&gt;.csv: a link does not hold it" in told(page, "said")
+    assert "own" not in page.channel.told("link")
+    edits(page, "gait.cycle", "flexion")
+    assert "walk" not in told(page, "said")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        ("cycle", "dancing", "'dancing' as cycle is not known"),
+        ("body_weight", "0", "body_weight = 0"),
+        ("contact", "steel", "'steel' as contact is not known"),
+        ("instant", "seven", "an instant of a cycle is a whole number"),
+        ("instant", -1, "instant = -1"),
+        ("own", {"name": "walk.exe", "text": OWN}, "'walk.exe' is no table of a cycle"),
+        ("own", {"name": "walk.csv", "text": "", "size": 10**9}, "longer than 100000 characters"),
+        ("colour", "red", "'colour' among the inputs of a cycle"),
+    ],
+)
+def test_what_is_no_cycle_is_told(name, value, sentence):
+    page = opened()
+    before = page.screen
+    edits(page, f"gait.{name}", value)
+    assert sentence in unescape(trouble(page))
+    assert page.screen == before
+
+
+def test_a_cycle_that_cannot_be_pressed_says_why():
+    page = opened()
+    edits(page, "gait.own", {"name": "walk.csv", "text": "phase [%], force [N]\n0, 1\n50, few\n100, 1\n"})
+    assert "cycle.csv" in told(page, "trouble")
+    dislocated = opened(LINK.replace("cup.inclination=45", "cup.inclination=90"))
+    assert "dislocated" in told(dislocated, "trouble")
+    assert told(dislocated, "player") == ""
+
+
+@pytest.mark.parametrize(
+    ("pairs", "sentence"),
+    [
+        ("use.cycle=dance", "'dance' as cycle"),
+        ("use.body_weight=-1", "body_weight = -1"),
+        ("use.coefficient=-1", "coefficient = -1"),
+        ("use.millions=1000", "millions = 1000"),
+        ("use.speed=1", "'speed' of a hip in use in the link"),
+    ],
+)
+def test_links_about_use_are_strict(pairs, sentence):
+    assert sentence in unescape(trouble(Page(f"{LINK}&{pairs}")))
+
+
+@pytest.mark.long
+def test_a_cycle_is_saved_as_a_picture_and_a_page():
+    page = opened()
+    assert b"<svg" in saved(page, "SVG")
+    assert b"A cycle: iso-14242-1" in saved(page, "HTML")
