@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import cos, degrees, hypot, radians, sin
+from typing import Any
 
 import numpy
 
 from ..cup import Cup
+from ..hip.spots import spots_of
 from ..output.cup_map import drawn, from_page, highest, on_page
 from ..quantities import FIELD
 from ..sphere.contact import OffAxisContact
+from ..sphere.grid import Grid
 from . import svg
 from .contours import Contours, levels_of, scale
 
@@ -69,6 +72,17 @@ def pressed_bore(contact: OffAxisContact) -> str:
         f"the contact ends {float(contact.edge_distance):.2g} mm from the rim"
     )
     return bore_map(said, field, marks)
+
+
+def worn_bore(name: str, said: str, grid: Grid, depth: numpy.ndarray, highest: float, cup: Cup, load: Any) -> str:
+    """A depth in µm in the cells of a grid, up to `highest`, with a cross where the load (3,) points."""
+
+    def at(directions: numpy.ndarray) -> numpy.ndarray:
+        spots = spots_of(grid, numpy.moveaxis(directions, -1, 0).reshape(3, 1, -1))
+        return spots.of(depth.reshape(1, -1)).reshape(directions.shape[:-1])
+
+    field = BoreField(name=name, at=at, highest=highest, label="worn depth [µm]", reach=grid.reach, cup=cup)
+    return bore_map(said, field, list(_cross(*map(float, _places(grid.reach)(load)))))
 
 
 def bore_map(said: str, field: BoreField, marks: list[str]) -> str:

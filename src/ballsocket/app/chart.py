@@ -23,13 +23,14 @@ _INSIDE = (
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Points of one curve, where they can be trusted, how it is drawn, and a point to mark on it, if any."""
+    """Points of one curve, where they can be trusted, how it is drawn, a point to mark on it and a band, if any."""
 
     x: numpy.ndarray
     y: numpy.ndarray
     trusted: numpy.ndarray
     line: Line
     mark: tuple[float, float] | None = None
+    band: tuple[numpy.ndarray, numpy.ndarray] | None = None
 
 
 def colour_of(line: Line) -> str:
@@ -84,6 +85,10 @@ def _axes(x: str, y: str, across: float, up: float) -> Iterator[str]:
 
 def _drawn(name: str, curve: Curve, across: float, up: float) -> Iterator[str]:
     x, y = _across(curve.x, across), _up(curve.y, up)
+    if curve.band is not None:
+        low, high = (_up(ends, up) for ends in curve.band)
+        outline = svg.closed(numpy.concatenate([x, x[::-1]]), numpy.concatenate([low, high[::-1]]))
+        yield f'<path d="{outline}" fill="{colour_of(curve.line)}" opacity="0.2"/>'
     stroke = f'fill="none" stroke="{colour_of(curve.line)}" data-name="{escape(name)}"'
     if curve.trusted.any():
         yield f'<path d="{svg.path(x, numpy.where(curve.trusted, y, numpy.nan))}" {stroke} {dash_of(curve.line)}/>'

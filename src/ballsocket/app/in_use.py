@@ -48,6 +48,8 @@ class Use:
         Of cycles.
     creep : str
         "no" or "yes".
+    spread : float
+        The factor by which the coefficient scatters between patients, of one standard deviation; 1 is not at all.
     """
 
     cycle: str = "iso-14242-1"
@@ -59,6 +61,7 @@ class Use:
     circular: float = 2e-6
     millions: float = 5.0
     creep: str = "no"
+    spread: float = 1.5
 
     def __post_init__(self) -> None:
         for name, known in CHOICES.items():
@@ -69,6 +72,7 @@ class Use:
         coefficient = share_of_slide if self.law == "area" else wear_factor
         for name in ("coefficient", "circular"):
             coefficient(name, getattr(self, name))
+        require("spread", self.spread, 1 <= self.spread <= 5, "a factor of 1 (no scatter) to 5")
         require("millions", self.millions, 0 < self.millions <= _MOST, f"above 0, at most {_MOST:g} million cycles")
 
 
@@ -88,6 +92,7 @@ _NUMBERS: Mapping[str, Callable[[Any], Any]] = {
     "instant": lambda text: int(parse("instant", text, Kind.NUMBER)),
     "coefficient": lambda text: parse("coefficient", text, Kind.NUMBER),
     "circular": lambda text: parse("circular", text, Kind.NUMBER),
+    "spread": lambda text: parse("spread", text, Kind.NUMBER),
     "millions": lambda text: parse("millions", text, Kind.NUMBER),
 }
 

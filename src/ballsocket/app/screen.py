@@ -20,7 +20,7 @@ from ..studies.parameters import PARAMETERS
 from ..studies.phrases import limit_of, range_of
 from .in_use import WHOLE, Use, pairs_of, use_of
 
-VIEWS = ("press", "cup", "gait", "map", "compare", "judge")
+VIEWS = ("press", "cup", "gait", "wear", "map", "compare", "judge")
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)

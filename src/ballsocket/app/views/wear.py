@@ -1,0 +1,223 @@
+"""Wear: a design over millions of cycles, or two beside each other: depth, penetration with its band, numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from ...checks import check_names, shown
+from ...hip.coefficients import share_of_slide, wear_factor
+from ...hip.in_vivo import IN_VIVO
+from ...io.joint_file import JointFile
+from ...kinds import Kind
+from ...output import html as page
+from ...presets import joints
+from ..fields import Field, choice, number, segments, typed
+from ..in_use import CHOICES, Use
+from ..jobs import Job, Kept
+from ..running import Done, Reached, Refused
+from ..screen import Screen
+from ..view import Document, Host
+from ..wear_charts import depth_maps, penetration_chart, wear_numbers
+from ..wearing import LONGEST, Worn, life_of, worn
+from ..words import alert, progress
+
+_FOUND: Kept = Kept(most=24)
+_ALONE, _NOW, _OTHER = "", "as it is now", "as it was put beside"
+_BEDS = {"springs": "springs", "shell": "closed shell", "cup": "real cup"}
+_UNITS = {"area": "mm/m"}
+_SHOWN = ("cycle", "body_weight", "contact", "law", "coefficient", "circular", "spread", "millions", "creep", "beside")
+
+
+class Wear:
+    """Runs when asked; what has been run of what is on the screen is shown at once."""
+
+    title = "Wear"
+    panel = None
+    body = f"""
+<div class="inputs-row">{"".join(f'<div data-field="wear.{name}"></div>' for name in _SHOWN)}</div>
+<p><button type="button" class="plain" data-tell="wear.run">Run the wear</button></p>
+<div id="wear-trouble" role="alert"></div>
+<div id="wear-progress" role="status"></div>
+<div id="wear-numbers"></div>
+<div id="wear-curve"></div>
+<div class="beside" id="wear-maps"></div>
+"""
+
+    def __init__(self, host: Host) -> None:
+        self._page, self._screen = host, host.screen
+        self._job = Job(self._heard, longest=LONGEST)
+        host.listen("wear", self._edited)
+
+    def show(self, screen: Screen) -> None:
+        self._screen = screen
+        self._put("trouble", "")
+        self._page.channel.put_fields(_fields(screen))
+        if not self._job.works:
+            self._put("progress", "")
+        self._put_found()
+
+    def _put(self, place: str, html: str) -> None:
+        self._page.channel.put(f"#wear-{place}", html)
+
+    def _put_found(self) -> None:
+        """What has been run of the designs on the screen; else what to do."""
+        found = self._found()
+        self._put("numbers", wear_numbers(found) if found else _NOTHING)
+        self._put("curve", penetration_chart(found) if found else "")
+        self._put("maps", depth_maps(found) if found else "")
+
+    def _found(self) -> dict[str, Worn]:
+        lives = {name: _FOUND.get(life_of(file, self._screen.use)) for name, file in designs(self._screen).items()}
+        return lives if all(each is not None for each in lives.values()) else {}
+
+    def _edited(self, key: str, value: Any) -> None:
+        if key == "run":
+            self._run()
+        elif key == "stop":
+            self._job.stop()
+            self._put("progress", progress("Stopped.", None))
+        elif key == "beside":
+            self._page.ask(beside=_beside(self._screen, value))
+        else:
+            self._page.ask(use=_changed(self._screen, key, value))
+
+    def _run(self) -> None:
+        use = self._screen.use
+        lives = {life_of(file, use): file for file in designs(self._screen).values()}
+        missing = {life: file for life, file in lives.items() if _FOUND.get(life) is None}
+        self._put("trouble", "")
+        if missing:
+            self._job.ask(tuple(missing), partial(worn, list(missing.values()), use))
+
+    def _heard(self, key: Hashable, news: Any) -> None:
+        if isinstance(news, Reached):
+            self._put("progress", progress(news.words, news.share, stop="wear.stop"))
+        elif isinstance(news, Refused):
+            self._put("progress", "")
+            self._put("trouble", alert(news.why))
+        elif isinstance(news, Done):
+            assert isinstance(key, tuple)
+            for life, found in zip(key, news.value, strict=True):
+                _FOUND.put(life, found)
+            self._put("progress", "")
+            self._put_found()
+        self._page.channel.send()
+
+    def document(self, screen: Screen) -> Document:
+        found = self._found()
+        if not found:
+            raise ValueError("the wear of this has not been run yet: run it first")
+        heads = [
+            "design",
+            "million cycles",
+            "penetration [mm]",
+            "low [mm]",
+            "high [mm]",
+            "deepest [mm]",
+            "volume [mm3]",
+        ]
+        rows = [
+            [name, *map(float, row)]
+            for name, each in found.items()
+            for row in zip(each.cycles, each.penetration, each.low, each.high, each.deepest, each.volume, strict=True)
+        ]
+        pictures = "".join(page.picture(each.figure, f"penetration of {name}") for name, each in found.items())
+        return Document(
+            rows=lambda: [heads, *rows],
+            sections=lambda: {"wear": ("Wear", wear_numbers(found) + pictures)},
+        )
+
+    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
+        return [], ()
+
+    def leave(self) -> None:
+        self._job.stop()
+
+
+_NOTHING = (
+    "<p class='quiet'>Nothing has been run of this yet. A run of springs takes some seconds, of a real cup a minute. "
+    "A second design can be put beside: then change the one on the screen.</p>"
+)
+
+
+def designs(screen: Screen) -> dict[str, JointFile]:
+    """The design on the screen, and the first that was put beside it, by name."""
+    named = {screen.file.joint.name or "this design": screen.file}
+    for other in screen.beside[:1]:
+        name = other.joint.name or "the other"
+        named[f"{name}, beside" if name in named else name] = other
+    return named
+
+
+def _fields(screen: Screen) -> dict[str, Field]:
+    use = screen.use
+    unit = _UNITS.get(use.law, "mm³/(N m)")
+    factors = {
+        name: number(f"wear.{name}", f"{title} [{unit}]", "", (1e-8, 1e-5), 1e-8, getattr(use, name))
+        for name, title in (("coefficient", "Coefficient"), ("circular", "Coefficient on a circle"))
+    }
+    listed = [
+        choice("wear.cycle", "Cycle", [(name, name) for name in CHOICES["cycle"]], use.cycle),
+        {
+            **number("wear.body_weight", "Body weight", "N", (300.0, 1500.0), 10.0, use.body_weight),
+            "hidden": use.cycle not in IN_VIVO,
+        },
+        segments("wear.contact", "The bore gives way as", list(_BEDS.items()), use.contact),
+        choice("wear.law", "Law of wear", [(name, name) for name in CHOICES["law"]], use.law),
+        factors["coefficient"],
+        {**factors["circular"], "hidden": use.law != "cross-shear"},
+        {
+            **number("wear.spread", "It scatters by a factor", "", (1.0, 3.0), 0.1, use.spread),
+            "hidden": use.law != "archard",
+        },
+        number("wear.millions", "Million cycles", "", (0.5, 20.0), 0.5, use.millions),
+        segments("wear.creep", "The liner creeps", [(name, name) for name in CHOICES["creep"]], use.creep),
+        choice("wear.beside", "Compare with", _choices(screen), _OTHER if screen.beside else _ALONE),
+    ]
+    return {field["name"]: field for field in listed}
+
+
+def _choices(screen: Screen) -> list[tuple[str, str]]:
+    kept = [(_OTHER, f"{screen.beside[0].joint.name or 'a joint'}, {_OTHER}")] if screen.beside else []
+    return [(_ALONE, "– nothing –"), *kept, (_NOW, f"this design {_NOW}"), *((name, name) for name in joints)]
+
+
+def _beside(screen: Screen, value: Any) -> tuple[JointFile, ...]:
+    """What is put beside: this design, or a preset in the same cup."""
+    if value == _ALONE:
+        return ()
+    if value in (_NOW, _OTHER):
+        return (screen.file,) if value == _NOW else screen.beside
+    check_names([value], joints, "as design")
+    return (replace(screen.file, joint=joints[value]),)
+
+
+def _changed(screen: Screen, key: str, value: Any) -> Use:
+    """What the hip goes through, after one input has been changed."""
+    check_names([key], _SHOWN, "among the inputs of wear")
+    changes: dict[str, Any] = {key: _READ[key](value, screen.use) if key in _READ else _word(key, value)}
+    return replace(screen.use, **changes)
+
+
+def _word(key: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"{key} = {shown(value)} is no choice")
+    return value
+
+
+def _factor(key: str, value: Any, use: Use) -> float:
+    """A coefficient as it is typed: bare, with a decimal comma, or with its unit."""
+    text = value.strip().replace(",", ".") if isinstance(value, str) else value
+    return float((share_of_slide if use.law == "area" else wear_factor)(key, text))
+
+
+_READ: Mapping[str, Callable[[Any, Use], float]] = {
+    "body_weight": lambda value, use: typed("body_weight", value, "N", 1.0, Kind.FORCE),
+    "coefficient": partial(_factor, "coefficient"),
+    "circular": partial(_factor, "circular"),
+    "spread": lambda value, use: typed("spread", value, "", 1.0, Kind.NUMBER),
+    "millions": lambda value, use: typed("millions", value, "", 1.0, Kind.NUMBER),
+}

@@ -1,0 +1,184 @@
+"""The wear's view without a browser: years as `hip` has them, and two designs beside each other."""
+
+import re
+from dataclasses import replace
+from html import unescape
+from math import radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.hip import Archard, InUse, iso_14242_1
+
+from .asking import does, edits, saved, trouble
+
+pytest.importorskip("panel", reason="the explorer's extra is not installed")
+from ballsocket.app import wearing
+from ballsocket.app.in_use import WHOLE
+from ballsocket.app.jobs import Job
+from ballsocket.app.page import Page
+from ballsocket.app.running import Done, Refused
+from ballsocket.app.views import wear
+from ballsocket.app.wear_charts import depth_maps, penetration_chart, wear_numbers
+
+LINK = (
+    "view=wear&preset=hip-36&cup.inclination=40&cup.anteversion=15&use.millions=0.1&use.coefficient=1e-7&use.spread=1"
+)
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_known(monkeypatch):
+    monkeypatch.setattr(wear, "_FOUND", wear.Kept(most=4))
+    monkeypatch.setattr(wearing, "drawn", lambda figure: b"a picture")
+
+
+@pytest.fixture
+def at_once(monkeypatch):
+    """The work of a process is done here and now, and what it tells on the way is kept."""
+    heard = []
+
+    def ask(self, key, work):
+        try:
+            self._heard(key, Done(work(lambda news: heard.append(news) or self._heard(key, news))))
+        except ValueError as error:
+            self._heard(key, Refused(why=str(error)))
+
+    monkeypatch.setattr(Job, "ask", ask)
+    return heard
+
+
+def opened(link=LINK):
+    page = Page(link)
+    page._refresh()  # the page has loaded
+    return page
+
+
+def told(page, name):
+    return page.channel.told(f"#wear-{name}") or ""
+
+
+def test_a_life_is_that_of_python(at_once):
+    page = opened()
+    assert "Nothing has been run of this yet" in told(page, "numbers")
+    does(page, "save", kind="CSV")
+    assert "has not been run yet" in trouble(page)
+    edits(page, "wear.run", True)
+    cup = bs.Cup(inclination=radians(40.0), anteversion=radians(15.0))
+    use = InUse(joint=bs.joints["hip-36"], cycle=iso_14242_1(), wear=Archard(coefficient=1e-7), cup=cup)
+    last = use.after(1e5, report_at=[1e4 * each for each in range(1, 10)]).last
+    assert f"<td>{last.volume:.4g}</td>" in told(page, "numbers")
+    rows = [line.split(",") for line in saved(page, "CSV").decode().splitlines()]
+    assert [rows[0][2], rows[0][6]] == ["penetration [mm]", "volume [mm3]"]
+    assert [float(rows[-1][column]) for column in (2, 5, 6)] == pytest.approx(
+        [last.penetration, last.depth, last.volume]
+    )
+    assert float(rows[1][2]) == 0
+    assert "what the run may be off by" in told(page, "numbers")
+    assert f"up to {1e3 * last.depth:.3g} µm" in told(page, "maps")
+    shares = [news.share for news in at_once]
+    assert shares == sorted(shares)
+    assert len(shares) > 5
+    does(page, "choose", name="angle", value="radians")
+    assert "mm³" in told(page, "numbers")  # what is known is shown at once
+    edits(page, "wear.millions", 1)
+    assert "Nothing has been run of this yet" in told(page, "numbers")
+
+
+def made(scale):
+    cycles = np.array([0.0, 1.0, 2.0])
+    grown = scale * cycles
+    grid = bs.sphere.grid.grid(radians(90.0), radians(10.0))
+    summary = {
+        "history": [{"edge_distance": 1.0, "penetration_of_creep": 0.0, "max_pressure": 5.0}],
+        "cycle": {"peaks": {"max_pressure_MPa": 10.0}},
+    }
+    return wearing.Worn(
+        cycles=cycles,
+        penetration=grown,
+        deepest=grown,
+        volume=100 * grown,
+        low=0.5 * grown,
+        high=2 * grown,
+        band="band: of a test",
+        depth=1e3 * scale * np.ones((grid.rings, grid.meridians)),
+        grid=grid,
+        cup=bs.Cup(),
+        load=np.array([0.0, 0.0, 1.0]),
+        summary=summary,
+        notes=("a note",),
+        figure=b"",
+    )
+
+
+def test_two_designs_are_beside_each_other_in_one_scale():
+    found = {"one": made(0.1), "other": made(0.2)}
+    assert "<td>40 (+100 %)</td>" in wear_numbers(found)
+    chart = penetration_chart(found)
+    assert "one: 200 µm after 2 million cycles, 100 to 400" in chart
+    assert chart.count('opacity="0.2"') == 2
+    scales = re.findall(r"worn depth \[µm\].*?</svg>", depth_maps(found), flags=re.DOTALL)
+    assert len(scales) == 2
+    assert scales[0].split("worn depth")[-1] == scales[1].split("worn depth")[-1]
+
+
+def test_a_design_is_put_beside_and_taken_away(monkeypatch):
+    asked = []
+    monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(len(key)))
+    page = opened()
+    edits(page, "wear.beside", "as it is now")
+    edits(page, "wear.run", True)
+    edits(page, "clearance", "0.2")
+    edits(page, "wear.run", True)
+    assert asked == [1, 2]  # the same design twice is one
+    (other,) = page.screen.beside
+    assert (other.joint.clearance, other.cup) == (0.1, page.screen.file.cup)
+    assert opened(page.channel.told("link")).screen == page.screen
+    edits(page, "wear.beside", "hip-28")
+    assert page.screen.beside[0].joint == bs.joints["hip-28"]
+    edits(page, "wear.beside", "")
+    assert page.screen.beside == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        ("coefficient", "much", "coefficient = 'much'"),
+        ("coefficient", "-1", "coefficient = -1"),
+        ("millions", "0", "millions = 0"),
+        ("spread", "0.5", "spread = 0.5"),
+        ("law", "magic", "'magic' as law is not known"),
+        ("creep", True, "creep = True is no choice"),
+        ("beside", "my hip", "'my hip' as design is not known"),
+        ("colour", "red", "'colour' among the inputs of wear"),
+    ],
+)
+def test_what_cannot_be_worn_is_told(name, value, sentence):
+    page = opened()
+    before = page.screen
+    edits(page, f"wear.{name}", value)
+    assert sentence in unescape(trouble(page))
+    assert page.screen == before
+
+
+def test_a_hip_that_cannot_be_worn_says_why(at_once):
+    page = opened(LINK.replace("cup.inclination=40", "cup.inclination=90"))
+    edits(page, "wear.run", True)
+    assert "dislocated" in told(page, "trouble")
+
+
+def test_a_coefficient_may_be_typed_as_others_write_it():
+    page = opened()
+    edits(page, "wear.coefficient", "1,066e-6 mm^3/(N m)")
+    assert page.screen.use.coefficient == pytest.approx(1.066e-6)
+
+
+@pytest.mark.long
+def test_patients_whose_coefficient_scatters_make_the_band():
+    page = opened()
+    use = replace(WHOLE, millions=0.2, spread=1.5)
+    (found,) = wearing.worn([page.screen.file], use, lambda news: None)
+    assert (found.low[1:] < found.penetration[1:]).all()
+    assert (found.penetration[1:] < found.high[1:]).all()
+    assert found.high[-1] / found.penetration[-1] == pytest.approx(1.5**1.96, rel=0.25)
+    assert "64 patients" in found.band
