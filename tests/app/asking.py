@@ -5,10 +5,15 @@ from base64 import b64decode
 
 
 def does(page, what, **words):
-    """Somebody does something on a page; the message with which it answers."""
-    last = json.loads(page.channel.ears.value or '{"n": 0}')["n"]
+    """Somebody does something on a page; the messages with which it answers, as one."""
+    last, answer = json.loads(page.channel.ears.value or '{"n": 0}')["n"], {}
+
+    def hear(attribute, old, new):
+        answer.update(json.loads(new))
+
+    page.channel.mouth.on_change("value", hear)
     page.channel.ears.value = json.dumps({"n": last + 1, "do": what, **words})
-    answer = json.loads(page.channel.mouth.value)
+    page.channel.mouth.remove_on_change("value", hear)
     assert answer["n"] == last + 1
     return answer
 

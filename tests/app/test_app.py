@@ -151,6 +151,27 @@ def test_two_users_do_not_see_each_other(user, other):
     assert other.shows("max_pressure", expected)
 
 
+def test_the_arrow_can_be_dragged_and_moved_by_keys(user):
+    """What is dragged is the load and its tilt; whoever has moved a handle by a key moves on with the next."""
+    user.open()
+    knob = user.page.locator("[data-drag=tilt]").bounding_box()
+    x, y = knob["x"] + knob["width"] / 2, knob["y"] + knob["height"] / 2
+    user.page.mouse.move(x, y)
+    user.page.mouse.down()
+    user.page.mouse.move(x + 80, y, steps=4)
+    user.page.mouse.up()
+    user.answered()
+    words = parse_qs(urlsplit(user.page.url).query)
+    assert 10 < float(words["load.tilt"][0]) < 45
+    force = float(words["load.force"][0])
+    assert force != 3000.0
+    user.page.locator("[data-drag=load][tabindex]").focus()
+    for _ in range(2):
+        user.page.keyboard.press("ArrowDown")
+        user.answered()
+    assert user.shows("force", force - 100.0)
+
+
 @pytest.mark.long
 def test_the_keyboard_is_enough(user):
     """The first stop leads past the controls; every slider is a stop that says what it is."""

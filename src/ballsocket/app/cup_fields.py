@@ -53,14 +53,14 @@ def _of_cup(screen: Screen, name: str) -> Field:
     if CUP[name].kind is Kind.ANGLE:
         return _angle(screen, name, title, degrees(value))
     low, high, step = _ENDS[name]
-    return number(f"cup.{name}", title, CUP[name].unit, (low, high), step, value)
+    return number(f"cup.{name}", title, CUP[name].shown, (low, high), step, value * CUP[name].shown.factor)
 
 
 def _angle(screen: Screen, name: str, title: str, value: float) -> Field:
     """An angle in degrees in the unit that is chosen."""
     factor = _factor(screen)
     low, high, step = (each * factor for each in _ENDS[name])
-    unit = unit_of(CUP["inclination"], screen.angle).text
+    unit = unit_of(CUP["inclination"], screen.angle)
     return number(f"cup.{name}", title, unit, (low, high), step, (round(value, 9) + 0.0) * factor)
 
 

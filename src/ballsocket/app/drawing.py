@@ -1,7 +1,9 @@
-"""A joint in section, to scale, with the pressure painted on its socket."""
+"""A joint in section, to scale: ball, liner, what is behind it, and the pressure on its socket."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from math import isinf, pi
 
@@ -16,43 +18,63 @@ _MASSIVE = 0.8  # of the socket's radius is drawn of what has no end
 _PETALS = 48
 _HIGHEST = 0.45  # of the liner, or of the radius
 _SIZE = 340.0
+_ROUND = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+_WIDEST_GAP = 0.09  # of the socket's radius, beside the ball
 
 Outline = tuple[numpy.ndarray, numpy.ndarray]
 
 
-def section(file: JointFile, contact: Contact | None, extent: float | None = None, highest: float | None = None) -> str:
-    """Ball, liner, backing and cup as SVG, the load from above; without a contact nothing is painted on it.
+@dataclass(frozen=True, kw_only=True)
+class Frame:
+    """Where the socket's centre lies in a picture, and pixels for a mm; angles go from the cup's pole to the right."""
 
-    `extent` (mm) and `highest` (MPa) are those of several drawings that are to be compared, this joint's without.
-    """
-    scale = _SIZE / 2 / (extent or extent_of(file)) / 1.04
-    radii = _radii(file)
-    names = ["liner", *["backing"] * (len(radii) - 2)]
-    layers = [
-        _part(_sector(*ends, file.cup.rim), scale, name) for ends, name in zip(pairwise(radii), names, strict=True)
-    ]
-    depth = 0.0 if contact is None else float(contact.indentation)
-    ball = _part(_ball(float(file.joint.ball_radius), float(file.joint.clearance) + depth), scale, "ball")
-    painted = [] if contact is None else _painted(file, contact, scale, highest)
-    return svg.picture((_SIZE, _SIZE), "the joint in section, to scale", [*layers, ball, *painted])
+    x: float
+    y: float
+    scale: float
 
+    def at(self, radius: float, angle: float) -> tuple[float, float]:
+        """A place in the picture: a radius in mm and an angle in rad."""
+        return self.x + self.scale * radius * float(numpy.sin(angle)), self.y + self.scale * radius * float(
+            numpy.cos(angle)
+        )
 
-def _part(outline: Outline, scale: float, name: str) -> str:
-    return f'<path class="part {name}" d="{svg.closed(*_placed(outline, scale))}"/>'
+    def path(self, outline: Outline) -> str:
+        """An outline in mm, upwards from the socket's centre."""
+        return svg.closed(self.x + self.scale * outline[0], self.y - self.scale * outline[1])
 
 
-def _placed(outline: Outline, scale: float) -> Outline:
-    """From mm, upwards from the socket's centre, to the picture."""
-    x, y = outline
-    return _SIZE / 2 + scale * x, _SIZE / 2 - scale * y
+def section(file: JointFile, contact: Contact | None, extent: float, highest: float) -> str:
+    """A joint as SVG, the load from above, drawn to `extent` (mm), the pressure's colours to `highest` (MPa)."""
+    frame = Frame(x=_SIZE / 2, y=_SIZE / 2, scale=_SIZE / 2 / extent / 1.04)
+    parts = [*layers(file, frame), ball(file, contact, frame, 0.0), *painted(file, contact, frame, highest, 0.0)]
+    return svg.picture((_SIZE, _SIZE), "the joint in section, to scale", parts)
 
 
-def _painted(file: JointFile, contact: Contact, scale: float, highest: float | None) -> list[str]:
-    top = highest or float(contact.max_pressure) or 1.0
+def layers(file: JointFile, frame: Frame) -> list[str]:
+    """Liner and what is behind it, as far as the cup reaches."""
+    ends = list(pairwise(radii_of(file)))
+    kinds = ["liner", *(f"backing layer{number % 3}" for number in range(len(ends) - 1))]
+    return [_part(_sector(*each, file.cup.rim), frame, kind) for each, kind in zip(ends, kinds, strict=True)]
+
+
+def ball(file: JointFile, contact: Contact | None, frame: Frame, tilt: float) -> str:
+    """The ball where the load has brought it; its clearance is drawn as many times as `gap_factor` says."""
+    return _part(_ball(file, contact, tilt), frame, "ball")
+
+
+def painted(file: JointFile, contact: Contact | None, frame: Frame, highest: float, tilt: float) -> list[str]:
+    """The pressure, inside the cup's arc."""
+    if contact is None:
+        return []
+    top = highest or 1.0
     return [
-        f'<path fill="{heat(pressure / top)}" d="{svg.closed(*_placed(outline, scale))}"/>'
-        for outline, pressure in petals(file, contact)
+        f'<path fill="{heat(pressure / top)}" d="{frame.path(outline)}"/>'
+        for outline, pressure in petals(file, contact, tilt)
     ]
+
+
+def _part(outline: Outline, frame: Frame, kind: str) -> str:
+    return f'<path class="part {kind}" d="{frame.path(outline)}"/>'
 
 
 _HEAT = numpy.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]])
@@ -68,15 +90,22 @@ def heat(share: float) -> str:
 
 def extent_of(file: JointFile) -> float:
     """Half the width of the drawing in mm."""
-    return _radii(file)[-1]
+    return radii_of(file)[-1]
 
 
-def _radii(file: JointFile) -> list[float]:
+def radii_of(file: JointFile) -> list[float]:
     """Radii in mm of the bore, and from there outwards behind the liner and each layer."""
     radii = [float(file.joint.socket_radius)]
     for thickness in (file.joint.liner_thickness, *(layer.thickness for layer in file.joint.backing)):
         radii.append(radii[-1] + (_MASSIVE * radii[0] if isinf(float(thickness)) else float(thickness)))
     return radii
+
+
+def gap_factor(file: JointFile) -> int:
+    """How many times the gap between ball and socket is drawn: a round number, so that it can be seen."""
+    gap = abs(float(file.joint.clearance))
+    fitting = [times for times in _ROUND if times * gap <= _WIDEST_GAP * float(file.joint.socket_radius)]
+    return fitting[-1] if fitting and gap > 0 else 1
 
 
 def _sector(inner: float, outer: float, rim: float) -> Outline:
@@ -86,22 +115,38 @@ def _sector(inner: float, outer: float, rim: float) -> Outline:
     return x, y
 
 
-def _ball(radius: float, drop: float) -> Outline:
-    angle = numpy.linspace(0.0, 2 * pi, 121)
-    return radius * numpy.sin(angle), radius * numpy.cos(angle) - drop
+def _ball(file: JointFile, contact: Contact | None, tilt: float) -> Outline:
+    """The socket's circle less the gap, c - (c + d) cos φ from the load's axis, which is nothing in the contact."""
+    clearance, depth = float(file.joint.clearance), 0.0 if contact is None else float(contact.indentation)
+    angle = numpy.linspace(0.0, 2 * pi, 145)
+    gap = numpy.clip(clearance - (clearance + depth) * numpy.cos(angle + tilt), 0.0, None)
+    radius = float(file.joint.socket_radius) - gap_factor(file) * gap
+    return radius * numpy.sin(angle), -radius * numpy.cos(angle)
 
 
-def petals(file: JointFile, contact: Contact) -> list[tuple[Outline, float]]:
+def petals(file: JointFile, contact: Contact, tilt: float = 0.0) -> list[tuple[Outline, float]]:
     """Quadrilaterals in the liner up to its rim, in mm, as high as the pressure, each with its pressure in MPa."""
-    if not float(contact.half_angle) > 0:
+    half = float(contact.half_angle)
+    if not half > 0:
         return []
-    radius, edge = float(file.joint.socket_radius), min(float(contact.half_angle), file.cup.rim)
-    angle = edge * numpy.sin(numpy.linspace(-pi / 2, pi / 2, _PETALS + 1))
-    pressure = numpy.interp(numpy.abs(angle), *profile(contact))
+    low, high = max(-half - tilt, -file.cup.rim), min(half - tilt, file.cup.rim)
+    angle = numpy.sort(numpy.clip(half * numpy.sin(numpy.linspace(-pi / 2, pi / 2, _PETALS + 1)) - tilt, low, high))
+    pressure = numpy.interp(numpy.abs(angle + tilt), *profile(contact), right=0.0)
+    radius = float(file.joint.socket_radius)
     highest = _HIGHEST * min(float(file.joint.liner_thickness), 0.6 * radius)
     reach = radius + highest * pressure / float(contact.max_pressure)
-    corners = numpy.stack([angle[:-1], angle[1:], angle[1:], angle[:-1]], axis=1)
-    away = numpy.stack([numpy.full(_PETALS, radius)] * 2 + [reach[1:], reach[:-1]], axis=1)
-    x, y = away * numpy.sin(corners), -away * numpy.cos(corners)
-    means = (pressure[:-1] + pressure[1:]) / 2
-    return [((x[number], y[number]), float(mean)) for number, mean in enumerate(means)]
+    return [
+        (_quadrilateral((radius, radius, reach[b], reach[a]), (angle[a], angle[b], angle[b], angle[a])), mean)
+        for a, b, mean in _pieces(angle, pressure)
+    ]
+
+
+def _pieces(angle: numpy.ndarray, pressure: numpy.ndarray) -> Iterator[tuple[int, int, float]]:
+    for a, b in pairwise(range(len(angle))):
+        if angle[b] > angle[a]:
+            yield a, b, float(pressure[a] + pressure[b]) / 2
+
+
+def _quadrilateral(radii: Sequence[float], angles: Sequence[float]) -> Outline:
+    away, turned = numpy.array(radii), numpy.array(angles)
+    return away * numpy.sin(turned), -away * numpy.cos(turned)

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..checks import shown
 from ..io.units import parse
-from ..kinds import Kind
+from ..kinds import Kind, Unit
 
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
 _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
@@ -40,13 +40,22 @@ def tick(name: str, label: str, value: bool) -> Field:
     return {"name": name, "kind": "tick", "label": label, "value": value}
 
 
-def number(name: str, label: str, unit: str, ends: tuple[float, float], step: float, value: float) -> Field:
-    """A number with a slider over what is usual; what lies outside widens it."""
+def unknown(name: str, label: str, unit: str) -> Field:
+    """A number that need not be given, and is not."""
+    return {"name": name, "kind": "number", "label": label, "unit": unit, "value": None, "text": ""}
+
+
+def number(name: str, label: str, unit: Unit, ends: tuple[float, float], step: float, value: float) -> Field:
+    """A number with a slider over what is usual; what lies outside widens it.
+
+    `value` and `ends` are in the unit beside the box, to which `unit.factor` leads from that of a joint file.
+    """
     return {
         "name": name,
         "kind": "number",
         "label": label,
-        "unit": unit,
+        "unit": unit.text,
+        "factor": unit.factor,
         "low": min(ends[0], value),
         "high": max(ends[1], value),
         "step": step,

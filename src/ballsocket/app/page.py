@@ -29,7 +29,7 @@ from .words import alert
 
 _LOG = logging.getLogger(__name__)
 _LARGEST = 100_000  # characters of a joint file
-_CHOSEN = ("view", "answered_by", "shown", "angle", "size")
+_CHOSEN = ("view", "answered_by", "shown", "painted", "angle", "size")
 """Fields of the screen that the page's own inputs change."""
 
 
@@ -100,8 +100,9 @@ class Page:
             self.refuse("")
             self._ears[view](key, words.get("value"))
             return
-        self.ask(file=edited(self.screen, str(words.get("name")), words.get("value"), self._same_load))
+        file = edited(self.screen, str(words.get("name")), words.get("value"), self._same_load)
         self.refuse("")
+        self.ask(file=file)
 
     def _choose(self, words: Mapping[str, Any]) -> None:
         name, value = str(words.get("name")), words.get("value")

@@ -23,6 +23,9 @@ from .in_use import WHOLE, Use, pairs_of, use_of
 VIEWS = ("press", "cup", "gait", "wear", "map", "compare", "judge")
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
+PAINTED = ("pressure", "stress")
+"""What is painted on the drawing of the joint."""
+
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
 """Models that press a map's points at once."""
 
@@ -87,6 +90,8 @@ class Screen:
         What the map of how a cup may stand shows.
     use : Use
         What the hip goes through.
+    painted : str
+        "pressure", or "stress": von Mises stresses in the liner.
     angle, size, theme : str
         "degrees" or "radians"; balls by "radius" or "diameter"; "light" or "dark".
     """
@@ -103,6 +108,7 @@ class Screen:
     limits: tuple[Limit, ...] = ()
     standing: str = "edge_distance"
     use: Use = WHOLE
+    painted: str = "pressure"
     angle: str = "degrees"
     size: str = "radius"
     theme: str = "light"
@@ -128,6 +134,7 @@ _KNOWN: Mapping[str, Sequence[str]] = {
     "map_model": QUICK,
     "quantity": MAPPED,
     "standing": STANDINGS,
+    "painted": PAINTED,
     "angle": ANGLES,
     "size": SIZES,
     "theme": THEMES,
@@ -140,7 +147,7 @@ START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
 def link_of(screen: Screen) -> str:
     """The part of a link after the question mark: what differs from the start, and the joint."""
     pairs: list[tuple[str, str]] = []
-    for name in ("view", "answered_by", "map_model", "quantity", "standing", "angle", "size"):
+    for name in ("view", "answered_by", "map_model", "quantity", "standing", "painted", "angle", "size"):
         if getattr(screen, name) != getattr(START, name):
             pairs.append((name, getattr(screen, name)))
     if screen.shown != START.shown:

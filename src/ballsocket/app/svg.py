@@ -46,7 +46,13 @@ def ticks(high: float, most: int = 6) -> list[float]:
 
 def picture(size: tuple[float, float], said: str, parts: Iterable[str], more: str = "") -> str:
     """A whole picture as wide as its place, with what a screen reader says of it."""
-    return (
-        f'<svg class="picture" viewBox="0 0 {size[0]:g} {size[1]:g}" role="img" aria-label="{escape(said)}"{more}>'
-        f"{''.join(parts)}</svg>"
-    )
+    return _whole(size, f'role="img" aria-label="{escape(said)}"{more}', parts)
+
+
+def group_picture(size: tuple[float, float], said: str, parts: Iterable[str], more: str = "") -> str:
+    """A picture whose parts can be used: a screen reader goes into it."""
+    return _whole(size, f'role="group" aria-label="{escape(said)}"{more}', parts)
+
+
+def _whole(size: tuple[float, float], marks: str, parts: Iterable[str]) -> str:
+    return f'<svg class="picture" viewBox="0 0 {size[0]:g} {size[1]:g}" {marks}>{"".join(parts)}</svg>'

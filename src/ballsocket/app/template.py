@@ -14,7 +14,7 @@ from .page import Page
 from .style import asset
 from .views import KINDS as VIEWS
 
-_SCRIPTS = ("fields.js", "page.js", "charts.js", "bowl.js", "player.js", "views.js")
+_SCRIPTS = ("fields.js", "page.js", "charts.js", "drag.js", "bowl.js", "player.js", "views.js")
 
 
 class Template(pn.Template):
@@ -32,7 +32,7 @@ class Template(pn.Template):
 def template(page: Page) -> Any:
     """The page before its first answer: every input is there, and none can be used."""
     made = Template(asset("page.html"))
-    made.add_variable("style", asset("page.css") + asset("parts.css").replace(":host {", ".app {") + asset("views.css"))
+    made.add_variable("style", asset("parts.css").replace(":host {", ".app {") + asset("page.css") + asset("views.css"))
     made.add_variable("script", "\n".join(asset(name) for name in _SCRIPTS))
     made.add_variable("theme", page.screen.theme)
     made.add_variable("views", _buttons({name: kind.title for name, kind in VIEWS.items()}, "view"))

@@ -46,24 +46,6 @@ def notes_list(notes: Iterable[str]) -> str:
     return f"<ul class='notes'>{''.join(f'<li>{escape(note)}</li>' for note in notes)}</ul>"
 
 
-def headline(contact: Contact, angle: str) -> str:
-    """The numbers of one contact as a list, with whether it can be trusted."""
-    errors: Mapping[str, Any] = getattr(contact, "error", {})
-    cells = "".join(_cell(each, contact, errors) for each in columns(angle))
-    return f"<dl class='numbers'>{cells}</dl>{trust(contact)}"
-
-
-def _cell(each: Column, contact: Contact, errors: Mapping[str, Any]) -> str:
-    value = float(each.of(contact))
-    share = float(errors.get(each.attribute, float("nan")))
-    bar = f"<small>± {percent(share)}</small>" if share > 0 else ""
-    unit = "" if isnan(value) else f" <span class='unit'>{escape(each.unit)}</span>"
-    return (
-        f"<div><dt>{escape(each.title)} <i>{escape(each.symbol)}</i></dt>"
-        f"<dd data-name='{each.attribute}' data-value='{value!r}'>{number_text(value)}{unit}{bar}</dd></div>"
-    )
-
-
 def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
     """One number with its unit, and what is to be said of it below."""
     behind = "" if isnan(value) else f" <span class='unit'>{escape(unit)}</span>"
@@ -85,10 +67,8 @@ def progress(words: str, share: float | None, stop: str = "", again: str = "") -
 def trust(contact: Contact) -> str:
     """Whether the model trusts itself here, and if not why, in words and not by colour alone."""
     if bool(contact.valid):
-        sentence = "✓ inside the range in which this model can be trusted"
-        return f"<p class='trust yes'>{sentence}</p>{notes_list(contact.notes) if contact.notes else ''}"
-    sentence = "✗ outside the range in which this model can be trusted"
-    return f"<p class='trust no'>{sentence}</p>{notes_list(contact.notes)}"
+        return notes_list(contact.notes) if contact.notes else ""
+    return f"<p class='trust no'>✗ outside the range in which this model can be trusted</p>{notes_list(contact.notes)}"
 
 
 def models_table(comparison: Comparison, angle: str) -> str:

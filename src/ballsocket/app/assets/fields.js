@@ -11,7 +11,7 @@
     return made;
   }
   const edit = (name, value) => app.tell("edit", name, value);
-  const choose = (name, value) => app.tell(["answered_by", "shown", "angle", "size", "units"].includes(name) ? "choose" : "edit", name, value);
+  const choose = (name, value) => app.tell(["answered_by", "shown", "painted", "angle", "size", "units"].includes(name) ? "choose" : "edit", name, value);
   const tidy = (value, step) => Number((Math.round(value / step) * step).toPrecision(12));
 
   function number(name) {
@@ -30,6 +30,7 @@
       edit(name, tidied);
     }
     function keys(event) {
+      if (field.value === null) return;
       const steps = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10, ...(event.target === bar ? { ArrowRight: 1, ArrowLeft: -1 } : {}) };
       const step = steps[event.key];
       if (step) moved(tidy(Number(bar.value) + step * field.step, field.step / 100));
@@ -44,15 +45,17 @@
     box.addEventListener("input", () => typing.add(name));
     box.addEventListener("change", () => {
       typing.delete(name);
-      if (box.value.trim()) edit(name, box.value);
+      if (box.value.trim() || name === "allowable") edit(name, box.value.trim());
       else put(field); // an emptied box: what was there is still true
     });
     function put(said) {
       field = said;
       label.textContent = field.label;
       unit.textContent = field.unit;
-      for (const [key, value] of [["min", field.low], ["max", field.high]]) bar[key] = value;
+      bar.hidden = field.value === null;
       if (!typing.has(name)) box.value = field.text;
+      if (bar.hidden) return;
+      for (const [key, value] of [["min", field.low], ["max", field.high]]) bar[key] = value;
       bar.value = field.value;
       bar.setAttribute("aria-valuetext", `${field.text} ${field.unit}`.trim());
     }
@@ -139,6 +142,12 @@
     const wanted = names.map((name) => fields.get(name).made);
     const there = [...place.children];
     if (wanted.length !== there.length || wanted.some((one, at) => one !== there[at])) place.replaceChildren(...wanted);
+  };
+  app.known = (name) => (fields.get(name) || {}).said;
+  app.moved = function (name, value) {
+    const said = app.known(name);
+    const tidied = Math.min(said.high, Math.max(said.low, tidy(value, said.step)));
+    if (tidied !== said.value) edit(name, tidied);
   };
   app.again = function () { for (const found of fields.values()) found.put(found.said); };
 })();

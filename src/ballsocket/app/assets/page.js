@@ -42,7 +42,7 @@
 
   function show(message) {
     for (const [key, value] of Object.entries(message)) {
-      if (key.startsWith("#")) at(key.slice(1)).innerHTML = value;
+      if (key.startsWith("#")) written(at(key.slice(1)), value);
       else if (key.startsWith("=") && !queue.has(`edit ${key.slice(1)}`) && !queue.has(`choose ${key.slice(1)}`)) app.field(key.slice(1), value);
       else if (key === "view") viewed(value);
       else if (key === "link" && !message.starting) window.history.replaceState(null, "", "?" + value);
@@ -51,6 +51,12 @@
     }
     if (message.order) app.order(message.order);
     document.dispatchEvent(new CustomEvent("shown", { detail: message }));
+  }
+  function written(place, html) {
+    const held = place.contains(document.activeElement) ? document.activeElement.dataset.drag : null;
+    place.innerHTML = html;
+    const again = held && place.querySelector(`[tabindex][data-drag="${held}"]`);
+    if (again) again.focus(); // whoever moves a handle goes on with the new one
   }
   function viewed(name) {
     root().dataset.view = name;

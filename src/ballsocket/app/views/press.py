@@ -3,29 +3,39 @@
 from __future__ import annotations
 
 import time
+from concurrent.futures import Future
+from functools import partial
 from html import escape
 from typing import Any
 
 import panel as pn
 
-from ...catalogue import catalogue
+from ...catalogue import catalogue, reference
 from ...compare import Comparison, answered
+from ...contact import Contact
 from ...io.joint_file import JointFile
 from ...output import html as page
 from ...output.press_plot import press_figure
 from ...output.press_report import press_lede, press_sections
 from ...output.style import line_of
+from ...quantities import BEARING, FIELD, JOINT
 from ...studies.around import Around, around
+from ..beside import beside
 from ..chart import swatch
-from ..drawing import section
-from ..fields import choice, several
+from ..controls import fields_of, tilt_of
+from ..fields import choice, segments, several
+from ..first_view import about_the_rim, first_view, frame_of, key
+from ..headline import headline
 from ..press_charts import press_charts
 from ..pressing import fine_curves, pressed
-from ..screen import Screen
+from ..screen import PAINTED, Screen
+from ..stresses import Stresses, painted_stresses, stresses
+from ..verdict import about_von_mises
 from ..view import Document, Host
-from ..words import headline, models_table, number_rows
+from ..words import models_table, number_rows
 
 _EVERY = tuple(catalogue)
+_PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
 _PATIENCE = 300  # ms until the table of all models follows
 _LATE, _WAITS = 0.05, 10  # s: a server that comes so late has others to answer first; how often it may
 
@@ -38,23 +48,57 @@ class Press:
 
     def __init__(self, page: Host) -> None:
         self._channel = page.channel
+        self._screen = page.screen
         self._later: Any = None
 
     def show(self, screen: Screen) -> None:
         names = tuple(dict.fromkeys((screen.answered_by, *screen.shown)))
         found = pressed(screen.file, names)
         by = found.contacts.get(screen.answered_by)
-        if by is None:
-            numbers = f"<p class='trust no'>✗ {escape(found.missing[screen.answered_by])}</p>"
-        else:
-            numbers = headline(by, screen.angle)
         drawn = {name: found[name] for name in screen.shown if name in answered(found)}
         lines = {name: line_of(name) for name in drawn}
-        self._channel.put("#press-numbers", numbers)
-        self._channel.put("#press-section", section(screen.file, None if by is None or by.status.failed else by))
+        if by is None:
+            self._channel.put(
+                "#press-numbers", f"<p class='trust no'>✗ {escape(found.missing[screen.answered_by])}</p>"
+            )
+        else:
+            exact = found.contacts.get(reference.name)
+            self._channel.put("#press-numbers", headline(by, exact, about_von_mises(by), screen.angle))
+        self._draw(screen, None if by is None or by.status.failed else by)
         self._channel.put("#press-charts", press_charts(drawn, lines, screen.angle))
         self._channel.put_fields(_fields(screen))
         self._fill_later(screen)
+
+    def _draw(self, screen: Screen, contact: Contact | None) -> None:
+        """The joint with its pressure; stresses take their time, and the drawing stays until they are there."""
+        self._screen = screen
+        if screen.painted == "pressure" or contact is None:
+            self._put_drawing(screen, contact, None)
+        else:
+            beside(
+                lambda: stresses(contact) if screen is self._screen else None, partial(self._stressed, screen, contact)
+            )
+
+    def _stressed(self, screen: Screen, contact: Contact, outcome: Future[Stresses | None]) -> None:
+        if screen is self._screen:
+            try:
+                found = outcome.result()
+            except ValueError:  # a contact too narrow for it
+                found = None
+            self._put_drawing(screen, contact, found)
+            self._channel.send()
+
+    def _put_drawing(self, screen: Screen, contact: Contact | None, inside: Stresses | None) -> None:
+        file, tilt = screen.file, tilt_of(screen.file)
+        painted = "" if inside is None else painted_stresses(file, inside, frame_of(file), tilt)
+        drawing = first_view(file, contact, fields_of(screen), (tilt, JOINT["ball_radius"].shown), painted)
+        if contact is None:
+            said = ""
+        elif inside is None:
+            said = key(float(contact.max_pressure), FIELD["pressure"], screen.painted == "stress")
+        else:
+            said = key(inside.largest, BEARING["von_mises"], False)
+        self._channel.put("#press-section", drawing + said + about_the_rim(file, contact, tilt))
 
     def _fill_later(self, screen: Screen, waits: int = _WAITS) -> None:
         """The table of all models follows when nothing has moved for a while, and others need not wait for it."""
@@ -76,7 +120,18 @@ class Press:
         self._channel.send()
 
     def _fill(self, screen: Screen) -> None:
-        self._channel.put("#press-table", models_table(pressed(screen.file, _EVERY), screen.angle))
+        found = pressed(screen.file, _EVERY)
+        self._channel.put("#press-table", models_table(found, screen.angle))
+        by = answered(found).get(screen.answered_by)
+        if by is not None:
+            beside(lambda: float(by.von_mises) if screen is self._screen else 0.0, partial(self._sure, screen, found))
+
+    def _sure(self, screen: Screen, found: Comparison, outcome: Future[float]) -> None:
+        """The numbers again, with the stress that the model itself knows."""
+        if screen is self._screen:
+            by, exact = found[screen.answered_by], found.contacts.get(reference.name)
+            self._channel.put("#press-numbers", headline(by, exact, outcome.result(), screen.angle, ""))
+            self._channel.send()
 
     def document(self, screen: Screen) -> Document:
         found = pressed(screen.file, _EVERY)
@@ -105,6 +160,7 @@ def _fields(screen: Screen) -> dict[str, Any]:
     pieces = {name: swatch(line_of(name)) for name in _EVERY}
     return {
         "answered_by": choice("answered_by", "Answered by", names, screen.answered_by),
+        "painted": segments("painted", "Painted", [(name, _PAINTED[name]) for name in PAINTED], screen.painted),
         "shown": several("shown", "Curves of", names, screen.shown, pieces),
     }
 
