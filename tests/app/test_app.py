@@ -114,7 +114,8 @@ def test_what_is_seen_can_be_saved(user):
     report = user.saved("HTML").decode()
     assert "data:image/png;base64" in report
     assert "src='http" not in report
-    assert f"{user.address}?preset=hip-32" in report.replace("&amp;", "&")
+    assert "?preset=hip-32" in report
+    assert user.address not in report
     assert parse_joint(user.saved("TOML"), "saved") == JointFile(joint, {"force": 2500.0})
 
 

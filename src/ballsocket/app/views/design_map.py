@@ -155,6 +155,7 @@ class DesignMap:
 
     def show(self, screen: Screen) -> None:
         self._screen = screen
+        self._refused.object = ""
         self._put(screen)
         beside(lambda: _map_of(screen) if screen is self._screen else None, partial(self._shown, screen))
 
@@ -170,7 +171,6 @@ class DesignMap:
             self._told.object = ""
             self._refuse(error)
             return
-        self._refused.object = ""
         self._told.object = told(found, screen)
 
     def _put(self, screen: Screen) -> None:
