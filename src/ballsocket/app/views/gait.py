@@ -13,7 +13,7 @@ import numpy
 from ...checks import check_names
 from ...hip.in_vivo import IN_VIVO
 from ...io.joint_file import JointFile
-from ...kinds import Kind
+from ...kinds import Kind, Unit
 from ...output import html as page
 from ...output.gait_plot import course_figure
 from ..fields import Field, choice, number, segments, typed
@@ -138,7 +138,7 @@ class Gait:
 def _fields(screen: Screen) -> dict[str, Field]:
     use = screen.use
     cycles = [(name, name) for name in CHOICES["cycle"]]
-    weight = number("gait.body_weight", "Body weight", "N", (300.0, 1500.0), 10.0, use.body_weight)
+    weight = number("gait.body_weight", "Body weight", Unit("N"), (300.0, 1500.0), 10.0, use.body_weight)
     return {
         "gait.cycle": choice("gait.cycle", "Cycle", cycles, use.cycle),
         "gait.body_weight": {**weight, "hidden": use.cycle not in IN_VIVO},
