@@ -138,23 +138,41 @@ def _slopes() -> Any:
 def answered(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
     """Force, moment, energy and tangent (xx, yy, zz, xy, yz, zx) of one state, for compiled functions."""
     place = reaction.place_of(position[0], position[1], position[2], constants.clearance)
-    contact = reaction.elastic(potential, place, constants)
+    return loaded(place, reaction.elastic(potential, place, constants), velocity, spin, constants)
+
+
+def loaded(place, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
+    """`answered` at a place whose contact is known."""
     fx, fy, fz, mx, my, mz = reaction.reaction(place, contact, velocity, spin, constants)
     return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(place, contact, constants)
+
+
+_BLOCK = 256
+"""States whose energies are found before their loads: a processor does the one faster without the other."""
 
 
 @cache
 def _batch() -> Any:
     @njit(error_model="numpy", fastmath={"contract"})
     def run(potential, constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
-        for i in range(len(energy)):
-            r = position[i, 0], position[i, 1], position[i, 2]
-            v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
-            w = spin[i, 0], spin[i, 1], spin[i, 2]
-            f, m, energy[i], k = answered(potential, constants, r, v, w)
-            force[i, 0], force[i, 1], force[i, 2] = f
-            moment[i, 0], moment[i, 1], moment[i, 2] = m
-            tangent[i, 0], tangent[i, 1], tangent[i, 2], tangent[i, 3], tangent[i, 4], tangent[i, 5] = k
+        known = numpy.empty((_BLOCK, 3))
+        for first in range(0, len(energy), _BLOCK):
+            last = min(first + _BLOCK, len(energy))
+            for i in range(first, last):
+                place = reaction.place_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                U, F, k = potential(smooth.ramp(place.indentation, constants.smoothing)[0])
+                known[i - first, 0], known[i - first, 1], known[i - first, 2] = U, F, k
+            for i in range(first, last):
+                place = reaction.place_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                slopes = known[i - first, 0], known[i - first, 1], known[i - first, 2]
+                rounded = smooth.ramp(place.indentation, constants.smoothing)
+                contact = reaction.stored(place, rounded, slopes, constants)
+                v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
+                w = spin[i, 0], spin[i, 1], spin[i, 2]
+                f, m, energy[i], J = loaded(place, contact, v, w, constants)
+                force[i, 0], force[i, 1], force[i, 2] = f
+                moment[i, 0], moment[i, 1], moment[i, 2] = m
+                tangent[i, 0], tangent[i, 1], tangent[i, 2], tangent[i, 3], tangent[i, 4], tangent[i, 5] = J
 
     return run
 
@@ -177,6 +195,7 @@ for _formula in (
     friction.combined,
     reaction.place_of,
     reaction.elastic,
+    reaction.stored,
     reaction.covered,
     reaction.leaning,
     reaction.pressed,
@@ -190,6 +209,7 @@ for _formula in (
     stepping.missing,
     stepping.corrected,
     stepping.stepped,
+    loaded,
     answered,
 ):
     taught(_formula)

@@ -32,6 +32,7 @@ from .watch import Watch
 _REST = (0.0, 0.0, 0.0)
 _UNBENT = (0.0, 0.0, 0.0, 0.0)
 _LISTS = (tuple, list)
+_OF_NUMPY = numpy.float64
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,7 +238,7 @@ class ForceElement:
 def three(value: Any, name: str = "a state") -> Three:
     try:
         x, y, z = value
-        if type(x) is numpy.float64:  # numbers of Python are quicker
+        if type(x) is _OF_NUMPY:  # numbers of Python are quicker
             return float(x), float(y), float(z)
         return x + 0.0, y + 0.0, z + 0.0
     except (TypeError, ValueError) as error:

@@ -98,12 +98,17 @@ class Load(NamedTuple):
         return self.element.max_pressure(self.indentation)
 
     @property
-    @_quiet
     def tangent(self) -> Any:
         """∂²U/∂r² in N/mm, (3, 3) and symmetric: less the slope of the elastic force."""
+        if type(self.force) is tuple:
+            return self._rows
+        with numpy.errstate(all="ignore"):
+            return matrix(self._rows)
+
+    @property
+    def _rows(self) -> Any:
         xx, yy, zz, xy, yz, zx = formulas.tangent(self.place, self.contact, self.element.constants)
-        rows = (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
-        return rows if type(self.force) is tuple else matrix(rows)
+        return (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
 
     @property
     def damping_matrix(self) -> Any:

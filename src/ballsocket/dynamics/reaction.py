@@ -92,10 +92,16 @@ def place_of(x: Array, y: Array, z: Array, clearance: float) -> Place:
 
 def elastic(potential, place: Place, given: Constants) -> Elastic:  # type: ignore[no-untyped-def]
     """The elastic contact at a place; its touch-down is rounded off over ± `smoothing`."""
+    rounded = ramp(place.indentation, given.smoothing)
+    return stored(place, rounded, potential(rounded[0]), given)
+
+
+def stored(place: Place, rounded: Three, slopes: Three, given: Constants) -> Elastic:
+    """The elastic contact at a place whose indentation was rounded off, with energy, force and stiffness there."""
     d = place.indentation
-    depth, slope, bend = ramp(d, given.smoothing)
+    depth, slope, bend = rounded
+    energy, force, stiffness = slopes
     missing = where(d > given.wall, nan, 0.0 * d)
-    energy, force, stiffness = potential(depth)
     energy, force, stiffness = energy + missing, force + missing, stiffness + missing
     if given.rim > 0.0:
         return covered(place, depth, slope, bend, energy, force, stiffness, given)
