@@ -15,7 +15,7 @@ from numba import njit
 from ..arrays import Numbers
 from ..compiled import foundation as _foundation  # noqa: F401 - teaches the formulas of the springs
 from ..compiled.law import CompiledLaw
-from ..compiled.teaching import taught
+from ..compiled.teaching import compilable, taught
 from ..joint import Joint
 from ..model.law import Law
 from ..models import kinematics
@@ -195,7 +195,6 @@ for _formula in (
     friction.combined,
     reaction.place_of,
     reaction.elastic,
-    reaction.stored,
     reaction.covered,
     reaction.leaning,
     reaction.pressed,
@@ -209,7 +208,9 @@ for _formula in (
     stepping.missing,
     stepping.corrected,
     stepping.stepped,
-    loaded,
     answered,
 ):
     taught(_formula)
+
+for _short in (reaction.stored, loaded):
+    compilable(_short)
