@@ -64,6 +64,11 @@ def number(name: str, label: str, unit: Unit, ends: tuple[float, float], step: f
     }
 
 
+def words(name: str, label: str, value: str, rows: int = 1) -> Field:
+    """Words that are typed, on so many rows."""
+    return {"name": name, "kind": "words", "label": label, "value": value, "rows": rows}
+
+
 def plain(value: float) -> str:
     """A number as it stands in a box: up to six digits, no power of ten where it can be avoided."""
     text = f"{value:.6g}"

@@ -18,9 +18,11 @@ from ..quantities import QUANTITIES
 from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS
 from ..studies.phrases import limit_of, range_of
-from .in_use import WHOLE, Use, pairs_of, use_of
+from . import asked, in_use
+from .asked import FIRST, Asked
+from .in_use import WHOLE, Use
 
-VIEWS = ("press", "cup", "gait", "wear", "map", "compare", "judge")
+VIEWS = ("press", "cup", "gait", "wear", "map", "compare", "judge", "evidence")
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
 PAINTED = ("pressure", "stress")
@@ -42,6 +44,7 @@ LONGEST_LINK = 8000
 BESIDE = 2
 MOST_LIMITS = 20
 _TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")
+_VIEWS = ("use", "ask")
 _PREFIXES = tuple(f"beside{number}" for number in range(1, BESIDE + 1))
 
 
@@ -92,6 +95,8 @@ class Screen:
         What the hip goes through.
     painted : str
         "pressure", or "stress": von Mises stresses in the liner.
+    asked : Asked
+        What evidence is gathered for.
     angle, size, theme : str
         "degrees" or "radians"; balls by "radius" or "diameter"; "light" or "dark".
     """
@@ -109,6 +114,7 @@ class Screen:
     standing: str = "edge_distance"
     use: Use = WHOLE
     painted: str = "pressure"
+    asked: Asked = FIRST
     angle: str = "degrees"
     size: str = "radius"
     theme: str = "light"
@@ -156,7 +162,7 @@ def link_of(screen: Screen) -> str:
         if getattr(screen, name) != getattr(START, name):
             pairs.append((name, str(getattr(screen, name))))
     pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
-    pairs += pairs_of(screen.use)
+    pairs += [*in_use.pairs_of(screen.use), *asked.pairs_of(screen.asked)]
     pairs += _flat(_tables(screen.file), "")
     for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
         pairs += _flat(_tables(file), f"{prefix}.")
@@ -178,7 +184,9 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     """
     if sum(len(name) + len(value) for name, values in pairs.items() for value in values) > LONGEST_LINK:
         raise ValueError(f"the link is longer than {LONGEST_LINK} characters")
-    plain = {name: values for name, values in pairs.items() if name.split(".")[0] not in (*_TABLES, *_PREFIXES, "use")}
+    plain = {
+        name: values for name, values in pairs.items() if name.split(".")[0] not in (*_TABLES, *_PREFIXES, *_VIEWS)
+    }
     check_names(plain, (*_KNOWN, "across", "up", "limit"), "in the link")
     for name, values in pairs.items():
         if len(values) != 1 and name != "limit":
@@ -187,7 +195,8 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     if "shown" in words:
         words["shown"] = tuple(dict.fromkeys(words["shown"].split(",")))
     words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
-    words["use"] = use_of(_part(pairs, "use"))
+    words["use"] = in_use.use_of(_part(pairs, "use"))
+    words["asked"] = asked.asked_of(_part(pairs, "ask"))
     words["limits"] = tuple(map(limit_of, pairs.get("limit", ())))
     joint = {name: values[0] for name, values in pairs.items() if name.split(".")[0] in _TABLES}
     others = [_part(pairs, prefix) for prefix in _PREFIXES]

@@ -122,7 +122,23 @@
     return { made, put(field) { words.textContent = field.label; box.checked = field.value; } };
   }
 
-  const makers = { number, choice, segments, several, tick };
+  function words(name) {
+    const label = element("label", { for: `in-${name}` });
+    const box = element("textarea", { id: `in-${name}`, autocomplete: "off", spellcheck: "false" });
+    const made = element("div", { class: "field words" }, label, box);
+    box.addEventListener("input", () => typing.add(name));
+    box.addEventListener("change", () => { typing.delete(name); edit(name, box.value); });
+    return {
+      made,
+      put(field) {
+        label.textContent = field.label;
+        box.rows = field.rows;
+        if (!typing.has(name)) box.value = field.value;
+      },
+    };
+  }
+
+  const makers = { number, choice, segments, several, tick, words };
 
   app.field = function (name, said) {
     let found = fields.get(name);

@@ -3,12 +3,17 @@
 from .compare import Compare
 from .cup import Cup
 from .design_map import DesignMap
+from .evidence import Evidence
 from .gait import Gait
 from .judge import Judge
 from .press import Press
 from .wear import Wear
 
-KINDS: dict[str, type[Press] | type[Cup] | type[Gait] | type[Wear] | type[DesignMap] | type[Compare] | type[Judge]] = {
+Kind = (
+    type[Press] | type[Cup] | type[Gait] | type[Wear] | type[DesignMap] | type[Compare] | type[Judge] | type[Evidence]
+)
+
+KINDS: dict[str, Kind] = {
     "press": Press,
     "cup": Cup,
     "gait": Gait,
@@ -16,5 +21,6 @@ KINDS: dict[str, type[Press] | type[Cup] | type[Gait] | type[Wear] | type[Design
     "map": DesignMap,
     "compare": Compare,
     "judge": Judge,
+    "evidence": Evidence,
 }
 """All, by the names that links give them, in the order of the page."""
