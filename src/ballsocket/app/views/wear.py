@@ -11,7 +11,7 @@ from ...checks import check_names, shown
 from ...hip.coefficients import share_of_slide, wear_factor
 from ...hip.in_vivo import IN_VIVO
 from ...io.joint_file import JointFile
-from ...kinds import Kind
+from ...kinds import Kind, Unit
 from ...output import html as page
 from ...presets import joints
 from ..fields import Field, choice, number, segments, typed
@@ -156,13 +156,13 @@ def _fields(screen: Screen) -> dict[str, Field]:
     use = screen.use
     unit = _UNITS.get(use.law, "mm³/(N m)")
     factors = {
-        name: number(f"wear.{name}", f"{title} [{unit}]", "", (1e-8, 1e-5), 1e-8, getattr(use, name))
+        name: number(f"wear.{name}", f"{title} [{unit}]", Unit(""), (1e-8, 1e-5), 1e-8, getattr(use, name))
         for name, title in (("coefficient", "Coefficient"), ("circular", "Coefficient on a circle"))
     }
     listed = [
         choice("wear.cycle", "Cycle", [(name, name) for name in CHOICES["cycle"]], use.cycle),
         {
-            **number("wear.body_weight", "Body weight", "N", (300.0, 1500.0), 10.0, use.body_weight),
+            **number("wear.body_weight", "Body weight", Unit("N"), (300.0, 1500.0), 10.0, use.body_weight),
             "hidden": use.cycle not in IN_VIVO,
         },
         segments("wear.contact", "The bore gives way as", list(_BEDS.items()), use.contact),
@@ -170,10 +170,10 @@ def _fields(screen: Screen) -> dict[str, Field]:
         factors["coefficient"],
         {**factors["circular"], "hidden": use.law != "cross-shear"},
         {
-            **number("wear.spread", "It scatters by a factor", "", (1.0, 3.0), 0.1, use.spread),
+            **number("wear.spread", "It scatters by a factor", Unit(""), (1.0, 3.0), 0.1, use.spread),
             "hidden": use.law != "archard",
         },
-        number("wear.millions", "Million cycles", "", (0.5, 20.0), 0.5, use.millions),
+        number("wear.millions", "Million cycles", Unit(""), (0.5, 20.0), 0.5, use.millions),
         segments("wear.creep", "The liner creeps", [(name, name) for name in CHOICES["creep"]], use.creep),
         choice("wear.beside", "Compare with", _choices(screen), _OTHER if screen.beside else _ALONE),
     ]
