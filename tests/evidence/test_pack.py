@@ -1,15 +1,17 @@
 """Evidence for a question: what is refused, what is gathered, and whether it still says the same."""
 
 import json
+import shutil
 from functools import partial
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 
 import ballsocket as bs
 from ballsocket.evidence import matrix
 from ballsocket.evidence.code_checks import CHECKS
-from ballsocket.evidence.folder import QUESTION, RECORD, differences, write
+from ballsocket.evidence.folder import PAGE, QUESTION, RECORD, SUMS, contradictions, differences, made_by, write
 from ballsocket.evidence.inputs import inputs
 from ballsocket.evidence.pack import gathered
 from ballsocket.evidence.question import read_question
@@ -159,14 +161,55 @@ def test_layers_have_the_sources_of_their_materials(asked):
     assert found["backing[0].young"] == question.file.joint.backing[0].material.source != ""
 
 
-def test_a_pack_is_computed_again_and_what_was_changed_is_named(pack):
-    _, _, folder = pack
-    record = json.loads((folder / "out" / RECORD).read_text("utf-8"))
+def test_a_pack_is_computed_again_and_what_was_changed_is_named(pack, tmp_path):
+    """Also by somebody who wrote new sums for what was changed."""
+    out = Path(shutil.copytree(pack[2] / "out", tmp_path / "out"))
+    record = json.loads((out / RECORD).read_text("utf-8"))
     record["matrix"][1]["numbers"]["max_pressure"] *= 0.9
-    (folder / "out" / RECORD).write_text(json.dumps(record), encoding="utf-8")
-    count, found = differences(folder / "out")
+    record["matrix"][0]["valid"] = 1
+    record["limits"][0]["verdict"] = "kept"
+    record["approved"] = "by nobody"
+    (out / RECORD).write_text(json.dumps(record), encoding="utf-8")
+    lines = (out / SUMS).read_text("utf-8").splitlines()
+    (out / SUMS).write_text("\n".join(line for line in lines if PAGE not in line), encoding="utf-8")
+    count, found = differences(out, page=evidence_page)
     assert count > 200
-    assert [each.where for each in found] == [RECORD, "matrix[1].numbers.max_pressure"]
+    assert sorted(each.where for each in found) == sorted(
+        [
+            RECORD,
+            PAGE,  # not listed
+            PAGE,  # says what the record said
+            "matrix[1].numbers.max_pressure",
+            "matrix[0].valid",
+            "limits[0].verdict",
+            "approved",
+        ]
+    )
+    assert made_by(out) == record["version"]
+
+
+def test_a_pack_that_disagrees_with_itself_is_told(pack, tmp_path):
+    out = Path(shutil.copytree(pack[2] / "out", tmp_path / "out"))
+    record = json.loads((out / RECORD).read_text("utf-8"))
+    assert list(contradictions(record, out, evidence_page)) == []
+    record["code_verification"][0]["observed"] = 3.0
+    record["credibility"][0]["missing"] = "nothing at all"
+    assert [each.where for each in contradictions(record, out, None)] == [
+        "code_verification[0].observed",
+        "credibility[0].missing",
+    ]
+    text = (out / PAGE).read_text("utf-8")
+    (out / PAGE).write_text(text.replace("not kept", "kept"), encoding="utf-8")
+    whole = json.loads((out / RECORD).read_text("utf-8"))
+    assert [each.where for each in contradictions(whole, out, evidence_page)] == [PAGE]
+    assert list(contradictions({**whole, "version": "9.9"}, out, evidence_page)) == []  # its words may be others
+
+
+def test_sums_that_are_no_text_are_told(pack, tmp_path):
+    out = Path(shutil.copytree(pack[2] / "out", tmp_path / "out"))
+    (out / SUMS).write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ValueError, match=r"holds no pack of evidence: checksums.txt is not text"):
+        differences(out)
 
 
 def test_wear_stands_in_the_matrix_and_the_joint_that_wears_most_is_worn_to_the_end(asked):

@@ -15,9 +15,10 @@ import ballsocket as bs
 
 from ..checks import needs
 from ..engines.local import Engine, Processes
-from ..evidence.folder import differences, write
+from ..evidence.folder import differences, made_by, write
 from ..evidence.pack import Listener, gathered
 from ..evidence.question import read_question
+from ..fingerprint import fingerprint
 from ..output.evidence_page import conclusions, evidence_page
 from .root import FAILURE, app, echo_path
 from .words import AsJson, echo_json
@@ -58,14 +59,23 @@ def evidence(
 
 def _again(folder: Path, engine: Engine, as_json: bool) -> None:
     with _told() as listen:
-        count, found = differences(folder, listen, engine)
+        count, found = differences(folder, listen, engine, evidence_page)
     if as_json:
         told = [each.summary() for each in found]
-        echo_json({"version": bs.__version__, "valid": not found, "compared": count, "differences": told})
+        echo_json(
+            {
+                "version": bs.__version__,
+                "valid": not found,
+                "made_by": made_by(folder),
+                "compared": count,
+                "differences": told,
+            }
+        )
     else:
         for each in found:
             typer.echo(str(each))
         typer.echo(f"{count - len(found)} of {count} numbers, words and files are as they were written")
+        typer.echo(f"written by ballsocket {made_by(folder)}, computed again by {fingerprint()}")
     if found:
         raise typer.Exit(FAILURE)
 

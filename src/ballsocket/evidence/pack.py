@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from datetime import date
 from functools import partial
 from hashlib import sha256
 from math import degrees
@@ -150,6 +151,7 @@ def _record(
     record: dict[str, Any] = {
         "version": fingerprint(),
         "made_with": made_with(),
+        "made_on": date.today().isoformat(),
         "question": question.text,
         "context_of_use": question.context,
         "risk": {"influence": question.influence, "consequence": question.consequence},

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import date
 from html import escape
 
 from . import html
@@ -30,7 +29,7 @@ details::details-content { content-visibility: visible; display: block; } }
 .call { font-family: monospace; font-size: 0.8rem; color: #555; }</style>"""
 
 
-def evidence_page(record: Record, day: date | None = None) -> str:
+def evidence_page(record: Record) -> str:
     """The page of a pack; see `evidence.pack.gathered`."""
     sections = {
         "question": ("Question and context of use", _question(record)),
@@ -44,7 +43,7 @@ def evidence_page(record: Record, day: date | None = None) -> str:
         "wear": ("Wear", wear_section(record)),
         "limits": ("Limits and assumptions", listed(_LIMITS)),
         "credibility": ("Credibility factors (ASME V&V 40)", _credibility(record)),
-        "signed": ("Signatures", _signed(record, day or date.today())),
+        "signed": ("Signatures", _signed(record)),
     }
     lede = f"{html.PRINT}{_STYLE}<p>{escape(record['question'])}</p>{listed(conclusions(record))}"
     return html.page("Evidence", lede, sections)
@@ -105,11 +104,11 @@ def _credibility(record: Record) -> str:
     return words(("activity", "factor", "supported by", "missing"), rows)
 
 
-def _signed(record: Record, day: date) -> str:
+def _signed(record: Record) -> str:
     told = (
-        f"<p>Made on {day.isoformat()} by ballsocket {escape(record['version'])}. The SHA-256 sums of this page and of "
-        "what lies beside it are in checksums.txt; <code>ballsocket evidence --check FOLDER</code> computes it "
-        "again.</p>"
+        f"<p>Made on {escape(record['made_on'])} by ballsocket {escape(record['version'])}. The SHA-256 sums of this "
+        "page and of what lies beside it are in checksums.txt; <code>ballsocket evidence --check FOLDER</code> "
+        "computes it again.</p>"
     )
     rows = "".join(f"<tr><td>{name}</td><td></td><td></td></tr>" for name in ("prepared", "reviewed", "approved"))
     return f"{told}<table class='sign'><tr><th></th><th>name, date</th><th>signature</th></tr>{rows}</table>"
