@@ -83,6 +83,15 @@ def pack(tmp_path_factory):
         ("coefficient = 0.06", "coefficient = -1", "a coefficient of friction is 0 to 2"),
         ('joint = "hip-36"', 'joint = "hip-63"', "neither a file nor a preset.*hip-36"),
         ("[friction]", '[wear]\nfile = "no.toml"\n[friction]', r"\[wear\] file = 'no.toml' is not there"),
+        ("[friction]", '[wear]\nfile = "asked.toml"\n[friction]', "'question' at the top is not known"),
+        ('question = "May it be?"', 'question = " "', "question is empty: what is to be decided"),
+        ('force = ["2 kN", "4 kN"]', 'force = ["2 kN", "2000 N"]', r"\[matrix\] force has '2000 N' twice"),
+        ("[friction]", 'tilt = "10 +- 5 deg"\n[friction]', r"tilt in \[tolerances\] cannot scatter"),
+        (
+            "[friction]",
+            'clearance = "0.1 +- 0.5 mm"\n[friction]',
+            r"\[tolerances\] reaches too far: clearance\[0\] = -0",
+        ),
     ],
 )
 def test_a_question_that_is_wrong_is_told_how(asked, old, new, message):

@@ -13,7 +13,7 @@ from ..arrays import Array, to_numpy, where
 from ..joint import Joint
 from ..studies.parameters import LOADS, pressable
 from .matrix import Row
-from .question import Question
+from .question import ALMOST_ALL, Question
 
 Ranges = Mapping[str, Sequence[float]]
 """Least and largest of each of the numbers that a linear contact depends on."""
@@ -107,13 +107,9 @@ def reach_asked(question: Question, found: Sequence[Row]) -> Ranges:
     """The ranges over a question's matrix, with the forces that its cases came to, and over its tolerances."""
     cases = {name: numpy.array([row.case[name] for row in found]) for name in found[0].case}
     forces = numpy.array([row.numbers.get("force", numpy.nan) for row in found])
-    spreads = {name: spread.frozen.ppf(_ALL) for name, spread in question.tolerances.items() if name not in LOADS}
+    spreads = {name: spread.frozen.ppf(ALMOST_ALL) for name, spread in question.tolerances.items() if name not in LOADS}
     ends = [{}, *({name: end} for name, both in spreads.items() for end in both)]
     return reach_of((pressable(question.file.joint, {**cases, **end})[0], forces) for end in ends)
-
-
-_ALL = (0.001, 0.999)
-"""Shares of what scatters, between which it is."""
 
 
 def applicability(reaches: Mapping[str, Sequence[float]], asked: Ranges, tilted: bool) -> dict[str, Any]:

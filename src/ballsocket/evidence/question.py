@@ -11,6 +11,7 @@ from typing import Any
 
 from ..catalogue import off_axis, reference
 from ..checks import check_text, nearest, require, shown
+from ..hip.file import read_hip
 from ..io.joint_file import KEYS, JointFile, check_keys
 from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of
@@ -139,7 +140,7 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
         file=joint_in(content, path.parent),
         axes=axes,
         limits=_limits(parts["required"].get("limits", [])),
-        tolerances=dict(_scatter(name, value) for name, value in parts["tolerances"].items()),
+        tolerances=_tolerances(parts["tolerances"]),
         sources=_sources(table_of(content, "sources")),
         friction=_friction(parts["friction"]),
         hip=_hip(parts["wear"], path.parent),
@@ -152,7 +153,9 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
 def _words(content: Mapping[str, Any], name: str, meaning: str) -> str:
     if name not in content:
         raise ValueError(f"{name} is missing: {meaning}")
-    return check_text(name, content[name])
+    if not check_text(name, content[name]).strip():
+        raise ValueError(f"{name} is empty: {meaning}")
+    return str(content[name])
 
 
 def _level(part: Mapping[str, Any], name: str, meaning: str) -> str:
@@ -177,7 +180,11 @@ def _several(name: str, value: Any) -> tuple[float, ...]:
     listed = value if isinstance(value, list) else [value]
     if not listed:
         raise ValueError(f"[matrix] {name} is an empty list")
-    return tuple(parse(f"{name}[{place}]", each, PARAMETERS[name].kind) for place, each in enumerate(listed))
+    values = tuple(parse(f"{name}[{place}]", each, PARAMETERS[name].kind) for place, each in enumerate(listed))
+    twice = [each for place, each in enumerate(listed) if values[place] in values[:place]]
+    if twice:
+        raise ValueError(f"[matrix] {name} has {shown(twice[0])} twice")
+    return values
 
 
 def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
@@ -193,6 +200,24 @@ def _limits(given: Any) -> tuple[Limit, ...]:
     if not (isinstance(given, list) and all(isinstance(each, str) for each in given)):
         raise ValueError(f"limits = {shown(given)} must be a list of texts, such as 'max_pressure <= 20 MPa'")
     return tuple(map(limit_of, given))
+
+
+def _tolerances(part: Mapping[str, Any]) -> Mapping[str, Distribution]:
+    """What scatters, by name, all of it between ends that make a joint and a load along the axis."""
+    spreads = dict(_scatter(name, value) for name, value in part.items())
+    for name, spread in spreads.items():
+        if name in AIMS:
+            raise ValueError(f"{name} in [tolerances] cannot scatter: tolerances are followed along the axis")
+        ends = [float(spread.frozen.ppf(share)) for share in ALMOST_ALL]
+        try:
+            check_values(grid(**{name: ends}))
+        except ValueError as error:
+            raise ValueError(f"[tolerances] reaches too far: {error}") from error
+    return spreads
+
+
+ALMOST_ALL = (0.001, 0.999)
+"""Shares of what scatters, between which it is."""
 
 
 def _scatter(name: str, value: Any) -> tuple[str, Distribution]:
@@ -220,4 +245,5 @@ def _hip(part: Mapping[str, Any], folder: Path) -> Path | None:
     path = folder / check_text("file", part["file"])
     if not path.is_file():
         raise ValueError(f"[wear] file = {shown(part['file'])} is not there")
+    read_hip(path)
     return path

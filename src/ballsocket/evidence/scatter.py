@@ -16,7 +16,7 @@ from ..studies.parameters import AIMS, LOADS, pressable
 from ..studies.sensitivity import sensitivity
 from ..studies.usual import usual
 from .matrix import Case
-from .question import Question
+from .question import ALMOST_ALL, Question
 
 ANSWERS = ("max_pressure", "half_angle", "area", "indentation")
 BAND = (2.5, 50.0, 97.5)
@@ -37,7 +37,7 @@ def scattered(question: Question, case: Case) -> dict[str, Any]:
     load = {name: value for name, value in case.items() if name in LOADS and name not in spreads}
     fixed = {name: value for name, value in case.items() if name not in (*AIMS, *load, *spreads)}
     joint, _, _ = pressable(question.file.joint, fixed)
-    ends = {name: [float(spread.frozen.ppf(share)) for share in (0.001, 0.999)] for name, spread in spreads.items()}
+    ends = {name: [float(spread.frozen.ppf(share)) for share in ALMOST_ALL] for name, spread in spreads.items()}
     model = usual(joint, {name: each for name, each in ends.items() if name not in LOADS})
     count = _SOLVED if model is reference else _QUICK
     drawn = sample(count, seed=_SEED, method=Method.SOBOL, **spreads).part([slice(None)])
