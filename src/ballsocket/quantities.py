@@ -21,12 +21,16 @@ def _anything(x: Array) -> Array:
     return x == x
 
 
+_LEAST = 1e-300
+"""What is smaller counts as 0: a ratio to it has no number."""
+
+
 def _positive(x: Array) -> Array:
-    return (x > 0) & (x < inf)
+    return (x > _LEAST) & (x < inf)
 
 
 def _positive_or_infinite(x: Array) -> Array:
-    return x > 0
+    return x > _LEAST
 
 
 def _not_negative(x: Array) -> Array:

@@ -10,6 +10,7 @@ pytest.importorskip("tomli_w")
 from ballsocket.app.page import Page
 from ballsocket.app.screen import link_of, read_link
 
+from ..app.asking import trouble
 from . import links
 from .limits import check_sentence, inputs, within_limits
 
@@ -38,4 +39,4 @@ def test_pages(query):
     with within_limits():
         page = Page(query)
         page.leave()
-        assert "This cannot be shown" not in page._trouble.object
+        assert "This cannot be shown" not in trouble(page)
