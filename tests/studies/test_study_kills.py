@@ -21,7 +21,7 @@ from ..extent import either, some
 COUNTS = {"clearances": either(quick=30, long=70), "radii": 25, "model": "exact"}
 """Blocks of half a second: three in a quick run, seven in a long one."""
 
-TIMES = either(quick={"serial": 1}, long={"serial": 10, "processes": 10, "dask": 3})
+TIMES = either(quick={"serial": 1}, long={"serial": 5, "processes": 5, "dask": 2})
 PATIENCE = 600  # seconds, for a slow machine
 HIP = bs.joints["hess-forsbach"]
 pytestmark = pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds processes in /proc")
