@@ -84,6 +84,11 @@ def test_the_joint_is_drawn_with_its_contact():
     assert {"cross-linked PE, 5 mm", "contact to 40°"} <= set(texts(axes))
 
 
+def test_a_contact_off_the_axis_is_not_drawn_about_it():
+    axes = figures.joint_figure({**RECORD, "drawn": {**RECORD["drawn"], "half_angle_deg": None}}).axes[0]
+    assert not any("contact" in text for text in texts(axes))
+
+
 @pytest.mark.parametrize("name", ["metal_backed_hip.toml", "hip.toml"])
 def test_a_joint_is_the_one_that_its_summary_tells_of(name):
     joint = read_joint(EXAMPLES / name).joint

@@ -186,7 +186,7 @@ def _drawn(question: Question, worst: Mapping[str, matrix.Row]) -> dict[str, Any
     return {
         "joint": joint.summary(),
         "arc_of_cover_deg": degrees(question.file.cup.arc_of_cover),
-        "half_angle_deg": degrees(row.numbers["half_angle"]),
+        "half_angle_deg": None if question.model.off_axis else degrees(row.numbers["half_angle"]),
     }
 
 

@@ -32,10 +32,12 @@ _WRITTEN = 150
 
 
 def joint_figure(record: Record) -> Figure:
-    """The joint where the pressure is worst, cut through, and the arc of its contact."""
+    """The joint where the pressure is worst, cut through, and the arc of its contact where that is about the axis."""
     drawn = record["drawn"]
     joint = _joint(drawn["joint"])
     figure = joint_section(joint, Cup(arc_of_cover=radians(drawn["arc_of_cover_deg"])))
+    if drawn["half_angle_deg"] is None:
+        return figure
     edge = radians(drawn["half_angle_deg"])
     angle, radius = numpy.linspace(-edge, edge, 121), float(joint.socket_radius)
     axes = figure.axes[0]
@@ -127,7 +129,7 @@ def _mark(axes: Axes, values: Numbers, record: Record, name: str, places: Any) -
         if values.size <= _WRITTEN:
             axes.text(column, row, f"{value:.3g}", ha="center", va="center", fontsize=8, color=ink)
         if not low <= value <= high:
-            axes.plot(column, row, marker="x", markersize=18, color=ink, linewidth=0.8)
+            axes.plot(column + 0.38, row - 0.3, marker="x", markersize=6, color=ink, linewidth=0.8)
         if places[row][column] == worst:
             frame: Any = {"fill": False, "edgecolor": VERMILLION, "linewidth": 2.2}
             axes.add_patch(_rectangle(column - 0.47, row - 0.47, 0.94, 0.94, **frame))

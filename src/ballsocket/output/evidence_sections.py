@@ -42,6 +42,12 @@ def _worn_at_the_end(record: Record) -> list[tuple[str, str, str]]:
 _OPEN = 200
 """Cases up to which all of them are shown at once."""
 
+
+def _joint_caption(record: Record) -> str:
+    aside = "" if record["drawn"]["half_angle_deg"] is not None else " Its contact lies off the axis and is not drawn."
+    return f"The joint where the pressure is worst.{aside}"
+
+
 _MAPPED = ("max_pressure", "edge_distance", "wear_rate")
 
 
@@ -65,7 +71,7 @@ def matrix_section(record: Record) -> str:
 
 def _maps(record: Record) -> str:
     """The joint where it is pressed hardest, and the numbers over the matrix."""
-    section = html.vector(figures.joint_figure(record), "section", "The joint where the pressure is worst.")
+    section = html.vector(figures.joint_figure(record), "section", _joint_caption(record))
     names = [name for name in _MAPPED if name in record["worst"]] if len(record["matrix"]) > 1 else []
     return section + "".join(
         html.vector(figures.matrix_figure(record, name), NAMES[name].title, _mapped(record, name)) for name in names
@@ -74,7 +80,7 @@ def _maps(record: Record) -> str:
 
 def _mapped(record: Record, name: str) -> str:
     limited = any(each["name"] == name for each in record["limits"])
-    crossed = " Crossed out: a limit is not kept." if limited else ""
+    crossed = " Marked ×: the limit is not kept." if limited else ""
     return escape(f"{_capital(NAMES[name].title)} over the matrix; framed where it is worst.{crossed}")
 
 
