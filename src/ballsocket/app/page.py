@@ -20,6 +20,7 @@ from .channel import Channel
 from .controls import behind, edited, fields_of
 from .fields import Field, segments
 from .files import Seen, made
+from .layers import layer_fields, layers_edited
 from .pressing import pressed
 from .screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, link_of, read_link
 from .solving import Errand
@@ -46,7 +47,7 @@ class Page:
         self.channel = Channel(self._asked)
         self.screen = self._read(query)
         self._views: dict[str, View] = {}
-        self._ears: dict[str, Callable[[str, Any], None]] = {}
+        self._ears: dict[str, Callable[[str, Any], None]] = {"behind": self._layered}
         self.main = pn.Column(sizing_mode="stretch_width")
         self._errand = Errand(self._refresh)
         pn.state.onload(self._refresh)  # whoever only looks at the address makes nothing work
@@ -104,6 +105,9 @@ class Page:
         self.refuse("")
         self.ask(file=file)
 
+    def _layered(self, key: str, value: Any) -> None:
+        self.ask(file=layers_edited(self.screen.file, key, value))
+
     def _choose(self, words: Mapping[str, Any]) -> None:
         name, value = str(words.get("name")), words.get("value")
         check_names([name], _CHOSEN, "among the choices")
@@ -146,7 +150,7 @@ class Page:
         """Every input beside the views, by its name."""
         angles = segments("angle", "angles in", [(each, each) for each in ANGLES], self.screen.angle)
         sizes = segments("size", "balls by", [(each, each) for each in SIZES], self.screen.size)
-        return {**fields_of(self.screen), "angle": angles, "size": sizes}
+        return {**fields_of(self.screen), **layer_fields(self.screen.file.joint), "angle": angles, "size": sizes}
 
     def _refresh(self) -> None:
         with pn.io.hold():

@@ -31,6 +31,9 @@ PAINTED = ("pressure", "stress")
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
 """Models that press a map's points at once."""
 
+BASES = ("0", "1", "2")
+"""Places of the joints that are compared: that on the screen, and those beside it."""
+
 STANDINGS = ("edge_distance", "max_pressure")
 """What a map of how a cup may stand can show."""
 
@@ -91,6 +94,8 @@ class Screen:
         Of the map.
     standing : str
         What the map of how a cup may stand shows.
+    base : str
+        The joint with which others are compared, one of BASES.
     use : Use
         What the hip goes through.
     painted : str
@@ -112,6 +117,7 @@ class Screen:
     quantity: str = "max_pressure"
     limits: tuple[Limit, ...] = ()
     standing: str = "edge_distance"
+    base: str = "1"
     use: Use = WHOLE
     painted: str = "pressure"
     asked: Asked = FIRST
@@ -140,6 +146,7 @@ _KNOWN: Mapping[str, Sequence[str]] = {
     "map_model": QUICK,
     "quantity": MAPPED,
     "standing": STANDINGS,
+    "base": BASES,
     "painted": PAINTED,
     "angle": ANGLES,
     "size": SIZES,
@@ -153,7 +160,7 @@ START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
 def link_of(screen: Screen) -> str:
     """The part of a link after the question mark: what differs from the start, and the joint."""
     pairs: list[tuple[str, str]] = []
-    for name in ("view", "answered_by", "map_model", "quantity", "standing", "painted", "angle", "size"):
+    for name in ("view", "answered_by", "map_model", "quantity", "standing", "base", "painted", "angle", "size"):
         if getattr(screen, name) != getattr(START, name):
             pairs.append((name, getattr(screen, name)))
     if screen.shown != START.shown:

@@ -35,12 +35,14 @@ class Compare:
     title = "Compare"
 
     def __init__(self, page: Host) -> None:
-        self._ask, self._screen = page.ask, page.screen
+        self._ask, self._screen, self._putting = page.ask, page.screen, False
 
         self._keep = pn.widgets.Button(label="Put this joint beside", width=180)
         self._preset = pn.widgets.Select(
             label="Put beside", options=[_CHOOSE, *joints], width=220, stylesheets=inputs()
         )
+        self._base = pn.widgets.Select(label="Percent against", options={}, width=220, stylesheets=inputs())
+        self._base.param.watch(self._based, "value")
         self._drop = [pn.widgets.Button(label="", width=200, visible=False) for _ in range(BESIDE)]
         self._keep.on_click(lambda event: self._add(self._screen.file))
         self._preset.param.watch(self._chosen, "value")
@@ -49,7 +51,7 @@ class Compare:
         self._told, self._table, self._drawn = html(), html(), html()
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self.panel = pn.Column(
-            pn.FlexBox(self._preset, self._keep, *self._drop, align_items="end", gap="12px", **wide),
+            pn.FlexBox(self._preset, self._keep, self._base, *self._drop, align_items="end", gap="12px", **wide),
             self._told,
             self._table,
             self._drawn,
@@ -67,6 +69,16 @@ class Compare:
             self._add(JointFile(joints[event.new], self._screen.file.load))
             self._preset.value = _CHOOSE
 
+    def _based(self, event: Any) -> None:
+        if not self._putting:  # only what a user changes counts
+            self._ask(base=event.new)
+
+    def _put_base(self, files: Mapping[str, JointFile], screen: Screen) -> None:
+        self._putting = True
+        places = {name: str(place) for place, name in enumerate(files)}
+        self._base.param.update(options=places, value=str(base_of(files, screen)))
+        self._putting = False
+
     def _remove(self, number: int) -> None:
         beside = self._screen.beside
         self._ask(beside=(*beside[:number], *beside[number + 1 :]))
@@ -74,11 +86,14 @@ class Compare:
     def show(self, screen: Screen) -> None:
         self._screen = screen
         files = labelled(screen)
+        self._put_base(files, screen)
         for number, button in enumerate(self._drop):
             button.visible = number < len(screen.beside)
             button.label = f"Take {list(files)[number + 1]} away" if button.visible else "–"
         self._told.object = (
-            "" if screen.beside else "<p class='quiet'>Put this joint or a preset beside, then change this one.</p>"
+            _percent(files, screen)
+            if screen.beside
+            else "<p class='quiet'>Put this joint or a preset beside, then change this one.</p>"
         )
         contacts = answers(files, screen.answered_by)
         self._table.object = table(*_text_table(files, contacts, screen))
@@ -104,6 +119,11 @@ class Compare:
 
     def leave(self) -> None:
         """Nothing runs on."""
+
+
+def _percent(files: Mapping[str, JointFile], screen: Screen) -> str:
+    base = escape(list(files)[base_of(files, screen)])
+    return f"<p class='quiet'>In brackets: how much more or less than {base}, in percent of that.</p>"
 
 
 def labelled(screen: Screen) -> dict[str, JointFile]:
@@ -149,15 +169,15 @@ _DIMENSIONS = {
 def _text_table(
     files: Mapping[str, JointFile], contacts: Mapping[str, Contact], screen: Screen
 ) -> tuple[list[str], list[list[str]]]:
-    """A column a joint; answers with their difference from the first that was put beside."""
+    """A column a joint; answers with their difference from the one that is chosen as base."""
     rows = [
         [JOINT[name].head(), *(f"{float(getattr(file.joint, name)):g}" for file in files.values())]
         for name in _DIMENSIONS[screen.size]
     ]
     rows.append(["liner", *(str(file.joint.liner) for file in files.values())])
     rows.append(["ball", *("rigid" if file.joint.ball is None else str(file.joint.ball) for file in files.values())])
-    reference = list(files)[min(1, len(files) - 1)]
-    first = contacts.get(reference)
+    base = list(files)[base_of(files, screen)]
+    first = contacts.get(base)
     for each in columns(screen.angle):
         row = [each.label]
         for name in files:
@@ -171,7 +191,13 @@ def _text_table(
             row.append(f"{number_text(number)}{apart}")
         rows.append(row)
     rows.append(["trust it here?", *(_trusted(contacts.get(name), file, screen) for name, file in files.items())])
-    return [screen.answered_by, *files], rows
+    heads = (f"{name}: the base" if name == base and len(files) > 1 else name for name in files)
+    return [screen.answered_by, *heads], rows
+
+
+def base_of(files: Mapping[str, JointFile], screen: Screen) -> int:
+    """The place of the joint with which the others are compared; the last, where there are not so many."""
+    return min(int(screen.base), len(files) - 1)
 
 
 def _trusted(contact: Contact | None, file: JointFile, screen: Screen) -> str:
