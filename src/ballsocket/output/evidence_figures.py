@@ -153,12 +153,11 @@ def methods_figure(record: Record) -> Figure:
     pieces = [piece for piece in record["calculation"] if piece["methods"][0]["numbers"]]
     keys = list(dict.fromkeys(key for piece in pieces for key in piece["deviation"]))
     figure, axes = _one(7.2, 1.4 + 0.5 * len(keys))
-    names = list(dict.fromkeys(method["name"] for piece in pieces for method in piece["methods"][1:]))
-    for piece in pieces:
-        first = piece["methods"][0]
-        for method in piece["methods"][1:]:
-            if method["valid"] and method["aligned"] == first["aligned"]:
-                _dots(axes, keys, names, method, first)
+    pairs = [(method, piece["methods"][0]) for piece in pieces for method in piece["methods"][1:]]
+    pairs = [(method, first) for method, first in pairs if method["valid"] and method["aligned"] == first["aligned"]]
+    names = list(dict.fromkeys(method["name"] for method, _ in pairs))
+    for method, first in pairs:
+        _dots(axes, keys, names, method, first)
     required = 100 * record["required"]["accuracy"]
     axes.axvspan(-required, required, color="0.94", zorder=0)
     axes.axvline(0.0, color=INK, linewidth=0.8)
