@@ -71,18 +71,18 @@ def test_the_load_keeps_the_contact_when_it_is_given_otherwise(user):
 def test_a_link_brings_back_what_was_seen(user, other):
     user.open()
     user.nudge("ball_radius", times=3)
-    user.page.locator("[data-name=size] label", has_text="diameter").click()
-    assert user.says("Head diameter 2 R1")
+    user.page.locator("[data-name=size] label", has_text="radius").click()
+    assert user.says("Ball radius R1")
     expected = bs.Exact().press(replace(HIP, ball_radius=14.3), force=3000.0).max_pressure
     assert user.shows("max_pressure", expected)
-    user.page.wait_for_function("window.location.search.includes('size=diameter')")
+    user.page.wait_for_function("window.location.search.includes('size=radius')")
     user.page.locator("#share").click()
     assert user.says("copied")
     link = user.page.evaluate("navigator.clipboard.readText()")
     assert parse_qs(urlsplit(link).query)["joint.ball_radius"] == ["14.3"]
     other.open(link.removeprefix(user.address))
     assert other.shows("max_pressure", expected)
-    assert other.says("Head diameter 2 R1")
+    assert other.says("Ball radius R1")
 
 
 def test_a_link_that_cannot_be_read_says_so(user):
@@ -181,7 +181,7 @@ def test_the_keyboard_is_enough(user):
     assert user.page.evaluate("document.activeElement.textContent") == "Go to the answers"
     bars = user.page.get_by_role("slider")
     assert bars.count() == user.page.locator(".side input[type=range]").count() > 5
-    user.page.get_by_role("slider", name="Radial clearance c mm").focus()
+    user.page.get_by_role("slider", name="Diametral clearance 2 c mm").focus()
     user.page.keyboard.press("ArrowUp")
     assert user.shows("max_pressure", bs.Exact().press(replace(HIP, clearance=0.105), force=3000.0).max_pressure)
     user.page.get_by_role("textbox", name="Normal force F N").focus()

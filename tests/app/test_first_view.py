@@ -98,7 +98,7 @@ def test_a_verdict_is_that_of_the_strength_that_is_used_most(strengths, force, h
     assert said[0] is holds
     assert words in said[1]
     if "allowable_pressure" in strengths and len(strengths) == 1:
-        assert borne.share == pytest.approx(contact.max_pressure / strengths["allowable_pressure"])
+        assert borne.ratio == pytest.approx(contact.max_pressure / strengths["allowable_pressure"])
 
 
 def test_the_first_number_comes_with_its_share_of_the_allowable():

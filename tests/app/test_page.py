@@ -58,8 +58,8 @@ def test_what_does_not_change_is_not_shown_again(monkeypatch):
     monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen))
     page.ask(view="press")
     assert not shown
-    page.ask(size="diameter")
-    assert [screen.size for screen in shown] == ["diameter"]
+    page.ask(size="radius")
+    assert [screen.size for screen in shown] == ["radius"]
 
 
 LOADS = ("force=500", "indentation=0.01", "half_angle=20")
@@ -171,7 +171,7 @@ def test_only_what_has_changed_is_sent():
     ("text", "meant"), [("0,2", 0.2), ("0.2", 0.2), (" 0,2 mm", 0.2), ("200 um", 0.2), (",2", 0.2), (0.2, 0.2)]
 )
 def test_a_number_is_understood_as_people_write_it(text, meant):
-    page = Page("")
+    page = Page("size=radius")
     edits(page, "clearance", text)
     assert trouble(page) == ""
     assert page.screen.file.joint.clearance == pytest.approx(meant, rel=1e-12)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from html import escape
-from math import inf, isinf, radians
+from math import degrees, inf, isinf
 from typing import Any
 
 from ..checks import check_names, shown
@@ -13,13 +13,12 @@ from ..cup import UP
 from ..io.joint_file import JointFile, joint_of, read_aim
 from ..io.joint_toml import Tables, tables_of
 from ..joint import Joint
-from ..kinds import Kind, Unit
 from ..presets import joints, materials
-from ..quantities import AIM, LAYER, LOADS, STRENGTH
-from .fields import Field, choice, number, segments, tick, typed, unknown
-from .numbers import NUMBERS, Number, load_of, number_of
+from ..quantities import LOADS, STRENGTH
+from .fields import Field, choice, segments, tick, unknown
+from .numbers import ALLOWABLE, NUMBERS, THICKNESS, TILT, Number, load_of, number_of
+from .reading import Reading
 from .screen import Screen
-from .words import unit_of
 
 _OWN, _RIGID, _PRESET = "own", "rigid", ""
 _OWN_NUMBERS = (_OWN, "– own numbers –")
@@ -35,12 +34,12 @@ def fields_of(screen: Screen) -> dict[str, Field]:
         *_numbers(screen, ("ball_radius", "clearance", "liner_thickness", "outer_radius")),
         *([] if joint.backing else [tick("massive", "massive socket (L = ∞)", isinf(float(joint.liner_thickness)))]),
         segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind),
-        _field("load", load_of(kind, screen.angle), named["load"][kind]),
-        _tilt(screen),
+        load_of(kind).field("load", named["load"][kind], screen.reading),
+        {**TILT.field("tilt", degrees(tilt_of(file)), screen.reading), "label": "Load from the cup's axis γ"},
         choice("liner", "Liner", [_OWN_NUMBERS, *_materials()], _chosen(named["liner"])),
         *_numbers(screen, ("liner_young", "liner_poisson")),
-        _allowable(joint),
-        *_layers(joint),
+        _allowable(joint, screen.reading),
+        *_layers(joint, screen.reading),
         choice("ball", "Ball", [(_RIGID, "rigid"), _OWN_NUMBERS, *_materials()], _ball(joint, named)),
         *_numbers(screen, ("ball_young", "ball_poisson")),
     ]
@@ -52,34 +51,21 @@ def tilt_of(file: JointFile) -> float:
     return float(file.aim["tilt"]) if "tilt" in file.aim else float(file.cup.tilt(file.aim.get("direction", UP)))
 
 
-def _tilt(screen: Screen) -> Field:
-    unit = unit_of(AIM["tilt"], screen.angle)
-    ends = (0.0, round(radians(90.0) * unit.factor, 3))
-    step = 1.0 if screen.angle == "degrees" else 0.02
-    return number("tilt", "Load from the cup's axis γ", unit, ends, step, tilt_of(screen.file) * unit.factor)
-
-
-def _allowable(joint: Joint) -> Field:
+def _allowable(joint: Joint, reading: Reading) -> Field:
     """The pressure that the liner may have; without one there is only its yield stress, if that is known."""
-    quantity, value = STRENGTH["allowable_pressure"], joint.liner.allowable_pressure
-    label, unit = "Allowable pressure pa", quantity.shown
+    value = joint.liner.allowable_pressure
     if value is None:
-        return unknown("allowable", label, unit.text)
-    return number("allowable", label, unit, (1.0, 100.0), 0.5, float(value) * unit.factor)
+        return unknown("allowable", ALLOWABLE.label, ALLOWABLE.unit(reading).text)
+    return ALLOWABLE.field("allowable", float(value), reading)
 
 
-def _layers(joint: Joint) -> list[Field]:
+def _layers(joint: Joint, reading: Reading) -> list[Field]:
     """The thickness of each layer behind the liner."""
-    unit = LAYER["thickness"].shown
     return [
-        number(
-            f"layer{place}",
-            f"{layer.material.name or 'Layer'} behind",
-            unit,
-            (0.5, 10.0),
-            0.1,
-            float(layer.thickness) * unit.factor,
-        )
+        {
+            **THICKNESS.field(f"layer{place}", float(layer.thickness), reading),
+            "label": f"{layer.material.name or 'Layer'} behind",
+        }
         for place, layer in enumerate(joint.backing)
         if not isinf(float(layer.thickness))
     ]
@@ -101,12 +87,11 @@ def _numbers(screen: Screen, names: tuple[str, ...]) -> list[Field]:
             tables[part] = {"young": float(material.young), "poisson": float(material.poisson)}
     specs = {name: number_of(name, screen.size) for name in names}
     values = {name: tables.get(spec.table, {}).get(spec.key) for name, spec in specs.items()}
-    return [_field(name, specs[name], value) for name, value in values.items() if value is not None and value < inf]
-
-
-def _field(name: str, spec: Number, value: float) -> Field:
-    unit = Unit(spec.unit, spec.factor)
-    return number(name, spec.label, unit, (spec.low, spec.high), spec.step, value * spec.factor)
+    return [
+        specs[name].field(name, value, screen.reading)
+        for name, value in values.items()
+        if value is not None and value < inf
+    ]
 
 
 def _materials() -> list[tuple[str, str]]:
@@ -146,29 +131,28 @@ def edited(screen: Screen, name: str, value: Any, load_alike: Callable[[str], di
     """
     file = screen.file
     if name in NUMBERS:
-        return _with_number(file, number_of(name, screen.size), value)
+        return _with_number(screen, number_of(name, screen.size), value)
     if name == "load":
         ((kind, _),) = file.load.items()
-        return _with_number(file, load_of(kind, screen.angle), value)
+        return _with_number(screen, load_of(kind), value)
     if name.startswith("layer") and name[5:].isdecimal() and int(name[5:]) < len(file.joint.backing):
-        return _thicker(file, int(name[5:]), value)
+        return _thicker(screen, int(name[5:]), value)
     if name == "tilt":
-        return _turned(file, value, screen.angle)
+        return _turned(screen, value)
     check_names([name], _OTHERS, "among the inputs")
     if name == "kind":
         check_names([value], LOADS, "as load")
         return replace(file, load=load_alike(value))
-    return _OTHERS[name](file, value)
+    return _OTHERS[name](screen, value)
 
 
-def _with_number(file: JointFile, spec: Number, value: Any) -> JointFile:
+def _with_number(screen: Screen, spec: Number, value: Any) -> JointFile:
     def change(tables: Tables) -> None:
         if spec.key == "outer_radius":  # in place of the thickness that it fixes
             tables["joint"].pop("liner_thickness")
-        meant = typed(spec.quantity.name, value, spec.unit, spec.factor, spec.quantity.kind)
-        tables.setdefault(spec.table, {})[spec.key] = meant
+        tables.setdefault(spec.table, {})[spec.key] = spec.meant(value, screen.reading)
 
-    return _changed(file, change)
+    return _changed(screen.file, change)
 
 
 def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
@@ -184,49 +168,48 @@ def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
     return joint_of(tables)
 
 
-def _thicker(file: JointFile, place: int, value: Any) -> JointFile:
-    unit = LAYER["thickness"].shown
-    meant = typed("thickness", value, unit.text, unit.factor, Kind.LENGTH)
-    return _changed(file, lambda tables: tables["backing"][place].update(thickness=meant))
+def _thicker(screen: Screen, place: int, value: Any) -> JointFile:
+    meant = THICKNESS.meant(value, screen.reading)
+    return _changed(screen.file, lambda tables: tables["backing"][place].update(thickness=meant))
 
 
-def _turned(file: JointFile, value: Any, angle: str) -> JointFile:
+def _turned(screen: Screen, value: Any) -> JointFile:
     """Another tilt of the load, in place of a direction."""
-    unit = unit_of(AIM["tilt"], angle)
-    turn = typed("tilt", value, unit.text, unit.factor / AIM["tilt"].written.factor, Kind.ANGLE)
+    turn, file = TILT.meant(value, screen.reading), screen.file
     along = turn == 0 and float(file.cup.tilt(UP)) == 0
     return replace(file, aim={} if along else read_aim({"tilt": turn}))
 
 
-def _bears(file: JointFile, value: Any) -> JointFile:
+def _bears(screen: Screen, value: Any) -> JointFile:
     """Another allowable pressure of the liner; an emptied box is one that is not known."""
-    unit = STRENGTH["allowable_pressure"].shown
 
     def change(tables: Tables) -> None:
         tables["liner"].pop("allowable_pressure", None)
         if value != "":
-            meant = typed("allowable_pressure", value, unit.text, unit.factor, Kind.MODULUS)
-            tables["liner"]["allowable_pressure"] = meant
+            tables["liner"]["allowable_pressure"] = ALLOWABLE.meant(value, screen.reading)
 
-    return _changed(file, change)
+    return _changed(screen.file, change)
 
 
-def _start(file: JointFile, name: Any) -> JointFile:
+def _start(screen: Screen, name: Any) -> JointFile:
+    file = screen.file
     if name == _PRESET:
         return file
     check_names([name], joints, "as preset")
     return replace(file, joint=joints[name])
 
 
-def _massive(file: JointFile, value: Any) -> JointFile:
+def _massive(screen: Screen, value: Any) -> JointFile:
+    file = screen.file
     thickness = inf if value is True else round(float(file.joint.socket_radius) / 3, 1)
     return _changed(file, lambda tables: tables["joint"].update(liner_thickness=thickness))
 
 
-def _made_of(part: str, file: JointFile, chosen: Any) -> JointFile:
+def _made_of(part: str, screen: Screen, chosen: Any) -> JointFile:
     """Another material; numbers of its own are those of the one before."""
     if not isinstance(chosen, str):
         raise ValueError(f"{part} = {shown(chosen)} is no material")
+    file = screen.file
     if chosen == _RIGID and part == "ball":
         return _changed(file, lambda tables: tables.pop(part, None))
     if chosen != _OWN:
@@ -238,12 +221,12 @@ def _made_of(part: str, file: JointFile, chosen: Any) -> JointFile:
     return _changed(file, lambda tables: tables.update({part: numbers}))
 
 
-_OTHERS: dict[str, Callable[[JointFile, Any], JointFile]] = {
+_OTHERS: dict[str, Callable[[Screen, Any], JointFile]] = {
     "preset": _start,
     "massive": _massive,
     "allowable": _bears,
-    "liner": lambda file, value: _made_of("liner", file, value),
-    "ball": lambda file, value: _made_of("ball", file, value),
-    "kind": lambda file, value: file,
+    "liner": lambda screen, value: _made_of("liner", screen, value),
+    "ball": lambda screen, value: _made_of("ball", screen, value),
+    "kind": lambda screen, value: screen.file,
 }
 """Inputs that are no numbers."""

@@ -11,11 +11,10 @@ from ..checks import check_names, require
 from ..cup import UP, Side
 from ..io.joint_file import JointFile, read_aim, read_cup
 from ..io.joint_toml import cup_table
-from ..kinds import Kind
+from ..kinds import Kind, Unit
 from ..quantities import CUP
 from .fields import Field, number, segments, typed
 from .screen import Screen
-from .words import unit_of
 
 _ENDS = {
     "inclination": (0.0, 90.0, 1.0),
@@ -53,14 +52,16 @@ def _of_cup(screen: Screen, name: str) -> Field:
     if CUP[name].kind is Kind.ANGLE:
         return _angle(screen, name, title, degrees(value))
     low, high, step = _ENDS[name]
-    return number(f"cup.{name}", title, CUP[name].shown, (low, high), step, value * CUP[name].shown.factor)
+    unit = screen.reading.unit(CUP[name])
+    low, high, step = (each * unit.factor for each in (low, high, step))
+    return number(f"cup.{name}", title, unit, (low, high), step, value * unit.factor)
 
 
 def _angle(screen: Screen, name: str, title: str, value: float) -> Field:
     """An angle in degrees in the unit that is chosen."""
     factor = _factor(screen)
     low, high, step = (each * factor for each in _ENDS[name])
-    unit = unit_of(CUP["inclination"], screen.angle)
+    unit = screen.reading.unit(CUP["inclination"])
     return number(f"cup.{name}", title, unit, (low, high), step, (round(value, 9) + 0.0) * factor)
 
 
@@ -109,12 +110,12 @@ def cup_edited(screen: Screen, key: str, value: Any) -> JointFile:
 
 
 def _degrees(screen: Screen, key: str, value: Any) -> float:
-    return typed(key, value, unit_of(CUP["inclination"], screen.angle).text, _factor(screen), Kind.ANGLE)
+    return typed(key, value, Unit(screen.reading.unit(CUP["inclination"]).text, _factor(screen)), Kind.ANGLE)
 
 
 def _edit_cup(screen: Screen, key: str, value: Any) -> JointFile:
     length = CUP[key].kind is Kind.LENGTH
-    meant = typed(key, value, CUP[key].unit, 1.0, Kind.LENGTH) if length else _degrees(screen, key, value)
+    meant = typed(key, value, screen.reading.unit(CUP[key]), Kind.LENGTH) if length else _degrees(screen, key, value)
     return replace(screen.file, cup=read_cup({**cup_table(screen.file.cup), key: meant}))
 
 

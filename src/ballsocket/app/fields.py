@@ -75,7 +75,7 @@ def plain(value: float) -> str:
     return f"{value:.0f}" if "e+" in text and isfinite(value) and abs(value) < 1e12 else text
 
 
-def typed(name: str, text: Any, unit: str, factor: float, kind: str) -> float:
+def typed(name: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float:
     """The number of a file's table that was meant by what was typed: in the unit beside the box, or with its own.
 
     Parameters
@@ -84,12 +84,12 @@ def typed(name: str, text: Any, unit: str, factor: float, kind: str) -> float:
         What it is, for a refusal.
     text : str or float
         "0.2", "0,2", "0.2 mm".
-    unit : str
-        Of a bare number, for the refusal.
-    factor : float
-        From the number in the table to the one in the box.
+    unit : Unit
+        Of a bare number; its factor leads to it from the number in the table.
     kind : str
         What it measures, for text with a unit.
+    times : int
+        How often the table's number is taken: a diameter is twice a radius.
 
     Raises
     ------
@@ -98,28 +98,30 @@ def typed(name: str, text: Any, unit: str, factor: float, kind: str) -> float:
 
     Examples
     --------
-    >>> typed("clearance", "0,2", "mm", 2.0, "length")
+    >>> typed("diametral_clearance", "0,2", Unit("mm", 2.0), "length", 2)
+    0.1
+    >>> typed("diametral_clearance", "0.2 mm", Unit("in", 2 / 25.4), "length", 2)
     0.1
     """
     if isinstance(text, int | float) and not isinstance(text, bool):
-        return round(float(text) / factor, 12)
+        return round(float(text) / unit.factor, 12)
     if not isinstance(text, str):
         raise ValueError(f"{name} = {shown(text)} is no number")
     said = text.strip()
     if _THOUSANDS.match(said):
+        plain_text = said.replace(",", "")
         raise ValueError(
-            f"{name} = {shown(said)} could be two numbers: write {said.replace(',', '')} or {said.replace(',', '.', 1)}"
+            f"{name} = {shown(said)} could be two numbers: write {plain_text} or {said.replace(',', '.', 1)}"
         )
     bare = _COMMA.sub(".", said, count=1)
     try:
-        return round(float(bare) / factor, 12)
+        return round(float(bare) / unit.factor, 12)
     except ValueError:
         pass
     try:
         value = parse(name, bare, kind)
     except ValueError as error:
-        inside = f" in {unit}" if unit else ""
-        raise ValueError(
-            f"{name} = {shown(said)} is no number{inside}, and {str(error).partition(' is ')[2]}"
-        ) from error
-    return round(degrees(value) if kind == Kind.ANGLE else value, 12)
+        inside = f" in {unit.text}" if unit.text else ""
+        meant = str(error).partition(" is ")[2]
+        raise ValueError(f"{name} = {shown(said)} is no number{inside}, and {meant}") from error
+    return round((degrees(value) if kind == Kind.ANGLE else value) / times, 12)

@@ -14,17 +14,19 @@ from ..io.joint_file import JointFile
 from ..io.joint_toml import toml_of
 from ..output.html import picture
 from ..output.joint_report import joint_report
+from ..output.unit_systems import Units
 from .view import Document
 
 
 @dataclass(frozen=True, kw_only=True)
 class Seen:
-    """What is on the screen: the view's title, the joint, the words of its address, and the view as a document."""
+    """What is on the screen: the view's title, the joint, the words of its address, the view as a document, units."""
 
     title: str
     file: JointFile
     link: str
     document: Document
+    units: Units = Units.SI
 
 
 def made(seen: Seen, kind: str) -> tuple[str, bytes]:
@@ -59,7 +61,7 @@ def _report(seen: Seen) -> bytes:
     figure = "" if document.picture is None else picture(document.picture("png"), title)
     lede = f"{document.lede()}<p class='quiet'>In the explorer: <code>{escape(seen.link)}</code></p>"
     sections = {"figure": ("Figure", figure), **document.sections()}
-    return joint_report(seen.file, sections, lede, contact=document.contact, title=title).encode("utf-8")
+    return joint_report(seen.file, sections, lede, seen.units, contact=document.contact, title=title).encode("utf-8")
 
 
 def _safe(row: Sequence[Any]) -> list[Any]:

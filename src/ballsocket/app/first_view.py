@@ -122,7 +122,7 @@ def _shell(frame: Frame, said: str) -> Iterator[str]:
     for x in (left, right):
         yield svg.line(x, frame.y + 4, x, low + 5, "thin")
     yield _both_ways(left, low, right, low)
-    yield _said(("outside", said), frame.x, low + 20, "middle")
+    yield _said(("shell", said), frame.x, low + 20, "middle")
 
 
 def _names(file: JointFile, frame: Frame) -> Iterator[str]:
@@ -197,14 +197,14 @@ def _handle(name: str, how: str, field: Field) -> str:
     )
 
 
-def key(top: float, quantity: Quantity, instead: bool) -> str:
-    """The scale of the colours, from 0 to `top`, as HTML; `instead` says that nothing else is known inside."""
+def key(top: str, quantity: Quantity, instead: bool) -> str:
+    """The scale of the colours from 0 to a number with its unit; `instead`: nothing else is known inside."""
     stops = ", ".join(heat(share / 8) for share in range(9))
     note = "<span>this model knows no stresses inside the liner</span>" if instead else ""
     return (
         f"<p class='scale'><span>{escape(quantity.title)}: 0</span>"
         f"<i style='background: linear-gradient(to right, {stops})'></i>"
-        f"<span>{top * quantity.shown.factor:.4g} {escape(quantity.shown.text)}</span>{note}</p>"
+        f"<span>{escape(top)}</span>{note}</p>"
     )
 
 

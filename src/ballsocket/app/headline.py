@@ -7,16 +7,21 @@ from typing import Any
 
 from ..compare import relative
 from ..contact import Contact
-from ..contact.describe import Column
-from .verdict import Borne, most_used, sentence
-from .words import columns, number_text, trust
+from ..contact.describe import COLUMNS, Column
+from ..contact.verdict import Share
+from ..quantities import STRENGTH
+from .reading import Reading, number_text
+from .verdict import most_used, sentence
+from .words import trust
 
 _FIRST = "max_pressure"
 _AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
 """What says nothing new where the pressure is largest at the pole."""
 
 
-def headline(contact: Contact, exact: Contact | None, von_mises: float, angle: str, surely: str = "about ") -> str:
+def headline(
+    contact: Contact, exact: Contact | None, von_mises: float, reading: Reading, surely: str = "about "
+) -> str:
     """A contact as HTML.
 
     Parameters
@@ -25,17 +30,17 @@ def headline(contact: Contact, exact: Contact | None, von_mises: float, angle: s
         What is shown, and the exact answer where there is one.
     von_mises : float
         The largest in the liner, in MPa.
-    angle : str
-        "degrees" or "radians".
+    reading : Reading
     surely : str
         Before a share that hangs on that stress.
     """
-    borne = most_used(contact, von_mises)
-    listed = [each for each in columns(angle) if each.attribute != _FIRST and not _idle(each, contact)]
-    first = next(each for each in columns(angle) if each.attribute == _FIRST)
+    most = most_used(contact, von_mises)
+    listed = [each for each in reading.columns if each.attribute != _FIRST and not _idle(each, contact)]
+    first = next(each for each in reading.columns if each.attribute == _FIRST)
     rest = "".join(_cell(each, contact) for each in listed)
     return (
-        f"<dl class='first'>{_cell(first, contact)}</dl>{_share(borne, surely)}{_verdict(borne)}{trust(contact)}"
+        f"<dl class='first'>{_cell(first, contact)}</dl>{_share(most, surely, contact, reading)}{_verdict(most)}"
+        f"{trust(contact)}"
         f"<dl class='numbers'>{rest}</dl><p class='quiet'>{escape(nearness(contact, exact))}</p>"
     )
 
@@ -53,22 +58,22 @@ def _cell(each: Column, contact: Contact) -> str:
     )
 
 
-def _share(borne: Borne | None, surely: str) -> str:
+def _share(most: Share | None, surely: str, contact: Contact, reading: Reading) -> str:
     """The share as a bar and in words."""
-    if borne is None or borne.share != borne.share:
+    if most is None or most.ratio != most.ratio:
         return ""
-    about = "" if borne.strength == "allowable_pressure" else surely
-    name = borne.material.name or borne.part
-    said = f"{about}{100 * borne.share:.0f} % of {borne.words} ({name}, {borne.limit:g} MPa)"
-    kind = "yes" if borne.share <= 1 else "no"
+    about = "" if most.strength == "allowable_pressure" else surely
+    name = getattr(contact.joint, most.part).name or most.part
+    said = f"{about}{most} ({name}, {reading.said(STRENGTH[most.strength], most.allowed)})"
+    kind = "yes" if most.ratio <= 1 else "no"
     return (
-        f"<div class='bar' aria-hidden='true'><i class='{kind}' style='width:{min(100.0, 100 * borne.share):.1f}%'></i>"
+        f"<div class='bar' aria-hidden='true'><i class='{kind}' style='width:{min(100.0, 100 * most.ratio):.1f}%'></i>"
         f"</div><p class='share'>{escape(said)}</p>"
     )
 
 
-def _verdict(borne: Borne | None) -> str:
-    holds, words = sentence(borne)
+def _verdict(most: Share | None) -> str:
+    holds, words = sentence(most)
     kind, sign = {True: ("yes", "✓ "), False: ("no", "✗ "), None: ("quiet", "")}[holds]
     return f"<p class='verdict {kind}' role='status'>{sign}{escape(words)}</p>"
 
@@ -88,5 +93,5 @@ def _error(contact: Contact) -> float:
 
 
 def _apart(contact: Contact, exact: Contact) -> float:
-    shares = [abs(float(relative(each.of(contact), each.of(exact)))) for each in columns("degrees")]
+    shares = [abs(float(relative(each.of(contact), each.of(exact)))) for each in COLUMNS]
     return max((share for share in shares if share == share), default=float("nan"))

@@ -23,7 +23,6 @@ from ..studies.parameters import LOADS, PARAMETERS, pressable
 from ..studies.run import study
 from ..studies.usual import joints_of, usual
 from .screen import MAPPED, START, Axis, Screen
-from .words import unit_of
 
 _POINTS = 61
 _FEW = 17
@@ -73,7 +72,7 @@ def margin(found: Any, screen: Screen) -> numpy.ndarray:
 
 def head(name: str, screen: Screen) -> tuple[str, float]:
     """The label of a quantity with the unit that is chosen for it, and the factor to it from that of a study."""
-    unit = unit_of(QUANTITIES[name], screen.angle)
+    unit = screen.reading.unit(QUANTITIES[name])
     return QUANTITIES[name].label(unit), unit.factor
 
 
@@ -112,8 +111,7 @@ def told(found: Any, screen: Screen) -> str:
 
 
 def _said(quantity: Quantity, value: float, screen: Screen) -> str:
-    unit = unit_of(quantity, screen.angle)
-    return f"{quantity.symbol} {value * unit.factor:.4g} {unit.text}".strip()
+    return f"{quantity.symbol} {screen.reading.said(quantity, value)}".strip()
 
 
 def now(file: JointFile, name: str) -> float:

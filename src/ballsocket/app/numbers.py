@@ -2,91 +2,110 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from math import radians
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from ..joint.dimensions import DIAMETERS
 from ..kinds import Unit
-from ..quantities import JOINT, LOADS, MATERIAL, QUANTITIES, Quantity
+from ..output.unit_systems import Units
+from ..quantities import JOINT, MATERIAL, QUANTITIES, Quantity
+from .fields import Field, number, typed
+from .reading import Reading, handy_step
 
 
 @dataclass(frozen=True, kw_only=True)
 class Number:
-    """A number of the tables of a joint file, and the range that is usual for it, in the unit that is shown."""
+    """A number of the tables of a joint file, what is usual for it, and how often it is taken: twice for a diameter.
+
+    `ends` and `step` are in the unit of metric pages; `sizes` are those of catalogues, in the unit of the tables.
+    """
 
     table: str
     key: str
     quantity: Quantity
-    label: str
-    unit: str
-    low: float
-    high: float
+    ends: tuple[float, float]
     step: float
-    factor: float = 1.0  # from the number in the table to the one that is shown
+    times: int = 1
+    sizes: Sequence[float] = ()
+
+    def unit(self, reading: Reading) -> Unit:
+        """The unit beside the box, and the factor to it from the number of the tables."""
+        unit = reading.unit(self.quantity)
+        return Unit(unit.text, self.times * unit.factor / self.quantity.written.factor)
+
+    def field(self, name: str, value: float, reading: Reading) -> Field:
+        """Its input, for a number of the tables."""
+        unit, ratio = self.unit(reading), _ratio(self.quantity, reading)
+        low, high = (float(f"{self.times * end * ratio:.3g}") for end in self.ends)
+        step = self.times * self.step * ratio
+        made = number(
+            name, self.label, unit, (low, high), step if ratio == 1 else handy_step(step), value * unit.factor
+        )
+        return {**made, "sizes": self._sizes(reading)} if self.sizes else made
+
+    @property
+    def label(self) -> str:
+        """Title and symbol."""
+        title = self.quantity.title if self.key not in MATERIAL else MATERIAL[self.key].title
+        return f"{title[:1].upper()}{title[1:]} {self.quantity.symbol}".strip()
+
+    def _sizes(self, reading: Reading) -> list[str]:
+        """As they stand in catalogues, with a unit where that is not the page's."""
+        behind = "" if reading.units is Units.SI else " mm"
+        return [f"{self.times * size:g}{behind}" for size in self.sizes]
+
+    def meant(self, value: object, reading: Reading) -> float:
+        """The number of the tables that was meant by what was typed.
+
+        Raises
+        ------
+        ValueError
+            No such number.
+        """
+        return typed(self.quantity.name, value, self.unit(reading), self.quantity.kind, self.times)
 
 
-def _number(name: str, table: str, key: str, ends: tuple[float, float], step: float) -> Number:
-    """A quantity in the unit that is shown, where the table has that of files."""
-    quantity = QUANTITIES[name]
-    title = MATERIAL[key].title if key in MATERIAL else quantity.title
-    return Number(
-        table=table,
-        key=key,
-        quantity=quantity,
-        label=f"{title[:1].upper()}{title[1:]} {quantity.symbol}".strip(),
-        unit=quantity.shown.text,
-        low=ends[0],
-        high=ends[1],
-        step=step,
-        factor=quantity.shown.factor / quantity.written.factor,
-    )
+def _ratio(quantity: Quantity, reading: Reading) -> float:
+    """From the unit of metric pages to the one that is read."""
+    return reading.unit(quantity).factor / quantity.shown.factor
+
+
+def _number(name: str, table: str, key: str, ends: tuple[float, float], step: float, *sizes: float) -> Number:
+    return Number(table=table, key=key, quantity=QUANTITIES[name], ends=ends, step=step, sizes=sizes)
 
 
 NUMBERS: Mapping[str, Number] = {
-    "ball_radius": _number("ball_radius", "joint", "ball_radius", (5.0, 30.0), 0.1),
+    "ball_radius": _number("ball_radius", "joint", "ball_radius", (5.0, 30.0), 0.1, 11.1125, 13, 14, 16, 18, 20, 22),
     "clearance": _number("clearance", "joint", "clearance", (0.0, 0.5), 0.005),
-    "liner_thickness": _number("liner_thickness", "joint", "liner_thickness", (0.5, 20.0), 0.1),
-    "outer_radius": _number("outer_radius", "joint", "outer_radius", (10.0, 40.0), 0.1),
+    "liner_thickness": _number("liner_thickness", "joint", "liner_thickness", (0.5, 20.0), 0.1, 3, 4, 5, 6, 7, 8, 10),
+    "outer_radius": _number("outer_radius", "joint", "outer_radius", (10.0, 40.0), 0.1, *range(22, 35)),
     "liner_young": _number("liner_young", "liner", "young", (100.0, 5000.0), 10.0),
     "liner_poisson": _number("liner_poisson", "liner", "poisson", (0.0, 0.4995), 0.005),
     "ball_young": _number("ball_young", "ball", "young", (1e3, 4e5), 1e3),
     "ball_poisson": _number("ball_poisson", "ball", "poisson", (0.0, 0.4995), 0.005),
 }
-"""Of joint and materials, by the name of their input."""
+"""Of joint and materials, by the name of their input; heads and shells have the sizes that makers of hips offer."""
 
-_DOUBLED = {
-    single: replace(
-        NUMBERS[single],
-        quantity=JOINT[double],
-        label=f"{JOINT[double].title.capitalize()} {JOINT[double].symbol}",
-        low=2 * NUMBERS[single].low,
-        high=2 * NUMBERS[single].high,
-        step=2 * NUMBERS[single].step,
-        factor=2 * NUMBERS[single].factor,
-    )
-    for double, single in DIAMETERS.items()
-}
 _LOADS = {
     "force": _number("force", "load", "force", (50.0, 5000.0), 50.0),
     "indentation": _number("indentation", "load", "indentation", (1.0, 200.0), 1.0),
     "half_angle": _number("half_angle", "load", "half_angle", (1.0, 80.0), 0.5),
 }
-_IN_RADIANS = replace(
-    _LOADS["half_angle"],
-    unit=Unit(LOADS["half_angle"].unit).text,
-    low=0.02,
-    high=1.4,
-    step=0.01,
-    factor=radians(1.0),
-)
+THICKNESS = _number("thickness", "backing", "thickness", (0.5, 10.0), 0.1)
+ALLOWABLE = _number("allowable_pressure", "liner", "allowable_pressure", (1.0, 100.0), 0.5)
+TILT = _number("tilt", "load", "tilt", (0.0, 90.0), 1.0)
+
+_SINGLE = {single: double for double, single in DIAMETERS.items()}
 
 
 def number_of(name: str, size: str) -> Number:
     """An input of joint or materials, balls by "radius" or "diameter"."""
-    return _DOUBLED.get(name, NUMBERS[name]) if size == "diameter" else NUMBERS[name]
+    found = NUMBERS[name]
+    if size != "diameter" or name not in _SINGLE:
+        return found
+    return Number(**{**vars(found), "quantity": JOINT[_SINGLE[name]], "times": 2})
 
 
-def load_of(kind: str, angle: str) -> Number:
-    """The input of a load of that kind, angles in "degrees" or "radians"."""
-    return _IN_RADIANS if (kind, angle) == ("half_angle", "radians") else _LOADS[kind]
+def load_of(kind: str) -> Number:
+    """The input of a load of that kind."""
+    return _LOADS[kind]

@@ -15,6 +15,7 @@ import panel as pn
 
 from ..checks import check_names
 from ..io.joint_file import parse_joint
+from ..output.unit_systems import Units
 from .beside import beside
 from .channel import Channel
 from .controls import behind, edited, fields_of
@@ -30,8 +31,10 @@ from .words import alert
 
 _LOG = logging.getLogger(__name__)
 _LARGEST = 100_000  # characters of a joint file
-_CHOSEN = ("view", "answered_by", "shown", "painted", "angle", "size")
+_CHOSEN = ("view", "answered_by", "shown", "painted", "angle", "size", "units")
 """Fields of the screen that the page's own inputs change."""
+
+_UNITS = ((Units.SI.value, "mm, N, MPa"), (Units.IMPERIAL.value, "in, lbf, psi"))
 
 
 class Page:
@@ -150,7 +153,9 @@ class Page:
         """Every input beside the views, by its name."""
         angles = segments("angle", "angles in", [(each, each) for each in ANGLES], self.screen.angle)
         sizes = segments("size", "balls by", [(each, each) for each in SIZES], self.screen.size)
-        return {**fields_of(self.screen), **layer_fields(self.screen.file.joint), "angle": angles, "size": sizes}
+        units = segments("units", "units", _UNITS, self.screen.units)
+        joint = {**fields_of(self.screen), **layer_fields(self.screen.file.joint)}
+        return {**joint, "units": units, "size": sizes, "angle": angles}
 
     def _refresh(self) -> None:
         with pn.io.hold():
@@ -193,6 +198,7 @@ class Page:
             file=self.screen.file,
             link=f"?{link_of(self.screen)}",
             document=self.view.document(self.screen),
+            units=self.screen.reading.units,
         )
 
     def _same_load(self, kind: str) -> dict[str, float]:

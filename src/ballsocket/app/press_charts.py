@@ -8,57 +8,59 @@ from math import pi
 import numpy
 
 from ..contact import Contact
-from ..output.press_plot import FORCE_CURVE
+from ..contact.describe import Column
+from ..output.press_plot import force_axes
 from ..output.style import Line
 from ..quantities import FIELD
 from .chart import Curve, chart, legend
 from .pressing import curve, profile, rounded_up
-from .words import unit_of
+from .reading import Reading
 
 
-def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, Line], angle: str) -> str:
+def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, Line], reading: Reading) -> str:
     """Two charts and their key as HTML: contacts that have an answer, each with the curve of its own model."""
     if not contacts:
         return "<p class='quiet'>No curve to draw.</p>"
     key = legend({name: lines[name] for name in contacts})
-    charts = _pressures(contacts, lines, angle), _forces(contacts, lines)
+    charts = _pressures(contacts, lines, reading), _forces(contacts, lines, reading)
     figures = "".join(f"<figure>{each}</figure>" for each in charts)
     return f"<div class='pair'>{figures}</div><p class='legend'>{key}</p>"
 
 
-def _pressures(contacts: Mapping[str, Contact], lines: Mapping[str, Line], angle: str) -> str:
-    unit = unit_of(FIELD["angle"], angle)
+def _pressures(contacts: Mapping[str, Contact], lines: Mapping[str, Line], reading: Reading) -> str:
+    angle, pressure = reading.unit(FIELD["angle"]), reading.unit(FIELD["pressure"])
     widest = min(max(float(contact.half_angle) for contact in contacts.values()), pi / 2)
     highest = max(float(contact.max_pressure) for contact in contacts.values())
     return chart(
         "pressure over angle, highest at the pole",
-        FIELD["angle"].label(unit),
-        FIELD["pressure"].label(),
-        {name: _profile(contact, unit.factor, lines[name]) for name, contact in contacts.items()},
-        (rounded_up(1.02 * widest * unit.factor), rounded_up(1.05 * highest)),
+        FIELD["angle"].label(angle),
+        FIELD["pressure"].label(pressure),
+        {name: _profile(contact, (angle.factor, pressure.factor), lines[name]) for name, contact in contacts.items()},
+        (rounded_up(1.02 * widest * angle.factor), rounded_up(1.05 * highest * pressure.factor)),
     )
 
 
-def _forces(contacts: Mapping[str, Contact], lines: Mapping[str, Line]) -> str:
-    depth, force = FORCE_CURVE
+def _forces(contacts: Mapping[str, Contact], lines: Mapping[str, Line], reading: Reading) -> str:
+    axes = depth, force = force_axes(reading.units)
     largest = rounded_up(1.2 * max(float(contact.force) for contact in contacts.values()))
     deepest = max(float(depth.of(contact)) for contact in contacts.values())
     return chart(
         "force over indentation",
         depth.label,
         force.label,
-        {name: _curve(contact, largest, lines[name]) for name, contact in contacts.items()},
-        (rounded_up(1.3 * deepest), largest * force.factor),
+        {name: _curve(contact, largest, axes, lines[name]) for name, contact in contacts.items()},
+        (rounded_up(1.3 * deepest), rounded_up(largest * force.factor)),
     )
 
 
-def _profile(contact: Contact, turn: float, line: Line) -> Curve:
+def _profile(contact: Contact, turns: tuple[float, float], line: Line) -> Curve:
     angle, pressure = profile(contact)
-    return Curve(angle * turn, pressure, numpy.full(angle.shape, bool(contact.valid)), line)
+    trusted = numpy.full(angle.shape, bool(contact.valid))
+    return Curve(angle * turns[0], pressure * turns[1], trusted, line)
 
 
-def _curve(contact: Contact, largest: float, line: Line) -> Curve:
-    depth, force = FORCE_CURVE
+def _curve(contact: Contact, largest: float, axes: tuple[Column, Column], line: Line) -> Curve:
+    depth, force = axes
     mark = (float(depth.of(contact)), float(force.of(contact)))
     press = curve(contact, largest)
     if press is None:

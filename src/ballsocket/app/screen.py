@@ -13,6 +13,7 @@ from ..checks import check_names, shown
 from ..io.joint_file import JointFile, joint_of
 from ..io.joint_toml import Tables, tables_of
 from ..kinds import Kind
+from ..output.unit_systems import Units
 from ..presets import joints
 from ..quantities import QUANTITIES
 from ..studies.limits import Limit
@@ -21,6 +22,7 @@ from ..studies.phrases import limit_of, range_of
 from . import asked, in_use
 from .asked import FIRST, Asked
 from .in_use import WHOLE, Use
+from .reading import Reading
 
 VIEWS = ("press", "cup", "gait", "wear", "map", "compare", "judge", "evidence")
 THEMES = ("light", "dark")
@@ -102,8 +104,8 @@ class Screen:
         "pressure", or "stress": von Mises stresses in the liner.
     asked : Asked
         What evidence is gathered for.
-    angle, size, theme : str
-        "degrees" or "radians"; balls by "radius" or "diameter"; "light" or "dark".
+    angle, size, units, theme : str
+        "degrees" or "radians"; balls by "radius" or "diameter"; "SI" or "imperial"; "light" or "dark".
     """
 
     view: str = "press"
@@ -122,7 +124,8 @@ class Screen:
     painted: str = "pressure"
     asked: Asked = FIRST
     angle: str = "degrees"
-    size: str = "radius"
+    size: str = "diameter"
+    units: str = Units.SI.value
     theme: str = "light"
 
     def __post_init__(self) -> None:
@@ -138,6 +141,11 @@ class Screen:
         if self.across.name == self.up.name:
             raise ValueError(f"a map has two axes, and both are {self.up.name}")
 
+    @property
+    def reading(self) -> Reading:
+        """In which units numbers are read."""
+        return Reading(angle=self.angle, units=Units(self.units))
+
 
 _KNOWN: Mapping[str, Sequence[str]] = {
     "view": VIEWS,
@@ -150,6 +158,7 @@ _KNOWN: Mapping[str, Sequence[str]] = {
     "painted": PAINTED,
     "angle": ANGLES,
     "size": SIZES,
+    "units": tuple(each.value for each in Units),
     "theme": THEMES,
 }
 
@@ -160,7 +169,7 @@ START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
 def link_of(screen: Screen) -> str:
     """The part of a link after the question mark: what differs from the start, and the joint."""
     pairs: list[tuple[str, str]] = []
-    for name in ("view", "answered_by", "map_model", "quantity", "standing", "base", "painted", "angle", "size"):
+    for name in ("view", "answered_by", "map_model", "quantity", "standing", "base", "painted", "angle", "size", "units"):
         if getattr(screen, name) != getattr(START, name):
             pairs.append((name, getattr(screen, name)))
     if screen.shown != START.shown:

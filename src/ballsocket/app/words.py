@@ -11,29 +11,14 @@ from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column
-from ..kinds import Kind, Unit
 from ..output.style import line_of
-from ..quantities import CONTACT, HEADLINE, Quantity
+from ..output.unit_systems import Units
+from ..quantities import HEADLINE
 from .chart import swatch
+from .reading import Reading, number_text
 
-_DIGITS = 4
-
-
-def unit_of(quantity: Quantity, angle: str) -> Unit:
-    """The unit in which a quantity is shown, angles in "degrees" or "radians"."""
-    return Unit(quantity.unit) if (quantity.kind, angle) == (Kind.ANGLE, "radians") else quantity.shown
-
-
-def columns(angle: str) -> tuple[Column, ...]:
-    """Every quantity of a contact in the unit in which it is shown."""
-    return tuple(Column(each, unit_of(each, angle)) for each in CONTACT.values())
-
-
-def number_text(value: float) -> str:
-    """Four digits; what has no answer, and what is infinite, in words."""
-    if isnan(value):
-        return "no answer"
-    return f"{value:.{_DIGITS}g}" if isfinite(value) else "∞"
+_SPELT = {"°": "deg", "in²": "in2", "µm": "um", "mm²": "mm2"}
+"""Units as the head of a column in a file has them."""
 
 
 def alert(sentence: str) -> str:
@@ -71,9 +56,9 @@ def trust(contact: Contact) -> str:
     return f"<p class='trust no'>✗ outside the range in which this model can be trusted</p>{notes_list(contact.notes)}"
 
 
-def models_table(comparison: Comparison, angle: str) -> str:
+def models_table(comparison: Comparison, reading: Reading) -> str:
     """Every model in a row, with its deviation from the exact answer, its validity, and its line in the charts."""
-    shown = [each for each in columns(angle) if each.attribute in HEADLINE]
+    shown = [each for each in reading.columns if each.attribute in HEADLINE]
     heads = "".join(f"<th scope='col'>{escape(each.head)}</th>" for each in shown)
     rows = "".join(_row(comparison, name, shown) for name in comparison)
     missing = "".join(
@@ -113,10 +98,18 @@ def percent(share: float, sign: str = "") -> str:
     return f"{100 * share:{sign}.{digits}f} %"
 
 
-def number_rows(head: str, contacts: Mapping[str, Contact]) -> list[list[Any]]:
+def number_rows(head: str, contacts: Mapping[str, Contact], reading: Reading) -> list[list[Any]]:
     """A table with its head: a row a contact, its numbers its columns named by quantity and unit."""
+    columns = COLUMNS if reading.units is Units.SI else reading.columns
     rows = [
-        [name, *(float(each.of(contact)) for each in COLUMNS), bool(contact.valid)]
+        [name, *(float(each.of(contact)) for each in columns), bool(contact.valid)]
         for name, contact in contacts.items()
     ]
-    return [[head, *(each.quantity.column for each in COLUMNS), "valid"], *rows]
+    return [[head, *map(_column, columns), "valid"], *rows]
+
+
+def _column(each: Column) -> str:
+    """The head of a column in a file, which ends in the unit."""
+    if each.reading == each.quantity.written:
+        return each.quantity.column
+    return f"{each.attribute}_{_SPELT.get(each.unit, each.unit).replace('/', '_per_').replace(' ', '_')}"

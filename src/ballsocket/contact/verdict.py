@@ -34,8 +34,13 @@ class Share:
 
 def shares(contact: Contact) -> tuple[Share, ...]:
     """Every strength that is known, largest share first; of a contact of plain numbers."""
+    return shares_of(contact, contact.von_mises if contact.joint.liner.strengths else 0.0)
+
+
+def shares_of(contact: Contact, von_mises: float) -> tuple[Share, ...]:
+    """The same, for so much von Mises stress in the liner (MPa)."""
     joint, pressure = contact.joint, float(contact.max_pressure)
-    found = list(_of("liner", joint.liner, pressure, contact.von_mises if joint.liner.strengths else 0.0))
+    found = list(_of("liner", joint.liner, pressure, von_mises))
     if joint.ball is not None:
         found += _of("ball", joint.ball, pressure, ball_share(joint) * pressure)
     return tuple(sorted(found, key=lambda share: -share.ratio))

@@ -13,6 +13,7 @@ from ..contact.describe import Column
 from ..kinds import Unit
 from ..quantities import CONTACT, FIELD
 from .style import LEGEND, THICK, THIN, Line, finish, in_matplotlib, line_of
+from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,12 +26,21 @@ FORCE_CURVE = (
 """What a curve of forces is drawn over and along."""
 
 
+def force_axes(units: Units) -> tuple[Column, Column]:
+    """Indentation and force in a system of units."""
+    if units is Units.SI:
+        return FORCE_CURVE
+    depth, force = (Column(each.quantity, units.of(each.quantity)) for each in FORCE_CURVE)
+    return depth, force
+
+
 def press_figure(
     contacts: Mapping[str, Contact],
     curves: Mapping[str, Contact],
     title: str = "",
     lines: Mapping[str, Line] | None = None,
     note: str = "",
+    units: Units = Units.SI,
 ) -> Figure:
     """Pressure over angle beside force over indentation.
 
@@ -46,6 +56,8 @@ def press_figure(
         How each is drawn; by default as the model of that name is drawn everywhere.
     note : str
         What is said above the legend.
+    units : Units
+        Of the axes.
 
     Returns
     -------
@@ -54,29 +66,30 @@ def press_figure(
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(10.0, 4.6), layout="constrained")
+    figure, axes = Figure(figsize=(10.0, 4.6), layout="constrained"), force_axes(units)
+    pressure = units.of(FIELD["pressure"])
     left, right = figure.subplots(1, 2)
     for name, contact in contacts.items():
         line = line_of(name) if lines is None else lines[name]
         style = in_matplotlib(line, THICK if contact.valid else THIN)
         angle = _angles(contact)
-        left.plot(numpy.degrees(angle), contact.pressure(angle), label=_said(name), **style)
-        right.plot(*(arrays.to_numpy(axis.of(curves[name])) for axis in FORCE_CURVE), **style)
-        right.plot(*(axis.of(contact) for axis in FORCE_CURVE), "o", color=line.colour, markersize=4.5)
-    finish(left, *(each.label() for each in FIELD.values()))
+        left.plot(numpy.degrees(angle), contact.pressure(angle) * pressure.factor, label=_said(name), **style)
+        right.plot(*(arrays.to_numpy(axis.of(curves[name])) for axis in axes), **style)
+        right.plot(*(axis.of(contact) for axis in axes), "o", color=line.colour, markersize=4.5)
+    finish(left, FIELD["angle"].label(), FIELD["pressure"].label(pressure))
     left.set_xlim(0.0, 90.0)
     if left.dataLim.ymin > -0.02 * left.dataLim.ymax:
         left.set_ylim(bottom=0.0)
     left.set_xticks(range(0, 91, 15))
-    finish(right, *(axis.label for axis in FORCE_CURVE))
-    furthest = [max(axis.of(contact) for contact in contacts.values()) for axis in FORCE_CURVE]
+    finish(right, *(axis.label for axis in axes))
+    furthest = [max(axis.of(contact) for contact in contacts.values()) for axis in axes]
     right.set_xlim(0.0, 1.12 * furthest[0] or 1.0)
     right.set_ylim(0.0, 1.6 * furthest[1] or 1.0)
     columns = min(len(contacts), 4)
     legend = figure.legend(loc="outside lower center", ncols=columns, title=note, title_fontsize=8, **LEGEND)
     for text in (*legend.get_texts(), legend.get_title()):
         text.set_parse_math(False)
-    figure.suptitle(title or _title(next(iter(contacts.values()))), fontsize=10, parse_math=False)
+    figure.suptitle(title or _title(next(iter(contacts.values())), units), fontsize=10, parse_math=False)
     return figure
 
 
@@ -91,8 +104,12 @@ def _angles(contact: Contact) -> numpy.ndarray:
     return edge * numpy.append(numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 200)), 1.0 + 1e-6)
 
 
-def _title(contact: Contact) -> str:
+def _title(contact: Contact, units: Units) -> str:
     joint = contact.joint
+    if units is Units.IMPERIAL:
+        lengths = {"head": joint.head_diameter, "clearance": joint.diametral_clearance}
+        said = ", ".join(f"{name} ⌀ {units.length(float(length))}" for name, length in lengths.items())
+        return f"{said}; ● at {units.told(CONTACT['force'], float(contact.force))}"
     ball = "rigid ball" if joint.ball is None else f"ball {float(joint.ball.young) / 1e3:g} GPa"
     return (
         f"{joint.dimensions} of {float(joint.liner.young) / 1e3:g} GPa, "

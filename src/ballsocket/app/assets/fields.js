@@ -19,8 +19,9 @@
     const unit = element("span", { class: "unit", id: `unit-${name}` });
     const named = { "aria-labelledby": `label-${name} unit-${name}` };
     const box = element("input", { id: `in-${name}`, type: "text", inputmode: "decimal", autocomplete: "off", ...named });
+    const sizes = element("datalist", { id: `sizes-${name}` });
     const bar = element("input", { type: "range", step: "any", ...named });
-    const made = element("div", { class: "field number" }, label, element("span", { class: "box" }, box, unit), bar);
+    const made = element("div", { class: "field number" }, label, element("span", { class: "box" }, box, unit), bar, sizes);
     let field;
     function moved(value) {
       const tidied = Math.min(field.high, Math.max(field.low, value));
@@ -52,6 +53,10 @@
       field = said;
       label.textContent = field.label;
       unit.textContent = field.unit;
+      if (field.sizes) {
+        sizes.replaceChildren(...field.sizes.map((value) => element("option", { value })));
+        box.setAttribute("list", sizes.id);
+      }
       bar.hidden = field.value === null;
       if (!typing.has(name)) box.value = field.text;
       if (bar.hidden) return;

@@ -21,10 +21,11 @@ from ...quantities import JOINT
 from ..drawing import extent_of, section
 from ..press_charts import press_charts
 from ..pressing import fine_curves, pressed
+from ..reading import number_text
 from ..screen import BESIDE, Screen
 from ..style import html, inputs
 from ..view import Document, Host
-from ..words import alert, columns, number_rows, number_text, percent
+from ..words import alert, number_rows, percent
 
 _CHOOSE = "– choose –"
 
@@ -97,7 +98,7 @@ class Compare:
         )
         contacts = answers(files, screen.answered_by)
         self._table.object = table(*_text_table(files, contacts, screen))
-        self._drawn.object = _drawings(files, contacts) + press_charts(contacts, _lines(files), screen.angle)
+        self._drawn.object = _drawings(files, contacts) + press_charts(contacts, _lines(files), screen.reading)
 
     def document(self, screen: Screen) -> Document:
         files = labelled(screen)
@@ -106,11 +107,14 @@ class Compare:
         title = f"answered by {screen.answered_by}"
 
         def picture(form: str) -> bytes:
-            return drawn(press_figure(contacts, fine_curves(contacts, models), title, _lines(files)), form)
+            return drawn(
+                press_figure(contacts, fine_curves(contacts, models), title, _lines(files), units=screen.reading.units),
+                form,
+            )
 
         return Document(
             picture=picture if contacts else None,
-            rows=lambda: number_rows("joint", contacts),
+            rows=lambda: number_rows("joint", contacts, screen.reading),
             sections=lambda: {"joints": ("Joints", table(*_text_table(files, contacts, screen)))},
         )
 
@@ -171,14 +175,14 @@ def _text_table(
 ) -> tuple[list[str], list[list[str]]]:
     """A column a joint; answers with their difference from the one that is chosen as base."""
     rows = [
-        [JOINT[name].head(), *(f"{float(getattr(file.joint, name)):g}" for file in files.values())]
+        [_head(name, screen), *(_length(file, name, screen) for file in files.values())]
         for name in _DIMENSIONS[screen.size]
     ]
     rows.append(["liner", *(str(file.joint.liner) for file in files.values())])
     rows.append(["ball", *("rigid" if file.joint.ball is None else str(file.joint.ball) for file in files.values())])
     base = list(files)[base_of(files, screen)]
     first = contacts.get(base)
-    for each in columns(screen.angle):
+    for each in screen.reading.columns:
         row = [each.label]
         for name in files:
             contact = contacts.get(name)
@@ -198,6 +202,14 @@ def _text_table(
 def base_of(files: Mapping[str, JointFile], screen: Screen) -> int:
     """The place of the joint with which the others are compared; the last, where there are not so many."""
     return min(int(screen.base), len(files) - 1)
+
+
+def _head(name: str, screen: Screen) -> str:
+    return JOINT[name].head(screen.reading.unit(JOINT[name]))
+
+
+def _length(file: JointFile, name: str, screen: Screen) -> str:
+    return f"{float(getattr(file.joint, name)) * screen.reading.unit(JOINT[name]).factor:.5g}"
 
 
 def _trusted(contact: Contact | None, file: JointFile, screen: Screen) -> str:

@@ -14,7 +14,7 @@ from ...checks import shown
 from ...io.joint_file import JointFile
 from ...output import html as page
 from ...output.cup_plot import cup_figure
-from ...quantities import CONTACT, CUP, DERIVED, QUANTITIES
+from ...quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ...sphere.contact import OffAxisContact
 from ...validity import OutsideDomainError
 from ..angle_map import angle_map
@@ -25,10 +25,11 @@ from ..cup_fields import cup_edited, cup_fields
 from ..cupping import SOLVED, Stood, bore_of, pressed_in_cup, set_up, stand_of, stood
 from ..fields import segments
 from ..jobs import Job, Kept
+from ..reading import Reading
 from ..running import Done, Reached, Refused
 from ..screen import STANDINGS, Screen
 from ..view import Document, Host
-from ..words import alert, number_cell, progress, trust, unit_of
+from ..words import alert, number_cell, progress, trust
 
 _STOOD: Kept = Kept(most=32)
 _FIELDS = (
@@ -222,17 +223,23 @@ def _told(contact: OffAxisContact) -> dict[str, Any]:
 
 
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:
-    angle = unit_of(CUP["inclination"], screen.angle)
+    reading = screen.reading
+    angle = reading.unit(CUP["inclination"])
     degree = angle.text if angle.text == "°" else f" {angle.text}"
     margin = f"{float(contact.edge_margin) * angle.factor:.3g}{degree} of arc"
     cells = [
-        number_cell(DERIVED["edge_distance"].title, float(contact.edge_distance), "mm", margin),
-        number_cell(CONTACT["max_pressure"].title, float(contact.max_pressure), CONTACT["max_pressure"].unit),
+        _cell(DERIVED["edge_distance"], contact.edge_distance, reading, margin),
+        _cell(CONTACT["max_pressure"], contact.max_pressure, reading),
         number_cell("load from the cup's axis", float(contact.tilt) * angle.factor, angle.text),
-        number_cell(CONTACT["half_angle"].title, float(contact.half_angle) * angle.factor, angle.text),
-        number_cell(CONTACT["force"].title, float(contact.force), CONTACT["force"].unit),
+        _cell(CONTACT["half_angle"], contact.half_angle, reading),
+        _cell(CONTACT["force"], contact.force, reading),
     ]
     return f"{_verdict(contact)}<dl class='numbers'>{''.join(cells)}</dl>{trust(contact)}{_hint(contact)}"
+
+
+def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> str:
+    unit = reading.unit(quantity)
+    return number_cell(quantity.title, float(value) * unit.factor, unit.text, more)
 
 
 def _verdict(contact: OffAxisContact) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import replace
@@ -11,9 +12,11 @@ from typing import Any
 import panel as pn
 
 from ...io.joint_file import JointFile
+from ...kinds import Unit
 from ...output.html import drawn, table
 from ...output.study_plots import design_map
 from ...output.study_terminal import map_rows
+from ...output.unit_systems import Units
 from ...quantities import QUANTITIES
 from ...studies.parameters import PARAMETERS
 from ...studies.phrases import limit_of, range_of
@@ -21,6 +24,7 @@ from ..beside import beside
 from ..look import PALETTES
 from ..map_chart import MapChart
 from ..mapping import around, best, joint_at, limits_of, mapped, now, told
+from ..reading import Reading
 from ..screen import AXES, MAPPED, QUICK, Axis, Screen, phrases_of
 from ..style import html, inputs
 from ..view import Document, Host
@@ -117,7 +121,7 @@ class DesignMap:
     def _range(self, which: str, event: Any) -> None:
         name = getattr(self._screen, which).name
         try:
-            _, low, high = range_of(f"{name}={event.new}")
+            _, low, high = range_of(_with_unit(f"{name}={event.new}", name, self._screen.reading))
             axis = Axis(name=name, low=low, high=high)
         except ValueError as error:
             self._refuse(error)
@@ -126,7 +130,8 @@ class DesignMap:
 
     def _limited(self, event: Any) -> None:
         try:
-            limits = tuple(limit_of(phrase) for phrase in event.new.split(",") if phrase.strip())
+            phrases = [phrase.strip() for phrase in event.new.split(",") if phrase.strip()]
+            limits = tuple(limit_of(_limit_with_unit(phrase, self._screen.reading)) for phrase in phrases)
         except ValueError as error:
             self._refuse(error)
             return
@@ -179,11 +184,14 @@ class DesignMap:
             for which, choice in (("across", self._across), ("up", self._up)):
                 axis = getattr(screen, which)
                 choice.value = axis.name
-                low, high = (value * PARAMETERS[axis.name].written.factor for value in (axis.low, axis.high))
-                self._ranges[which].value = f"{low:g}..{high:g} {PARAMETERS[axis.name].kind.typed}".strip()
-            self._quantity.value = screen.quantity
+                unit = _unit(axis.name, screen.reading)
+                low, high = (value * unit.factor for value in (axis.low, axis.high))
+                self._ranges[which].value = f"{low:.6g}..{high:.6g} {unit.text}".strip()
+            labels = {screen.reading.label(QUANTITIES[name]): name for name in MAPPED}
+            self._quantity.param.update(options=labels, value=screen.quantity)
             self._model.value = screen.map_model
-            self._limits.value = ", ".join(phrase for limit in screen.limits for phrase in phrases_of(limit, _typed))
+            typed = partial(_typed, screen.reading)
+            self._limits.value = ", ".join(phrase for limit in screen.limits for phrase in phrases_of(limit, typed))
         finally:
             self._putting = False
 
@@ -212,6 +220,28 @@ def _map_of(screen: Screen) -> Any:
     return mapped(screen.file, screen.across, screen.up, screen.map_model)
 
 
-def _typed(name: str, value: float) -> str:
+_TYPED = {"mil": "thou", "°": "deg"}
+"""Units as the door for text knows them."""
+
+
+def _unit(name: str, reading: Reading) -> Unit:
+    """The unit in which a number is typed: that of files, or that of an inch page."""
+    quantity = QUANTITIES[name]
+    unit = quantity.written if reading.units is Units.SI else reading.unit(quantity)
+    return Unit(_TYPED.get(unit.text, unit.text if reading.units is not Units.SI else quantity.kind.typed), unit.factor)
+
+
+def _typed(reading: Reading, name: str, value: float) -> str:
     """A number as it would be typed."""
-    return f"{value * QUANTITIES[name].written.factor:.6g} {QUANTITIES[name].kind.typed}".strip()
+    unit = _unit(name, reading)
+    return f"{value * unit.factor:.6g} {unit.text}".strip()
+
+
+def _with_unit(phrase: str, name: str, reading: Reading) -> str:
+    """A phrase whose last number has a unit: a bare one is in that of the page."""
+    bare = name in QUANTITIES and phrase.rstrip()[-1:].isdigit()
+    return f"{phrase} {_unit(name, reading).text}".strip() if bare else phrase
+
+
+def _limit_with_unit(phrase: str, reading: Reading) -> str:
+    return _with_unit(phrase, re.split("[<>=≤≥]", phrase)[0].strip(), reading)

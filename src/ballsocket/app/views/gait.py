@@ -152,7 +152,7 @@ def _changed(screen: Screen, key: str, value: Any) -> Use:
     if key == "instant" and not (isinstance(value, int) and not isinstance(value, bool)):
         raise ValueError("an instant of a cycle is a whole number")
     if key == "body_weight":
-        value = typed(key, value, "N", 1.0, Kind.FORCE)
+        value = typed(key, value, Unit("N"), Kind.FORCE)
     changes: dict[str, Any] = {key: value if key in ("instant", "body_weight") else str(value)}
     return replace(screen.use, **changes)
 

@@ -17,11 +17,12 @@ from ...io.joint_toml import cup_table
 from ...output.html import picture, table
 from ...quantities import CONTACT, CUP
 from ..judging import Judged, judged
+from ..reading import number_text
 from ..running import LONGEST, Done, Reached, Refused, Run, looked_at
 from ..screen import Screen
 from ..style import html, inputs
 from ..view import Document, Host
-from ..words import alert, columns, notes_list, number_text, percent
+from ..words import alert, notes_list, percent
 
 _EVERY = 150  # ms between two questions for news
 
@@ -174,7 +175,7 @@ class Judge:
 def _numbers(judged: Judged, screen: Screen) -> str:
     """Numbers with their error bars, beside the exact answer."""
     rows = []
-    for each in columns(screen.angle):
+    for each in screen.reading.columns:
         turn = each.factor / each.quantity.written.factor  # the numbers are those of JSON
         value = judged.numbers[each.name] * turn
         bar = judged.error.get(each.attribute)

@@ -18,7 +18,7 @@ from ...output import html as page
 from ...output.press_plot import press_figure
 from ...output.press_report import press_lede, press_sections
 from ...output.style import line_of
-from ...quantities import BEARING, FIELD, JOINT
+from ...quantities import BEARING, FIELD
 from ...studies.around import Around, around
 from ..beside import beside
 from ..chart import swatch
@@ -63,9 +63,9 @@ class Press:
             )
         else:
             exact = found.contacts.get(reference.name)
-            self._channel.put("#press-numbers", headline(by, exact, about_von_mises(by), screen.angle))
+            self._channel.put("#press-numbers", headline(by, exact, about_von_mises(by), screen.reading))
         self._draw(screen, None if by is None or by.status.failed else by)
-        self._channel.put("#press-charts", press_charts(drawn, lines, screen.angle))
+        self._channel.put("#press-charts", press_charts(drawn, lines, screen.reading))
         self._channel.put_fields(_fields(screen))
         self._fill_later(screen)
 
@@ -91,13 +91,14 @@ class Press:
     def _put_drawing(self, screen: Screen, contact: Contact | None, inside: Stresses | None) -> None:
         file, tilt = screen.file, tilt_of(screen.file)
         painted = "" if inside is None else painted_stresses(file, inside, frame_of(file), tilt)
-        drawing = first_view(file, contact, fields_of(screen), (tilt, JOINT["ball_radius"].shown), painted)
+        drawing = first_view(file, contact, fields_of(screen), (tilt, screen.reading.length), painted)
+        top = 0.0 if contact is None else float(contact.max_pressure)
         if contact is None:
             said = ""
         elif inside is None:
-            said = key(float(contact.max_pressure), FIELD["pressure"], screen.painted == "stress")
+            said = key(screen.reading.said(FIELD["pressure"], top), FIELD["pressure"], screen.painted == "stress")
         else:
-            said = key(inside.largest, BEARING["von_mises"], False)
+            said = key(screen.reading.said(BEARING["von_mises"], inside.largest), BEARING["von_mises"], False)
         self._channel.put("#press-section", drawing + said + about_the_rim(file, contact, tilt))
 
     def _fill_later(self, screen: Screen, waits: int = _WAITS) -> None:
@@ -121,7 +122,7 @@ class Press:
 
     def _fill(self, screen: Screen) -> None:
         found = pressed(screen.file, _EVERY)
-        self._channel.put("#press-table", models_table(found, screen.angle))
+        self._channel.put("#press-table", models_table(found, screen.reading))
         by = answered(found).get(screen.answered_by)
         if by is not None:
             beside(lambda: float(by.von_mises) if screen is self._screen else 0.0, partial(self._sure, screen, found))
@@ -130,20 +131,20 @@ class Press:
         """The numbers again, with the stress that the model itself knows."""
         if screen is self._screen:
             by, exact = found[screen.answered_by], found.contacts.get(reference.name)
-            self._channel.put("#press-numbers", headline(by, exact, outcome.result(), screen.angle, ""))
+            self._channel.put("#press-numbers", headline(by, exact, outcome.result(), screen.reading, ""))
             self._channel.send()
 
     def document(self, screen: Screen) -> Document:
-        found = pressed(screen.file, _EVERY)
+        found, units = pressed(screen.file, _EVERY), screen.reading.units
         by = found.contacts.get(screen.answered_by)
         drawn = {name: found[name] for name in screen.shown if name in answered(found)}
         return Document(
-            picture=(lambda form: page.drawn(press_figure(drawn, fine_curves(drawn, catalogue)), form))
+            picture=(lambda form: page.drawn(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
             if drawn
             else None,
-            rows=lambda: _rows(found),
-            sections=lambda: press_sections(found, surroundings=_around(screen.file)),
-            lede=lambda: "" if by is None else press_lede(by),
+            rows=lambda: _rows(found, screen),
+            sections=lambda: press_sections(found, units, surroundings=_around(screen.file)),
+            lede=lambda: "" if by is None else press_lede(by, units),
             contact=by,
         )
 
@@ -165,9 +166,9 @@ def _fields(screen: Screen) -> dict[str, Any]:
     }
 
 
-def _rows(found: Comparison) -> list[list[Any]]:
+def _rows(found: Comparison, screen: Screen) -> list[list[Any]]:
     """With why a model is not to be trusted."""
-    heads, *rows = number_rows("model", found)
+    heads, *rows = number_rows("model", found, screen.reading)
     return [[*heads, "notes"], *([*row, "; ".join(found[row[0]].notes)] for row in rows)]
 
 

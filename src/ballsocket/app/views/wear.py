@@ -215,9 +215,9 @@ def _factor(key: str, value: Any, use: Use) -> float:
 
 
 _READ: Mapping[str, Callable[[Any, Use], float]] = {
-    "body_weight": lambda value, use: typed("body_weight", value, "N", 1.0, Kind.FORCE),
+    "body_weight": lambda value, use: typed("body_weight", value, Unit("N"), Kind.FORCE),
     "coefficient": partial(_factor, "coefficient"),
     "circular": partial(_factor, "circular"),
-    "spread": lambda value, use: typed("spread", value, "", 1.0, Kind.NUMBER),
-    "millions": lambda value, use: typed("millions", value, "", 1.0, Kind.NUMBER),
+    "spread": lambda value, use: typed("spread", value, Unit(""), Kind.NUMBER),
+    "millions": lambda value, use: typed("millions", value, Unit(""), Kind.NUMBER),
 }

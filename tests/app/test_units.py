@@ -1,0 +1,128 @@
+"""Shop language: diameters, sizes of catalogues, and one switch to inches and pounds that holds everywhere."""
+
+import csv
+import io
+import re
+from html import unescape
+
+import pytest
+
+import ballsocket as bs
+
+pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tomli_w")
+from ballsocket.app.page import Page
+from ballsocket.app.reading import Reading, handy_step
+from ballsocket.app.screen import VIEWS
+from ballsocket.output.unit_systems import Units
+from ballsocket.quantities import QUANTITIES
+
+from .asking import does, edits, saved, trouble
+
+HIP = bs.joints["hip-28"]
+PSI, LBF = 145.0377377, 0.2248089431  # of a MPa and of a N
+IMPERIAL = "preset=hip-28&load.force=3000&units=imperial"
+METRIC = re.compile(r"[\d.]\s*(?:</?\w[^>]*>\s*)*(?:mm|µm|N|kN|MPa|kN/mm|mm²|N mm|MPa/mm)\b|\[(?:mm|µm|k?N|MPa|mm²)\b")
+
+
+def field(page, name):
+    return page.channel.told(f"={name}")
+
+
+def shown(page):
+    """All that stands on the page outside of lists of sizes."""
+    parts = {name: said for name, said in page.channel._said.items() if name.startswith("#")}
+    return unescape(" ".join(parts.values()))
+
+
+def test_a_page_speaks_of_diameters_and_of_what_makers_offer():
+    page = Page("")
+    heads, shells = (field(page, name) for name in ("ball_radius", "outer_radius"))
+    assert (heads["label"], heads["value"], heads["unit"]) == ("Head diameter 2 R1", 28.0, "mm")
+    assert {"22.225", "28", "32", "36"} <= set(heads["sizes"])
+    assert "52" in shells["sizes"]
+    assert field(page, "clearance")["label"] == "Diametral clearance 2 c"
+    for text in ("32", "32 mm", "3,2 cm", 32):
+        edits(page, "ball_radius", text)
+        assert page.screen.file.joint.ball_radius == pytest.approx(16.0, rel=1e-12)
+        edits(page, "ball_radius", "28")
+
+
+def test_every_number_beside_a_box_has_its_unit():
+    fields = {name: said for name, said in Page("").channel._said.items() if name.startswith("=")}
+    bare = [name for name, said in fields.items() if said["kind"] == "number" and not said["unit"]]
+    assert set(bare) == {"=liner_poisson", "=ball_poisson"}
+
+
+def test_inches_and_pounds_hold_on_the_whole_page_and_come_back_as_they_were():
+    page = Page("preset=hip-28&load.force=3000")
+    before = page.screen
+    does(page, "choose", name="units", value="imperial")
+    assert trouble(page) == ""
+    contact = bs.Exact().press(HIP, force=3000.0)
+    said = {name: field(page, name) for name in ("ball_radius", "load", "liner_young", "allowable")}
+    assert [said[name]["unit"] for name in said] == ["in", "lbf", "psi", "psi"]
+    assert said["ball_radius"]["value"] == pytest.approx(28 / 25.4)
+    assert said["load"]["value"] == pytest.approx(3000 * LBF)
+    (first, *_) = re.findall(r"data-value='([^']+)'", page.channel.told("#press-numbers"))
+    assert float(first) == pytest.approx(contact.max_pressure * PSI)
+    assert {"⌀ 1.102 in", "674.427 lbf"} <= set(re.findall(r"<text[^>]*>([^<]*)</text>", shown(page)))
+    assert METRIC.findall(page.channel.told("#press-numbers") + page.channel.told("#press-section")) == []
+    assert METRIC.findall(page.channel.told("#press-charts")) == []
+    assert re.findall(r"\[[^\]]*\]", page.channel.told("#press-table"))[:4] == ["[lbf]", "[mil]", "[°]", "[psi]"]
+    edits(page, "ball_radius", "28 mm")
+    edits(page, "load", "3 kN")
+    does(page, "choose", name="units", value="SI")
+    assert page.screen == before
+
+
+def test_what_is_typed_is_in_the_unit_beside_the_box_or_in_its_own():
+    page = Page(IMPERIAL)
+    edits(page, "ball_radius", "1,25")
+    assert page.screen.file.joint.ball_radius == pytest.approx(25.4 * 1.25 / 2)
+    edits(page, "load", "700")
+    assert page.screen.file.load == {"force": pytest.approx(700 / LBF)}
+    edits(page, "allowable", 3000)
+    assert page.screen.file.joint.liner.allowable_pressure == pytest.approx(3000 / PSI)
+    edits(page, "ball_radius", "wide")
+    assert "head_diameter = 'wide' is no number in in" in unescape(trouble(page))
+
+
+def test_files_are_in_the_units_of_the_page():
+    page = Page(IMPERIAL)
+    rows = list(csv.DictReader(io.StringIO(saved(page, "CSV").decode())))
+    exact = next(row for row in rows if row["model"] == "exact")
+    assert float(exact["max_pressure_psi"]) == pytest.approx(bs.Exact().press(HIP, force=3000.0).max_pressure * PSI)
+    assert {"force_lbf", "indentation_mil", "half_angle_deg", "area_in2", "stiffness_kip_per_in"} <= set(exact)
+    report = saved(page, "HTML").decode()
+    assert "psi" in report
+    assert "head diameter</td><td>1.102 in" in report
+
+
+@pytest.mark.parametrize("view", ["map", "compare"])
+def test_other_views_are_in_the_units_of_the_page(view):
+    assert view in VIEWS
+    page = Page(f"{IMPERIAL}&view={view}&limit=outer_radius<=26")
+    assert trouble(page) == ""
+    if view == "map":
+        chart = page.view._chart
+        assert chart.figure.xaxis.axis_label == "ball radius R1 [in]"
+        assert chart.figure.x_range.end == pytest.approx(23 / 25.4, rel=0.02)
+        assert page.view._ranges["across"].value == "0.433071..0.905512 in"
+        page.view._limits.value = "outer_radius<=1"
+        assert page.screen.limits[0].high == pytest.approx(25.4)
+        assert page.view._limits.value == "outer_radius<=1 in"
+    else:
+        assert METRIC.findall(page.view._drawn.object) == []
+        assert "<td>largest pressure pmax [psi]</td>" in page.view._table.object
+
+
+def test_units_of_every_quantity_are_pounds_and_inches_or_have_none():
+    reading = Reading(units=Units.IMPERIAL)
+    left = {each.kind: reading.unit(each).text for each in QUANTITIES.values()}
+    assert not {"mm", "µm", "N", "kN", "MPa", "N/mm", "mm2", "mm²"} & set(left.values())
+
+
+@pytest.mark.parametrize(("step", "round_one"), [(0.0039, 0.002), (0.2, 0.2), (11.24, 10.0), (1450.0, 1000.0)])
+def test_steps_are_round(step, round_one):
+    assert handy_step(step) == pytest.approx(round_one)
