@@ -128,7 +128,7 @@ def test_a_design_is_put_beside_and_taken_away(monkeypatch):
     page = opened()
     edits(page, "wear.beside", "as it is now")
     edits(page, "wear.run", True)
-    edits(page, "clearance", "0.2")
+    edits(page, "clearance", "0.4")
     edits(page, "wear.run", True)
     assert asked == [1, 2]  # the same design twice is one
     (other,) = page.screen.beside

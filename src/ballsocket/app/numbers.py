@@ -34,7 +34,7 @@ class Number:
         return Unit(unit.text, self.times * unit.factor / self.quantity.written.factor)
 
     def field(self, name: str, value: float, reading: Reading) -> Field:
-        """Its input, for a number of the tables."""
+        """The input for a number of the tables."""
         unit, ratio = self.unit(reading), _ratio(self.quantity, reading)
         low, high = (float(f"{self.times * end * ratio:.3g}") for end in self.ends)
         step = self.times * self.step * ratio
@@ -50,7 +50,7 @@ class Number:
         return f"{title[:1].upper()}{title[1:]} {self.quantity.symbol}".strip()
 
     def _sizes(self, reading: Reading) -> list[str]:
-        """As they stand in catalogues, with a unit where that is not the page's."""
+        """The sizes of catalogues, with a unit where that is not the one of the page."""
         behind = "" if reading.units is Units.SI else " mm"
         return [f"{self.times * size:g}{behind}" for size in self.sizes]
 

@@ -42,14 +42,15 @@ def _pressures(contacts: Mapping[str, Contact], lines: Mapping[str, Line], readi
 
 def _forces(contacts: Mapping[str, Contact], lines: Mapping[str, Line], reading: Reading) -> str:
     axes = depth, force = force_axes(reading.units)
-    largest = rounded_up(1.2 * max(float(contact.force) for contact in contacts.values()))
+    top = rounded_up(1.2 * max(float(force.of(contact)) for contact in contacts.values()))
+    largest = top / force.factor
     deepest = max(float(depth.of(contact)) for contact in contacts.values())
     return chart(
         "force over indentation",
         depth.label,
         force.label,
         {name: _curve(contact, largest, axes, lines[name]) for name, contact in contacts.items()},
-        (rounded_up(1.3 * deepest), rounded_up(largest * force.factor)),
+        (rounded_up(1.3 * deepest), top),
     )
 
 

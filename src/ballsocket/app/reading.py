@@ -32,7 +32,7 @@ class Reading:
 
     @property
     def length(self) -> Unit:
-        """Of a dimension."""
+        """The unit of a dimension."""
         return self.unit(JOINT["ball_radius"])
 
     def label(self, quantity: Quantity) -> str:

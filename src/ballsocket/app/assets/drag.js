@@ -13,7 +13,7 @@
     const load = app.known("load"), turn = app.known("tilt");
     const share = (Math.hypot(x, y) - Number(svg.start)) / Number(svg.long);
     app.moved("load", Math.min(1, Math.max(0, share)) * load.high);
-    app.moved("tilt", Math.max(0, Math.atan2(x, -y)) * turn.factor);
+    app.moved("tilt", Math.max(0, (Math.atan2(x, -y) * 180) / Math.PI) * turn.factor);
   }
   const drag = {
     arrow,
