@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import sys
 from collections.abc import Sequence
 from html import escape
 from secrets import token_bytes
@@ -25,6 +26,7 @@ _MESSAGE = 400_000
 """Bytes of one message from a browser: an upload is smaller."""
 
 _IDLE = 60_000  # ms after which a page whose line is broken is forgotten
+_TURN = 5e-4  # s for which a drawing keeps pages waiting, many times in an answer; usual are 5 ms
 _LOOK = 1_000  # ms between two looks for pages that were closed
 
 
@@ -52,6 +54,7 @@ def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (
     require("port", port, 0 <= port <= 65535, "a port is 0 to 65535")
     _check_address(address)
     pn.extension(notifications=False)
+    sys.setswitchinterval(_TURN)
     pressed(START.file, (START.answered_by, *START.shown))  # what is loaded at the first press is loaded now
     port = port or _free_port(address)
     own = [f"{name}:{port}" for name in dict.fromkeys((LOOPBACK, "localhost", address))]
