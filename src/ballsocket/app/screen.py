@@ -169,7 +169,18 @@ START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
 def link_of(screen: Screen) -> str:
     """The part of a link after the question mark: what differs from the start, and the joint."""
     pairs: list[tuple[str, str]] = []
-    for name in ("view", "answered_by", "map_model", "quantity", "standing", "base", "painted", "angle", "size", "units"):
+    for name in (
+        "view",
+        "answered_by",
+        "map_model",
+        "quantity",
+        "standing",
+        "base",
+        "painted",
+        "angle",
+        "size",
+        "units",
+    ):
         if getattr(screen, name) != getattr(START, name):
             pairs.append((name, getattr(screen, name)))
     if screen.shown != START.shown:
