@@ -33,6 +33,8 @@ class Kind(StrEnum):
     ENERGY = "energy"
     FOUNDATION = "foundation modulus"
     COMPLIANCE = "compliance"
+    FREQUENCY = "frequency"
+    MASS = "mass"
 
     @property
     def unit(self) -> str:
@@ -71,6 +73,8 @@ _KINDS = {
     Kind.ENERGY: ("N mm", "an energy, such as '50 N*mm'"),
     Kind.FOUNDATION: ("MPa/mm", "a foundation modulus, such as '280 MPa/mm'"),
     Kind.COMPLIANCE: ("mm/N", "a compliance, such as '5 um/kN'"),
+    Kind.FREQUENCY: ("Hz", "a frequency, such as '120 Hz'"),
+    Kind.MASS: ("kg", "a mass, such as '2 kg'"),
 }
 _WRITTEN = {Kind.ANGLE: Unit("°", degrees(1.0)), Kind.NUMBER: Unit(""), Kind.AREA: Unit("mm²")}
 _SUFFIXES = {

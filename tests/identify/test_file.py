@@ -130,6 +130,25 @@ def test_a_file_is_read_and_answered(question):
     assert given.identified().point == pytest.approx(truth, rel=2e-3)
 
 
+SWING = """
+[[data]]
+quantity = "frequency"
+values = "{frequency} Hz"
+mass = "2 kg"
+force = "3 kN"
+uncertainty = "0.1 %"
+"""
+
+
+def test_a_mass_that_swings_tells_the_stiffness(question):
+    frequency = (1e3 * CONTACT.stiffness[4] / 2.0) ** 0.5 / (2 * np.pi)
+    question.write_text(question.read_text("utf-8") + SWING.format(frequency=frequency), "utf-8")
+    given = read_identify(question)
+    assert given.data[2].own.described.unit == "Hz"
+    truth = {"clearance": HIP.clearance, "liner_young": HIP.liner.young, "frame.compliance": 5e-6}
+    assert given.identified().point == pytest.approx(truth, rel=2e-3)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -144,6 +163,11 @@ def test_a_file_is_read_and_answered(question):
             "data.toml: frame.compliance = '1 um' is not a compliance",
         ),
         ('quantity = "area"', "", "data.toml: [[data]] with values needs its quantity"),
+        (
+            'uncertainty = "1 %"',
+            'uncertainty = "1 %"\nmass = "2 kg"',
+            "of a frequency needs its mass",
+        ),
         ('file = "press.csv"', "", "data.toml: [[data]] needs a file, or a quantity with its values, and not both"),
         ('model = "tabulated"', 'scatter = "cauchy"', "data.toml: scatter 'cauchy' is not known; known: normal"),
     ],

@@ -4,13 +4,11 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import HeavyTailed, Machine, Measured, Own
+from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
 from ballsocket.identify.experiment import Candidate, experiment
 from ballsocket.identify.synthetic import drawn, trials
 from ballsocket.identify.tracing import by_tracing
-from ballsocket.kinds import Kind
 from ballsocket.output.identify_plots import fit_figure
-from ballsocket.quantities import Quantity
 from ballsocket.studies import LogNormal, Normal
 
 RIGID = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
@@ -293,14 +291,10 @@ def test_a_model_that_jax_cannot_trace_is_named():
 
 def test_ones_own_quantity_is_read_from_contacts():
     """The frequency of a small vibration about a load tells the stiffness there."""
-    frequency = Quantity("frequency", "f", "natural frequency", Kind.NUMBER, "Of a small vibration of 1 kg, in Hz.")
-
-    def read(contact):
-        return (1e3 * contact.stiffness / 1.0) ** 0.5 / (2 * np.pi)
-
-    own = Own(frequency, read)
-    vibrations = Measured(quantity="frequency", own=own, values=read(TRUTH), uncertainty=1.0, force=FORCE)
+    own = oscillation(mass=1.0)
+    swings = own.read(TRUTH)
+    vibrations = Measured(quantity="frequency", own=own, values=swings, uncertainty=1.0, force=FORCE)
     found = identified(vibrations, measured("area"))
     assert found.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
-    assert drawn(found, np.random.default_rng(0))[0].values == pytest.approx(read(TRUTH), rel=0.1)
-    assert fit_figure(found).axes[0].get_ylabel() == "natural frequency f"
+    assert drawn(found, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
+    assert fit_figure(found).axes[0].get_ylabel() == "frequency of oscillation f [Hz]"

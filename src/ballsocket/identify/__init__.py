@@ -6,6 +6,7 @@
 from .information import Information, Product
 from .measured import MEASURED, Machine, Measured, Own
 from .modulus import Calibration, as_constant, as_corrected_vessel, as_polynomial, calibrate
+from .oscillation import oscillation
 from .parameters import Estimate, Identified, identify
 from .scatter import HeavyTailed, NormalScatter
 
@@ -26,4 +27,5 @@ __all__ = [
     "as_polynomial",
     "calibrate",
     "identify",
+    "oscillation",
 ]

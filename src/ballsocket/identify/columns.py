@@ -16,7 +16,7 @@ from ..arrays import Numbers
 from ..checks import shown
 from ..io.units import parse
 from ..kinds import Kind
-from ..quantities import FIELD, LOADS
+from ..quantities import FIELD, LOADS, Quantity
 from ..studies.columns import read_columns
 from .measured import MEASURED, PERFECT, Machine, Measured
 
@@ -177,15 +177,16 @@ def _uncertainty(title: str, name: str, rows: Mapping[str, Numbers], given: floa
         return rows[name + _BESIDE]
     if given is None:
         raise ValueError(f"{title}: how uncertain is {name}? give it a column {name}{_BESIDE}_..., or an uncertainty")
-    return uncertainty_of(name, given, rows[name])
+    return uncertainty_of(_KNOWN[name], given, rows[name])
 
 
-def uncertainty_of(name: str, given: float | str, values: Numbers) -> Any:
+def uncertainty_of(quantity: Quantity, given: float | str, values: Numbers) -> Any:
     """An uncertainty from "2 %" of each value, or from a quantity of the values' kind."""
+    name = f"{quantity.name}{_BESIDE}"
     share = re.fullmatch(r"\s*([-+.\deE]+)\s*%\s*", given) if isinstance(given, str) else None
     if share:
-        return parse(f"{name}{_BESIDE}", share[1], Kind.NUMBER) / 100 * abs(values)
-    return parse(f"{name}{_BESIDE}", given, _KNOWN[name].kind)
+        return parse(name, share[1], Kind.NUMBER) / 100 * abs(values)
+    return parse(name, given, quantity.kind)
 
 
 def _beside(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:

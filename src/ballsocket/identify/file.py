@@ -23,19 +23,21 @@ from ..studies.parameters import PARAMETERS
 from ..studies.phrases import ends_of
 from ..studies.scatter import distribution_of
 from .columns import Gaps, read_measured, uncertainty_of
-from .measured import MACHINE, MEASURED, PERFECT, Machine, Measured
+from .measured import MACHINE, MEASURED, PERFECT, Machine, Measured, Own
+from .oscillation import FREQUENCY, oscillation
 from .parameters import Identified, identify
 from .scatter import HeavyTailed, NormalScatter, Scatter
 from .unknowns import Given
 
 _OF_FILE = ("file", "quantities", "load", "gaps")
-_OF_VALUES = ("quantity", "values", "angle", *LOADS)
+_OF_VALUES = ("quantity", "values", "angle", "mass", *LOADS)
 _OF_BOTH = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
 _TABLES: Mapping[str, tuple[str, ...]] = {
     "": (*PARTS, "model", "scatter", "free", "machine", "data"),
     "data": (*_OF_FILE, *_OF_VALUES, *_OF_BOTH),
 }
 FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
+_READ = {**MEASURED, FREQUENCY.name: FREQUENCY}
 _SCATTERS = ("normal", "heavy-tailed")
 
 
@@ -58,11 +60,12 @@ def read_identify(path: str | Path) -> IdentifyFile:
     """Read a file about measurements.
 
     At the top: `model` (by name; "tabulated" without a word), `scatter` ("normal", or "heavy-tailed" against
-    outliers), and the joint as in study files. `free` has the unknowns: text with two ends, "0.02..0.3 mm", or what was
-    known, `{mean, deviation}`, `{median, factor}`. Each `[[data]]` has a `file` (CSV, heads with units), and which of
-    its columns are `quantities` and which the `load`, and `gaps` ("refuse", "leave-out"); or a `quantity` with `values`
-    (one or a list) and its load; for either `uncertainty` ("1 um", "2 %"), `load_uncertainty`, `saturation`, `machine`.
-    `[machine.NAME]` has `compliance` and `offset`, numbers or two ends. Paths are taken from the file's own folder.
+    outliers), and the joint as in study files. `free` has the unknowns: text with two ends, "0.02..0.3 mm", or what
+    was known, `{mean, deviation}`, `{median, factor}`. Each `[[data]]` has a `file` (CSV, heads with units), and
+    which of its columns are `quantities` and which the `load`, and `gaps` ("refuse", "leave-out"); or a `quantity`
+    with `values` (one or a list) and its load, a "frequency" also its `mass`; for either `uncertainty` ("1 um", "2
+    %"), `load_uncertainty`, `saturation`, `machine`. `[machine.NAME]` has `compliance` and `offset`, numbers or two
+    ends. Paths are taken from the file's own folder.
 
     Raises
     ------
@@ -159,21 +162,29 @@ def _of_values(table: Mapping[str, Any], machine: Machine) -> Measured:
     for key in ("quantity", "uncertainty"):
         if key not in table:
             raise ValueError(f"[[data]] with values needs its {key}")
-    name = known_name("quantity", table["quantity"], MEASURED)
-    values = _numbers(name, table["values"], MEASURED[name].kind)
+    name = known_name("quantity", table["quantity"], _READ)
+    values = _numbers(name, table["values"], _READ[name].kind)
     loads: dict[str, Any] = {kind: _numbers(kind, table[kind], LOADS[kind].kind) for kind in LOADS if kind in table}
     if "angle" in table:
         loads["angle"] = _numbers("angle", table["angle"], Kind.ANGLE)
     return Measured(
         quantity=name,
         values=values,
-        uncertainty=uncertainty_of(name, table["uncertainty"], values),
+        uncertainty=uncertainty_of(_READ[name], table["uncertainty"], values),
+        own=_own(name, table),
         load_uncertainty=_load_uncertainty(table, next(iter(loads), "force")),
         machine=machine,
         name=check_text("name", table.get("name", "")),
         **loads,
         **_saturation(table),
     )
+
+
+def _own(name: str, table: Mapping[str, Any]) -> Own | None:
+    """What is not a quantity of a contact itself: a frequency, of its mass."""
+    if (name == FREQUENCY.name) != ("mass" in table):
+        raise ValueError("[[data]] of a frequency needs its mass, and no other has one")
+    return oscillation(parse("mass", table["mass"], Kind.MASS)) if "mass" in table else None
 
 
 def _saturation(table: Mapping[str, Any]) -> dict[str, Any]:
