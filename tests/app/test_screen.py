@@ -17,7 +17,7 @@ from ballsocket.presets import materials
 
 pytest.importorskip("tomli_w")
 pytest.importorskip("xarray")
-from ballsocket.app.screen import ANGLES, QUICK, SIZES, START, THEMES, VIEWS, Axis, Screen, link_of, read_link
+from ballsocket.app.screen import ANGLES, MAP_MODELS, SIZES, START, THEMES, VIEWS, Axis, Screen, link_of, read_link
 
 REST = "joint.clearance=1&joint.liner_thickness=2&liner.material=pom"
 lengths = st.floats(1e-3, 1e3)
@@ -78,7 +78,7 @@ def screens(draw):
         answered_by=draw(st.sampled_from(list(bs.catalogue))),
         across=across,
         up=up,
-        map_model=draw(st.sampled_from(QUICK)),
+        map_model=draw(st.sampled_from(MAP_MODELS)),
         angle=draw(st.sampled_from(ANGLES)),
         size=draw(st.sampled_from(SIZES)),
         theme=draw(st.sampled_from(THEMES)),
@@ -164,7 +164,7 @@ def test_arrays_are_no_joint_file():
         ("load.force=1&load.force=2", "'load.force' is given 2 times in the link"),
         ("load.force=1&load.indentation=2&preset=hip-28", "one load is needed, got force, indentation"),
         ("shown=exact,frob", "'frob' as shown is not known"),
-        ("map_model=exact", "'exact' as map_model is not known"),
+        ("map_model=fem", "'fem' as map_model is not known"),
         ("name=" + "x" * 9000, "the link is longer than 8000 characters"),
         ("joint.ball_radius=1e999", "the liner needs a material"),
         (

@@ -2,7 +2,7 @@
 
 import pytest
 
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.xdist_group("browser")]  # one server and one browser for all
 
 HIP = "preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import catalogue, reference
+from ..catalogue import catalogue
 from ..compare import THIN
 from ..io.joint_file import JointFile
 from ..joint import Joint
@@ -22,7 +22,8 @@ from ..studies.limits import Limit, allowed, margin_over
 from ..studies.parameters import LOADS, PARAMETERS, pressable
 from ..studies.run import study
 from ..studies.usual import joints_of, usual
-from .screen import MAPPED, START, Axis, Screen
+from ..validity import OutsideDomainError, inside
+from .screen import MAP_MODELS, MAPPED, QUICK, START, Axis, Screen
 
 _POINTS = 61
 _FEW = 17
@@ -32,7 +33,7 @@ _FEW = 17
 @lru_cache(maxsize=16)
 def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: Axis, up: Axis, model: str) -> Any:
     asked = _asked(joint, {axis.name: [axis.low, axis.high] for axis in (across, up)}, model)
-    count = _FEW if asked is reference else _POINTS
+    count = _FEW if asked.name not in QUICK else _POINTS
     axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, count) for axis in (across, up)}
     varied = any(name in axes for name in LOADS)
     design = grid(**axes, **({} if varied else dict(load)))
@@ -42,8 +43,23 @@ def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: Axis, up:
 def _asked(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
     """The model of that name; for tables that know none of the joints the one behind them, where it is quick enough."""
     model = usual(joint, ends) if name == START.map_model else catalogue[name]
-    slow = model is reference and bool(numpy.any(joints_of(joint, ends).thickness_ratio > THIN))
-    return catalogue[name] if slow else model
+    if model.name in QUICK or not bool(numpy.any(joints_of(joint, ends).thickness_ratio > THIN)):
+        return model
+    if name not in QUICK:
+        raise ValueError(f"{name} takes minutes where R2/L is above {THIN:g}: choose another model for this map")
+    return catalogue[name]
+
+
+def models_of(screen: Screen) -> list[str]:
+    """The models that know the joint on the screen, and the one that is chosen."""
+    return [name for name in MAP_MODELS if name == screen.map_model or _knows(name, screen.file.joint)]
+
+
+def _knows(name: str, joint: Joint) -> bool:
+    try:
+        return bool(inside(catalogue[name].domain, joint, name))
+    except OutsideDomainError:
+        return False
 
 
 def mapped(file: JointFile, across: Axis, up: Axis, model: str) -> Any:

@@ -39,6 +39,12 @@ BASES = ("0", "1", "2")
 STANDINGS = ("edge_distance", "max_pressure")
 """What a map of how a cup may stand can show."""
 
+MAP_MODELS = (*QUICK, *(name for name, model in catalogue.items() if 1e-4 <= model.seconds_a_press < 1e-2))
+"""Models that press a map's points at once, and those that press fewer of them in a second or two."""
+
+PICKED = ("any", "catalogue")
+"""Sizes that a click on a map takes."""
+
 MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")
 """What a map can show."""
 
@@ -98,6 +104,8 @@ class Screen:
         What the map of how a cup may stand shows.
     base : str
         The joint with which others are compared, one of BASES.
+    sizes : str
+        That a click on the map takes, one of PICKED.
     use : Use
         What the hip goes through.
     painted : str
@@ -120,6 +128,7 @@ class Screen:
     limits: tuple[Limit, ...] = ()
     standing: str = "edge_distance"
     base: str = "1"
+    sizes: str = "any"
     use: Use = WHOLE
     painted: str = "pressure"
     asked: Asked = FIRST
@@ -151,7 +160,8 @@ _KNOWN: Mapping[str, Sequence[str]] = {
     "view": VIEWS,
     "answered_by": tuple(catalogue),
     "shown": tuple(catalogue),
-    "map_model": QUICK,
+    "map_model": MAP_MODELS,
+    "sizes": PICKED,
     "quantity": MAPPED,
     "standing": STANDINGS,
     "base": BASES,
@@ -176,6 +186,7 @@ def link_of(screen: Screen) -> str:
         "quantity",
         "standing",
         "base",
+        "sizes",
         "painted",
         "angle",
         "size",

@@ -21,11 +21,12 @@ from ...quantities import QUANTITIES
 from ...studies.parameters import PARAMETERS
 from ...studies.phrases import limit_of, range_of
 from ..beside import beside
+from ..limit_lines import Place, moved, sold
 from ..look import PALETTES
 from ..map_chart import MapChart
-from ..mapping import around, best, joint_at, limits_of, mapped, now, told
+from ..mapping import around, best, joint_at, limits_of, mapped, models_of, now, told
 from ..reading import Reading
-from ..screen import AXES, MAPPED, QUICK, Axis, Screen, phrases_of
+from ..screen import AXES, MAP_MODELS, MAPPED, Axis, Screen, phrases_of
 from ..style import html, inputs
 from ..view import Document, Host
 from ..words import alert
@@ -48,17 +49,23 @@ class DesignMap:
         self._quantity = pn.widgets.Select(
             label="Shown", options={QUANTITIES[name].label(): name for name in MAPPED}, width=220, stylesheets=inputs()
         )
-        self._model = pn.widgets.Select(label="Answered by", options=list(QUICK), width=170, stylesheets=inputs())
+        self._model = pn.widgets.Select(label="Answered by", options=list(MAP_MODELS), width=170, stylesheets=inputs())
         self._limits = pn.widgets.TextInput(
             label="Limits, with commas",
             placeholder="outer_radius<=26 mm, liner_thickness>=4 mm",
             width=330,
             stylesheets=inputs(),
         )
+        self._sizes = pn.widgets.Select(
+            label="A click takes",
+            options={"any size": "any", "sizes of a catalogue": "catalogue"},
+            width=170,
+            stylesheets=inputs(),
+        )
         self._best = pn.widgets.Button(label="Press the best joint", width=180)
         self._watch()
         self._refused, self._told = html(), html()
-        self._chart = MapChart(PALETTES[page.screen.theme], self._tapped)
+        self._chart = MapChart(PALETTES[page.screen.theme], self._tapped, self._dragged)
         wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self.panel = pn.Column(
             pn.FlexBox(
@@ -69,6 +76,7 @@ class DesignMap:
                 self._quantity,
                 self._model,
                 self._limits,
+                self._sizes,
                 flex_wrap="wrap",
                 gap="4px 12px",
                 **wide,
@@ -87,6 +95,7 @@ class DesignMap:
         self._told_by(self._quantity, lambda event: self._change(quantity=event.new))
         self._told_by(self._model, lambda event: self._change(map_model=event.new))
         self._told_by(self._limits, self._limited)
+        self._told_by(self._sizes, lambda event: self._ask(sizes=event.new))
         self._best.on_click(lambda event: self._press_best())
 
     def _told_by(self, widget: Any, changed: Callable[[Any], None]) -> None:
@@ -143,6 +152,16 @@ class DesignMap:
         if across.low <= x <= across.high and up.low <= y <= up.high:
             self._press({across.name: x, up.name: y})
 
+    def _dragged(self, number: int, place: Place) -> None:
+        """A limit whose line was moved has another end."""
+        try:
+            limits = moved(_map_of(self._screen), self._screen, number, place)
+        except ValueError as error:
+            self.show(self._screen)  # the handle goes back
+            self._refuse(error)
+        else:
+            self._ask(limits=limits)
+
     def _press_best(self) -> None:
         point = best(_map_of(self._screen), self._screen)
         if point is None:
@@ -152,7 +171,7 @@ class DesignMap:
 
     def _press(self, point: Mapping[str, float]) -> None:
         try:
-            file = joint_at(self._screen.file, point)
+            file = joint_at(self._screen.file, sold(point) if self._screen.sizes == "catalogue" else point)
         except ValueError as error:
             self._refuse(error)
             return
@@ -189,7 +208,9 @@ class DesignMap:
                 self._ranges[which].value = f"{low:.6g}..{high:.6g} {unit.text}".strip()
             labels = {screen.reading.label(QUANTITIES[name]): name for name in MAPPED}
             self._quantity.param.update(options=labels, value=screen.quantity)
-            self._model.value = screen.map_model
+            known = models_of(screen)
+            self._model.param.update(options=known, value=screen.map_model)
+            self._sizes.value = screen.sizes
             typed = partial(_typed, screen.reading)
             self._limits.value = ", ".join(phrase for limit in screen.limits for phrase in phrases_of(limit, typed))
         finally:
