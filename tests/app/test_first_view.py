@@ -94,11 +94,19 @@ def test_a_verdict_is_that_of_the_strength_that_is_used_most(strengths, force, h
     liner = bs.Material(young=1000.0, poisson=0.4, **strengths)
     contact = bs.Exact().press(replace(HIP, liner=liner, ball=None), force=force)
     borne = most_used(contact, about_von_mises(contact))
-    said = sentence(borne)
+    said = sentence(contact, borne)
     assert said[0] is holds
     assert words in said[1]
     if "allowable_pressure" in strengths and len(strengths) == 1:
         assert borne.ratio == pytest.approx(contact.max_pressure / strengths["allowable_pressure"])
+
+
+def test_an_answer_that_is_not_to_be_trusted_has_no_verdict():
+    contact = bs.Hertz().press(HIP, force=3000.0)
+    assert sentence(contact, most_used(contact, about_von_mises(contact))) == (
+        None,
+        "No verdict: this answer is not to be trusted here",
+    )
 
 
 def test_the_first_number_comes_with_its_share_of_the_allowable():

@@ -14,10 +14,12 @@ WAIT = 90_000
 
 
 @contextmanager
-def opened_profile(browser, address, width=WIDE, dark=False):
+def opened_profile(browser, address, width=WIDE, dark=False, **more):
     """A browser of one user, who has opened nothing yet."""
     scheme = "dark" if dark else "light"
-    profile = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme, accept_downloads=True)
+    profile = browser.new_context(
+        viewport={"width": width, "height": 900}, color_scheme=scheme, accept_downloads=True, **more
+    )
     profile.grant_permissions(["clipboard-read", "clipboard-write"], origin=address)
     profile.set_default_timeout(WAIT)
     yield profile

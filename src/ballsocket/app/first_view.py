@@ -165,7 +165,7 @@ def _load(start: float, frame: Frame, fields: dict[str, Field], tilt: float) -> 
         f"<g {_handle('tilt', 'arrow', turn)}>"
         + f'<circle class="knob" cx="{tail[0]:.1f}" cy="{tail[1]:.1f}" r="8"/></g>'
     )
-    said = f"{load['text']} {load['unit']}" + (f", {turn['text']}{turn['unit']}" if tilt else "")
+    said = f"{load['text']} {load['unit']}" + (f", {turn['value']:.3g}{turn['unit']}" if tilt else "")
     yield svg.text(x + (4 if tilt else 14), y + 5, said, "value", "start")
 
 

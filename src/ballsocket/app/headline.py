@@ -39,8 +39,8 @@ def headline(
     first = next(each for each in reading.columns if each.attribute == _FIRST)
     rest = "".join(_cell(each, contact) for each in listed)
     return (
-        f"<dl class='first'>{_cell(first, contact)}</dl>{_share(most, surely, contact, reading)}{_verdict(most)}"
-        f"{trust(contact)}"
+        f"<dl class='first'>{_cell(first, contact)}</dl>{_share(most, surely, contact, reading)}"
+        f"{_verdict(contact, most)}{trust(contact)}"
         f"<dl class='numbers'>{rest}</dl><p class='quiet'>{escape(nearness(contact, exact))}</p>"
     )
 
@@ -72,8 +72,8 @@ def _share(most: Share | None, surely: str, contact: Contact, reading: Reading) 
     )
 
 
-def _verdict(most: Share | None) -> str:
-    holds, words = sentence(most)
+def _verdict(contact: Contact, most: Share | None) -> str:
+    holds, words = sentence(contact, most)
     kind, sign = {True: ("yes", "✓ "), False: ("no", "✗ "), None: ("quiet", "")}[holds]
     return f"<p class='verdict {kind}' role='status'>{sign}{escape(words)}</p>"
 

@@ -21,10 +21,12 @@ def most_used(contact: Contact, von_mises: float) -> Share | None:
     return next(iter(shares_of(contact, von_mises)), None)
 
 
-def sentence(most: Share | None) -> tuple[bool | None, str]:
-    """Whether it holds, and that in words; None where no strength is known."""
+def sentence(contact: Contact, most: Share | None) -> tuple[bool | None, str]:
+    """Whether it holds, and that in words; None where no strength is known, or the answer is not to be trusted."""
     if most is None:
         return None, "No verdict: no strength of these materials is known. Give the liner's allowable pressure."
     if most.ratio > 1:
         return False, f"The {most.part} does not bear it: {most}"
+    if not bool(contact.valid):
+        return None, "No verdict: this answer is not to be trusted here"
     return True, f"The {most.part} bears it{', with little to spare' if most.ratio > _SPARE else ''}"

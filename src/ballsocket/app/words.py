@@ -66,7 +66,7 @@ def models_table(comparison: Comparison, reading: Reading) -> str:
         for name, why in comparison.missing.items()
     )
     return (
-        "<div class='wide' tabindex='0' role='region' aria-label='every model'><table>"
+        "<div class='wide models' tabindex='0' role='region' aria-label='every model'><table>"
         f"<tr><th scope='col'>model</th>{heads}<th scope='col' class='text'>trust it here?</th></tr>"
         f"{rows}{missing}</table></div>"
         "<p class='quiet'>Small: difference from the exact answer.</p>"
@@ -75,15 +75,21 @@ def models_table(comparison: Comparison, reading: Reading) -> str:
 
 def _row(comparison: Comparison, name: str, shown: list[Column]) -> str:
     contact, apart = comparison[name], comparison.deviation(name)
-    cells = "".join(f"<td>{number_text(float(each.of(contact)))}{_apart(apart, each.name)}</td>" for each in shown)
+    cells = "".join(_number(each, contact, apart) for each in shown)
     why = "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
     kind = "reference" if name == reference.name else "valid" if bool(contact.valid) else "doubtful"
     head = f"<th scope='row'>{swatch(line_of(name))}{escape(name)}</th>"
     return f"<tr class='{kind}'>{head}{cells}<td class='text'>{escape(why)}</td></tr>"
 
 
+def _number(each: Column, contact: Contact, apart: Mapping[str, Any] | None) -> str:
+    """A cell, which says its own head where there is no room for one above."""
+    text = number_text(float(each.of(contact)))
+    return f"<td data-head='{escape(each.head)}'>{text}{_apart(apart, each.name)}</td>"
+
+
 def _apart(deviation: Mapping[str, Any] | None, name: str) -> str:
-    return "" if deviation is None else f"<small>{percent(float(deviation[name]), '+')}</small>"
+    return "" if deviation is None else f"<small>{percent(float(deviation[name]), '+').replace('below', '<')}</small>"
 
 
 def percent(share: float, sign: str = "") -> str:
