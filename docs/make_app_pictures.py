@@ -12,7 +12,7 @@ from tests.app.browser import opened_browser, served_explorer  # noqa: E402
 
 SHELL = "limit=outer_radius<=26&limit=liner_thickness>=4"
 VIEWS = {
-    "press": ("?preset=hess-forsbach", 820),
+    "press": ("?preset=hess-forsbach", 860),
     "map": (f"?view=map&{SHELL}", 800),
     "compare": ("?view=compare&beside1.preset=hip-36&beside2.preset=suspension-ball-joint", 1300),
     "judge": ("?view=judge&preset=hip-28&load.force=3000&cup.arc_of_cover=160&cup.chamfer=1", 960),
