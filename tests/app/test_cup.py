@@ -18,8 +18,10 @@ from ballsocket.app.angle_map import angle_map
 from ballsocket.app.cupping import Stood
 from ballsocket.app.jobs import Job
 from ballsocket.app.page import Page
+from ballsocket.app.reading import Reading
 from ballsocket.app.running import Done
 from ballsocket.cup import Cup, Side
+from ballsocket.output.unit_systems import Units
 
 LINK = "view=cup&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
 JOINT = bs.joints["hip-36"]
@@ -55,7 +57,7 @@ def test_the_view_says_what_the_sphere_says(at_once):
     assert f"{float(contact.edge_distance):.4g} <span class='unit'>mm" in told(page, "numbers")
     assert f"{degrees(contact.edge_margin):.3g}° of arc" in told(page, "numbers")
     assert f"{float(contact.max_pressure):.4g} <span class='unit'>MPa" in told(page, "numbers")
-    assert f"{float(contact.edge_distance):.2g} mm from the rim" in told(page, "map")
+    assert f"{float(contact.edge_distance):.4g} mm from the rim" in told(page, "map")
     assert 'role="img"' in told(page, "bowl")
     assert saved(page, "CSV").decode().splitlines()[0] == "quantity,value"
     assert at_once[-1] == "map"  # the orientations follow
@@ -150,6 +152,7 @@ def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
     ends = re.search(r'class="limit" d="M([\d.]+),.*L([\d.]+),', picture).groups()
     assert {float(x) for x in ends} == {58 + 368 * 0.75, 58 + 368 * 0.625}  # at 50° without anteversion, 45° with 20°
     assert 'class="here"' not in angle_map(made(), Cup(), "edge_distance")
+    assert "edge distance [in]" in angle_map(made(), Cup(), "edge_distance", Reading(units=Units.IMPERIAL))
     lost = made(held=np.zeros((3, 2), dtype=bool))
     assert "in every orientation of the map the contact reaches the rim" in angle_map(lost, Cup(), "max_pressure")
 

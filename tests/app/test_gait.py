@@ -12,7 +12,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.hip import Archard, InUse, Lubricant, iso_14242_1, named_cycle
 
-from .asking import edits, saved, trouble
+from .asking import does, edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 from ballsocket.app.gaiting import MERIDIANS, RINGS, gaited
@@ -71,7 +71,7 @@ def test_the_page_plays_what_the_process_found():
     page = opened()
     found = gaited(page.screen.file, WHOLE, None, lambda news: None)
     data = json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "player"))[1]))
-    assert [course["unit"] for course in data["courses"]] == ["kN", "MPa", "nm", "mm"]
+    assert [course["unit"] for course in data["courses"]] == ["N", "MPa", "nm", "mm"]
     assert data["courses"][1]["values"] == pytest.approx(found.pressure, rel=1e-4)
     bowl = json.loads(re.search(r"data-bowl='([^']*)'", told(page, "player"))[1])
     assert base64.b64decode(bowl["bytes"]) == found.cells
@@ -81,8 +81,18 @@ def test_the_page_plays_what_the_process_found():
     assert "use.instant=7" in page.channel.told("link")
     assert opened(page.channel.told("link")).screen == page.screen
     head, first, *_ = saved(page, "CSV").decode().splitlines()
-    assert head == "phase [%],load [kN],largest pressure [MPa],least film [nm],edge distance [mm]"
+    assert head == "phase [%],load [N],largest pressure [MPa],least film [nm],edge distance [mm]"
     assert float(first.split(",")[2]) == pytest.approx(found.pressure[0])
+
+
+def test_a_cycle_is_read_in_inches_and_pounds():
+    page = opened()
+    does(page, "choose", name="units", value="imperial")
+    data = json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "player"))[1]))
+    assert [course["unit"] for course in data["courses"]] == ["lbf", "psi", "nm", "in"]
+    assert max(data["courses"][0]["values"]) == pytest.approx(iso_14242_1().sizes.max() / 4.4482216, rel=1e-4)
+    assert "lbf" in told(page, "numbers")
+    assert saved(page, "CSV").startswith(b"phase [%],load [lbf],largest pressure [psi]")
 
 
 def test_a_patients_load_needs_a_weight():

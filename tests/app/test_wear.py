@@ -18,9 +18,11 @@ from ballsocket.app import wearing
 from ballsocket.app.in_use import WHOLE
 from ballsocket.app.jobs import Job
 from ballsocket.app.page import Page
+from ballsocket.app.reading import Reading
 from ballsocket.app.running import Done, Refused
 from ballsocket.app.views import wear
 from ballsocket.app.wear_charts import depth_maps, penetration_chart, wear_numbers
+from ballsocket.output.unit_systems import Units
 
 LINK = (
     "view=wear&preset=hip-36&cup.inclination=40&cup.anteversion=15&use.millions=0.1&use.coefficient=1e-7&use.spread=1"
@@ -75,7 +77,7 @@ def test_a_life_is_that_of_python(at_once):
     )
     assert float(rows[1][2]) == 0
     assert "what the run may be off by" in told(page, "numbers")
-    assert f"up to {1e3 * last.depth:.3g} µm" in told(page, "maps")
+    assert f"up to {1e3 * last.depth:.4g} µm" in told(page, "maps")
     shares = [news.share for news in at_once]
     assert shares == sorted(shares)
     assert len(shares) > 5
@@ -101,7 +103,7 @@ def made(scale):
         low=0.5 * grown,
         high=2 * grown,
         band="band: of a test",
-        depth=1e3 * scale * np.ones((grid.rings, grid.meridians)),
+        depth=scale * np.ones((grid.rings, grid.meridians)),
         grid=grid,
         cup=bs.Cup(),
         load=np.array([0.0, 0.0, 1.0]),
@@ -114,8 +116,11 @@ def made(scale):
 def test_two_designs_are_beside_each_other_in_one_scale():
     found = {"one": made(0.1), "other": made(0.2)}
     assert "<td>40 (+100 %)</td>" in wear_numbers(found)
+    inches = Reading(units=Units.IMPERIAL)
+    assert "penetration [mil]" in penetration_chart(found, inches)
+    assert "largest pressure, new [psi]" in wear_numbers(found, inches)
     chart = penetration_chart(found)
-    assert "one: 200 µm after 2 million cycles, 100 to 400" in chart
+    assert "one: 200 µm after 2 million cycles, 100 µm to 400 µm" in chart
     assert chart.count('opacity="0.2"') == 2
     scales = re.findall(r"worn depth \[µm\].*?</svg>", depth_maps(found), flags=re.DOTALL)
     assert len(scales) == 2

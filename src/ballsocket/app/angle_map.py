@@ -11,25 +11,28 @@ import numpy
 from ..cup import Cup
 from ..quantities import CUP, QUANTITIES
 from . import svg
+from .bore_map import SHOWN
 from .contours import Contours, levels_of, scale
 from .cupping import LEWINNEK, Stood
+from .reading import Reading
 
 _WIDE, _HIGH = 440.0, 400.0
 _LEFT, _RIGHT, _TOP, _FOOT = 58.0, 14.0, 12.0, 92.0
 _SPAN, _RISE = _WIDE - _LEFT - _RIGHT, _HIGH - _TOP - _FOOT
 
 
-def angle_map(found: Stood, cup: Cup, quantity: str) -> str:
+def angle_map(found: Stood, cup: Cup, quantity: str, reading: Reading = SHOWN) -> str:
     """One field over inclination and anteversion, with the cup as it stands and Lewinnek's zone."""
     x, y = numpy.degrees(found.inclination), numpy.degrees(found.anteversion)
-    values = numpy.where(found.held, getattr(found, quantity), numpy.nan).T
+    factor = reading.unit(QUANTITIES[quantity]).factor
+    values = numpy.where(found.held, getattr(found, quantity), numpy.nan).T * factor
     finite = numpy.where(numpy.isfinite(values), values, numpy.nan)
     across, up = numpy.meshgrid(_across(x, x), _up(y, y))
     contours = Contours(across, up, finite)
     low = min(float(numpy.nanmin(finite, initial=0.0)), 0.0)
     levels = _levels(quantity, finite, low)
     rim = Contours(across, up, numpy.where(found.held, found.edge_distance, numpy.nan).T)
-    label = QUANTITIES[quantity].label()
+    label = reading.label(QUANTITIES[quantity])
     parts = [
         f'<rect class="void" x="{_LEFT}" y="{_TOP}" width="{_SPAN}" height="{_RISE}"/>',
         *contours.bands(levels),
@@ -42,7 +45,7 @@ def angle_map(found: Stood, cup: Cup, quantity: str) -> str:
     ]
     ends = f' data-pick="{x[0]:g} {x[-1]:g} {y[0]:g} {y[-1]:g}"'
     place = f' data-box="{_LEFT:g} {_TOP:g} {_LEFT + _SPAN:g} {_TOP + _RISE:g}"'
-    return svg.picture((_WIDE, _HIGH), _said(found, label), parts, f"{ends}{place}")
+    return svg.picture((_WIDE, _HIGH), _said(found, label, reading), parts, f"{ends}{place}")
 
 
 def _levels(quantity: str, values: numpy.ndarray, low: float) -> list[float]:
@@ -99,7 +102,7 @@ def _here(cup: Cup, x: numpy.ndarray, y: numpy.ndarray) -> Iterator[str]:
         yield f'<circle class="here" cx="{_across(inclination, x):.1f}" cy="{_up(anteversion, y):.1f}" r="6"/>'
 
 
-def _said(found: Stood, label: str) -> str:
+def _said(found: Stood, label: str, reading: Reading) -> str:
     """The map in a sentence for whoever does not see it."""
     free = found.held & (found.edge_distance > 0)
     if not free.any():
@@ -108,4 +111,5 @@ def _said(found: Stood, label: str) -> str:
     row, column = numpy.unravel_index(int(best.argmax()), best.shape)
     place = f"inclination {degrees(found.inclination[row]):.3g}°, anteversion {degrees(found.anteversion[column]):.3g}°"
     share = f"{100 * free.mean():.0f} % of the orientations keep the contact off the rim"
-    return f"{label} over inclination and anteversion: {share}; furthest, {best.max():.3g} mm, at {place}"
+    apart = reading.said(QUANTITIES["edge_distance"], float(best.max()))
+    return f"{label} over inclination and anteversion: {share}; furthest, {apart}, at {place}"

@@ -12,11 +12,15 @@ import numpy
 from ..cup import Cup
 from ..hip.spots import spots_of
 from ..output.cup_map import drawn, from_page, highest, on_page
-from ..quantities import FIELD
+from ..quantities import DERIVED, FIELD
 from ..sphere.contact import OffAxisContact
 from ..sphere.grid import Grid
 from . import svg
 from .contours import Contours, levels_of, scale
+from .reading import Reading
+
+SHOWN = Reading()
+"""mm, N, MPa and degrees."""
 
 _SIZE, _MIDDLE, _RADIUS, _HIGH = 360.0, 180.0, 140.0, 400.0
 _POINTS = 181
@@ -50,39 +54,43 @@ class BoreField:
     cup: Cup
 
 
-def pressed_bore(contact: OffAxisContact) -> str:
+def pressed_bore(contact: OffAxisContact, reading: Reading = SHOWN) -> str:
     """The pressure of one contact with its edge, the load, and where it is largest."""
-    reach = float(contact.model.reach_of(contact.joint))
+    reach, unit = float(contact.model.reach_of(contact.joint)), reading.unit(FIELD["pressure"])
     field = BoreField(
         name="cup",
-        at=lambda directions: drawn(contact, directions),
-        highest=highest(contact),
-        label=FIELD["pressure"].label(),
+        at=lambda directions: unit.factor * drawn(contact, directions),
+        highest=unit.factor * highest(contact),
+        label=reading.label(FIELD["pressure"]),
         reach=reach,
         cup=contact.model.cup,
     )
     place = _places(reach)
     edge = svg.closed(*place(contact.outline))
-    marks = [f'<path class="edge" d="{edge}"/>', *_cross(*map(float, place(contact.force_vector / contact.force)))]
+    marks = [f'<path class="patch" d="{edge}"/>', *_cross(*map(float, place(contact.force_vector / contact.force)))]
     if numpy.isfinite(contact.max_pressure):
         x, y = map(float, place(contact.max_pressure_at))
         marks.append(f'<circle class="most" cx="{x:.1f}" cy="{y:.1f}" r="5"/>')
     said = (
-        f"pressure on the cup seen from its opening, up to {field.highest:.3g} MPa; "
-        f"the contact ends {float(contact.edge_distance):.2g} mm from the rim"
+        f"pressure on the cup seen from its opening, up to {reading.said(FIELD['pressure'], highest(contact))}; "
+        f"the contact ends {reading.said(DERIVED['edge_distance'], float(contact.edge_distance))} from the rim"
     )
     return bore_map(said, field, marks)
 
 
-def worn_bore(name: str, said: str, grid: Grid, depth: numpy.ndarray, highest: float, cup: Cup, load: Any) -> str:
-    """A depth in µm in the cells of a grid, up to `highest`, with a cross where the load (3,) points."""
+def worn_bore(field: BoreField, said: str, load: Any) -> str:
+    """What is worn of a bore, with a cross where the load (3,) points."""
+    return bore_map(said, field, list(_cross(*map(float, _places(field.reach)(load)))))
+
+
+def cells_of(grid: Grid, values: numpy.ndarray) -> Callable[[numpy.ndarray], numpy.ndarray]:
+    """Values of the cells of a grid, (rings, meridians), as a function of directions (..., 3)."""
 
     def at(directions: numpy.ndarray) -> numpy.ndarray:
         spots = spots_of(grid, numpy.moveaxis(directions, -1, 0).reshape(3, 1, -1))
-        return spots.of(depth.reshape(1, -1)).reshape(directions.shape[:-1])
+        return spots.of(values.reshape(1, -1)).reshape(directions.shape[:-1])
 
-    field = BoreField(name=name, at=at, highest=highest, label="worn depth [µm]", reach=grid.reach, cup=cup)
-    return bore_map(said, field, list(_cross(*map(float, _places(grid.reach)(load)))))
+    return at
 
 
 def bore_map(said: str, field: BoreField, marks: list[str]) -> str:

@@ -11,49 +11,59 @@ from typing import Any
 
 import numpy
 
+from ..kinds import Unit
 from ..output.style import INK, Line
-from ..quantities import CONTACT, DERIVED
+from ..quantities import CONTACT, DERIVED, Quantity
 from .bowl import bowl
 from .chart import Curve, chart
 from .gaiting import MERIDIANS, Gaited
 from .pressing import rounded_up
+from .reading import Reading
 
 _PHASE = "phase of the cycle [%]"
 _LINE = Line(INK)
 
 
+_NM = Unit("nm")
+
+
 @dataclass(frozen=True)
 class Course:
-    """A quantity over the cycle: its name, its unit, and the factor to that from what `Gaited` has."""
+    """Something over the cycle: where `Gaited` has it, what it is called, and as which quantity it is read."""
 
     field: str
     name: str
-    unit: str
-    factor: float = 1.0
+    quantity: Quantity | None = None
 
-    @property
-    def label(self) -> str:
-        """The label of an axis: name and unit."""
-        return f"{self.name} [{self.unit}]"
+    def unit(self, reading: Reading) -> Unit:
+        """The unit in which it is read; films are in nm."""
+        return _NM if self.quantity is None else reading.unit(self.quantity)
 
-    def of(self, found: Gaited) -> numpy.ndarray:
+    def label(self, reading: Reading) -> str:
+        """The label of an axis."""
+        return f"{self.name}{self.unit(reading).bracketed}"
+
+    def of(self, found: Gaited, reading: Reading) -> numpy.ndarray:
         """Values over the instants of a cycle."""
-        return numpy.asarray(getattr(found, self.field)) * self.factor
+        return numpy.asarray(getattr(found, self.field)) * self.unit(reading).factor
 
 
 COURSES = (
-    Course("force", "load", "kN", 1e-3),
-    Course("pressure", CONTACT["max_pressure"].title, CONTACT["max_pressure"].unit),
-    Course("film", "least film", "nm"),
-    Course("edge", DERIVED["edge_distance"].title, DERIVED["edge_distance"].unit),
+    Course("force", "load", CONTACT["force"]),
+    Course("pressure", CONTACT["max_pressure"].title, CONTACT["max_pressure"]),
+    Course("film", "least film"),
+    Course("edge", DERIVED["edge_distance"].title, DERIVED["edge_distance"]),
 )
 """What is shown of a cycle."""
 
 
-def player(found: Gaited) -> str:
+def player(found: Gaited, reading: Reading) -> str:
     """The whole player; which instant is looked at stands in the page's `gait-at`."""
-    charts = "".join(f"<figure>{_chart(course, found)}</figure>" for course in COURSES)
-    listed = [{"name": each.name, "unit": each.unit, "values": _plain(each.of(found), 5)} for each in COURSES]
+    charts = "".join(f"<figure>{_chart(course, found, reading)}</figure>" for course in COURSES)
+    listed = [
+        {"name": each.name, "unit": each.unit(reading).text, "values": _plain(each.of(found, reading), 5)}
+        for each in COURSES
+    ]
     data = {"phase": _plain(found.phase, 5), "courses": listed}
     return (
         f"<div class='player' data-at='gait-at' data-told='gait.instant' data-player='{_json(data)}'>"
@@ -65,21 +75,22 @@ def player(found: Gaited) -> str:
     )
 
 
-def _chart(course: Course, found: Gaited) -> str:
-    values = course.of(found)
+def _chart(course: Course, found: Gaited, reading: Reading) -> str:
+    values = course.of(found, reading)
     values = numpy.where(numpy.isfinite(values), values, numpy.nan)
     highest = rounded_up(1.05 * float(numpy.nanmax(values, initial=0.0)))
     curve = Curve(found.phase, values, numpy.full(values.shape, True), _LINE)
-    return chart(_said(course, found.phase, values), _PHASE, course.label, {course.name: curve}, (100.0, highest))
+    said = _said(f"{course.name} over the cycle", course.unit(reading), found.phase, values)
+    return chart(said, _PHASE, course.label(reading), {course.name: curve}, (100.0, highest))
 
 
-def _said(course: Course, phase: numpy.ndarray, values: numpy.ndarray) -> str:
+def _said(name: str, unit: Unit, phase: numpy.ndarray, values: numpy.ndarray) -> str:
     """A course in a sentence for whoever does not see it."""
     if numpy.isnan(values).all():
-        return f"{course.name} over the cycle: no number"
+        return f"{name}: no number"
     low, high = float(numpy.nanmin(values)), float(numpy.nanmax(values))
     place = float(phase[int(numpy.nanargmax(values))])
-    return f"{course.name} over the cycle: {low:.3g} to {high:.3g} {course.unit}, most at {place:.3g} % of it"
+    return f"{name}: {low:.3g} to {high:.3g} {unit.text}, most at {place:.3g} % of it"
 
 
 def _bore(found: Gaited) -> str:

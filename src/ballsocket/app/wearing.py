@@ -39,7 +39,7 @@ class Worn:
     band : str
         What it is of, in words.
     depth : array (rings, meridians)
-        Worn away at the end, in µm.
+        Worn away at the end, in mm.
     grid : Grid
         The cells of that.
     cup : Cup
@@ -136,7 +136,7 @@ def _plain(hip: InUse, history: History, bands: Any) -> Worn:
         low=low,
         high=high,
         band=band,
-        depth=1e3 * history.last.wear,
+        depth=history.last.wear,
         grid=hip.grid,
         cup=hip.placed,
         load=largest / numpy.linalg.norm(largest),

@@ -113,7 +113,10 @@ class Cup:
             self._clear()
             self._job.ask(("bore", bore_of(file)), partial(set_up, file))
             return
-        beside(lambda: _drawn(file) if file is self._screen.file else None, partial(self._pressed, file))
+        beside(
+            lambda: _drawn(file, self._screen.reading) if file is self._screen.file else None,
+            partial(self._pressed, file),
+        )
         self._map()
 
     def _map(self) -> None:
@@ -164,11 +167,11 @@ class Cup:
         found: Stood | None = _STOOD.get(stand_of(self._screen.file))
         if "tilt" in self._screen.file.aim:
             self._put("stood", _TURNS)
+        elif found is None:
+            self._put("stood", "")
         else:
-            self._put(
-                "stood",
-                "" if found is None else f"{angle_map(found, self._screen.file.cup, self._screen.standing)}{_KEY}",
-            )
+            seen = self._screen
+            self._put("stood", f"{angle_map(found, seen.file.cup, seen.standing, seen.reading)}{_KEY}")
 
     def document(self, screen: Screen) -> Document:
         if SOLVED.get(bore_of(screen.file)) is None:
@@ -212,9 +215,9 @@ def _with(screen: Screen, file: JointFile) -> Screen:
     return replace(screen, file=file)
 
 
-def _drawn(file: JointFile) -> tuple[OffAxisContact, str, str]:
+def _drawn(file: JointFile, reading: Reading) -> tuple[OffAxisContact, str, str]:
     contact = pressed_in_cup(file)
-    return contact, pressed_bore(contact), pressed_bowl(contact)
+    return contact, pressed_bore(contact, reading), pressed_bowl(contact)
 
 
 def _told(contact: OffAxisContact) -> dict[str, Any]:
@@ -234,7 +237,7 @@ def _numbers(contact: OffAxisContact, screen: Screen) -> str:
         _cell(CONTACT["half_angle"], contact.half_angle, reading),
         _cell(CONTACT["force"], contact.force, reading),
     ]
-    return f"{_verdict(contact)}<dl class='numbers'>{''.join(cells)}</dl>{trust(contact)}{_hint(contact)}"
+    return f"{_verdict(contact, reading)}<dl class='tiles'>{''.join(cells)}</dl>{trust(contact)}{_hint(contact)}"
 
 
 def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> str:
@@ -242,12 +245,13 @@ def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> s
     return number_cell(quantity.title, float(value) * unit.factor, unit.text, more)
 
 
-def _verdict(contact: OffAxisContact) -> str:
+def _verdict(contact: OffAxisContact, reading: Reading) -> str:
     """Whether the contact stays on the bore, in words."""
-    apart, margin = float(contact.edge_distance), degrees(float(contact.edge_margin))
+    apart = reading.said(DERIVED["edge_distance"], float(contact.edge_distance))
+    margin = degrees(float(contact.edge_margin))
     if contact.edge_loaded:
         return "<p class='trust no'>✗ Edge loading: the contact reaches the rim of the cup</p>"
-    return f"<p class='trust yes'>✓ The contact ends {apart:.1f} mm ({margin:.1f}°) before the rim</p>"
+    return f"<p class='trust yes'>✓ The contact ends {apart} ({margin:.1f}°) before the rim</p>"
 
 
 def _hint(contact: OffAxisContact) -> str:

@@ -21,6 +21,7 @@ from ..gaiting import Gaited, gait_of, gaited
 from ..in_use import CHOICES, Own, Use
 from ..jobs import Job, Kept
 from ..player import COURSES, player
+from ..reading import Reading
 from ..running import Done, Reached, Refused
 from ..screen import Screen
 from ..view import Document, Host
@@ -87,8 +88,8 @@ class Gait:
     def _put_found(self, found: Gaited) -> None:
         instant = self._screen.use.instant
         self._put("at", str(found.heaviest if instant is None else min(instant, len(found.phase) - 1)))
-        self._put("numbers", _numbers(found))
-        self._put("player", player(found))
+        self._put("numbers", _numbers(found, self._screen.reading))
+        self._put("player", player(found, self._screen.reading))
 
     def _edited(self, key: str, value: Any) -> None:
         if key == "stop":
@@ -118,7 +119,8 @@ class Gait:
         found: Gaited | None = _FOUND.get(self._key)
         if found is None:
             raise ValueError("this cycle has not been pressed yet: wait until it is there")
-        courses = {each.label: each.of(found) for each in COURSES}
+        reading = screen.reading
+        courses = {each.label(reading): each.of(found, reading) for each in COURSES}
         heads = ["phase [%]", *courses]
         rows = numpy.stack([found.phase, *courses.values()], axis=1).tolist()
         listed = page.table(["quantity", "value"], [[name, str(value)] for name, value in found.numbers.items()])
@@ -166,13 +168,17 @@ def _own(value: Any) -> Own:
     return Own(name, text)
 
 
-def _numbers(found: Gaited) -> str:
+def _numbers(found: Gaited, reading: Reading) -> str:
     film = found.film[numpy.isfinite(found.film)]
+    force, pressure, _, edge = (each.unit(reading) for each in COURSES)
+    least = float(numpy.nanmin(found.edge, initial=numpy.inf))
     cells = [
-        number_cell("largest load", float(found.force.max(initial=0.0)), "N"),
-        number_cell("largest pressure", float(numpy.nanmax(found.pressure, initial=0.0)), "MPa"),
+        number_cell("largest load", float(found.force.max(initial=0.0)) * force.factor, force.text),
+        number_cell(
+            "largest pressure", float(numpy.nanmax(found.pressure, initial=0.0)) * pressure.factor, pressure.text
+        ),
         number_cell("least film", float(film.min()) if len(film) else float("nan"), "nm", found.regime),
-        number_cell("nearest to the rim", float(numpy.nanmin(found.edge, initial=numpy.inf)), "mm", found.worst),
-        number_cell("sliding in a cycle", found.numbers["slide_mm"], "mm"),
+        number_cell("nearest to the rim", least * edge.factor, edge.text, found.worst),
+        number_cell("sliding in a cycle", found.numbers["slide_mm"] * edge.factor, edge.text),
     ]
-    return f"<dl class='numbers'>{''.join(cells)}</dl>{notes_list(found.notes) if found.notes else ''}"
+    return f"<dl class='tiles'>{''.join(cells)}</dl>{notes_list(found.notes) if found.notes else ''}"

@@ -65,9 +65,9 @@ class Wear:
     def _put_found(self) -> None:
         """What has been run of the designs on the screen; else what to do."""
         found = self._found()
-        self._put("numbers", wear_numbers(found) if found else _NOTHING)
-        self._put("curve", penetration_chart(found) if found else "")
-        self._put("maps", depth_maps(found) if found else "")
+        self._put("numbers", wear_numbers(found, self._screen.reading) if found else _NOTHING)
+        self._put("curve", penetration_chart(found, self._screen.reading) if found else "")
+        self._put("maps", depth_maps(found, self._screen.reading) if found else "")
 
     def _found(self) -> dict[str, Worn]:
         lives = {name: _FOUND.get(life_of(file, self._screen.use)) for name, file in designs(self._screen).items()}
@@ -127,7 +127,7 @@ class Wear:
         pictures = "".join(page.picture(each.figure, f"penetration of {name}") for name, each in found.items())
         return Document(
             rows=lambda: [heads, *rows],
-            sections=lambda: {"wear": ("Wear", wear_numbers(found) + pictures)},
+            sections=lambda: {"wear": ("Wear", wear_numbers(found, screen.reading) + pictures)},
         )
 
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
