@@ -59,7 +59,10 @@ def test_the_view_says_what_the_sphere_says(at_once):
     assert f"{float(contact.max_pressure):.4g} <span class='unit'>MPa" in told(page, "numbers")
     assert f"{float(contact.edge_distance):.4g} mm from the rim" in told(page, "map")
     assert 'role="img"' in told(page, "bowl")
-    assert saved(page, "CSV").decode().splitlines()[0] == "quantity,value"
+    rows = dict(line.split(",") for line in saved(page, "CSV").decode().splitlines())
+    assert float(rows["max_pressure_MPa"]) == pytest.approx(float(contact.max_pressure))
+    assert float(rows["half_angle_deg"]) == pytest.approx(degrees(contact.half_angle))
+    assert {"force_N", "edge_distance_mm", "rim_distance_mm", "edge_margin_deg"} <= set(rows)
     assert at_once[-1] == "map"  # the orientations follow
 
     edits(page, "cup.inwards", "20")

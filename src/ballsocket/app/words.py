@@ -11,9 +11,10 @@ from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column
+from ..kinds import Unit
 from ..output.style import line_of
 from ..output.unit_systems import Units
-from ..quantities import HEADLINE
+from ..quantities import HEADLINE, Quantity
 from .chart import swatch
 from .reading import Reading, number_text
 
@@ -111,11 +112,16 @@ def number_rows(head: str, contacts: Mapping[str, Contact], reading: Reading) ->
         [name, *(float(each.of(contact)) for each in columns), bool(contact.valid)]
         for name, contact in contacts.items()
     ]
-    return [[head, *map(_column, columns), "valid"], *rows]
+    return [[head, *(column_of(each.quantity, each.reading) for each in columns), "valid"], *rows]
 
 
-def _column(each: Column) -> str:
+def unit_of_files(quantity: Quantity, reading: Reading) -> Unit:
+    """The unit of a number in a file: mm, N, MPa and degrees, or that of an inch page."""
+    return quantity.written if reading.units is Units.SI else reading.unit(quantity)
+
+
+def column_of(quantity: Quantity, unit: Unit) -> str:
     """The head of a column in a file, which ends in the unit."""
-    if each.reading == each.quantity.written:
-        return each.quantity.column
-    return f"{each.attribute}_{_SPELT.get(each.unit, each.unit).replace('/', '_per_').replace(' ', '_')}"
+    if unit == quantity.written or not unit.text:
+        return quantity.column
+    return f"{quantity.name}_{_SPELT.get(unit.text, unit.text).replace('/', '_per_').replace(' ', '_')}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterator
 from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
@@ -29,7 +29,7 @@ from ..reading import Reading
 from ..running import Done, Reached, Refused
 from ..screen import STANDINGS, Screen
 from ..view import Document, Host
-from ..words import alert, number_cell, progress, trust
+from ..words import alert, column_of, number_cell, progress, trust, unit_of_files
 
 _STOOD: Kept = Kept(most=32)
 _FIELDS = (
@@ -179,7 +179,7 @@ class Cup:
         contact = pressed_in_cup(screen.file)
         found: Stood | None = _STOOD.get(stand_of(screen.file))
         stands = {} if found is None else {"orientations": ("How the cup may stand", page.picture(found.figure, "map"))}
-        rows = [["quantity", "value"], *([name, value] for name, value in _told(contact).items())]
+        rows = [["quantity", "value"], *_told(contact, screen.reading)]
         listed = page.table(rows[0], [[str(cell) for cell in row] for row in rows[1:]])
         return Document(
             picture=lambda form: page.drawn(cup_figure(contact), form),
@@ -220,9 +220,18 @@ def _drawn(file: JointFile, reading: Reading) -> tuple[OffAxisContact, str, str]
     return contact, pressed_bore(contact, reading), pressed_bowl(contact)
 
 
-def _told(contact: OffAxisContact) -> dict[str, Any]:
-    """Plain numbers of a file, by the names and units of JSON."""
-    return {name: value for name, value in contact.summary().items() if isinstance(value, float | int | str | bool)}
+_NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
+
+
+def _told(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]:
+    """Plain numbers of a file, by the names of JSON, each with its unit."""
+    for name, value in contact.summary().items():
+        quantity = _NAMED.get(name.removesuffix("_deg"))
+        if quantity is not None and isinstance(value, float | int):
+            unit = unit_of_files(quantity, reading)
+            yield [column_of(quantity, unit), value / quantity.written.factor * unit.factor]
+        elif isinstance(value, float | int | str | bool):
+            yield [name, value]
 
 
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:

@@ -29,7 +29,7 @@ from ..reading import Reading
 from ..screen import AXES, MAP_MODELS, MAPPED, Axis, Screen, phrases_of
 from ..style import html, inputs
 from ..view import Document, Host
-from ..words import alert
+from ..words import alert, column_of, unit_of_files
 
 
 class DesignMap:
@@ -220,13 +220,9 @@ class DesignMap:
         found = _map_of(screen)
         limits = list(limits_of(screen))
 
-        def rows() -> list[list[Any]]:
-            flat = found.to_dataframe().reset_index()
-            return [list(flat.columns), *flat.to_numpy(dtype=object).tolist()]
-
         return Document(
             picture=lambda form: drawn(design_map(found, limits), form),
-            rows=rows,
+            rows=lambda: _rows(found, screen.reading),
             sections=lambda: {"map": ("Design map", table(*map_rows(found, limits)))},
         )
 
@@ -235,6 +231,18 @@ class DesignMap:
 
     def leave(self) -> None:
         """Nothing runs on."""
+
+
+def _rows(found: Any, reading: Reading) -> list[list[Any]]:
+    """A row a joint, each number under its name and unit."""
+    flat, heads = found.to_dataframe().reset_index(), []
+    for name in flat.columns:
+        quantity = QUANTITIES.get(name)
+        if quantity is not None:
+            unit = unit_of_files(quantity, reading)
+            flat[name] = flat[name] * unit.factor
+        heads.append(name if quantity is None else column_of(quantity, unit))
+    return [heads, *flat.to_numpy(dtype=object).tolist()]
 
 
 def _map_of(screen: Screen) -> Any:
