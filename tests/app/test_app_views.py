@@ -111,7 +111,10 @@ def test_elements_that_cannot_be_built_say_why(user):
     user.page.locator("[role=alert]:visible").first.wait_for()
 
 
-PAGES = [(someone, view) for someone in ("user", "reader") for view in ("press", "compare", "judge", "map")]
+PAGES = [
+    *(("user", view) for view in ("press", "compare", "judge", "map")),
+    *(("reader", view) for view in ("press", "cup", "gait", "wear", "evidence", "compare", "judge", "map")),
+]
 
 
 @pytest.mark.parametrize(("someone", "view"), some(PAGES, 2))
