@@ -5,11 +5,13 @@ from html import unescape
 import pytest
 
 import ballsocket as bs
+from ballsocket.io.joint_file import JointFile
 from ballsocket.joint import Support
 
 from .asking import edits, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
+from ballsocket.app.layers import layers_edited
 from ballsocket.app.page import Page
 
 HIP = "preset=hip-28&load.force=3000"
@@ -56,11 +58,12 @@ def test_what_is_no_layer_is_told(name, value, sentence):
 
 
 def test_a_wall_of_layers_ends():
-    page = Page(HIP)
-    for _ in range(21):
-        edits(page, "behind.add", "titanium")
-    assert "one layer too many" in trouble(page)
-    assert len(page.screen.file.joint.backing) == 20
+    file = JointFile(bs.joints["hip-28"], {"force": 3000.0})
+    for _ in range(20):
+        file = layers_edited(file, "add", "titanium")
+    assert len(file.joint.backing) == 20
+    with pytest.raises(ValueError, match="'titanium' is one layer too many: at most 20"):
+        layers_edited(file, "add", "titanium")
 
 
 def test_joints_are_compared_with_the_one_that_is_chosen():
