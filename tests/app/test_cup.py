@@ -63,6 +63,7 @@ def test_the_view_says_what_the_sphere_says(at_once):
     assert float(rows["max_pressure_MPa"]) == pytest.approx(float(contact.max_pressure))
     assert float(rows["half_angle_deg"]) == pytest.approx(degrees(contact.half_angle))
     assert {"force_N", "edge_distance_mm", "rim_distance_mm", "edge_margin_deg"} <= set(rows)
+    assert f"<td>{float(contact.max_pressure):.4g}</td>" in saved(page, "HTML").decode()
     assert at_once[-1] == "map"  # the orientations follow
 
     edits(page, "cup.inwards", "20")

@@ -196,7 +196,7 @@ def test_an_input_that_is_none_is_refused_in_words_and_stays(name, text, why):
     assert why in unescape(trouble(page))
     assert answer["reset"] is True
     assert page.screen == before
-    edits(page, "load", 2900)
+    assert edits(page, "load", 2900)["#trouble"] == ""  # the browser hears that it is over
     assert trouble(page) == ""
 
 

@@ -43,8 +43,6 @@ class Channel:
         """Have a part of the page show a value, when the next message is sent."""
         if self._said.get(name, "" if name.startswith("#") else None) != value:
             self._said[name] = self._waiting[name] = value
-        else:
-            self._waiting.pop(name, None)
 
     def put_fields(self, fields: Mapping[str, Field]) -> None:
         """Have inputs be like this."""

@@ -55,7 +55,7 @@ def number_text(value: float) -> str:
     """Four digits; what has no answer, and what is infinite, in words."""
     if isnan(value):
         return "no answer"
-    if isfinite(value) and abs(value) >= 10**_DIGITS:
+    if 10**_DIGITS <= abs(value) < 1e12:
         return f"{value:.0f}"
     return f"{value:.{_DIGITS}g}" if isfinite(value) else "∞"
 

@@ -115,6 +115,13 @@ def number_rows(head: str, contacts: Mapping[str, Contact], reading: Reading) ->
     return [[head, *(column_of(each.quantity, each.reading) for each in columns), "valid"], *rows]
 
 
+def told(value: Any) -> str:
+    """A value of a file as a page for people has it: four digits, and words for what is none."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return number_text(value) if isinstance(value, float | int) else str(value)
+
+
 def unit_of_files(quantity: Quantity, reading: Reading) -> Unit:
     """The unit of a number in a file: mm, N, MPa and degrees, or that of an inch page."""
     return quantity.written if reading.units is Units.SI else reading.unit(quantity)

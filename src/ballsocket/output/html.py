@@ -43,7 +43,7 @@ def page(title: str, lede: str, sections: Mapping[str, tuple[str, str]]) -> str:
 
 
 PRINT = """<style>@media print { @page { margin: 18mm 15mm; } body { max-width: none; font-size: 10pt; }
-nav { display: none; } h2 { break-after: avoid; } table { font-size: 8pt; } tr, figure { break-inside: avoid; }
+nav { display: none; } h2 { break-after: avoid; } table { font-size: 8pt; } table, tr, figure { break-inside: avoid; }
 .wide { overflow: visible; } }</style>"""
 """For the head of a page that is printed on A4 and Letter."""
 

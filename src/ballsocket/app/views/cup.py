@@ -29,7 +29,7 @@ from ..reading import Reading
 from ..running import Done, Reached, Refused
 from ..screen import STANDINGS, Screen
 from ..view import Document, Host
-from ..words import alert, column_of, number_cell, progress, trust, unit_of_files
+from ..words import alert, column_of, number_cell, progress, told, trust, unit_of_files
 
 _STOOD: Kept = Kept(most=32)
 _FIELDS = (
@@ -180,7 +180,7 @@ class Cup:
         found: Stood | None = _STOOD.get(stand_of(screen.file))
         stands = {} if found is None else {"orientations": ("How the cup may stand", page.picture(found.figure, "map"))}
         rows = [["quantity", "value"], *_told(contact, screen.reading)]
-        listed = page.table(rows[0], [[str(cell) for cell in row] for row in rows[1:]])
+        listed = page.table(rows[0], [[name, told(value)] for name, value in rows[1:]])
         return Document(
             picture=lambda form: page.drawn(cup_figure(contact), form),
             rows=lambda: rows,

@@ -25,7 +25,7 @@ from ..reading import Reading
 from ..running import Done, Reached, Refused
 from ..screen import Screen
 from ..view import Document, Host
-from ..words import alert, notes_list, number_cell, progress
+from ..words import alert, notes_list, number_cell, progress, told
 
 _FOUND: Kept = Kept(most=24)
 _LARGEST = 100_000  # characters of a table
@@ -123,7 +123,7 @@ class Gait:
         courses = {each.label(reading): each.of(found, reading) for each in COURSES}
         heads = ["phase [%]", *courses]
         rows = numpy.stack([found.phase, *courses.values()], axis=1).tolist()
-        listed = page.table(["quantity", "value"], [[name, str(value)] for name, value in found.numbers.items()])
+        listed = page.table(["quantity", "value"], [[name, told(value)] for name, value in found.numbers.items()])
         return Document(
             picture=lambda form: page.drawn(course_figure(found.phase, courses, found.name), form),
             rows=lambda: [heads, *rows],
