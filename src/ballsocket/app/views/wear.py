@@ -14,6 +14,7 @@ from ...io.joint_file import JointFile
 from ...kinds import Kind, Unit
 from ...output import html as page
 from ...presets import joints
+from ...quantities import CONTACT
 from ..fields import Field, choice, number, segments, typed
 from ..in_use import CHOICES, Use
 from ..jobs import Job, Kept
@@ -22,7 +23,7 @@ from ..screen import Screen
 from ..view import Document, Host
 from ..wear_charts import depth_maps, penetration_chart, wear_numbers
 from ..wearing import LONGEST, Worn, life_of, worn
-from ..words import alert, progress
+from ..words import alert, progress, unit_of_files
 
 _FOUND: Kept = Kept(most=24)
 _ALONE, _NOW, _OTHER = "", "as it is now", "as it was put beside"
@@ -110,23 +111,18 @@ class Wear:
         found = self._found()
         if not found:
             raise ValueError("the wear of this has not been run yet: run it first")
-        heads = [
-            "design",
-            "million cycles",
-            "penetration [mm]",
-            "low [mm]",
-            "high [mm]",
-            "deepest [mm]",
-            "volume [mm3]",
-        ]
+        unit = unit_of_files(CONTACT["indentation"], screen.reading)
+        depths = [f"{name}{unit.bracketed}" for name in ("penetration", "low", "high", "deepest")]
         rows = [
-            [name, *map(float, row)]
+            [name, float(cycles), *(unit.factor * float(depth) for depth in row), float(volume)]
             for name, each in found.items()
-            for row in zip(each.cycles, each.penetration, each.low, each.high, each.deepest, each.volume, strict=True)
+            for cycles, *row, volume in zip(
+                each.cycles, each.penetration, each.low, each.high, each.deepest, each.volume, strict=True
+            )
         ]
         pictures = "".join(page.picture(each.figure, f"penetration of {name}") for name, each in found.items())
         return Document(
-            rows=lambda: [heads, *rows],
+            rows=lambda: [["design", "million cycles", *depths, "volume [mm3]"], *rows],
             sections=lambda: {"wear": ("Wear", wear_numbers(found, screen.reading) + pictures)},
         )
 
@@ -139,7 +135,8 @@ class Wear:
 
 _NOTHING = (
     "<p class='quiet'>Nothing has been run of this yet. A run of springs takes some seconds, of a real cup a minute. "
-    "A second design can be put beside: then change the one on the screen.</p>"
+    "A second design can be put beside: then change the one on the screen. Who has a new hip walks one to two million "
+    "cycles a year.</p>"
 )
 
 
