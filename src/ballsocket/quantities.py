@@ -22,11 +22,11 @@ def _anything(x: Array) -> Array:
 
 
 _LEAST = 1e-300
-"""What is smaller counts as 0: a ratio to it has no number."""
+"""A thickness that is smaller counts as 0: the ratio to it has no number."""
 
 
 def _positive(x: Array) -> Array:
-    return (x > _LEAST) & (x < inf)
+    return (x > 0) & (x < inf)
 
 
 def _positive_or_infinite(x: Array) -> Array:
