@@ -10,7 +10,7 @@ sys.path.insert(0, str(ROOT))
 
 from tests.app.browser import opened_browser, served_explorer  # noqa: E402
 
-SHELL = "limit=outer_radius<=26&limit=liner_thickness>=4"
+SHELL = "limit=outer_diameter<=52&limit=liner_thickness>=4"
 VIEWS = {
     "press": ("?preset=hess-forsbach", 860),
     "map": (f"?view=map&{SHELL}", 800),

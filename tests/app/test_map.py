@@ -11,7 +11,7 @@ from ballsocket.app.limit_lines import sold
 from ballsocket.app.mapping import mapped, models_of
 from ballsocket.app.page import Page
 
-LINK = "view=map&preset=hip-28&load.force=3000"
+LINK = "view=map&preset=hip-28&load.force=3000&across=ball_radius=11..23"
 
 
 def opened(link=LINK):

@@ -158,7 +158,7 @@ def test_arrays_are_no_joint_file():
         ("across=force=" + " .." * 1500 + "%0a", "is not a range"),
         ("name=%1b[31m&joint=2", "name = .* none that controls|must be a table"),
         ("joint=2&joint.clearance=1", "'joint' is given as text and as a table in the link"),
-        ("up=ball_radius=1..2", "a map has two axes, and both are ball_radius"),
+        ("up=head_diameter=1..2", "a map has two axes, and both are head_diameter"),
         ("up=clearance=2..1", "clearance from 2 to 1 is no range: it must go upwards"),
         ("across=half_angle=10..40", "'half_angle' among the axes of a map is not known"),
         ("load.force=1&load.force=2", "'load.force' is given 2 times in the link"),

@@ -106,13 +106,13 @@ def test_other_views_are_in_the_units_of_the_page(view):
     assert trouble(page) == ""
     if view == "map":
         chart = page.view._chart
-        assert chart.figure.xaxis.axis_label == "ball radius R1 [in]"
-        assert chart.figure.x_range.end == pytest.approx(23 / 25.4, rel=0.02)
+        assert chart.figure.xaxis.axis_label == "head diameter 2 R1 [in]"
+        assert chart.figure.x_range.end == pytest.approx(46 / 25.4, rel=0.02)
         row = next(csv.DictReader(io.StringIO(saved(page, "CSV").decode())))
-        assert float(row["ball_radius_in"]) == pytest.approx(11 / 25.4)
+        assert float(row["head_diameter_in"]) == pytest.approx(22 / 25.4)
         assert float(row["half_angle_deg"]) > 5.0
         assert {"max_pressure_psi", "area_in2", "force_lbf"} <= set(row)
-        assert page.view._ranges["across"].value == "0.433071..0.905512 in"
+        assert page.view._ranges["across"].value == "0.866142..1.81102 in"
         page.view._limits.value = "outer_radius<=1"
         assert page.screen.limits[0].high == pytest.approx(25.4)
         assert page.view._limits.value == "outer_radius<=1 in"

@@ -49,7 +49,7 @@ class Asked:
     influence: str = "medium"
     consequence: str = "medium"
     accuracy: str = "10 %"
-    limits: str = "max_pressure <= 25 MPa"
+    limits: str = ""
     matrix: str = "force = 2, 3 kN"
     tolerances: str = ""
     friction: str = ""

@@ -121,7 +121,7 @@ class Screen:
     beside: tuple[JointFile, ...] = ()
     answered_by: str = reference.name
     shown: tuple[str, ...] = (reference.name, "hess-forsbach", "bartel", "hertz")
-    across: Axis = Axis(name="ball_radius", low=11.0, high=23.0)
+    across: Axis = Axis(name="head_diameter", low=22.0, high=46.0)
     up: Axis = Axis(name="liner_thickness", low=3.0, high=15.0)
     map_model: str = "tabulated"
     quantity: str = "max_pressure"

@@ -52,7 +52,7 @@ class DesignMap:
         self._model = pn.widgets.Select(label="Answered by", options=list(MAP_MODELS), width=170, stylesheets=inputs())
         self._limits = pn.widgets.TextInput(
             label="Limits, with commas",
-            placeholder="outer_radius<=26 mm, liner_thickness>=4 mm",
+            placeholder="outer_diameter<=52 mm, liner_thickness>=4 mm",
             width=330,
             stylesheets=inputs(),
         )
