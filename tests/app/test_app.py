@@ -101,6 +101,7 @@ def test_names_in_a_link_are_text(user):
     assert user.page.locator("img[src=x]").count() == 0
 
 
+@pytest.mark.long
 def test_what_is_seen_can_be_saved(user):
     user.open("?preset=hip-32&load.force=2500")
     joint = bs.joints["hip-32"]
@@ -142,6 +143,7 @@ def test_joint_files_are_read_by_the_strict_reader(user):
     assert user.shows("max_pressure", bs.Exact().press(joint, force=3000.0).max_pressure)
 
 
+@pytest.mark.long
 def test_two_users_do_not_see_each_other(user, other):
     user.open()
     other.open("?preset=hip-36")

@@ -110,6 +110,7 @@ def test_solved_models_are_the_same_digit_for_digit(model, ball):
         assert one.notes == other.notes
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("model", [bs.Refined(), bs.Tabulated()], ids=lambda model: model.name)
 def test_solved_models_in_shapes(model):
     fast, row = Compiled(model=model), np.array([500.0, 3000.0])

@@ -49,6 +49,7 @@ def run(package, folder, *words):
     )
 
 
+@pytest.mark.long
 def test_a_new_file_and_a_line_of_the_catalogue_pass_the_contract(package):
     assert FILE.count("\n") <= 80
     places = [str(ROOT / "tests" / name) for name in CONTRACT]

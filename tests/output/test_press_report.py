@@ -106,6 +106,7 @@ def test_what_cannot_be_written_is_told_first(words, sentence):
     assert sentence in done.stderr
 
 
+@pytest.mark.long
 def test_a_ball_that_sits_above_its_first_touch_is_drawn_in_its_cup(tmp_path):
     """An interference lifts the ball out of a hemisphere: its indentation is below 0."""
     joint = ("--ball-radius", "10", "--interference", "0.01", "--liner-thickness", "3", "--liner", "pom")
