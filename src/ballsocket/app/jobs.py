@@ -8,8 +8,11 @@ from typing import Any
 
 import panel as pn
 
-from .running import Done, Refused, Run, Work, looked_at
+from .channel import Channel
+from .running import Done, Reached, Refused, Run, Work, looked_at
+from .words import alert, progress
 
+LONGEST = 60.0  # s, of work that nobody gave longer
 _EVERY = 150  # ms between two questions for news
 
 
@@ -24,7 +27,7 @@ class Job:
         Seconds that it may take.
     """
 
-    def __init__(self, heard: Callable[[Hashable, Any], None], longest: float = 60.0) -> None:
+    def __init__(self, heard: Callable[[Hashable, Any], None], longest: float = LONGEST) -> None:
         self._heard, self._longest = heard, longest
         self._key: Hashable = None
         self._run: Run | None = None
@@ -63,6 +66,41 @@ class Job:
         if self._run is not None:
             self._run.stop()
         self._key = self._run = self._asking = None
+
+
+class ViewJob(Job):
+    """The long work of a view that is told in its places on the page: `progress`, `trouble`, and what it fills itself.
+
+    Parameters
+    ----------
+    channel : Channel
+    view : str
+        What the names of its places begin with.
+    done : callable
+        Takes the outcome by its key, and shows it.
+    longest : float
+        Seconds that the work may take.
+    """
+
+    def __init__(self, channel: Channel, view: str, done: Callable[[Any, Any], None], longest: float = LONGEST) -> None:
+        super().__init__(self._told, longest)
+        self._channel, self._view, self._done = channel, view, done
+
+    def put(self, place: str, html: str) -> None:
+        """Fill a place of the view."""
+        self._channel.put(f"#{self._view}-{place}", html)
+
+    def _told(self, key: Hashable, news: Any) -> None:
+        """News, which the page is told of its own accord."""
+        if isinstance(news, Reached):
+            self.put("progress", progress(news.words, news.share, stop=f"{self._view}.stop"))
+        elif isinstance(news, Refused):
+            self.put("progress", "")
+            self.put("trouble", alert(news.why))
+        elif isinstance(news, Done):
+            self.put("progress", "")
+            self._done(key, news.value)
+        self._channel.send()
 
 
 class Kept:

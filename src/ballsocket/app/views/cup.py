@@ -24,9 +24,8 @@ from ..bowl import pressed_bowl
 from ..cup_fields import cup_edited, cup_fields
 from ..cupping import SOLVED, Stood, bore_of, pressed_in_cup, set_up, stand_of, stood
 from ..fields import segments
-from ..jobs import Job, Kept
+from ..jobs import Kept, ViewJob
 from ..reading import Reading
-from ..running import Done, Reached, Refused
 from ..screen import STANDINGS, Screen
 from ..view import Document, Host
 from ..words import alert, column_of, number_cell, progress, told, trust, unit_of_files
@@ -62,19 +61,16 @@ class Cup:
 
     def __init__(self, page: Host) -> None:
         self._page, self._screen = page, page.screen
-        self._job = Job(self._heard)
+        self._job = ViewJob(page.channel, "cup", self._done)
         self._stopped: Hashable = None
         page.listen("cup", self._edited)
 
     def show(self, screen: Screen) -> None:
         self._screen = screen
-        self._put("trouble", "")
+        self._job.put("trouble", "")
         self._fields()
         self._put_map()
         self._work()
-
-    def _put(self, place: str, html: str) -> None:
-        self._page.channel.put(f"#cup-{place}", html)
 
     def _fields(self) -> None:
         maps = [(name, QUANTITIES[name].title) for name in STANDINGS]
@@ -85,7 +81,7 @@ class Cup:
         if key == "stop":
             self._stopped = stand_of(self._screen.file)
             self._job.stop()
-            self._put("progress", progress("Stopped.", None, again="cup.again"))
+            self._job.put("progress", progress("Stopped.", None, again="cup.again"))
         elif key == "again":
             self._stopped = None
             self._work()
@@ -126,23 +122,15 @@ class Cup:
         else:
             self._job.ask(("map", stand_of(file)), partial(stood, file))
 
-    def _heard(self, key: Any, news: Any) -> None:
-        """News of the bore or of the map, which the page is told of its own accord."""
+    def _done(self, key: tuple[str, Hashable], found: Any) -> None:
+        """The bore has been set up, or the orientations are mapped."""
         what, of = key
-        if isinstance(news, Reached):
-            self._put("progress", progress(news.words, news.share, stop="cup.stop"))
-        elif isinstance(news, Refused):
-            self._put("progress", "")
-            self._put("trouble", alert(news.why))
-        elif isinstance(news, Done):
-            self._put("progress", "")
-            if what == "bore":
-                SOLVED.put(of, True)
-                self._work()
-            else:
-                _STOOD.put(of, news.value)
-                self._put_map()
-        self._page.channel.send()
+        if what == "bore":
+            SOLVED.put(of, True)
+            self._work()
+        else:
+            _STOOD.put(of, found)
+            self._put_map()
 
     def _pressed(self, file: JointFile, outcome: Future[Any]) -> None:
         if file is not self._screen.file:
@@ -151,27 +139,27 @@ class Cup:
             contact, around, bowl = outcome.result()
         except (ValueError, OutsideDomainError) as error:
             self._clear()
-            self._put("trouble", alert(str(error)))
+            self._job.put("trouble", alert(str(error)))
         else:
-            self._put("numbers", _numbers(contact, self._screen))
-            self._put("map", around)
-            self._put("bowl", bowl)
+            self._job.put("numbers", _numbers(contact, self._screen))
+            self._job.put("map", around)
+            self._job.put("bowl", bowl)
         self._page.channel.send()
 
     def _clear(self) -> None:
         for place in ("numbers", "map", "bowl"):
-            self._put(place, "")
+            self._job.put(place, "")
 
     def _put_map(self) -> None:
         """The map of orientations, if it has been made of what is on the screen."""
         found: Stood | None = _STOOD.get(stand_of(self._screen.file))
         if "tilt" in self._screen.file.aim:
-            self._put("stood", _TURNS)
+            self._job.put("stood", _TURNS)
         elif found is None:
-            self._put("stood", "")
+            self._job.put("stood", "")
         else:
             seen = self._screen
-            self._put("stood", f"{angle_map(found, seen.file.cup, seen.standing, seen.reading)}{_KEY}")
+            self._job.put("stood", f"{angle_map(found, seen.file.cup, seen.standing, seen.reading)}{_KEY}")
 
     def document(self, screen: Screen) -> Document:
         if SOLVED.get(bore_of(screen.file)) is None:

@@ -17,8 +17,7 @@ from ...output.evidence_words import case_text, listed, title_of, value_text
 from ..asked import Asked
 from ..evidencing import LONGEST, Packed, cases_of, packed
 from ..fields import Field, segments, words
-from ..jobs import Job, Kept
-from ..running import Done, Reached, Refused
+from ..jobs import Kept, ViewJob
 from ..screen import Screen
 from ..view import Document, Host
 from ..words import alert, progress
@@ -44,19 +43,16 @@ class Evidence:
 
     def __init__(self, host: Host) -> None:
         self._page, self._screen = host, host.screen
-        self._job = Job(self._heard, longest=LONGEST)
+        self._job = ViewJob(host.channel, "evidence", self._done, longest=LONGEST)
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         host.listen("evidence", self._edited)
 
     def show(self, screen: Screen) -> None:
         self._screen = screen
-        self._put("trouble", "")
+        self._job.put("trouble", "")
         self._page.channel.put_fields(_fields(screen.asked))
-        self._put("said", _said(screen))
+        self._job.put("said", _said(screen))
         self._put_found()
-
-    def _put(self, place: str, html: str) -> None:
-        self._page.channel.put(f"#evidence-{place}", html)
 
     @property
     def _key(self) -> Hashable:
@@ -64,14 +60,14 @@ class Evidence:
 
     def _put_found(self) -> None:
         found: Packed | None = _FOUND.get(self._key)
-        self._put("found", "" if found is None else _told(found))
+        self._job.put("found", "" if found is None else _told(found))
 
     def _edited(self, key: str, value: Any) -> None:
         if key == "run":
             self._run()
         elif key == "stop":
             self._job.stop()
-            self._put("progress", progress("Stopped. What is done is kept.", None, again="evidence.run"))
+            self._job.put("progress", progress("Stopped. What is done is kept.", None, again="evidence.run"))
         elif key == "take":
             self._take()
         else:
@@ -82,7 +78,7 @@ class Evidence:
         cases_of(screen.asked, screen.file, screen.use)  # or it is refused here and now
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="ballsocket-")
-        self._put("trouble", "")
+        self._job.put("trouble", "")
         self._job.ask(self._key, partial(packed, screen.asked, screen.file, screen.use, self._folder.name))
 
     def _take(self) -> None:
@@ -92,17 +88,9 @@ class Evidence:
         content = b64encode(found.content).decode("ascii")
         self._page.channel.once("file", {"name": "evidence.zip", "content": content})
 
-    def _heard(self, key: Hashable, news: Any) -> None:
-        if isinstance(news, Reached):
-            self._put("progress", progress(news.words, news.share, stop="evidence.stop"))
-        elif isinstance(news, Refused):
-            self._put("progress", "")
-            self._put("trouble", alert(news.why))
-        elif isinstance(news, Done):
-            _FOUND.put(key, news.value)
-            self._put("progress", "")
-            self._put_found()
-        self._page.channel.send()
+    def _done(self, key: Hashable, found: Packed) -> None:
+        _FOUND.put(key, found)
+        self._put_found()
 
     def document(self, screen: Screen) -> Document:
         found: Packed | None = _FOUND.get(_key(screen))

@@ -11,25 +11,23 @@ from typing import Any
 import numpy
 
 from ...checks import check_names
-from ...hip.in_vivo import IN_VIVO
 from ...io.joint_file import JointFile
 from ...kinds import Kind, Unit
 from ...output import html as page
 from ...output.gait_plot import course_figure
-from ..fields import Field, choice, number, segments, typed
+from ..fields import typed
 from ..gaiting import Gaited, gait_of, gaited
-from ..in_use import CHOICES, Own, Use
-from ..jobs import Job, Kept
+from ..in_use import Own, Use
+from ..jobs import Kept, ViewJob
 from ..player import COURSES, player
 from ..reading import Reading
-from ..running import Done, Reached, Refused
 from ..screen import Screen
+from ..use_fields import cycle_fields
 from ..view import Document, Host
-from ..words import alert, notes_list, number_cell, progress, told
+from ..words import notes_list, number_cell, progress, told
 
 _FOUND: Kept = Kept(most=24)
 _LARGEST = 100_000  # characters of a table
-_BEDS = {"springs": "springs", "shell": "closed shell", "cup": "real cup"}
 
 
 class Gait:
@@ -52,7 +50,7 @@ class Gait:
 
     def __init__(self, page: Host) -> None:
         self._page, self._screen = page, page.screen
-        self._job = Job(self._heard)
+        self._job = ViewJob(page.channel, "gait", self._done)
         self._own: Own | None = None
         page.listen("gait", self._edited)
 
@@ -60,17 +58,17 @@ class Gait:
         if screen.use.cycle != self._screen.use.cycle:
             self._own = None
         self._screen = screen
-        self._put("trouble", "")
-        self._page.channel.put_fields(_fields(screen))
-        self._put("said", self._words())
+        self._job.put("trouble", "")
+        self._page.channel.put_fields({field["name"]: field for field in cycle_fields("gait", screen.use)})
+        self._job.put("said", self._words())
         found = _FOUND.get(self._key)
         if found is None:
-            self._put("numbers", "")
-            self._put("player", "")
+            self._job.put("numbers", "")
+            self._job.put("player", "")
             self._job.ask(self._key, partial(gaited, screen.file, screen.use, self._own))
         else:
             self._job.stop()
-            self._put("progress", "")
+            self._job.put("progress", "")
             self._put_found(found)
 
     @property
@@ -82,19 +80,16 @@ class Gait:
         own = "" if self._own is None else f" {escape(self._own.name)}: a link does not hold it."
         return f"{aside}{own}"
 
-    def _put(self, place: str, html: str) -> None:
-        self._page.channel.put(f"#gait-{place}", html)
-
     def _put_found(self, found: Gaited) -> None:
         instant = self._screen.use.instant
-        self._put("at", str(found.heaviest if instant is None else min(instant, len(found.phase) - 1)))
-        self._put("numbers", _numbers(found, self._screen.reading))
-        self._put("player", player(found, self._screen.reading))
+        self._job.put("at", str(found.heaviest if instant is None else min(instant, len(found.phase) - 1)))
+        self._job.put("numbers", _numbers(found, self._screen.reading))
+        self._job.put("player", player(found, self._screen.reading))
 
     def _edited(self, key: str, value: Any) -> None:
         if key == "stop":
             self._job.stop()
-            self._put("progress", progress("Stopped.", None, again="gait.again"))
+            self._job.put("progress", progress("Stopped.", None, again="gait.again"))
         elif key == "again":
             self.show(self._screen)
         elif key == "own":
@@ -103,17 +98,9 @@ class Gait:
         else:
             self._page.ask(use=_changed(self._screen, key, value))
 
-    def _heard(self, key: Hashable, news: Any) -> None:
-        if isinstance(news, Reached):
-            self._put("progress", progress(news.words, news.share, stop="gait.stop"))
-        elif isinstance(news, Refused):
-            self._put("progress", "")
-            self._put("trouble", alert(news.why))
-        elif isinstance(news, Done):
-            _FOUND.put(key, news.value)
-            self._put("progress", "")
-            self._put_found(news.value)
-        self._page.channel.send()
+    def _done(self, key: Hashable, found: Gaited) -> None:
+        _FOUND.put(key, found)
+        self._put_found(found)
 
     def document(self, screen: Screen) -> Document:
         found: Gaited | None = _FOUND.get(self._key)
@@ -135,17 +122,6 @@ class Gait:
 
     def leave(self) -> None:
         self._job.stop()
-
-
-def _fields(screen: Screen) -> dict[str, Field]:
-    use = screen.use
-    cycles = [(name, name) for name in CHOICES["cycle"]]
-    weight = number("gait.body_weight", "Body weight", Unit("N"), (300.0, 1500.0), 10.0, use.body_weight)
-    return {
-        "gait.cycle": choice("gait.cycle", "Cycle", cycles, use.cycle),
-        "gait.body_weight": {**weight, "hidden": use.cycle not in IN_VIVO},
-        "gait.contact": segments("gait.contact", "The bore gives way as", list(_BEDS.items()), use.contact),
-    }
 
 
 def _changed(screen: Screen, key: str, value: Any) -> Use:

@@ -9,7 +9,6 @@ from typing import Any
 
 from ...checks import check_names, shown
 from ...hip.coefficients import share_of_slide, wear_factor
-from ...hip.in_vivo import IN_VIVO
 from ...io.joint_file import JointFile
 from ...kinds import Kind, Unit
 from ...output import html as page
@@ -17,17 +16,16 @@ from ...presets import joints
 from ...quantities import CONTACT
 from ..fields import Field, choice, number, segments, typed
 from ..in_use import CHOICES, Use
-from ..jobs import Job, Kept
-from ..running import Done, Reached, Refused
+from ..jobs import Kept, ViewJob
 from ..screen import Screen
+from ..use_fields import cycle_fields
 from ..view import Document, Host
 from ..wear_charts import depth_maps, penetration_chart, wear_numbers
 from ..wearing import LONGEST, Worn, life_of, worn
-from ..words import alert, progress, unit_of_files
+from ..words import progress, unit_of_files
 
 _FOUND: Kept = Kept(most=24)
 _ALONE, _NOW, _OTHER = "", "as it is now", "as it was put beside"
-_BEDS = {"springs": "springs", "shell": "closed shell", "cup": "real cup"}
 _UNITS = {"area": "mm/m"}
 _SHOWN = ("cycle", "body_weight", "contact", "law", "coefficient", "circular", "spread", "millions", "creep", "beside")
 
@@ -49,26 +47,23 @@ class Wear:
 
     def __init__(self, host: Host) -> None:
         self._page, self._screen = host, host.screen
-        self._job = Job(self._heard, longest=LONGEST)
+        self._job = ViewJob(host.channel, "wear", self._done, longest=LONGEST)
         host.listen("wear", self._edited)
 
     def show(self, screen: Screen) -> None:
         self._screen = screen
-        self._put("trouble", "")
+        self._job.put("trouble", "")
         self._page.channel.put_fields(_fields(screen))
         if not self._job.works:
-            self._put("progress", "")
+            self._job.put("progress", "")
         self._put_found()
-
-    def _put(self, place: str, html: str) -> None:
-        self._page.channel.put(f"#wear-{place}", html)
 
     def _put_found(self) -> None:
         """What has been run of the designs on the screen; else what to do."""
         found = self._found()
-        self._put("numbers", wear_numbers(found, self._screen.reading) if found else _NOTHING)
-        self._put("curve", penetration_chart(found, self._screen.reading) if found else "")
-        self._put("maps", depth_maps(found, self._screen.reading) if found else "")
+        self._job.put("numbers", wear_numbers(found, self._screen.reading) if found else _NOTHING)
+        self._job.put("curve", penetration_chart(found, self._screen.reading) if found else "")
+        self._job.put("maps", depth_maps(found, self._screen.reading) if found else "")
 
     def _found(self) -> dict[str, Worn]:
         lives = {name: _FOUND.get(life_of(file, self._screen.use)) for name, file in designs(self._screen).items()}
@@ -79,7 +74,7 @@ class Wear:
             self._run()
         elif key == "stop":
             self._job.stop()
-            self._put("progress", progress("Stopped.", None))
+            self._job.put("progress", progress("Stopped.", None))
         elif key == "beside":
             self._page.ask(beside=_beside(self._screen, value))
         else:
@@ -89,23 +84,14 @@ class Wear:
         use = self._screen.use
         lives = {life_of(file, use): file for file in designs(self._screen).values()}
         missing = {life: file for life, file in lives.items() if _FOUND.get(life) is None}
-        self._put("trouble", "")
+        self._job.put("trouble", "")
         if missing:
             self._job.ask(tuple(missing), partial(worn, list(missing.values()), use))
 
-    def _heard(self, key: Hashable, news: Any) -> None:
-        if isinstance(news, Reached):
-            self._put("progress", progress(news.words, news.share, stop="wear.stop"))
-        elif isinstance(news, Refused):
-            self._put("progress", "")
-            self._put("trouble", alert(news.why))
-        elif isinstance(news, Done):
-            assert isinstance(key, tuple)
-            for life, found in zip(key, news.value, strict=True):
-                _FOUND.put(life, found)
-            self._put("progress", "")
-            self._put_found()
-        self._page.channel.send()
+    def _done(self, lives: tuple[Hashable, ...], found: list[Worn]) -> None:
+        for life, each in zip(lives, found, strict=True):
+            _FOUND.put(life, each)
+        self._put_found()
 
     def document(self, screen: Screen) -> Document:
         found = self._found()
@@ -157,12 +143,7 @@ def _fields(screen: Screen) -> dict[str, Field]:
         for name, title in (("coefficient", "Coefficient"), ("circular", "Coefficient on a circle"))
     }
     listed = [
-        choice("wear.cycle", "Cycle", [(name, name) for name in CHOICES["cycle"]], use.cycle),
-        {
-            **number("wear.body_weight", "Body weight", Unit("N"), (300.0, 1500.0), 10.0, use.body_weight),
-            "hidden": use.cycle not in IN_VIVO,
-        },
-        segments("wear.contact", "The bore gives way as", list(_BEDS.items()), use.contact),
+        *cycle_fields("wear", use),
         choice("wear.law", "Law of wear", [(name, name) for name in CHOICES["law"]], use.law),
         factors["coefficient"],
         {**factors["circular"], "hidden": use.law != "cross-shear"},
