@@ -12,10 +12,11 @@ from ballsocket.io.joint_file import JointFile
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
-from ballsocket.app.drawing import gap_factor, petals
+from ballsocket.app.drawing import petals
 from ballsocket.app.headline import nearness
 from ballsocket.app.page import Page
 from ballsocket.app.verdict import about_von_mises, most_used, sentence
+from ballsocket.output.section_scale import gap_factor
 
 from .asking import does, edits, trouble
 
@@ -44,7 +45,7 @@ def test_the_drawing_says_every_dimension_and_how_often_its_gap_is_drawn():
 
 @pytest.mark.parametrize("clearance", [1e-4, 0.02, 0.1, 0.7])
 def test_a_gap_is_drawn_wide_enough_to_be_seen_and_no_wider_than_a_tenth_of_the_ball(clearance):
-    drawn = gap_factor(JointFile(replace(HIP, clearance=clearance), {})) * clearance
+    drawn = gap_factor(replace(HIP, clearance=clearance)) * clearance
     assert drawn <= 0.1 * HIP.ball_radius
     assert drawn >= 0.02 * HIP.ball_radius or clearance == 1e-4
 

@@ -11,8 +11,9 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.io.joint_file import JointFile
-from ballsocket.output.joint_section import exaggeration, joint_section
+from ballsocket.output.joint_section import joint_section
 from ballsocket.output.press_report import press_report
+from ballsocket.output.section_scale import gap_factor
 from ballsocket.output.unit_systems import Units
 from ballsocket.studies import tolerance
 from ballsocket.studies.around import around
@@ -77,8 +78,8 @@ def test_the_band_of_a_tolerance_holds_the_ends_of_the_clearance(pages):
 
 
 def test_a_clearance_is_drawn_so_wide_that_it_can_be_seen():
-    assert exaggeration(HIP) == 10.0
-    assert exaggeration(bs.Joint(ball_radius=10.0, clearance=1.0, liner_thickness=5.0, liner=bs.POM)) == 1.0
+    assert gap_factor(HIP) == 10.0
+    assert gap_factor(bs.Joint(ball_radius=10.0, clearance=1.0, liner_thickness=5.0, liner=bs.POM)) == 1.0
     texts = [text.get_text() for text in joint_section(HIP, FILE.cup).axes[0].texts]
     assert "diametral clearance 0.2 mm, drawn 10 times as wide" in texts
     assert {"head ⌀ 36 mm", "bore ⌀ 36.2 mm", "outside ⌀ 46.2 mm", "cross-linked PE, 5 mm"} <= set(texts)

@@ -5,21 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import isinf, pi
+from math import pi
 
 import numpy
 
 from ..contact import Contact
 from ..io.joint_file import JointFile
+from ..output.section_scale import gap_factor, radii_of
 from . import svg
 from .pressing import profile
 
-_MASSIVE = 0.8  # of the socket's radius is drawn of what has no end
 _PETALS = 48
 _HIGHEST = 0.45  # of the liner, or of the radius
 _SIZE = 340.0
-_ROUND = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-_WIDEST_GAP = 0.09  # of the socket's radius, beside the ball
 
 Outline = tuple[numpy.ndarray, numpy.ndarray]
 
@@ -52,7 +50,7 @@ def section(file: JointFile, contact: Contact | None, extent: float, highest: fl
 
 def layers(file: JointFile, frame: Frame) -> list[str]:
     """Liner and what is behind it, as far as the cup reaches."""
-    ends = list(pairwise(radii_of(file)))
+    ends = list(pairwise(radii_of(file.joint)))
     kinds = ["liner", *(f"backing layer{number % 3}" for number in range(len(ends) - 1))]
     return [_part(_sector(*each, file.cup.rim), frame, kind) for each, kind in zip(ends, kinds, strict=True)]
 
@@ -90,22 +88,7 @@ def heat(share: float) -> str:
 
 def extent_of(file: JointFile) -> float:
     """Half the width of the drawing in mm."""
-    return radii_of(file)[-1]
-
-
-def radii_of(file: JointFile) -> list[float]:
-    """Radii in mm of the bore, and from there outwards behind the liner and each layer."""
-    radii = [float(file.joint.socket_radius)]
-    for thickness in (file.joint.liner_thickness, *(layer.thickness for layer in file.joint.backing)):
-        radii.append(radii[-1] + (_MASSIVE * radii[0] if isinf(float(thickness)) else float(thickness)))
-    return radii
-
-
-def gap_factor(file: JointFile) -> int:
-    """How many times the gap between ball and socket is drawn: a round number, so that it can be seen."""
-    gap = abs(float(file.joint.clearance))
-    fitting = [times for times in _ROUND if times * gap <= _WIDEST_GAP * float(file.joint.socket_radius)]
-    return fitting[-1] if fitting and gap > 0 else 1
+    return radii_of(file.joint)[-1]
 
 
 def _sector(inner: float, outer: float, rim: float) -> Outline:
@@ -120,7 +103,7 @@ def _ball(file: JointFile, contact: Contact | None, tilt: float) -> Outline:
     clearance, depth = float(file.joint.clearance), 0.0 if contact is None else float(contact.indentation)
     angle = numpy.linspace(0.0, 2 * pi, 145)
     gap = numpy.clip(clearance - (clearance + depth) * numpy.cos(angle + tilt), 0.0, None)
-    radius = float(file.joint.socket_radius) - gap_factor(file) * gap
+    radius = float(file.joint.socket_radius) - gap_factor(file.joint) * gap
     return radius * numpy.sin(angle), -radius * numpy.cos(angle)
 
 

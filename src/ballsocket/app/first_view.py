@@ -9,9 +9,10 @@ from math import atan2, cos, degrees, isinf, pi, radians, sin
 from ..contact import Contact
 from ..io.joint_file import JointFile
 from ..kinds import Unit
+from ..output.section_scale import gap_factor, radii_of
 from ..quantities import Quantity
 from . import svg
-from .drawing import Frame, ball, gap_factor, heat, layers, painted, radii_of
+from .drawing import Frame, ball, heat, layers, painted
 from .fields import Field
 
 Said = Callable[[float], str]
@@ -48,7 +49,7 @@ def first_view(file: JointFile, contact: Contact | None, fields: dict[str, Field
 
 def frame_of(file: JointFile) -> Frame:
     """Where the joint lies in the picture."""
-    return Frame(x=_MIDDLE[0], y=_MIDDLE[1], scale=_REACH / radii_of(file)[-1])
+    return Frame(x=_MIDDLE[0], y=_MIDDLE[1], scale=_REACH / radii_of(file.joint)[-1])
 
 
 def _arrow(x1: float, y1: float, x2: float, y2: float, kind: str, size: float = 7.0) -> str:
@@ -78,7 +79,7 @@ def _dimensions(file: JointFile, frame: Frame, unit: Unit) -> Iterator[str]:
     yield from _liner(file, frame, said)
     lengths = [file.joint.liner_thickness, *(layer.thickness for layer in file.joint.backing)]
     if not any(isinf(float(length)) for length in lengths):
-        yield from _shell(frame, f"⌀ {said(2 * radii_of(file)[-1])}")
+        yield from _shell(frame, f"⌀ {said(2 * radii_of(file.joint)[-1])}")
 
 
 def _head(file: JointFile, frame: Frame, said: Said) -> Iterator[str]:
@@ -89,7 +90,7 @@ def _head(file: JointFile, frame: Frame, said: Said) -> Iterator[str]:
 
 
 def _bore_and_gap(file: JointFile, frame: Frame, said: Said) -> Iterator[str]:
-    radius, rim, times = float(file.joint.socket_radius), file.cup.rim, gap_factor(file)
+    radius, rim, times = float(file.joint.socket_radius), file.cup.rim, gap_factor(file.joint)
     bore = frame.at(radius, min(rim, radians(86.0)))
     yield _leader(*bore, 486.0, bore[1] - 62)
     yield _said(("bore", f"⌀ {said(2 * radius)}"), 490.0, bore[1] - 66, "start")
@@ -102,7 +103,7 @@ def _bore_and_gap(file: JointFile, frame: Frame, said: Said) -> Iterator[str]:
 
 
 def _liner(file: JointFile, frame: Frame, said: Said) -> Iterator[str]:
-    radii, thickness = radii_of(file), float(file.joint.liner_thickness)
+    radii, thickness = radii_of(file.joint), float(file.joint.liner_thickness)
     turn = -min(file.cup.rim, radians(62.0))
     inner, outer = frame.at(radii[0], turn), frame.at(radii[1], turn)
     if not isinf(thickness):
@@ -130,7 +131,9 @@ def _names(file: JointFile, frame: Frame) -> Iterator[str]:
     joint = file.joint
     yield svg.text(frame.x, frame.y - 44, "rigid ball" if joint.ball is None else joint.ball.name or "ball", "name")
     materials = [joint.liner, *(layer.material for layer in joint.backing)]
-    for number, (material, inner, outer) in enumerate(zip(materials, radii_of(file), radii_of(file)[1:], strict=False)):
+    for number, (material, inner, outer) in enumerate(
+        zip(materials, radii_of(file.joint), radii_of(file.joint)[1:], strict=False)
+    ):
         if frame.scale * (outer - inner) > 14:
             x, y = frame.at((inner + outer) / 2, 0.0)
             yield svg.text(
@@ -150,7 +153,7 @@ def _contact_edge(file: JointFile, contact: Contact | None, frame: Frame, tilt: 
 def _start(file: JointFile, contact: Contact | None, frame: Frame) -> float:
     """Where the arrow ends, in pixels from the centre: just above the ball as it is drawn."""
     gap = 2 * float(file.joint.clearance) + (0.0 if contact is None else float(contact.indentation))
-    return frame.scale * (float(file.joint.socket_radius) - gap_factor(file) * gap) + _OFF
+    return frame.scale * (float(file.joint.socket_radius) - gap_factor(file.joint) * gap) + _OFF
 
 
 def _load(start: float, frame: Frame, fields: dict[str, Field], tilt: float) -> Iterator[str]:
@@ -171,7 +174,7 @@ def _load(start: float, frame: Frame, fields: dict[str, Field], tilt: float) -> 
 
 def _borders(file: JointFile, frame: Frame, fields: dict[str, Field]) -> Iterator[str]:
     """The outer border of each layer that has one, to be dragged."""
-    radii = radii_of(file)
+    radii = radii_of(file.joint)
     names = ["liner_thickness", *(f"layer{number}" for number in range(len(file.joint.backing)))]
     for name, inner, outer in zip(names, radii, radii[1:], strict=False):
         if name in fields:

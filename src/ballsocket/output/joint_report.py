@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from datetime import date
 from hashlib import sha256
 from html import escape
-from math import inf, isinf
+from math import inf
 from typing import Any
 
 from ..contact import Contact
@@ -72,12 +72,16 @@ def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
     yield "head diameter", units.length(2 * float(joint.ball_radius)), joint.source
     yield "bore diameter", units.length(2 * float(joint.socket_radius)), ""
     yield "diametral clearance", units.length(2 * float(joint.clearance)), "twice the radial one"
-    yield "liner thickness", _thick(joint.liner_thickness, units), ""
+    yield "liner thickness", units.length(float(joint.liner_thickness)), ""
     yield "liner", _material(joint.liner, units), joint.liner.source
     yield "ball", "rigid" if joint.ball is None else _material(joint.ball, units), getattr(joint.ball, "source", "")
     for number, layer in enumerate(joint.backing, 1):
         material = layer.material
-        yield f"backing {number}", f"{_thick(layer.thickness, units)} of {_material(material, units)}", material.source
+        yield (
+            f"backing {number}",
+            f"{units.length(float(layer.thickness))} of {_material(material, units)}",
+            material.source,
+        )
     yield "outermost surface", joint.support.value, ""
     yield from _cup(file.cup, units)
     for name, angle in file.aim.items():
@@ -87,10 +91,6 @@ def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
             yield name, ", ".join(f"{part:.4g}" for part in angle), "to the right, to the front, up"
     for name, value in file.load.items():
         yield PARAMETERS[name].title, units.told(PARAMETERS[name], float(value)), ""
-
-
-def _thick(thickness: Any, units: Units) -> str:
-    return "to infinity" if isinf(float(thickness)) else units.length(float(thickness))
 
 
 def _material(material: Material, units: Units) -> str:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import accumulate, pairwise
-from math import isinf, log10, pi
+from itertools import pairwise
+from math import isinf, pi
 from typing import TYPE_CHECKING
 
 import numpy
@@ -11,6 +11,7 @@ import numpy
 from ..contact import Contact
 from ..cup import Cup
 from ..joint import Joint
+from .section_scale import gap_factor, radii_of
 from .style import BLUE, GREEN, GREY, INK, ORANGE, PINK, SKY, VERMILLION
 from .unit_systems import Units
 
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 
     Points = tuple[numpy.ndarray, numpy.ndarray]
 
-_MASSIVE = 0.6  # of the bore is drawn of what has no end
-_SEEN = 0.06  # of the ball's radius: so wide a clearance can be seen
 _LAYERS = (SKY, GREY, ORANGE, GREEN, PINK, BLUE)
 _LINE = {"color": INK, "linewidth": 0.8}
 
@@ -50,7 +49,7 @@ def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units:
     axes = figure.add_subplot()
     axes.set_aspect("equal")
     axes.axis("off")
-    radii, times = radii_of(joint), exaggeration(joint)
+    radii, times = radii_of(joint), gap_factor(joint)
     _bodies(axes, joint, cup, contact, radii, times)
     _diameters(axes, joint, radii, units)
     _named(axes, joint, cup, radii, units)
@@ -59,23 +58,6 @@ def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units:
     text = f"diametral clearance {units.length(2 * joint.clearance)}, drawn {times:g} times as wide"
     axes.text(0.0, -1.1 * radii[-1], text, ha="center", va="top", fontsize=9)
     return figure
-
-
-def radii_of(joint: Joint) -> list[float]:
-    """In mm: the bore, the outside of the liner, and of each layer behind it."""
-    thick = (joint.liner_thickness, *(layer.thickness for layer in joint.backing))
-    bore = float(joint.socket_radius)
-    return list(accumulate((_MASSIVE * bore if isinf(float(each)) else float(each) for each in thick), initial=bore))
-
-
-def exaggeration(joint: Joint) -> float:
-    """How many times too wide the clearance is drawn: 1, 2, 5, 10, ... until it can be seen."""
-    clearance = abs(float(joint.clearance))
-    wanted = _SEEN * float(joint.ball_radius) / clearance if clearance > 0 else 1.0
-    if wanted <= 1:
-        return 1.0
-    scale = 10.0 ** int(log10(wanted))
-    return max(step * scale for step in (1, 2, 5) if step * scale <= wanted)
 
 
 def _polar(radius: float | numpy.ndarray, angle: float | numpy.ndarray) -> Points:
@@ -120,10 +102,9 @@ def _named(axes: Axes, joint: Joint, cup: Cup, radii: list[float], units: Units)
     for number, (name, thickness) in enumerate(parts):
         x, y = _polar((radii[number] + radii[number + 1]) / 2, angle - 0.14 * number)
         level = float(y) - 0.04 * radii[-1] * number
-        thick = "to infinity" if isinf(float(thickness)) else units.length(float(thickness))
         axes.plot([float(x), across], [float(y), level], color=INK, linewidth=0.7)
         axes.plot(float(x), float(y), "o", color=INK, markersize=2.5)
-        axes.text(1.02 * across, level, f"{name}, {thick}", ha="left", va="center", fontsize=9)
+        axes.text(1.02 * across, level, f"{name}, {units.length(float(thickness))}", ha="left", va="center", fontsize=9)
     axes.set_xlim(-1.1 * radii[-1], 2.4 * radii[-1])
 
 

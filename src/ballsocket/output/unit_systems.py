@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from math import inf
+from math import inf, isinf
 from types import MappingProxyType
 
 from ..contact.describe import UTILISATION, Column
@@ -38,6 +38,8 @@ class Units(StrEnum):
 
     def length(self, millimetres: float) -> str:
         """A length of a drawing, in mm or in."""
+        if isinf(millimetres):
+            return "to infinity"
         if self is Units.IMPERIAL:
             return f"{millimetres / _INCH:.4g} in"
         return f"{millimetres:.4g} mm"
