@@ -82,6 +82,8 @@ def test_a_clearance_is_drawn_so_wide_that_it_can_be_seen():
     assert gap_factor(bs.Joint(ball_radius=10.0, clearance=1.0, liner_thickness=5.0, liner=bs.POM)) == 1.0
     texts = [text.get_text() for text in joint_section(HIP, FILE.cup).axes[0].texts]
     assert "diametral clearance 0.2 mm, drawn 10 times as wide" in texts
+    loaded = joint_section(HIP, FILE.cup, bs.HessForsbach().press(HIP, force=3000.0), Units.IMPERIAL)
+    assert {"head ⌀ 1.417 in", "674.4 lbf"} <= {text.get_text() for text in loaded.axes[0].texts}
     assert {"head ⌀ 36 mm", "bore ⌀ 36.2 mm", "outside ⌀ 46.2 mm", "cross-linked PE, 5 mm"} <= set(texts)
 
 

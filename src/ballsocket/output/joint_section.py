@@ -11,6 +11,7 @@ import numpy
 from ..contact import Contact
 from ..cup import Cup
 from ..joint import Joint
+from ..quantities import CONTACT
 from .section_scale import gap_factor, radii_of
 from .style import BLUE, GREEN, GREY, INK, ORANGE, PINK, SKY, VERMILLION
 from .unit_systems import Units
@@ -54,7 +55,7 @@ def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units:
     _diameters(axes, joint, radii, units)
     _named(axes, joint, cup, radii, units)
     if contact is not None:
-        _loaded(axes, joint, contact)
+        _loaded(axes, joint, contact, units)
     text = f"diametral clearance {units.length(2 * joint.clearance)}, drawn {times:g} times as wide"
     axes.text(0.0, -1.1 * radii[-1], text, ha="center", va="top", fontsize=9)
     return figure
@@ -108,7 +109,7 @@ def _named(axes: Axes, joint: Joint, cup: Cup, radii: list[float], units: Units)
     axes.set_xlim(-1.1 * radii[-1], 2.4 * radii[-1])
 
 
-def _loaded(axes: Axes, joint: Joint, contact: Contact) -> None:
+def _loaded(axes: Axes, joint: Joint, contact: Contact, units: Units) -> None:
     """The pressure within the arc of the contact, and the load's arrow."""
     radius, edge = float(joint.socket_radius), float(contact.half_angle)
     if not edge > 0:
@@ -119,4 +120,6 @@ def _loaded(axes: Axes, joint: Joint, contact: Contact) -> None:
     axes.fill(*_between(_polar(radius, angle), _polar(radius + high, angle)), color=VERMILLION, alpha=0.85)
     arrow = {"arrowstyle": "-|>", "color": VERMILLION, "linewidth": 2.0}
     axes.annotate("", (0.0, -0.15 * radius), (0.0, 0.55 * radius), arrowprops=arrow)
-    axes.text(0.06 * radius, 0.4 * radius, f"{float(contact.force):.4g} N", color=VERMILLION, fontsize=10)
+    axes.text(
+        0.06 * radius, 0.4 * radius, units.told(CONTACT["force"], float(contact.force)), color=VERMILLION, fontsize=10
+    )
