@@ -19,6 +19,7 @@ BENCHMARKS = {
     ),
     "plane-layer": ("plane_layer", "one case of the numerical plane layer, alone and in a batch"),
     "random-joints": ("random_joints", "a hundred thousand random joints through the exact solver, one by one"),
+    "hemisphere": ("hemisphere", "the closed sphere of the exact solver beside a hemisphere by finite elements"),
     "exact": ("exact", "the exact answer: a first load, further loads, a curve, a sweep; and CalculiX"),
     "fem": ("fem", "the finite elements: default mesh, the paper's mesh, cost against size; and CalculiX"),
     "papers-mesh": ("papers_mesh", "CalculiX and the finite elements on the paper's mesh: a quarter of an hour"),
@@ -37,6 +38,10 @@ BENCHMARKS = {
     "bounce": ("bounce", "a ball that bounces in its socket, in every program that a joint is exported to"),
     "four-bar": ("four_bar", "a second of a spatial four-bar with clearance: compiled, in Python, in Exudyn"),
     "identify": ("identify", "clearance and modulus from twenty points: the best point, 4000 samples of the posterior"),
+    "identifiability": (
+        "identifiability",
+        "synthetic data: unknowns that count as identifiable, and coverage with wrong data or machines: 10 minutes",
+    ),
     "evidence": ("evidence", "a pack of evidence for 81 cases off the axis, with and without finite elements"),
     "in-motion": ("in_motion", "a ball joint in MuJoCo, Exudyn, OpenSim and FMI, beside what these have themselves"),
     "gpu": ("gpu", "presses a second on a GPU through PyTorch, against its memory's bandwidth; skipped without one"),

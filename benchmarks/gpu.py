@@ -72,4 +72,7 @@ def rates(device: Any, count: int) -> Report:
     for name in ("paper", "tabulated"):
         ours = seconds[name].per(1e-9 * count)
         rows.add(f"{name}, by force: d, ε, p0", ours, limit, f"{ours.over(limit)} times a copy of the same bytes")
-    return Report([rows], [f"{count:.0e} presses of as many joints, float64, eager PyTorch."], ("torch",))
+    processor = torch.cuda.get_device_name(device) if device.type == "cuda" else "the processor, not a GPU"
+    return Report(
+        [rows], [f"On {processor}: {count:.0e} presses of as many joints, float64, eager PyTorch."], ("torch",)
+    )

@@ -17,7 +17,7 @@ from unittest import mock
 import numpy
 
 import ballsocket as bs
-from ballsocket.sphere.grid import grid
+from ballsocket.sphere.grid import rim_grid
 
 from .off_axis import INDENTATION, JOINT, displaced, forced, set_up
 from .report import Report, Rows
@@ -39,7 +39,7 @@ def measure() -> Report:
         found = [_answers(model) for model in models]
         seconds = [_seconds(model) for model in models]
     load = os.getloadavg()[0]
-    grids = [grid(bs.Cup().rim, radians(width)) for width in WIDTHS]
+    grids = [rim_grid(bs.Cup().rim, radians(width)) for width in WIDTHS]
     off = [_off(each, found[-1]) for each in found[:-1]]
     for width, cells, times in zip(WIDTHS, grids, seconds, strict=True):
         name, count = f"{cells.rings} of {width:g}°", cells.rings * cells.meridians

@@ -15,7 +15,7 @@ from .arrays import Array, to_list, where
 from .catalogue import catalogue, reference
 from .checks import nearest, needs, one_load, refuse_unnamed, shown
 from .contact import Contact
-from .contact.describe import COLUMNS, UTILISATION, count, number_text
+from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count, number_text
 from .cup import Cup
 from .joint import Joint
 from .model import Model
@@ -88,7 +88,7 @@ class Comparison(Mapping[str, Contact]):
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON: version, joint and results, in mm, N, MPa, degrees."""
         answers = [{**self[name].summary(), "deviation": _listed(self.deviation(name))} for name in self]
-        gaps = dict.fromkeys(column.name for column in (*COLUMNS, UTILISATION))
+        gaps = dict.fromkeys([*(column.name for column in (*COLUMNS, UTILISATION)), UTILISATION_NOTE])
         missing = [
             {"model": name, **gaps, "valid": False, "notes": [why], "deviation": None}
             for name, why in self.missing.items()

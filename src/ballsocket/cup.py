@@ -11,7 +11,7 @@ from math import cos, pi, sin
 
 from . import arrays
 from .arrays import Array, is_plain
-from .checks import numeric, require
+from .checks import numeric, require, shown
 from .quantities import CUP
 
 Direction = tuple[float, float, float]
@@ -34,6 +34,12 @@ class Side(Enum):
     LEFT = "left"
 
 
+class NotGiven(float):
+    """Default angle of a cup without an orientation: 0, which the standard of a cycle may replace."""
+
+
+_NOT_GIVEN = NotGiven(0.0)
+
 _CHOICES = {"interface": Interface, "side": Side}
 
 
@@ -49,7 +55,9 @@ class Cup:
     Parameters
     ----------
     arc_of_cover : float
-        From rim to rim in rad, 40° to 340°; π (default) is a hemisphere.
+        From rim to rim in rad, 40° to 340°; π (default) is a hemisphere. The face of the rim is a cone towards the
+        centre of the bore, whatever the arc: a corner of 90°, where the pressure stays finite. The sharper or blunter
+        corner of a flat face is not modelled; one above 90° has an unbounded pressure in linear elasticity.
     chamfer : float
         Of the rim's inner edge in mm, at 45°: so much is taken away along the bore and into the depth. Default 0.
     interface : Interface
@@ -57,7 +65,8 @@ class Cup:
     inclination : float
         Radiographic inclination in rad, 0 (default) to π/2: how far the cup opens to the side.
     anteversion : float
-        Radiographic anteversion in rad, -π/2 to π/2: how far it opens to the front. Default 0.
+        Radiographic anteversion in rad, -π/2 to π/2: opening to the front. Default 0. A hip in use takes the
+        tilt of its cycle's standard only where neither angle is set; an explicit 0 counts as set.
     side : Side
         Of the body, RIGHT (default) or LEFT.
 
@@ -83,23 +92,28 @@ class Cup:
     arc_of_cover: float = pi
     chamfer: float = 0.0
     interface: Interface = Interface.BONDED
-    inclination: float = 0.0
-    anteversion: float = 0.0
+    inclination: float = _NOT_GIVEN
+    anteversion: float = _NOT_GIVEN
     side: Side = Side.RIGHT
 
     def __post_init__(self) -> None:
         for name, quantity in CUP.items():
             if not is_plain(quantity.checked(getattr(self, name))):
-                raise TypeError(f"{name} must be one number, got {getattr(self, name)!r}")
+                raise TypeError(f"{name} must be one number, got {shown(getattr(self, name))}")
         for name, kind in _CHOICES.items():
             if not isinstance(getattr(self, name), kind):
                 known = " or ".join(map(str, kind))
-                raise TypeError(f"{name} must be {known}, got {getattr(self, name)!r}")
+                raise TypeError(f"{name} must be {known}, got {shown(getattr(self, name))}")
 
     @property
     def rim(self) -> float:
         """The rim's polar angle in rad."""
         return self.arc_of_cover / 2
+
+    @property
+    def oriented(self) -> bool:
+        """True where an inclination or an anteversion was set, 0 included."""
+        return not (isinstance(self.inclination, NotGiven) and isinstance(self.anteversion, NotGiven))
 
     @property
     def opening(self) -> Direction:

@@ -15,6 +15,7 @@ from typing import ClassVar
 import numpy
 
 from .arrays import Numbers, gauss_legendre
+from .checks import shown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,7 +93,7 @@ Gap = LinearGap | CircularGap
 def check_gap(gap: object) -> None:
     """Raise TypeError unless it is one of the two gaps, as a type."""
     if gap not in (LinearGap, CircularGap):
-        raise TypeError(f"gap must be LinearGap or CircularGap, got {gap!r}")
+        raise TypeError(f"gap must be LinearGap or CircularGap, got {shown(gap)}")
 
 
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(24))

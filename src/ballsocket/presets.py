@@ -19,7 +19,10 @@ UHMWPE = Material(
     young=1000.0,
     poisson=0.4,
     name="UHMWPE",
-    source=f"{_PAPER} (which also uses nu 0.45); yield: least of ASTM F648 type 1 (unverified)",
+    source=f"{_PAPER} (which also uses nu 0.45); yield: least of ASTM F648 type 1 (unverified); "
+    "proportional limit: three-network model of Bergström & Bischoff 2010, Int. J. Struct. Changes Solids 2, 31, in "
+    "compression at 300 K and 0.007/s",
+    proportional_limit=7.5,
     yield_stress=21.0,
 )
 CROSSLINKED_PE = Material(
@@ -27,7 +30,9 @@ CROSSLINKED_PE = Material(
     poisson=0.4,
     name="cross-linked PE",
     source="representative: middle of 0.5-1 GPa, Heß & Forsbach 2021 after Kurtz et al. 2002, Biomaterials 23, 3681; "
-    "yield: that of UHMWPE, which irradiation hardly changes (Oral et al. 2006, Biomaterials 27, 917)",
+    "yield: that of UHMWPE, which irradiation hardly changes (Oral et al. 2006, Biomaterials 27, 917); "
+    "proportional limit: that of UHMWPE (unverified)",
+    proportional_limit=7.5,
     yield_stress=21.0,
 )
 POM = Material(

@@ -18,7 +18,7 @@ from .joint import Joint, Layer, Material, unchecked
 from .models.closed_form import Bound
 from .models.plane_layer import LayerSolution
 from .models.refined import RefinedSolution
-from .quantities import STRENGTH
+from .quantities import STRESS_LIMITS
 
 Parts = tuple[Any, ...]
 
@@ -36,7 +36,7 @@ def _register(cls: Any, parts: tuple[str, ...], fixed: tuple[str, ...]) -> None:
     register_pytree_node(cls, flatten, unflatten)
 
 
-_register(Material, ("young", "poisson", *STRENGTH), ("name", "source"))
+_register(Material, ("young", "poisson", *STRESS_LIMITS), ("name", "source"))
 _register(Layer, ("thickness", "material"), ())
 _register(
     Joint,

@@ -258,6 +258,13 @@ MATERIAL = _table(
 )
 """The elastic numbers of a material."""
 
+LINEARITY = _table(
+    Quantity("proportional_limit", "σp", "proportional limit", Kind.MODULUS,
+             "Stress up to which strain is proportional to stress. Above it the secant modulus is lower than E.",
+             allows=_positive, allowed="a proportional limit (MPa) is above 0 and finite"),
+)
+"""Optional proportional limit of a material."""
+
 STRENGTH = _table(
     Quantity("yield_stress", "σy", "yield stress", Kind.MODULUS,
              "Von Mises stress at which a material begins to flow. Not needed; where it is known, contacts tell how "
@@ -270,6 +277,9 @@ STRENGTH = _table(
              allowed="an allowable pressure (MPa) is above 0 and finite"),
 )
 """What a material bears; each of them may be left out."""
+
+STRESS_LIMITS = MappingProxyType({**LINEARITY, **STRENGTH})
+"""Stress limits of a material."""
 
 BEARING = _table(
     Quantity("von_mises", "σv", "von Mises stress", Kind.MODULUS,
@@ -327,6 +337,19 @@ HEADLINE = ("force", "indentation", "half_angle", "max_pressure", "area", "stiff
 """What a table of a contact shows that has no room for all."""
 
 QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
-    {**CONTACT, **BEARING, **JOINT, **FIT, **MATERIAL, **STRENGTH, **PARTS, **LAYER, **CUP, **AIM, **FIELD, **DERIVED}
+    {
+        **CONTACT,
+        **BEARING,
+        **JOINT,
+        **FIT,
+        **MATERIAL,
+        **STRESS_LIMITS,
+        **PARTS,
+        **LAYER,
+        **CUP,
+        **AIM,
+        **FIELD,
+        **DERIVED,
+    }
 )
 """All of them by their names."""

@@ -112,4 +112,11 @@ def _shown(used: Any) -> str:
 def _field(entry: str, name: str) -> str:
     """One field of an entry as plain text."""
     found = re.search(rf"^\s*{name}\s*=\s*\{{(.*)\}},?\s*$", entry, flags=re.MULTILINE)
-    return found.group(1).replace(r"{\ss}", "ß").replace("{", "").replace("}", "") if found else ""
+    text = found.group(1) if found else ""
+    for spelled, letter in _LETTERS.items():
+        text = text.replace(spelled, letter)
+    return text.replace("{", "").replace("}", "")
+
+
+_LETTERS = {r"{\ss}": "ß", r"{\"o}": "ö"}
+"""Letters in LaTeX notation of the bibliography."""

@@ -1,7 +1,7 @@
 """Where a material yields, linear elasticity ends, and every model says so."""
 
 from dataclasses import replace
-from math import inf, isnan, radians
+from math import inf, radians
 
 import numpy as np
 import pytest
@@ -71,10 +71,10 @@ def test_the_share_of_the_pressure_is_that_of_the_exact_answer(poisson, thicknes
 
 def test_the_inside_of_a_soft_backed_socket_is_looked_at_where_yield_is_near(monkeypatch):
     cement = bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)
-    soft = HIP.replace(backing=(cement, bs.Layer(thickness=inf, material=bs.CANCELLOUS_BONE)))
+    soft = HIP.replace(backing=(cement, bs.Layer(thickness=4.0, material=bs.CANCELLOUS_BONE)))
     forces = np.array([300.0, 1000.0, 3000.0, 9000.0, 30000.0])
     known, looks, peak = bs.Exact().press(soft, force=forces), [], subsurface.peak
-    monkeypatch.setattr(subsurface, "peak", lambda *given: looks.append(1) or peak(*given))
+    monkeypatch.setattr(subsurface, "peak", lambda *arguments: looks.append(1) or peak(*arguments))
     assert bs.Exact().press(soft, force=forces[:3]).valid.all()
     assert not looks
     least, most = known.von_mises_between
@@ -99,14 +99,91 @@ def test_a_weak_ball_counts():
     assert any("of the ball" in note for note in contact.notes)
 
 
-def test_without_a_yield_stress_nothing_is_known_and_nothing_is_said():
-    joint = replace(HIP, liner=replace(HIP.liner, yield_stress=None), ball=None)
-    contact = bs.HessForsbach().press(joint, force=3000.0)
-    assert isnan(contact.utilisation)
-    assert contact.valid
+BARE = bs.Material(young=1000.0, poisson=0.4)
+NOT_CHECKED = "strength not checked: the liner has no yield stress"
+
+
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Exact(), bs.Sphere()], ids=lambda model: model.name)
+def test_a_liner_without_a_yield_stress_is_noted_once_for_any_shape(model):
+    joint = replace(HIP, liner=BARE, ball=None)
+    for force in (3000.0, np.array([2000.0, 3000.0])):
+        contact = model.press(joint, force=force)
+        assert np.isnan(contact.utilisation).all()
+        assert contact.status is bs.Status.OK or not np.any(contact.status)
+        assert [note for note in contact.notes if "checked" in note] == [NOT_CHECKED]
+        assert contact.summary()["utilisation_note"] == contact.utilisation_note == NOT_CHECKED
+    assert "utilisation" not in repr(model.press(joint, force=3000.0))
+    assert NOT_CHECKED in repr(model.press(joint, force=3000.0))
+
+
+def test_a_liner_with_a_yield_stress_has_no_such_note():
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
     assert contact.notes == ()
-    assert contact.summary()["utilisation"] is None
-    assert "utilisation" not in repr(contact)
+    assert contact.summary()["utilisation_note"] is None
+
+
+def test_the_reason_names_the_other_known_strengths():
+    pressed = replace(BARE, allowable_pressure=20.0)
+    assert "yield not checked: the liner" in _note(replace(HIP, liner=pressed, ball=None))
+    note = _note(replace(HIP, liner=BARE, ball=bs.COCR))
+    assert note == f"{NOT_CHECKED}; the utilisation is that of the ball alone"
+    failed = bs.Exact().press(replace(HIP, liner=BARE), half_angle=1.55)
+    assert failed.status.failed
+    assert not any("checked" in note for note in failed.notes)
+
+
+def _note(joint):
+    return bs.HessForsbach().press(joint, force=3000.0).notes[0]
+
+
+def test_a_ball_without_a_yield_stress_is_noted_only_where_it_is_strained():
+    ball_note = "strength of the ball not checked"
+    steel = bs.Exact().press(replace(HIP, ball=bs.STEEL), force=3000.0)
+    assert not any(ball_note in note for note in steel.notes)
+    soft = bs.Exact().press(replace(HIP, ball=BARE), force=np.array([1.0, 3000.0]))
+    assert any(note.startswith(f"1 of 2: {ball_note}") for note in soft.notes)
+    rigid = bs.Exact().press(replace(HIP, ball=None), force=3000.0)
+    assert not any(ball_note in note for note in rigid.notes)
+
+
+def test_a_comparison_has_the_note_once_with_its_models():
+    comparison = bs.compare(replace(HIP, liner=BARE, ball=None), force=3000.0)
+    told = [note for note in comparison.notes() if NOT_CHECKED in note]
+    assert len(told) == 1
+    assert told[0].startswith("exact, ") or "exact" in told[0].split(":")[0]
+    assert all("utilisation_note" in result for result in comparison.summary()["results"])
+
+
+@pytest.mark.parametrize("model", [*PROMISING.values(), bs.Exact()], ids=lambda model: model.name)
+def test_the_proportional_limit_is_noted_between_itself_and_yield(model):
+    force = np.array([1e3, 12e3, 1e5])
+    contact = model.press(HIP, force=force)
+    expected = contact.von_mises / HIP.liner.proportional_limit
+    between = (expected > 1) & (contact.utilisation <= 1)
+    told = [note for note in contact.notes if "proportional limit" in note]
+    assert len(told) == int(between.any())
+    if told:
+        assert told[0].startswith(f"{between.sum()} of 3: estimated von Mises stress up to ")
+        assert "of the liner: its secant modulus is below E" in told[0]
+
+
+def test_a_proportional_limit_changes_no_number_and_no_validity():
+    without = replace(HIP, liner=replace(HIP.liner, proportional_limit=None))
+    for model in (bs.HessForsbach(), bs.Exact()):
+        one, other = (model.press(joint, force=6000.0) for joint in (HIP, without))
+        assert "estimated von Mises stress 1.3 times the proportional limit of the liner" in one.notes[0]
+        assert other.notes == ()
+        assert (one.max_pressure, one.utilisation, one.valid) == (other.max_pressure, other.utilisation, True)
+
+
+def test_proportional_limits_may_be_arrays_of_any_library():
+    from array_api_strict import asarray
+
+    for array in (np.array, asarray):
+        liner = replace(HIP.liner, proportional_limit=array([1.0, 20.0]))
+        contact = bs.HessForsbach().press(replace(HIP, liner=liner), force=3000.0)
+        assert contact.force.shape == (2,)
+        assert contact.notes[0].startswith("1 of 2: estimated von Mises stress up to")
 
 
 def test_fatigue_and_allowable_pressure_are_said_and_leave_the_answer_valid():
@@ -142,6 +219,7 @@ def test_validity_asks_for_no_stresses_where_it_can_be_told_without(monkeypatch)
     contact = bs.Exact().press(HIP, force=np.array([0.0, 3000.0, 80e3]))
     assert contact.valid.tolist() == [True, True, False]
     assert bs.Exact().press(HIP, force=3000.0).notes == ()
+    assert len(bs.Exact().press(HIP, force=6000.0).notes) == 1
 
 
 def test_layers_are_looked_into():
@@ -164,6 +242,12 @@ def test_presets_that_have_a_yield_stress_say_where_it_is_from():
     for name, material in bs.materials.items():
         assert ("yield: " in material.source) == (material.yield_stress is not None), name
     assert bs.CROSSLINKED_PE.yield_stress is not None
+
+
+def test_presets_with_a_proportional_limit_state_its_source():
+    for name, material in bs.materials.items():
+        assert ("proportional limit: " in material.source) == (material.proportional_limit is not None), name
+    assert bs.UHMWPE.proportional_limit < bs.UHMWPE.yield_stress
 
 
 def test_each_material_of_an_axis_is_as_strong_as_it_is():

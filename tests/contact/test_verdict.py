@@ -36,4 +36,10 @@ def test_what_is_said(contact, bears, words):
 
 def test_without_a_strength_nothing_is_said():
     joint = replace(HIP, liner=HIP.liner.without_strengths(), ball=None)
+    said = verdict(bs.HessForsbach().press(joint, force=3000.0))
+    assert (said.bears, said.words) == (None, "strength not checked: the liner has no yield stress")
+
+
+def test_a_strong_ball_gives_no_verdict_on_a_liner_of_unknown_strength():
+    joint = replace(HIP, liner=HIP.liner.without_strengths(), ball=bs.COCR)
     assert verdict(bs.HessForsbach().press(joint, force=3000.0)).bears is None

@@ -56,6 +56,10 @@ def test_what_is_no_number_or_no_material_is_a_type_error():
         bs.Joint(**(GOOD | {"liner": "UHMWPE"}))
     with pytest.raises(TypeError, match=r"ball must be a Material, or None for a rigid ball, got 3\.0"):
         bs.Joint(**(GOOD | {"ball": 3.0}))
+    with pytest.raises(TypeError, match=r"^backing must be a tuple of Layers .*, got 10{39}\.\.\.$"):
+        bs.Joint(**(GOOD | {"backing": 10**400}))
+    with pytest.raises(TypeError, match=r"^liner must be a Material, got array\(\[\[1\., 1\.\], \[1\., 1\.\]\]\)$"):
+        bs.Joint(**(GOOD | {"liner": np.ones((2, 2))}))
     with pytest.raises(TypeError):
         bs.Joint(16.0, 0.1, 6.0, bs.UHMWPE)
 

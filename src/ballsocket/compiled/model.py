@@ -9,7 +9,7 @@ import numpy
 
 from .. import arrays
 from ..arrays import Array
-from ..checks import refuse_unnamed
+from ..checks import refuse_unnamed, shown
 from ..contact import Contact
 from ..elastic.tabulated.model import Tabulated
 from ..joint import Joint
@@ -50,7 +50,7 @@ class Compiled(Wrapped):
     def __post_init__(self) -> None:
         if not isinstance(self.model, RadialFoundation | Refined | Tabulated):
             kinds = "a RadialFoundation, such as HessForsbach(), Refined() or Tabulated()"
-            raise TypeError(f"model must be {kinds}, got {self.model!r}")
+            raise TypeError(f"model must be {kinds}, got {shown(self.model)}")
 
     def press(
         self,

@@ -155,8 +155,14 @@ class Contact(Outcome):
     @property
     def notes(self) -> tuple[str, ...]:
         """What has no answer, what lies outside the model's validity, and what a material does not bear, in words."""
-        told = strength.remarks(self) if self.joint.strengths() else ()
-        return (*super().notes, *(note for good, said in told for note in self._note(good | self._failed, said)))
+        unchecked = [self.utilisation_note] if self.utilisation_note and arrays.truth(self._failed) is not True else []
+        compared = (note for good, said in strength.remarks(self) for note in self._note(good | self._failed, said))
+        return (*super().notes, *unchecked, *compared)
+
+    @property
+    def utilisation_note(self) -> str:
+        """Reason why `utilisation` does not cover the liner; empty where the liner has a yield stress."""
+        return strength.unchecked_strength(self.joint)
 
     @cached_property
     def area(self) -> Array:

@@ -74,11 +74,17 @@ COLUMNS = tuple(Column(each, each.written) for each in CONTACT.values())
 UTILISATION = Column(BEARING["utilisation"], BEARING["utilisation"].written)
 """What is shown beside them where a strength is known."""
 
+UTILISATION_NOTE = "utilisation_note"
+"""Key of JSON: the reason where the utilisation does not cover the liner."""
+
 
 def summary(contact: Any) -> dict[str, Any]:
     """One dictionary for JSON."""
     numbers = {column.name: arrays.to_list(column.of(contact)) for column in COLUMNS}
-    borne = {UTILISATION.name: arrays.to_list(UTILISATION.of(contact))}
+    borne = {
+        UTILISATION.name: arrays.to_list(UTILISATION.of(contact)),
+        UTILISATION_NOTE: contact.utilisation_note or None,
+    }
     valid = arrays.to_list(contact.valid)
     return {"model": contact.model.name, **numbers, **borne, "valid": valid, "notes": list(contact.notes)}
 

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Array, clip, false, sin, to_numpy, truth, where
+from ..arrays import Array, clip, false, isfinite, sin, to_numpy, truth, where
 from ..joint import Joint, Material, larger
-from ..quantities import STRENGTH
-from ..validity import RIGID_BACKING, Range
+from ..quantities import LINEARITY, STRENGTH
+from ..validity import RIGID_BACKING, Range, missing
 
 ELASTIC = 1.38
 """The utilisation up to which a linear answer holds.
@@ -34,6 +34,11 @@ _OFF, _LEAST = 0.2, 0.08
 """How far the share may be off: relative, and besides."""
 
 _WIDEST = radians(85.0)
+
+_SAFE_STRAIN = 5e-4
+"""Strain of a ball without a yield stress above which a note appears; annealed aluminium, 35 MPa over 70 GPa."""
+
+_BALL_UNCHECKED = "strength of the ball not checked: it has no yield stress, and its stress is above 0.05 % of its E"
 
 
 def places(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
@@ -104,13 +109,37 @@ class Elastic(Range):
         return false(where(open_, contact.utilisation_where(open_), least) > self.high)
 
 
+def unchecked_strength(joint: Joint) -> str:
+    """Return the reason for an unchecked strength of the liner; empty where it has a yield stress."""
+    liner, ball = joint.liner, joint.ball
+    if liner.yield_stress is not None:
+        return ""
+    checked = "yield" if liner.strengths else "strength"
+    rest = "" if ball is None or ball.yield_stress is None else "; the utilisation is that of the ball alone"
+    return f"{checked} not checked: the liner has no yield stress{rest}"
+
+
 def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
-    """Where each material bears its load (a mask), and what is said where it does not."""
+    """Yield masks of points below a limit of a material, each with the note for the other points."""
     joint, pressure = contact.joint, contact.max_pressure
-    yield from _told("liner", joint.liner, contact.von_mises_between[1], lambda: contact.von_mises, pressure)
+    if joint.liner.proportional_limit is not None:
+        yield from _nonlinear("liner", joint.liner, _estimate(contact))
+    if joint.liner.strengths:
+        yield from _told("liner", joint.liner, contact.von_mises_between[1], lambda: contact.von_mises, pressure)
     if joint.ball is not None:
         stress = ball_share(joint) * pressure
+        if joint.ball.proportional_limit is not None:
+            yield from _nonlinear("ball", joint.ball, stress)
         yield from _told("ball", joint.ball, stress, lambda: stress, pressure)
+        if not joint.ball.strengths:
+            yield false(stress > _SAFE_STRAIN * joint.ball.young), _BALL_UNCHECKED
+
+
+def _estimate(contact: Any) -> Array:
+    """Estimate the largest von Mises stress in the liner; compute it only where no estimate exists."""
+    least, most = contact.von_mises_between
+    middle = (least + most) / 2
+    return middle if truth(isfinite(middle) | missing(contact.status)) is not False else contact.von_mises
 
 
 def _told(
@@ -127,7 +156,23 @@ def _told(
         yield false(ratio > 1), f"{what} {_times(ratio)} the {STRENGTH[name].title} of the {part}{beyond}"
 
 
+def _nonlinear(part: str, material: Material, stress: Array) -> Iterator[tuple[Array, str]]:
+    """Compare with the proportional limit; points beyond the yield stress have another note."""
+    limit: Array = material.proportional_limit
+    yields = material.yield_stress
+    good = false(stress > limit) if yields is None else false((stress > limit) & (stress <= yields))
+    if truth(good) is not False:
+        return
+    times = _times(where(good, nan, stress / limit))
+    title = LINEARITY["proportional_limit"].title
+    yield good, f"estimated von Mises stress {times} the {title} of the {part}: {_SOFTER}"
+
+
+_SOFTER = "its secant modulus is below E, so d and ε are larger and pmax is smaller"
+
+
 def _times(ratio: Array) -> str:
     listed = to_numpy(ratio)
-    largest = f"{numpy.nanmax(listed, initial=0.0):.2g} times"
+    digits = f"{numpy.nanmax(listed, initial=0.0):.2g}"
+    largest = f"{'1.0' if digits == '1' else digits} times"
     return largest if listed.size == 1 else f"up to {largest}"

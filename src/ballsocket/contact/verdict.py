@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..joint import Material
 from ..quantities import STRENGTH
-from .strength import ball_share
+from .strength import ball_share, unchecked_strength
 
 if TYPE_CHECKING:
     from .contact import Contact
@@ -63,7 +63,7 @@ class Verdict:
 def verdict(contact: Contact) -> Verdict:
     """The verdict on a contact of plain numbers.
 
-    An answer outside its model's validity bears nothing, and nothing is said where no strength is known.
+    An answer outside its model's validity has no verdict, and neither has one whose strength is not checked.
     """
     if contact.status.failed:
         return Verdict(bears=None, words=f"no answer: {contact.status.sentence}")
@@ -73,6 +73,6 @@ def verdict(contact: Contact) -> Verdict:
         return Verdict(bears=False, words=f"does not bear it: {worst}")
     if not contact.valid:
         return Verdict(bears=None, words=f"not to be trusted here: {'; '.join(contact.notes)}")
-    if worst is None:
-        return Verdict(bears=None, words="no strength of its materials is known")
+    if worst is None or not contact.joint.liner.strengths:
+        return Verdict(bears=None, words=unchecked_strength(contact.joint))
     return Verdict(bears=True, words=f"bears it: {worst}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import inf, radians
 from typing import Protocol
 
@@ -29,6 +29,9 @@ _END = 1.03 * LIMIT  # of the contacts that are computed, to see which are too w
 _DEGREES = (0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85)
 _ANGLES = numpy.append(numpy.radians(_DEGREES), _END)
 _FIRST_LOOK = KeptIntervals(half_angle=_ANGLES, grid=grid(_COARSE))
+_WINDOW, _WINDOW_STEP = 8, 4
+"""Number of knots around one half angle, and the step between the windows that are used."""
+
 _LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
 
 
@@ -124,7 +127,7 @@ class Curve:
         return State(kernel=self.kernel, gap=self.gap, intervals=_FIRST_LOOK)
 
     @cached_property
-    def _coarse(self) -> State:
+    def knots(self) -> State:
         """A few contacts, all of them sound."""
         if self._end == _END:
             return self._first_look
@@ -132,10 +135,15 @@ class Curve:
         room = self._end - inside.max(initial=0.0)
         return self.state(numpy.append(inside, self._end - room * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE)
 
+    def knots_in(self, window: slice) -> State | None:
+        """Return the contacts at some of the knots; None where one of them is not sound."""
+        state = State(kernel=self.kernel, gap=self.gap, intervals=_window_intervals(window.start, window.stop))
+        return state if _sound(state).all() else None
+
     @cached_property
     def _knots(self) -> dict[str, tuple[Numbers, Numbers, Numbers]]:
         """ln(load), ln ε and their slope at the coarse contacts."""
-        coarse = self._coarse
+        coarse = self.knots
         y = numpy.log(coarse.half_angle)
         return {kind: (numpy.log(law(coarse)), y, 1 / steepness(kind, coarse)) for kind, law in _LAWS.items()}
 
@@ -152,6 +160,19 @@ class Curve:
         )
         inside = numpy.clip(cubic, y[i], y[i + 1])
         return numpy.exp(numpy.where(t < 0, y[0] + slope[0] * (goal - x[0]), inside))
+
+
+def window_of(angle: Numbers) -> slice | None:
+    """Return the knots around half angles that lie close together, with two or more on each side; else None."""
+    place = numpy.searchsorted(_ANGLES, angle)
+    start = int(max(place.min() - 2, 0) // _WINDOW_STEP * _WINDOW_STEP)
+    stop = start + _WINDOW
+    return slice(start, stop) if place.max() + 2 < stop <= len(_ANGLES) else None
+
+
+@cache
+def _window_intervals(start: int, stop: int) -> KeptIntervals:
+    return KeptIntervals(half_angle=_ANGLES[start:stop], grid=grid(_COARSE))
 
 
 def _sound(state: State) -> Numbers:

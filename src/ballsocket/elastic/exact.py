@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from .. import arrays
 from ..arrays import Array
-from ..checks import numeric, require
+from ..checks import numeric, require, shown
 from ..contact import Contact
 from ..gaps import CircularGap, LinearGap, check_gap
 from ..joint import Joint, Support
@@ -17,8 +17,8 @@ from ..model import Model
 from ..model.answer import Answer
 from ..model.per_joint import PiecedSolution, taken_apart
 from ..sources import Source
-from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, bodies
-from .contact import ElasticContact
+from ..validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
+from .contact import ElasticContact, NearHemisphere
 from .curve import Curve
 from .kernel import Kernel
 from .modes import ball_of, socket_of
@@ -66,7 +66,7 @@ class Exact(Model):
     def __post_init__(self) -> None:
         tolerance = numeric("tolerance", self.tolerance)
         if not arrays.is_plain(tolerance):
-            raise TypeError(f"tolerance must be one number, got {self.tolerance!r}")
+            raise TypeError(f"tolerance must be one number, got {shown(self.tolerance)}")
         good = 1e-10 <= tolerance <= 1e-2
         require("tolerance", self.tolerance, good, "double precision keeps a relative tolerance of 1e-10 to 1e-2")
         check_gap(self.gap)
@@ -102,14 +102,16 @@ class Exact(Model):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
+        return (CLOSE_FIT, SMALL_STRAIN, _BODY) if self.gap is LinearGap else (SMALL_STRAIN, _BODY)
 
-    remarks: ClassVar[tuple[Remark, ...]] = bodies("a whole space around a closed sphere", "a whole one")
     reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         solution = taken_apart(self, joint, load, lambda one, loads: curve_of(self, one).press(kind, loads))
         return answer_of(solution, self.tolerance, load)
+
+
+_BODY = NearHemisphere()
 
 
 def answer_of(solution: PiecedSolution, tolerance: float, load: Array) -> Answer:

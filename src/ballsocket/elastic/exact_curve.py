@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import ClassVar
 
 from ..arrays import Array
+from ..checks import shown
 from ..contact import Contact
 from ..gaps import LinearGap
 from ..joint import Joint
@@ -57,7 +58,7 @@ class ExactCurve(Wrapped):
 
     def __post_init__(self) -> None:
         if not isinstance(self.model, Exact):
-            raise TypeError(f"model must be an Exact, got {self.model!r}")
+            raise TypeError(f"model must be an Exact, got {shown(self.model)}")
         if self.model.gap is not LinearGap:
             raise ValueError("a curve is that of the linear gap: ask Exact for the circular one")
 

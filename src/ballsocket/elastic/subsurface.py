@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from math import inf, log1p, radians
 
@@ -11,6 +12,9 @@ from ..arrays import Numbers
 from ..contact.strength import share_of_ball
 from ..stress import Peak, Stress
 from .abel import State
+from .free_face import face_of
+from .hemisphere import low_modes, on_hemisphere, response
+from .intervals import Intervals
 
 NARROWEST = radians(1.0)
 """The narrowest contact whose inside is summed."""
@@ -84,6 +88,28 @@ def about_von_mises(state: State) -> Numbers:
 
 
 OFF, _FEWER = 0.1, 8
+_OFF_RIM = radians(85.0)  # the corner of the rim has no largest stress
+
+
+def von_mises_change(closed: State, half_angle: float) -> float:
+    """Compute the relative change of the largest von Mises stress in the liner on the hemisphere.
+
+    Both stresses are the largest at a few angles and depths, from a quarter of the modes.
+    """
+    kernel = closed.kernel
+    intervals = Intervals(half_angle=numpy.array([half_angle]), grid=closed.grid)
+    free = on_hemisphere(replace(closed, intervals=intervals), response(kernel.socket, kernel.ball))
+    angles = min(1.2 * float(closed.half_angle[0]), _OFF_RIM) * numpy.linspace(0.0, 1.0, 9)
+    face = face_of(kernel.socket)
+    if face is None:
+        return numpy.nan
+    depths = face.liner_radii - kernel.socket.radius
+    count = min(_modes(closed, float(depths.min())), _modes(closed, 0.0) // 4)
+    before, after = (_summed(state, angles[:, None], depths, count) for state in (closed, free))
+    more = face.liner_stress(low_modes(free)[0], angles)
+    total = Stress(**{name: part + vars(more)[name] for name, part in vars(after).items()})
+    same_force = float(closed.force[0] / free.force[0])  # at one half angle all is proportional to the clearance
+    return same_force * float(total.von_mises.max() / before.von_mises.max()) - 1
 
 
 def largest_von_mises(state: State, reached: Numbers) -> Numbers:

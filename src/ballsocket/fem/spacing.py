@@ -7,7 +7,7 @@ from enum import Enum
 from math import inf, pi
 
 from ..arrays import is_plain
-from ..checks import numeric, require
+from ..checks import numeric, require, shown
 from .shapes import Resolution
 
 _CLASSES = 24
@@ -93,7 +93,7 @@ class Uniform:
 
     def __post_init__(self) -> None:
         if not is_plain(numeric("size", self.size)):
-            raise TypeError(f"size must be one number, got {self.size!r}")
+            raise TypeError(f"size must be one number, got {shown(self.size)}")
         require("size", self.size, 0 < self.size < inf, "an element's size (mm) is above 0 and finite")
         _check_growth(self.growth)
 

@@ -11,7 +11,7 @@ from math import inf
 from typing import Any, Unpack
 
 from ..arrays import Array, is_plain, to_list, where
-from ..checks import check_names, require
+from ..checks import check_names, require, shown
 from .dimensions import LENGTHS, OWN, Dimensions, Lengths, made_of
 from .material import Layer, Material
 from .values import larger, set_fields, short_text, unchecked
@@ -98,11 +98,11 @@ class Joint(Dimensions):
         **lengths: Unpack[Lengths],
     ) -> None:
         if not isinstance(liner, Material):
-            raise TypeError(f"liner must be a Material, got {liner!r}")
+            raise TypeError(f"liner must be a Material, got {shown(liner)}")
         if not (ball is None or isinstance(ball, Material)):
-            raise TypeError(f"ball must be a Material, or None for a rigid ball, got {ball!r}")
+            raise TypeError(f"ball must be a Material, or None for a rigid ball, got {shown(ball)}")
         if not isinstance(support, Support):
-            raise TypeError(f"support must be Support.FIXED or Support.FREE, got {support!r}")
+            raise TypeError(f"support must be Support.FIXED or Support.FREE, got {shown(support)}")
         layers = _checked_backing(backing)
         set_fields(self, **made_of(lengths, {}, _shell(layers)))
         set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
@@ -164,9 +164,9 @@ class Joint(Dimensions):
         return (*own, self.liner.young, self.liner.poisson, *ball, *chain.from_iterable(behind))
 
     def strengths(self) -> tuple[Array, ...]:
-        """Every strength that is known of liner and ball."""
-        ball = () if self.ball is None else self.ball.strengths.values()
-        return (*self.liner.strengths.values(), *ball)
+        """Return the known strengths and proportional limits of liner and ball."""
+        ball = () if self.ball is None else self.ball.stress_limits.values()
+        return (*self.liner.stress_limits.values(), *ball)
 
     def without_strengths(self) -> Joint:
         """This joint of materials whose strengths are not known; no solution depends on them."""
@@ -277,10 +277,10 @@ def _shell(backing: Sequence[Layer]) -> Array:
 
 def _checked_backing(backing: Any) -> tuple[Layer, ...]:
     if not isinstance(backing, list | tuple):
-        raise TypeError(f"backing must be a tuple of Layers from the liner outwards, got {backing!r}")
+        raise TypeError(f"backing must be a tuple of Layers from the liner outwards, got {shown(backing)}")
     for number, layer in enumerate(backing):
         if not isinstance(layer, Layer):
-            raise TypeError(f"backing[{number}] must be a Layer, got {layer!r}")
+            raise TypeError(f"backing[{number}] must be a Layer, got {shown(layer)}")
     return tuple(backing)
 
 

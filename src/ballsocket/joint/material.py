@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..arrays import Array, to_list
-from ..quantities import LAYER, MATERIAL, STRENGTH
+from ..checks import shown
+from ..quantities import LAYER, MATERIAL, STRENGTH, STRESS_LIMITS
 from .values import set_fields, short_text, unchecked
 
 
@@ -22,8 +23,10 @@ class Material:
         Poisson's ratio, above -1 and at most 0.5.
     name, source : str
         What it is called, and where the numbers come from.
+    proportional_limit : float or array, optional
+        Stress in MPa above which the secant modulus is lower than `young`. None (default) is an unknown limit.
     yield_stress, fatigue_limit, allowable_pressure : float or array, optional
-        Strengths in MPa. None, the default, is one that is not known.
+        Strengths in MPa. None (default) is an unknown limit.
 
     Raises
     ------
@@ -42,24 +45,30 @@ class Material:
     poisson: Array
     name: str = ""
     source: str = ""
+    proportional_limit: Array | None = None
     yield_stress: Array | None = None
     fatigue_limit: Array | None = None
     allowable_pressure: Array | None = None
 
     def __post_init__(self) -> None:
         elastic = {name: quantity.checked(getattr(self, name)) for name, quantity in MATERIAL.items()}
-        strong = {name: STRENGTH[name].checked(strength) for name, strength in self.strengths.items()}
-        set_fields(self, **elastic, **strong)
+        limits = {name: STRESS_LIMITS[name].checked(limit) for name, limit in self.stress_limits.items()}
+        set_fields(self, **elastic, **limits)
 
     @property
     def strengths(self) -> dict[str, Array]:
-        """Those that are known, by their names."""
-        listed = {name: getattr(self, name) for name in STRENGTH}
-        return {name: strength for name, strength in listed.items() if strength is not None}
+        """Known strengths by name."""
+        return {name: limit for name, limit in self.stress_limits.items() if name in STRENGTH}
+
+    @property
+    def stress_limits(self) -> dict[str, Array]:
+        """Known strengths and the proportional limit by name."""
+        listed = {name: getattr(self, name) for name in STRESS_LIMITS}
+        return {name: limit for name, limit in listed.items() if limit is not None}
 
     def without_strengths(self) -> Material:
-        """This material, its strengths not known."""
-        return unchecked(Material, **{**vars(self), **dict.fromkeys(STRENGTH)})
+        """Return this material without strengths and proportional limit."""
+        return unchecked(Material, **{**vars(self), **dict.fromkeys(STRESS_LIMITS)})
 
     def with_numbers(self, young: Array, poisson: Array) -> Material:
         """A material like this one with other elastic numbers. Nothing is checked."""
@@ -67,7 +76,7 @@ class Material:
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
-        numbers = {"young": self.young, "poisson": self.poisson, **self.strengths}
+        numbers = {"young": self.young, "poisson": self.poisson, **self.stress_limits}
         return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
 
     def __str__(self) -> str:
@@ -105,7 +114,7 @@ class Layer:
     def __post_init__(self) -> None:
         thickness = LAYER["thickness"].checked(self.thickness)
         if not isinstance(self.material, Material):
-            raise TypeError(f"material must be a Material, got {self.material!r}")
+            raise TypeError(f"material must be a Material, got {shown(self.material)}")
         set_fields(self, thickness=thickness)
 
     def without_strengths(self) -> Layer:

@@ -67,6 +67,11 @@ class PlaneLayer(Model):
             high=radians(15.0),
             why="the plane layer has no curvature: p0 is 23 % low at 45° (R2 18, L 6.75)",
         ),
+        Range(
+            quantity="joint.thickness_ratio",
+            low=0.5,
+            why="curvature is neglected: d is up to 20 % too large in a liner thicker than twice its radius",
+        ),
         RIGID_BALL,
         RIGID_BACKING,
         SMALL_STRAIN,

@@ -9,11 +9,12 @@ from typing import ClassVar
 
 from .. import arrays
 from ..arrays import Array, broadcast, clip, divisor, integral, sin, where
+from ..contact.closed_sphere import HEMISPHERE_NOTE
 from ..joint import Joint
 from ..model import Model
 from ..model.answer import Answer
 from ..sources import Source
-from ..validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Status
+from ..validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
 from .liner_compliance import Liner, liner_of
 from .refined_state import WIDEST, State, edge_of_force, edge_of_indentation, state
 
@@ -68,6 +69,7 @@ class Refined(Model):
         RIGID_BACKING,
         SMALL_STRAIN,
     )
+    remarks: ClassVar[tuple[Remark, ...]] = (HEMISPHERE_NOTE,)
 
     promise: ClassVar[Promise] = Promise(within=0.02)
 

@@ -15,6 +15,7 @@ import numpy
 from ... import arrays
 from ...arrays import Array, Numbers, cos, exp, log1p, sqrt
 from ...arrays import log as ln
+from ...input_files import open_input
 
 LIMIT = radians(85.0)
 """The widest contact of the tables."""
@@ -191,7 +192,7 @@ def tables(file: str = "") -> dict[str, Table]:
         It cannot be read.
     """
     shipped = files("ballsocket") / "data" / "exact_tables.npz"
-    with (Path(file) if file else shipped).open("rb") as stream:
+    with open_input(Path(file)) if file else shipped.open("rb") as stream:
         try:
             stored = dict(numpy.load(stream))
         except (ValueError, TypeError, EOFError, BadZipFile) as error:

@@ -7,11 +7,12 @@ from typing import Any, ClassVar
 
 from ... import arrays
 from ...arrays import Array, broadcast, divisor
+from ...contact.closed_sphere import HEMISPHERE_NOTE, LIKE_HEMISPHERE
 from ...joint import Joint
 from ...model import Model
 from ...model.answer import Answer
 from ...sources import Source
-from ...validity import SMALL_STRAIN, Promise, Range, Status
+from ...validity import SMALL_STRAIN, Promise, Range, Remark, Status
 from .chebyshev import POISSON, THICKNESS_RATIO
 from .solution import Reading, reading, solution_of
 
@@ -72,7 +73,9 @@ class Tabulated(Model):
             why="between three tabulated balls, 0.15, 0.27 and 0.38, the tables keep 2e-4",
         ),
         SMALL_STRAIN,
+        LIKE_HEMISPHERE,
     )
+    remarks: ClassVar[tuple[Remark, ...]] = (HEMISPHERE_NOTE,)
 
     promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 

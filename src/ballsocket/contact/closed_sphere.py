@@ -1,0 +1,86 @@
+"""Estimated difference between a closed sphere (the exact solution) and a hemisphere with a free rim and half a ball.
+
+The formulas hold for a liner on a rigid backing. They are fitted to the estimate of `Exact` (`contact.hemisphere`) and
+are 0.7 to 1.3 times that estimate for nine of ten joints. `tabulated` and `refined` use them; `exact` computes the
+change for any layers.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from importlib.resources import files
+from math import radians
+from typing import Any
+
+from ..arrays import Array, clip, exp, log
+from ..validity import Range, Remark
+
+NOTED_CHANGE = 0.01
+"""Relative difference above which a note reports it."""
+
+MAX_CHANGE = 0.15
+"""Largest relative difference of indentation or largest pressure for which the closed sphere is valid."""
+
+POISSON_RANGE, THICKNESS_RATIO_RANGE, MAX_MODULUS_RATIO = (0.0, 0.499), (0.2, 20.0), 0.02
+"""Fitted ranges of Poisson's ratio and R2/L of the liner, and the largest fitted E/E_ball."""
+
+MIN_HALF_ANGLE, MAX_HALF_ANGLE = radians(3.0), radians(83.0)
+"""Fitted range of half angles; beyond its ends the estimate is constant."""
+
+BALL_FACTOR = 2.1
+"""Ratio of the largest change by the half ball to the change of the indentation."""
+
+
+def variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
+    """Compute the variables of the polynomials: ε in rad, ln(R2/L) and ln(0.52 - ν)."""
+    return (
+        clip(half_angle, MIN_HALF_ANGLE, MAX_HALF_ANGLE),
+        log(clip(thickness_ratio, *THICKNESS_RATIO_RANGE)),
+        log(0.52 - clip(poisson, *POISSON_RANGE)),
+    )
+
+
+def powers(degree: int) -> tuple[tuple[int, int, int], ...]:
+    """Return the exponents of the variables in a polynomial of the given total degree."""
+    orders = range(degree + 1)
+    return tuple((i, j, k) for i in orders for j in orders for k in orders if i + j + k <= degree)
+
+
+@cache
+def _terms(name: str) -> tuple[float, ...]:
+    table = tomllib.loads((files("ballsocket") / "data" / "hemisphere.toml").read_text(encoding="utf-8"))
+    return tuple(table[name])
+
+
+def _fitted(name: str, degree: int, contact: Any) -> Array:
+    joint = contact.joint
+    x, y, z = variables(contact.half_angle, joint.liner.poisson, joint.thickness_ratio)
+    return exp(sum(number * x**i * y**j * z**k for number, (i, j, k) in zip(_terms(name), powers(degree), strict=True)))
+
+
+def indentation_change(contact: Any) -> Array:
+    """Estimate the relative increase of the indentation at the same force."""
+    return _fitted("indentation", 5, contact) + contact.joint.modulus_ratio * _fitted("ball", 4, contact)
+
+
+def largest_change(contact: Any) -> Array:
+    """Estimate the largest relative change of indentation, half angle, largest pressure and stiffness."""
+    ball = BALL_FACTOR * contact.joint.modulus_ratio * _fitted("ball", 4, contact)
+    return _fitted("largest", 5, contact) + ball
+
+
+LIKE_HEMISPHERE = Range(
+    quantity=indentation_change,
+    symbol="change of d on a hemisphere",
+    high=MAX_CHANGE,
+    why="the model is that of a closed sphere, a socket with a free rim is softer: use fem or sphere",
+)
+
+HEMISPHERE_NOTE = Remark(
+    quantity=largest_change,
+    symbol="change on a hemisphere",
+    high=NOTED_CHANGE,
+    why="closed sphere: a hemisphere with a free rim and half a ball differs by more than 1 % in d, ε, pmax or dF/dd "
+    "at the same force: exact estimates by how much, fem and sphere solve it",
+)
