@@ -14,7 +14,7 @@ from ..joints import HIP
 
 CUP = bs.Cup(arc_of_cover=radians(120.0), side=bs.Side.LEFT)
 SPHERE = bs.Sphere(cup=CUP, direction=(0.3, 0.1, 1.0), ring_width=radians(5.0))
-INCLINATION, ANTEVERSION = np.radians([20.0, 45.0, 85.0]), np.radians([-10.0, 20.0])
+INCLINATION, ANTEVERSION = np.radians([20.0, 45.0, 85.0]), np.radians([-10.0, 30.0])
 
 
 @pytest.fixture(scope="module")
@@ -78,6 +78,14 @@ def test_a_map_shows_its_fields_and_the_cup_that_was_given():
     assert left.get_xlabel() == "inclination [°]"
     marked = [line.get_xydata()[0] for line in left.lines if line.get_label() == "this cup"]
     assert marked[0] == pytest.approx(np.degrees([0.7, 0.1]))
+
+
+@pytest.mark.parametrize(("angles", "count"), [({}, 0), ({"inclination": 0.0}, 1), ({"anteversion": 0.1}, 1)])
+def test_a_map_marks_an_orientation_of_zero_and_none_that_is_not_set(angles, count):
+    model = replace(SPHERE, cup=replace(CUP, **angles))
+    stood = bs.orient(HIP, model=model, force=1500.0, inclination=[0.0, 0.2], anteversion=[0.0, 0.2])
+    axes = orientation_figure(stood).axes[0]
+    assert sum(line.get_label() == "this cup" for line in axes.lines) == count
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from ..cup import Cup
 from ..elastic.modes import ball_of
 from ..fem.shapes import socket_shape
 from ..joint import Joint
-from .grid import Grid, Local, Turning, grid
+from .grid import Grid, Local, Turning, rim_grid
 from .rings_of_modes import modal_rings
 from .surfaces import Springs, Surface
 
@@ -71,7 +71,7 @@ class Compliance:
 
 
 def _made(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
-    return compliance_on(surface, joint, cup, grid(socket_shape(joint, cup).reach, width))
+    return compliance_on(surface, joint, cup, rim_grid(socket_shape(joint, cup).reach, width))
 
 
 def compliance_on(surface: Surface, joint: Joint, cup: Cup, cells: Grid) -> Compliance:

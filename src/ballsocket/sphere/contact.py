@@ -184,9 +184,9 @@ class OffAxisContact(SolvedContact):
         }
 
     def _in_body(self) -> dict[str, Any]:
-        """The load in the body's axes, of a cup that faces somewhere there."""
+        """Return the load in the body's axes, for a cup whose orientation is given."""
         cup = self.model.cup
-        if not (cup.inclination or cup.anteversion):
+        if not cup.oriented:
             return {}
         return {"force_vector_in_body": (arrays.to_numpy(self.force_vector) @ numpy.asarray(cup.frame)).tolist()}
 

@@ -18,8 +18,11 @@ from ..arrays import Numbers
 from ..fem.mesh import joined
 from .directions import unit_vectors
 
-_FINER = numpy.array([0.5, 0.25, 0.25])
-"""Of the last ring, which is cut towards the rim."""
+_CUTS = numpy.array([0.5, 0.25, 0.25])
+"""Widths of the parts that the last ring is cut into, as shares of it, towards the rim."""
+
+_FINE_CUTS = numpy.array([0.5, 0.25, 0.125, 0.0625, 0.0625])
+"""Finer widths for the distance from a contact to the rim: the rim of a soft liner bends in a short strip."""
 
 _FEW = 24  # rings: to ask fewer first gains nothing
 
@@ -153,12 +156,21 @@ class Grid:
 
 
 def grid(reach: float, width: float) -> Grid:
-    """Rings of about this width up to where the bore ends, the last one cut in three; cells as wide as long at 90°."""
+    """Cut the bore into rings of about this width, the last one in three parts; cells are square at 90°."""
+    return _cut_grid(reach, width, _CUTS)
+
+
+def rim_grid(reach: float, width: float) -> Grid:
+    """Cut the bore into rings of about this width, the last one in five parts; cells are square at 90°."""
+    return _cut_grid(reach, width, _FINE_CUTS)
+
+
+def _cut_grid(reach: float, width: float, cuts: Numbers) -> Grid:
     rings = max(ceil(reach / width - 1e-9), 2)
-    whole = numpy.linspace(0.0, reach, rings + 1)
-    last = whole[-2] + numpy.append(0.0, numpy.cumsum(_FINER)) * (reach - whole[-2])
+    edges = numpy.linspace(0.0, reach, rings + 1)
+    last = edges[-2] + numpy.append(0.0, numpy.cumsum(cuts)) * (reach - edges[-2])
     last[-1] = reach
-    return Grid(edges=joined([whole[:-1], last]), meridians=_meridians(width))
+    return Grid(edges=joined([edges[:-1], last]), meridians=_meridians(width))
 
 
 def even_grid(reach: float, width: float) -> Grid:

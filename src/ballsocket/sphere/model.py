@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import radians
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy
 
@@ -26,9 +26,6 @@ from .contact import OffAxisContact
 from .directions import checked_direction, frames_of, tilted
 from .surfaces import ClosedShell, RealCup, Springs, Surface
 from .worn import Shape
-
-if TYPE_CHECKING:
-    from .states import Edges
 
 _FINEST, _WIDEST = radians(0.5), radians(6.0)
 
@@ -104,7 +101,7 @@ class Sphere(Model):
         good = _FINEST <= width <= _WIDEST
         require("ring_width", width, good, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
         if self.worn is not None and (isinstance(self.worn, type) or not hasattr(self.worn, "depth")):
-            raise TypeError(f"worn must have a method depth(directions), got {self.worn!r}")
+            raise TypeError(f"worn must have a method depth(directions), got {shown(self.worn)}")
         object.__setattr__(self, "direction", checked_direction(self.direction))
 
     @property
@@ -270,7 +267,8 @@ class Sphere(Model):
             kind=self.gap,
         )
         axes = numpy.stack(along, axis=-1)[touching]
-        state = LOADED[kind](Bed(compliance=soft, separation=separation), loads[touching], axes, self._edges())
+        edges = self.surface.edges(joint, self.cup, soft.grid)
+        state = LOADED[kind](Bed(compliance=soft, separation=separation), loads[touching], axes, edges)
         return Piece(
             load=loads,
             touching=touching,
@@ -290,16 +288,6 @@ class Sphere(Model):
             raise ValueError(f"worn depth of shape {depth.shape} is not allowed: a depth (mm) for each direction")
         require("worn depth", depth, numpy.isfinite(depth), "a depth (mm) is finite")
         return numpy.broadcast_to(depth, directions.shape[1:])
-
-    def _edges(self) -> Edges:
-        """A corner of 90° keeps the pressure finite under a ball that is much stiffer.
-
-        Where the material goes on, at a chamfer or in a closed shell, the corner digs in like the edge of a punch.
-        """
-        from .states import Edges
-
-        corner = isinstance(self.surface, RealCup) and self.cup.chamfer == 0
-        return Edges(power=self.surface.power, bounded=corner or isinstance(self.surface, Springs))
 
 
 def check_sphere(model: Any) -> Sphere:

@@ -175,8 +175,8 @@ def orient(
     >>> angles = [radians(each) for each in (30.0, 50.0)]
     >>> stood = bs.orient(bs.joints["hip-36"], force=3000.0, inclination=angles, anteversion=[0.0, radians(20.0)])
     >>> stood.edge_distance.round(1)
-    array([[ 5.5,  3.8],
-           [ 0.2, -0.8]])
+    array([[ 5.4,  3.7],
+           [ 0.2, -0.6]])
     """
     model = Sphere() if model is None else check_sphere(model)
     _check_alone(joint, load)

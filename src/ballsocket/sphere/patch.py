@@ -13,9 +13,13 @@ from ..arrays import Numbers
 from .directions import polar_angle, unit_vectors
 from .grid import Grid
 
-_RAYS, _WAVES = 90, 2
+_RAYS = 90
+_BISECTIONS = 8
 _NEAR = 2.2  # widths of a ring: cells that far tell where the largest pressure is
 _LATTICE = 25
+
+_LEAST_MARGIN = 1e-6
+"""Margin in rad of a contact that comes to the end of the bore without reaching it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -27,33 +31,35 @@ class Patch:
     grid : Grid
     pressure : array (rings, meridians)
         In MPa.
+    level : array (rings, meridians)
+        In mm, positive in the contact, minus the gap outside; zero near the edge.
     axis : array (3,)
         Unit vector of the load, in the cup's frame.
-    power : int
-        Of the pressure, which falls to the edge as a straight line does.
+    inset : float
+        Distance of the edge inside the zero of `level`, as a share of a ring's width: see `Edges`.
     """
 
     grid: Grid
     pressure: Numbers
+    level: Numbers
     axis: Numbers
-    power: int
+    inset: float
 
     @cached_property
     def _between(self) -> RegularGridInterpolator:
-        return self._linear(self.pressure)
+        p, (last, before) = self.pressure, self.grid.polar[[-1, -2]]
+        share = (self.grid.reach - last) / (last - before)
+        return self._linear(p, numpy.maximum(p[-1] + share * (p[-1] - p[-2]), 0.0) * (p[-1] > 0))
 
     @cached_property
-    def _powers(self) -> RegularGridInterpolator:
-        return self._linear(self.pressure**self.power)
+    def _levels(self) -> RegularGridInterpolator:
+        return self._linear(self.level, self.level[-1])
 
-    def _linear(self, p: Numbers) -> RegularGridInterpolator:
-        """Linear between the middles of the cells, across the pole, and on to where the bore ends."""
+    def _linear(self, values: Numbers, at_rim: Numbers) -> RegularGridInterpolator:
+        """Interpolate linearly between cell middles, across the pole and to the end of the bore."""
         half = self.grid.meridians // 2
-        beyond = numpy.roll(p[:2][::-1], half, axis=1)
-        last, gone = self.grid.polar[-1], self.grid.polar[-2]
-        share = (self.grid.reach - last) / (last - gone)
-        rim = numpy.maximum(p[-1] + share * (p[-1] - p[-2]), 0.0) * (p[-1] > 0)
-        rows = numpy.vstack([beyond, p, rim])
+        beyond = numpy.roll(values[:2][::-1], half, axis=1)
+        rows = numpy.vstack([beyond, values, at_rim])
         polar = numpy.concatenate([-self.grid.polar[:2][::-1], self.grid.polar, [self.grid.reach]])
         azimuth = numpy.concatenate(
             [[self.grid.azimuth[-1] - 2 * pi], self.grid.azimuth, [self.grid.azimuth[0] + 2 * pi]]
@@ -110,16 +116,30 @@ class Patch:
 
     @cached_property
     def _edges(self) -> Numbers:
-        """Angles from the middle to the edge along each ray: where the bore ends, or where the power falls to 0."""
+        """Angles from the middle to the edge along each ray: the first zero of the level, or the end of the bore.
+
+        A ray that never leaves a contact all around the bore has the angle 0.
+        """
         step, turns = self.grid.width / 2, self._turns
         out = numpy.arange(1, int(pi / step)) * step
         points = _ray(self._middle, out[:, None] + 0 * turns, turns)
-        values = self._powers(_angles(points))
         inside = points[..., 2] >= numpy.cos(self.grid.reach)
-        end = numpy.argmax(~((values > 0) & inside), axis=0)  # the first step outside
-        rim, each = self._rims(turns), numpy.arange(_RAYS)
-        edge = numpy.where(inside[end, each], _fallen(values, out, end), rim)
-        return numpy.minimum(numpy.where(end > 0, edge, 0.0), rim)
+        outside = ~((self._levels(_angles(points)) > 0) & inside)
+        end = numpy.argmax(outside, axis=0)  # the first step outside
+        rim = self._rims(turns)
+        high = numpy.where(inside[end, numpy.arange(_RAYS)], out[end], numpy.minimum(out[end], rim))
+        edge = self._crossing(out[end] - step, high) - self.inset * self.grid.width
+        reached = self._levels(_angles(_ray(self._middle, high, turns))) > 0
+        ends = numpy.minimum(numpy.where(reached, rim, numpy.maximum(edge, 0.0)), rim)
+        return numpy.where(outside.any(axis=0), ends, 0.0)
+
+    def _crossing(self, low: Numbers, high: Numbers) -> Numbers:
+        """Bisect each ray between an angle inside the contact and one outside."""
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            loaded = self._levels(_angles(_ray(self._middle, middle, self._turns))) > 0
+            low, high = numpy.where(loaded, middle, low), numpy.where(loaded, high, middle)
+        return (low + high) / 2
 
     def _rims(self, turns: Numbers) -> Numbers:
         """Angles from the middle to where the bore ends along each ray; infinite where it does not."""
@@ -147,17 +167,31 @@ class Patch:
 
     @cached_property
     def edge_margin(self) -> float:
-        """The angle (rad) from the outline to the end of the bore where that is nearest; 0 where it is reached.
+        """Smallest angle (rad) from the contact's edge to the end of the bore; 0 if the contact reaches it.
 
-        As the load turns, cells come to the contact one by one: few waves around even that out.
+        On every meridian the edge lies between the last loaded cell and the first open one; a parabola through the
+        furthest meridian and its neighbours gives the furthest point.
         """
         if self.edge_loaded:
             return 0.0
-        waves = numpy.fft.rfft(self._edges)
-        waves[_WAVES + 1 :] = 0
-        outline = _ray(self._middle, numpy.fft.irfft(waves, _RAYS), self._turns)
-        ends = numpy.arccos(numpy.clip(outline[:, 2].min(), -1, 1))
-        return float(max(self.grid.reach - ends, numpy.diff(self.grid.edges)[-1]))  # the last ring is free
+        edges = self._polar_edges
+        furthest = int(edges.argmax())
+        before, middle, after = edges[numpy.arange(furthest - 1, furthest + 2) % len(edges)]
+        bend = 2 * middle - before - after
+        between = (after - before) ** 2 / (8 * bend) if bend > 0 else 0.0
+        return float(max(self.grid.reach - middle - between, _LEAST_MARGIN))
+
+    @property
+    def _polar_edges(self) -> Numbers:
+        """Polar angles of the contact's edge towards the rim, (meridians,); 0 on a meridian without contact."""
+        loaded, last = self.level > 0, self.grid.rings - 1
+        ring, column = last - loaded[::-1].argmax(axis=0), numpy.arange(self.grid.meridians)
+        after = numpy.minimum(ring + 1, last)
+        one, other = self.level[ring, column], self.level[after, column]
+        nodes = self.grid.polar - self.inset * numpy.diff(self.grid.edges)
+        nodes[-1] = self.grid.reach  # the contact reaches the rim when the last ring is loaded
+        share = numpy.divide(one, one - other, out=numpy.zeros_like(one), where=one > other)
+        return numpy.where(loaded.any(axis=0), nodes[ring] + share * (nodes[after] - nodes[ring]), 0.0)
 
 
 def _angles(directions: Numbers) -> Numbers:
@@ -179,18 +213,6 @@ def _across(axis: Numbers) -> tuple[Numbers, Numbers]:
     polar, azimuth = float(polar_angle(axis)), float(numpy.arctan2(axis[1], axis[0]))
     around = numpy.array([-numpy.sin(azimuth), numpy.cos(azimuth), 0.0])
     return unit_vectors(numpy.asarray(polar + pi / 2), numpy.asarray(azimuth)), around
-
-
-def _fallen(values: Numbers, out: Numbers, end: Numbers) -> Numbers:
-    """Where powers (steps, rays) that fall with the square of the angle are 0, from before the first step outside."""
-    step, each = out[1] - out[0], numpy.arange(len(end))
-    last = numpy.maximum(end - 3, 0)  # the cells at the edge are only partly under pressure
-    first = numpy.maximum(last - 3, 0)
-    one, other = values[first, each], values[last, each]
-    fall = numpy.where(one > other, one - other, 1.0)
-    square = out[first] ** 2 + one * (out[last] ** 2 - out[first] ** 2) / fall
-    edge = numpy.clip(numpy.sqrt(square), out[last], out[end] + 2 * step)
-    return numpy.where(first == last, out[end] - step / 2, numpy.where(one > other, edge, out[end]))
 
 
 def _terms(s: Numbers, t: Numbers) -> Numbers:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from functools import cached_property
+from io import StringIO
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -12,6 +14,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..checks import needs, one_number, require
+from ..input_files import open_input, resolve_input
 from ..quantities import AIM
 from .worn import Measured
 
@@ -66,6 +69,7 @@ class Scan(Measured):
 
 _NEAREST, _FLAT = 24, 1e-3
 _FEWEST = 200
+_FURTHEST = 1e6
 _NARROWEST = radians(25.0)
 _ROUGHEST = 0.03
 _COARSEST = 0.35
@@ -108,13 +112,13 @@ def _points(path: Path) -> Numbers:
     import meshio
 
     no_mesh = f"{path.name} is no mesh that can be read: it is cut short, or not what its name says"
-    with path.open("rb") as file:
+    with open_input(path) as file:
         head = file.read(_HEAD)
     if path.suffix.lower() == ".ply" and b"end_header" not in head:
         raise ValueError(no_mesh)  # it would be read for ever
     try:
-        with numpy.errstate(all="ignore"):
-            points = numpy.asarray(meshio.read(path).points, dtype=float)
+        with numpy.errstate(all="ignore"), redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # meshio prints
+            points = numpy.asarray(meshio.read(resolve_input(path)).points, dtype=float)
     except (meshio.ReadError, ValueError, TypeError, LookupError, AttributeError, AssertionError, SystemExit) as error:
         raise ValueError(no_mesh) from error
     if points.ndim != 2 or points.shape[1] < 3:
@@ -133,6 +137,8 @@ def scan_of(points: Numbers, name: str = "the scan", finest: float = _FINEST, az
     turned = one_number("azimuth", AIM["azimuth"].checked(azimuth))
     require(f"points of {name}", len(points), len(points) >= _FEWEST, f"a scan has {_FEWEST} points and more")
     require(f"points of {name}", points, numpy.isfinite(points), "a point is finite")
+    near = abs(points) <= _FURTHEST
+    require(f"points of {name}", points, near, f"coordinates (mm) are at most {_FURTHEST:g}")
     centre, radius = _fitted(points)
     out = points - centre
     length = numpy.linalg.norm(out, axis=1)

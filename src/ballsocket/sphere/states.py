@@ -10,6 +10,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..model.per_joint import QUANTITIES
+from .edges import Edges
 from .patch import Patch
 from .rim import edge_margins
 from .search import Bed, Rest
@@ -22,28 +23,12 @@ _AREAS = {
     "energy": 0.4,
     "pressure_integral": 0.3,
 }
-_EDGES = {"half_angle": 0.32, "stiffness": 0.6}
+_EDGES = {"half_angle": 0.1, "stiffness": 0.6}
 """Errors that contacts have shown against the exact answer: in squares of a ring over the half angle, and in such.
 
 The first follow from the pressures, the second from which cells touch. A test draws such contacts anew.
 """
 _SHARPEST = 3e-4  # of all quantities: what the elements of the cup leave
-
-
-@dataclass(frozen=True, kw_only=True)
-class Edges:
-    """How the pressure ends.
-
-    Attributes
-    ----------
-    power : int
-        The power of the pressure that falls to the edge of a contact as a straight line does.
-    bounded : bool
-        Whether the pressure stays finite where a contact reaches the end of the bore.
-    """
-
-    power: int
-    bounded: bool
 
 
 Loaded = Callable[["Bed", Numbers, Numbers, "Edges"], "States"]
@@ -97,9 +82,16 @@ class States:
 
     @cached_property
     def patches(self) -> tuple[Patch, ...]:
-        grid = self.bed.compliance.grid
-        pairs = zip(self.rest.pressure, self.axes, strict=True)
-        return tuple(Patch(grid=grid, pressure=p, axis=axis, power=self.edges.power) for p, axis in pairs)
+        grid, inset = self.bed.compliance.grid, self.edges.inset
+        rows = zip(self.rest.pressure, self.levels, self.axes, strict=True)
+        return tuple(Patch(grid=grid, pressure=p, level=level, axis=axis, inset=inset) for p, level, axis in rows)
+
+    @cached_property
+    def levels(self) -> Numbers:
+        """Level in mm of every cell, positive in the contact, minus the gap outside: (contacts, rings, meridians)."""
+        p = self.rest.pressure
+        gap = self.bed.compliance.displacement(p) - self.bed.separation.overlap(self.rest.displacement)
+        return self.edges.levels(p, gap)
 
     @cached_property
     def force_vector(self) -> Numbers:

@@ -14,6 +14,7 @@ from ..joint import Joint
 from ..models.modulus import Modulus, hess_forsbach
 
 if TYPE_CHECKING:
+    from .edges import Edges
     from .grid import Grid
 
 
@@ -24,9 +25,8 @@ class Surface(Protocol):
         """The mean displacement of cells by the pressure of cells, for each m, in mm/MPa: (m, rings, rings)."""
         ...
 
-    @property
-    def power(self) -> int:
-        """The power of the pressure that falls to the edge of a contact as a straight line does."""
+    def edges(self, joint: Joint, cup: Cup, grid: Grid) -> Edges:
+        """Return the relation of pressure and gap at the edge of a contact."""
         ...
 
 
@@ -43,9 +43,10 @@ class RealCup:
 
         return grid.averaged(cup_rings(joint, cup, grid))
 
-    @property
-    def power(self) -> int:
-        return 2
+    def edges(self, joint: Joint, cup: Cup, grid: Grid) -> Edges:
+        from .edges import elastic_edges
+
+        return elastic_edges(joint, grid, bounded=cup.chamfer == 0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,9 +58,10 @@ class ClosedShell:
 
         return grid.averaged(modal_rings(socket_of(joint).compliance, grid))
 
-    @property
-    def power(self) -> int:
-        return 2
+    def edges(self, joint: Joint, cup: Cup, grid: Grid) -> Edges:
+        from .edges import elastic_edges
+
+        return elastic_edges(joint, grid, bounded=False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,6 +80,7 @@ class Springs:
         each = numpy.eye(grid.rings) / float(self.modulus(joint))
         return numpy.broadcast_to(each, (grid.degrees + 1, *each.shape))
 
-    @property
-    def power(self) -> int:
-        return 1
+    def edges(self, joint: Joint, cup: Cup, grid: Grid) -> Edges:
+        from .edges import spring_edges
+
+        return spring_edges(float(self.modulus(joint)), grid)
