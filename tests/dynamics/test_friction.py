@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 import ballsocket as bs
 from ballsocket.dynamics import Bristles, Damping, Friction, simulate
 
+from ..extent import either
 from ..joints import HIP
 from .test_element import states
 
@@ -32,6 +33,114 @@ def test_the_moment_of_friction_is_that_of_the_pressure_of_the_contact(spin, axi
     element = replace(SMOOTH, model=bs.Exact())
     moment = element(DEEP, spin=(0.0, 3.0, 0.0)).moment
     assert np.linalg.norm(moment) == pytest.approx(exact.friction_torque(0.1), rel=0.01)
+
+
+PLAIN = replace(SMOOTH, friction=None)
+RADIUS, SOCKET = HIP.ball_radius, HIP.socket_radius
+MIXED = {
+    "slide and drill": ((30.0, 0.0, 0.0), (0.0, 0.0, 2.0)),
+    "roll and drill": ((0.0, 0.0, 0.0), (2.0, 0.0, 2.0)),
+    "all": ((10.0, -5.0, 0.0), (1.0, 2.0, 3.0)),
+}
+
+
+def integrated(half_angle, velocity, spin, rings=200, meridians=400):
+    """Force, moment and power of Coulomb stresses of μ = 0.1 on a patch of radial springs around (0, 0, 1), over N."""
+    nodes, weights = np.polynomial.legendre.leggauss(rings)
+    phi, weights = half_angle * (nodes + 1) / 2, half_angle / 2 * weights
+    theta = 2 * np.pi * (np.arange(meridians) + 0.5) / meridians
+    normal = np.stack(
+        [np.outer(np.sin(phi), np.cos(theta)), np.outer(np.sin(phi), np.sin(theta)), np.outer(np.cos(phi), theta**0)],
+        -1,
+    )
+    load = np.outer((np.cos(phi) - np.cos(half_angle)) * np.sin(phi) * weights, theta**0)
+    load /= np.sum(load * normal[..., 2])
+    levers = np.array([RADIUS, RADIUS, SOCKET])  # about the load the lever is that of the socket
+    slip = velocity + np.cross(spin * levers, normal)
+    slip -= np.sum(slip * normal, -1, keepdims=True) * normal
+    speed = np.linalg.norm(slip, axis=-1)
+    stress = -0.1 * (load / speed)[..., None] * slip
+    moment = levers * np.cross(normal, stress).sum((0, 1))
+    return stress.sum((0, 1)), moment, 0.1 * np.sum(load * speed)
+
+
+def rubbed(half_angle, velocity, spin, element=SMOOTH):
+    """Friction's part of the load of an element, over the normal force: force, moment and power."""
+    position = (0.0, 0.0, HIP.clearance / np.cos(half_angle))
+    plain, load = PLAIN(position).force, element(position, tuple(velocity), tuple(spin))
+    return np.subtract(load.force, plain) / -plain[2], np.array(load.moment) / -plain[2], load.dissipation / -plain[2]
+
+
+@pytest.mark.parametrize("state", MIXED.values(), ids=MIXED)
+@pytest.mark.parametrize("degrees", [17, 36, 55])
+def test_sliding_rolling_and_drilling_together_are_the_integral_over_the_patch(state, degrees):
+    velocity, spin = (np.array(part) for part in state)
+    force, moment, power = integrated(np.radians(degrees), velocity, spin)
+    found = rubbed(np.radians(degrees), velocity, spin)
+    assert found[1][2] == pytest.approx(moment[2], rel=0.045)
+    np.testing.assert_allclose(found[0][:2], force[:2], atol=0.012 * 0.1)
+    np.testing.assert_allclose(found[1][:2], moment[:2], atol=0.012 * 0.1 * RADIUS)
+    assert found[2] == pytest.approx(power, rel=1e-3)
+
+
+@pytest.mark.parametrize("degrees", [17, 36, 55, 69])
+def test_a_ball_that_rolls_about_a_pole_at_rest_loses_what_the_rest_of_the_patch_slides(degrees):
+    """1 to 12 % of the power of a ball that slides as fast as this one turns."""
+    spin = np.array([0.0, 2.0, 0.0])
+    velocity = np.array([-RADIUS * spin[1], 0.0, 0.0])
+    power = integrated(np.radians(degrees), velocity, spin)[2]
+    found = rubbed(np.radians(degrees), velocity, spin)
+    assert found[2] == pytest.approx(power, rel=1e-3)
+    slid = rubbed(np.radians(degrees), velocity, np.zeros(3))[2]
+    assert 0.01 < found[2] / slid < 0.25
+
+
+def test_random_states_have_the_resultants_of_the_integral_over_the_patch():
+    random, errors = np.random.default_rng(5), []
+    for _ in range(either(20, 400)):
+        half_angle = np.radians(random.uniform(5.0, 65.0))
+        velocity = np.append(random.normal(size=2) * 10.0 ** random.uniform(0, 2), 0.0)
+        spin = random.normal(size=3) * 10.0 ** random.uniform(-1, 1)
+        # a pole that hardly slips is another test's
+        slip, tilt = velocity + RADIUS * np.cross(spin, (0, 0, 1)), velocity - RADIUS * np.cross(spin, (0, 0, 1))
+        if np.linalg.norm(slip) < (1 - np.cos(half_angle)) * np.linalg.norm(tilt[:2]):
+            continue
+        force, moment, power = integrated(half_angle, velocity, spin, 60, 240)
+        found = rubbed(half_angle, velocity, spin)
+        drilling = 8 / 15 * SOCKET * np.sin(half_angle)
+        misses = (
+            np.linalg.norm(found[0] - force) / 0.1,
+            abs(found[1] - moment)[2] / 0.1 / drilling,
+            found[2] / power - 1,
+        )
+        errors.append(misses)
+    assert len(errors) >= either(15, 300)
+    assert (np.sqrt(np.mean(np.square(errors), axis=0)) < (0.008, 0.008, 0.002)).all()
+    assert (np.max(np.abs(errors), axis=0) < (0.055, 0.045, 0.012)).all()
+
+
+def test_friction_turns_with_the_state_and_reverses_with_the_motion():
+    position, velocity, spin = states(200)
+    element = replace(SMOOTH, friction=Friction(coefficient=0.1, static_coefficient=0.2, viscous=1e-4))
+    turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
+    turn = turn * np.linalg.det(turn)
+    load, turned = element(position, velocity, spin), element(position @ turn.T, velocity @ turn.T, spin @ turn.T)
+    back, still = element(position, -velocity, -spin), element(position)
+    np.testing.assert_allclose(turned.force, load.force @ turn.T, atol=1e-9 * np.abs(load.force).max())
+    np.testing.assert_allclose(turned.moment, load.moment @ turn.T, atol=1e-9 * np.abs(load.moment).max())
+    np.testing.assert_allclose(back.force + load.force, 2 * still.force, atol=1e-12 * np.abs(load.force).max())
+    np.testing.assert_array_equal(back.moment, -load.moment)
+
+
+def test_the_potential_of_friction_is_convex():
+    """The matrix of damping has no negative eigenvalue: a faster ball is not braked less."""
+    position, velocity, spin = states(2000, deepest=0.3)
+    element = replace(SMOOTH, friction=Friction(coefficient=0.1))
+    levers = np.array([1.0, 1.0, 1.0, RADIUS, RADIUS, RADIUS])
+    for speeds in (1e-3, 1.0):
+        matrix = element(position, speeds * velocity, speeds * spin).damping_matrix / np.outer(levers, levers)
+        values = np.linalg.eigvalsh(matrix)
+        assert (values[:, 0] >= -1e-9 * values[:, -1]).all()
 
 
 def test_a_ball_that_spins_is_easily_pushed_aside():
@@ -62,6 +171,19 @@ def test_bristles_are_springs_before_they_slide_and_then_coulombs():
     assert bend.moment[1] == pytest.approx(HIP.ball_radius * bend.force[0], rel=1e-9)
     assert slid(HELD, 100.0, 1.0).force[0] == pytest.approx(-0.1 * normal * grip, rel=1e-3)
     assert slid(HELD, 0.1, 1.0).force[0] == pytest.approx(-0.15 * normal * grip, rel=2e-3)
+
+
+def test_bristles_that_slide_and_drill_have_the_resultants_of_the_patch():
+    state = {"velocity": (30.0, 0.0, 0.0), "spin": (0.0, 0.0, 2.0)}
+    element = replace(HELD, friction=replace(HELD.friction, static_coefficient=None))
+
+    def rates(_, z):
+        return element(DEEP, **state, deflection=tuple(z.tolist())).deflection_rate
+
+    z = solve_ivp(rates, (0.0, 0.1), [0.0] * 4, method="LSODA", rtol=1e-9, atol=1e-14).y[:, -1]
+    held, slid = element(DEEP, **state, deflection=tuple(z.tolist())), SMOOTH(DEEP, **state)
+    assert held.force[0] == pytest.approx(slid.force[0], rel=0.01)
+    assert held.moment[2] == pytest.approx(slid.moment[2], rel=0.07)
 
 
 def test_bristles_make_nothing_out_of_nothing():

@@ -8,9 +8,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, Damping, Flores, Friction, of_restitution, relations, simulate
+from ballsocket.dynamics import Bristles, Damping, Flores, Friction, Touch, of_restitution, relations, simulate
 from ballsocket.dynamics.restitution import restitution_of
 
+from ..extent import either
 from ..joints import HIP
 
 FREE = bs.ForceElement(bs.HessForsbach(), HIP)
@@ -35,6 +36,66 @@ def test_ten_thousand_bounces_drift_by_less_than_a_ten_millionth():
     assert motion.drift < 1e-7
 
 
+ORBIT = {"mass": 0.35, "position": (0.1, 0.0, 0.0), "velocity": (20.0, 60.0, 15.0)}
+
+
+@pytest.mark.parametrize("step", [1e-5, 1e-4])
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
+def test_a_frictionless_orbit_conserves_its_angular_momentum_at_any_step(model, step):
+    element = bs.ForceElement(model, HIP, damping=Damping(hysteresis=1e-4))
+    for pull in ((0.0, 0.0, 0.0), (1.0, 2.0, 3.0), lambda t: (0.0, 5.0 * np.sin(1e3 * t), 0.0)):
+        motion = simulate(element, pull=pull, duration=400 * step, step=step, **ORBIT)
+        assert motion.bounces >= 2
+        assert motion.drift < 1e-12
+        assert motion.angular_drift < 1e-13
+    assert motion.summary()["angular_drift"] == motion.angular_drift
+
+
+def test_the_energy_of_many_bounces_at_coarse_steps_has_no_trend():
+    """Each contact lasts some two steps, where the rounds of a step converge slowest."""
+    liner = bs.Material(young=1450.0, poisson=0.33)
+    joint = bs.Joint(ball_radius=11.1, clearance=0.047, liner_thickness=3.9, liner=liner)
+    thrown = {"mass": 0.21, "position": (0.03, 0.02, -0.04), "velocity": (35.0, -50.0, 22.0)}
+    motion = simulate(bs.ForceElement(bs.HessForsbach(), joint), duration=0.06, step=1e-4, **thrown)
+    assert motion.bounces > 50
+    assert motion.drift < 1e-13
+
+
+def test_an_orbit_in_a_cup_conserves_the_angular_momentum_about_the_dome_axis():
+    cup = bs.Cup(inclination=0.6, arc_of_cover=np.radians(160.0))
+    dome = np.array(cup.dome)
+    aside = np.cross(dome, (0.0, 1.0, 0.0)) / np.linalg.norm(np.cross(dome, (0.0, 1.0, 0.0)))
+    position = 0.1 * (np.cos(1.3) * dome + np.sin(1.3) * aside)
+    velocity = 60.0 * np.cross(dome, aside) + 3.0 * aside + 10.0 * dome
+    thrown = {"mass": 0.35, "position": tuple(position), "velocity": tuple(velocity), "pull": tuple(30.0 * dome)}
+    motion = simulate(replace(FREE, cup=cup), duration=either(0.006, 0.02), step=2e-5, **thrown)
+    assert motion.ended == ""
+    assert (np.asarray(motion.load.status) == Touch.AT_RIM).sum() > 50
+    assert motion.drift < 1e-12
+    assert motion.angular_drift < 1e-13
+
+
+def test_the_drift_of_the_angular_momentum_is_none_where_it_is_not_conserved():
+    assert simulate(LOSSY, duration=1e-3, **THROW).angular_drift is None
+    bristles = replace(FREE, friction=Bristles(coefficient=0.1))
+    assert simulate(bristles, duration=1e-4, **THROW).angular_drift is None
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("step", [1e-5, 5e-5, 1e-4])
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)
+def test_a_hundred_thousand_steps_conserve_energy_and_angular_momentum(model, step):
+    from ballsocket.dynamics.compiled import CompiledElement
+
+    for pull in ((0.0, 0.0, 0.0), (0.0, 0.0, 3.4)):
+        element = CompiledElement(bs.ForceElement(model, HIP))
+        motion = simulate(element, pull=pull, duration=1e5 * step, step=step, **ORBIT)
+        assert len(motion.time) == 10**5 + 1
+        assert motion.bounces > 500
+        assert motion.drift < 1e-12
+        assert motion.angular_drift < 1e-12
+
+
 def test_what_is_lost_is_what_damping_and_friction_took():
     motion = simulate(LOSSY, duration=0.02, spin=(0.0, 3.0, 5.0), **THROW)
     assert motion.drift < 1e-12
@@ -48,6 +109,19 @@ def test_a_weight_falls_by_what_it_gains():
     assert motion.work[-1] == pytest.approx(500.0 * (motion.position[-1, 2] - motion.position[0, 2]))
     shaken = simulate(LOSSY, duration=0.02, pull=lambda t: (0.0, 0.0, 500.0 * np.sin(300.0 * t)), **THROW)
     assert shaken.drift < 1e-11
+
+
+def test_a_nearly_circular_orbit_conserves_both_invariants():
+    """The distance hardly changes there, so that the quotient of the differences is 0/0 but for rounding."""
+    distance = HIP.clearance + 0.03
+    speed = np.sqrt(1e3 * -FREE((0.0, 0.0, distance)).force[2] * distance)
+    for faster in (1.0, 1.0 + 1e-9, 1.0001):
+        thrown = {"mass": 1.0, "position": (distance, 0.0, 0.0), "velocity": (0.0, faster * speed, 0.0)}
+        motion = simulate(FREE, duration=either(0.004, 0.02), step=4e-5, **thrown)
+        assert motion.ended == ""
+        assert motion.drift < 1e-13
+        assert motion.angular_drift < 1e-13
+        assert np.ptp(motion.depth) < 2e-4 * distance
 
 
 def test_the_way_is_that_of_a_rival_integrator_and_the_error_falls_with_the_square_of_the_step():
@@ -134,6 +208,8 @@ def test_a_step_through_the_wall_ends_the_motion_and_names_the_state():
     ("words", "sentence"),
     [
         ({"mass": -1.0}, "mass = -1 is not allowed"),
+        ({"mass": 1e-200}, "mass = 1e-200 is not allowed: mass must lie between 1e-100 and 1e.100"),
+        ({"inertia": float("nan")}, "inertia = nan is not allowed: inertia must lie between"),
         ({"duration": 1e300}, "the number of steps = 5e.304 is not allowed"),
         ({"pull": (0.0, 1.0)}, "a pull has three components"),
         ({"position": (0.0, 1.0)}, "a state has three components"),

@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from ..arrays import Array, divisor, sqrt, where
 from ..sources import Source
-from .friction import Coulomb, checked, coefficient_at
-from .reaction import Place, Sliding
+from .friction import Coulomb, checked, coefficient_at, effective_slip, tilt_share
+from .reaction import Place, Sliding, versine
 
 Four = tuple[Array, Array, Array, Array]
 """Deflections of the bristles in mm: x, y, z across the load, and about it, as an arc at the lever ρ."""
@@ -16,13 +16,16 @@ Four = tuple[Array, Array, Array, Array]
 
 @dataclass(frozen=True, kw_only=True)
 class Bristles(Coulomb):
-    """The LuGre model: with z the deflection, v the slip of the size w, and N the normal force::
+    """The LuGre model: with z the deflection, v the slip, and N the normal force::
 
-        z' = v - σ0 w z/μ(w),    f = -N (σ0 z + σ1 z' + σ2 v),
+        z' = v - σ0 q(v) z/(h μ(q)),    f = -N (σ0 z + σ1 z' + σ2 v),
 
-    for the slip across the load and the spin about it at once, which share μ. Bristles that slide have f = μ N, those
-    that hold are springs of N σ0. The damping σ1 falls with the slip just enough that none makes energy. A ball that
-    left the socket forgets its deflections within `release` seconds. With σ1 = σ2 = 0 and one coefficient it is Dahl's.
+    for the slip across the load and the spin about it at once, which share μ. q is the effective slip speed of
+    `Friction` for the mean of a patch that slides and one that turns, and h v/q its slope. Bristles that slide have the
+    resultants of the patch, within 1 % of the force and 7 % of the drilling moment. Rolling about a pole that does not
+    slip has no loss in this model. Bristles that hold are springs of N σ0.
+    The damping σ1 falls with the slip just enough that they generate no energy. After the ball leaves the socket its
+    deflections decay within `release` seconds. With σ1 = σ2 = 0 and one coefficient it is Dahl's model.
 
     Parameters
     ----------
@@ -73,21 +76,37 @@ class Bristles(Coulomb):
 
 def bent(place: Place, slip: Sliding, deflection: Four, given: Bristles) -> tuple[Four, Four, Array]:
     """What a load of 1 N is rubbed by (three components, and about the load over ρ), z', and what is lost of 1 N."""
-    g = slip.x, slip.y, slip.z, sqrt(slip.lever_squared) * slip.spin
+    g = slip.x + slip.bx, slip.y + slip.by, slip.z + slip.bz, sqrt(slip.lever_squared) * slip.spin
     zx, zy, zz, zr = deflection
     off = zx * place.x + zy * place.y + zz * place.z
     z = zx - off * place.x, zy - off * place.y, zz - off * place.z, zr
-    speed = sqrt(_dot(g, g))
+    speed, shares, least = _patch(g, place)
     mu = divisor(coefficient_at(speed, given.coefficient, given.static, given.stribeck_speed))
     fall = given.stiffness * speed / mu
-    damping = given.damping / (1.0 + given.damping * speed / (4.0 * mu))
-    rate = tuple(way - fall * bend for way, bend in zip(g, z, strict=True))
+    damping = given.damping / (1.0 + given.damping * speed / (4.0 * mu * least))
+    sinks = tuple(fall * bend / share for bend, share in zip(z, shares, strict=True))
+    rate = tuple(way - sink for way, sink in zip(g, sinks, strict=True))
     held = zip(z, rate, g, strict=True)
     force = tuple(given.stiffness * bend + damping * turn + given.viscous * way for bend, turn, way in held)
-    lost = given.stiffness * fall * _dot(z, z) + damping * _dot(rate, g) + given.viscous * _dot(g, g)
+    lost = given.stiffness * _dot(sinks, z) + damping * _dot(rate, g) + given.viscous * _dot(g, g)
     touching = slip.normal > 0.0
     forgotten = tuple(where(touching, turn, -bend / given.release) for turn, bend in zip(rate, deflection, strict=True))
     return force, forgotten, lost
+
+
+_STILL = 1e-30
+"""Square of the transition speed in (mm/s)²; too small to change the slip."""
+
+
+def _patch(slip: Four, place: Place) -> tuple[Array, Four, Array]:
+    """Compute the effective slip speed, its slopes over half the squares of the slip, and the least of these."""
+    gx, gy, gz, gr = slip
+    m = versine(place)
+    across, kappa = gx * gx + gy * gy + gz * gz, tilt_share(m)
+    share = kappa * kappa
+    square, by_slip, by_tilt, by_spin, _ = effective_slip(across, share * across, gr * gr, 0.0, _STILL, share, m)
+    push = by_slip + share * by_tilt
+    return sqrt(square), (push, push, push, by_spin), where(push < by_spin, push, by_spin)
 
 
 def _dot(first: Four, second: Four) -> Array:

@@ -71,7 +71,7 @@ class ForceElement:
     >>> element = bs.ForceElement(bs.HessForsbach(), bs.joints["hip-28"], damping=damping, friction=friction)
     >>> load = element((0.0, 0.0, 0.12), velocity=(0.0, 0.0, 20.0), spin=(0.0, 1.0, 0.0))
     >>> [round(part, 1) for part in load.force[::2]], [round(part, 1) for part in load.moment]
-    ([-40.7, -789.8], [0.0, -569.3, 0.0])
+    ([-40.6, -789.8], [0.0, -569.3, 0.0])
     """
 
     model: Model
@@ -194,6 +194,7 @@ class ForceElement:
     def _of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
+        position = vectors("position", position, axes[0])
         checked = map(vectors, names, [_beside(position, each) for each in (position, velocity, spin)], axes)
         r, v, w = (_components(each) for each in common(*checked))
         with numpy.errstate(all="ignore"):  # a state without an answer has a status
@@ -238,11 +239,13 @@ class ForceElement:
 def three(value: Any, name: str = "a state") -> Three:
     try:
         x, y, z = value
+        if isinstance(x + y + z, complex):
+            raise TypeError("complex numbers")
         if type(x) is _OF_NUMPY:  # numbers of Python are quicker
             return float(x), float(y), float(z)
         return x + 0.0, y + 0.0, z + 0.0
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} has three components, x, y and z, all numbers, got {shown(value)}") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"{name} has three components, x, y and z, all real numbers, got {shown(value)}") from error
 
 
 def _beside(position: Any, value: Any) -> Any:

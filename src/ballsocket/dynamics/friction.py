@@ -1,11 +1,16 @@
-"""Friction of the ball in its socket: a force at the pole of the contact and a moment that brakes the spin."""
+"""Friction of the ball in its socket: resultants of Coulomb stresses over the patch, as slopes of one potential.
+
+On the patch a ball slides with the speed |w|, w = v + R1 ω x m less its part along the normal m. The resultants are the
+slopes of μ ∫ p |w| dA = μ N q over v and ω. N = ∫ p |a x m| dA for an axis a across the load, and q is an effective
+slip speed: q = |v| for a ball that slides, q = R1 |ω| for one that turns about an axis across the load.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from ..arrays import Array, exp, sqrt
+from ..arrays import Array, exp
 from ..checks import one_number, require
 
 
@@ -30,11 +35,18 @@ class Coulomb:
 class Friction(Coulomb):
     """Regularised Coulomb friction: the force is smooth in the speed, nearly μ N once that is above the transition.
 
-    Sliding and drilling share one limit: with v the slip at the pole of the contact, ω the spin about its axis and ρ
-    the mean lever of the pressure about it, q² = v² + (ρ ω)² + (transition speed)²::
+    Sliding, turning and drilling share one limit. With q the effective slip speed of the patch, rounded off by the
+    transition speed, and N the normal force times the widening of the contact::
 
-        f = -N (μ(q)/q + viscous) v,   M = -N (μ(q)/q + viscous) ρ² ω,
+        f = -N (μ(q) + viscous q) ∂q/∂v,   M = -N (μ(q) + viscous q) ∂q/∂ω,
         μ(q) = coefficient + (static - coefficient) exp[-(q/stribeck_speed)²].
+
+    q is a fit to the integral of the stresses over the patch of radial springs with half angles of 4° to 86°. The
+    power of pure sliding, turning, drilling and rolling about the pole agrees with it within 1e-4, that of mixed
+    states within 0.3 %. Up to 65° the force differs by 0.4 % (rms) and 5 % (largest) of μ N, the drilling moment by
+    0.8 % and 4.6 % of itself. Where the pole slips less than about the edge of the patch, force and moments differ by
+    4 % (rms) and 11 % (largest), the power by 0.5 % and 2.2 %. Friction along the load, from the approach of the ball,
+    is neglected.
 
     Parameters
     ----------
@@ -103,6 +115,93 @@ def coefficient_at(speed: Array, sliding: Array, static: Array, stribeck_speed: 
     return sliding + (static - sliding) * exp(-share * share)
 
 
-def combined(slip_squared: Array, drill_squared: Array, transition_speed: Array) -> Array:
-    """q in mm/s."""
-    return sqrt(slip_squared + drill_squared + transition_speed * transition_speed)
+def tilt_share(versine: Array) -> Array:
+    """Compute κ = ∫ p sin²(φ/2) dA/N: the share of its speed with which a rolling ball slides around a pole at rest.
+
+    A fit to radial springs, within 2e-5 of it.
+    """
+    m = versine
+    return m * (0.1666654 + m * (0.02783786 + m * (0.00243272 + m * (0.00084687 - m * 0.00142777))))
+
+
+SLIP_FIT = (0.40815, 0.01064, -0.08503, 0.66324, 1.29028)
+"""Numbers α0 + α1 m + α2 m², β and θ of `effective_slip`; m is the versine."""
+
+TURN_FIT = (0.47204, -0.15697, 0.48267, 2.85234)
+"""Numbers τ0 + τ1 m + τ2 m² and ν of `effective_slip`."""
+
+DRILL_FIT = (1.54279, 0.61077, 2.43054, 0.65760)
+"""Numbers η0 + η1 m and λ0 + λ1 m of `effective_slip`."""
+
+ROLL_FIT = (0.40882, 0.62470)
+"""Numbers γ and ζ of `effective_slip`."""
+
+
+def effective_slip(
+    slip: Array, tilt: Array, spin: Array, mixed: Array, still: Array, tilt_squared: Array, versine: Array
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Compute q² and its slopes over X = |S|², Y = κ²|D|², Z = (ρ ω_n)² and P = κ S·D, all in (mm/s)².
+
+    S = v + b is the slip at the pole and D = v - b, where b = R1 ω x n; `still` is the square of the transition
+    speed v0. With G = X + θ Y + v0²::
+
+        q² = v0² + (1 - κ²) X + Y + Z - Z [X (α X + β Z) + P (τ X + ν Z)]/(G² + η G Z + λ Z²)
+             - γ Y Z/(X + Y + ζ Z + v0²).
+
+    The numbers are a least-squares fit to the slopes of ∫ p |w| dA of radial springs with half angles of 4° to 86°.
+    """
+    (a0, a1, a2, b, theta), (t0, t1, t2, n), (e0, e1, l0, l1), (g, zeta) = SLIP_FIT, TURN_FIT, DRILL_FIT, ROLL_FIT
+    m, total = versine, slip + tilt + spin + still
+    scale = 1.0 / total
+    x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
+    a, t, eta, lam_z = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, (l0 + l1 * m) * z
+    G = x + theta * y + scale * still
+    along, turned = a * x + b * z, t * x + n * z
+    over, roll = 1.0 / (G * (G + eta * z) + lam_z * z), g / (1.0 + (zeta - 1.0) * z)
+    inner = x * along + p * turned
+    ratio, bent = z * inner * over, roll * y * z
+    fall = ratio * (2.0 * G + eta * z) * over
+    push = bent * roll / g
+    return (
+        total * (1.0 - ratio - bent) - tilt_squared * slip,
+        1.0 - tilt_squared - z * (along + a * x + t * p) * over + fall + push,
+        1.0 + theta * fall - roll * z + push,
+        1.0 - (inner + z * (b * x + n * p) - ratio * (eta * G + 2.0 * lam_z)) * over - roll * y + zeta * push,
+        -z * turned * over,
+    )
+
+
+def effective_slip_bends(
+    slip: Array, tilt: Array, spin: Array, mixed: Array, still: Array, versine: Array
+) -> dict[tuple[int, int], Array]:
+    """Compute the second slopes of q² over X, Y, Z and P, numbered 0 to 3, as `effective_slip` has q²."""
+    (a0, a1, a2, b, theta), (t0, t1, t2, n), (e0, e1, l0, l1), (g, zeta) = SLIP_FIT, TURN_FIT, DRILL_FIT, ROLL_FIT
+    m, scale = versine, 1.0 / (slip + tilt + spin + still)
+    x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
+    a, t, eta, lam = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, l0 + l1 * m
+    G = x + theta * y + scale * still
+    over, out, none = 1.0 / (G * (G + eta * z) + lam * z * z), 1.0 / (1.0 + (zeta - 1.0) * z), 0.0 * x
+    # N/d with N = z [x (α x + β z) + p (τ x + ν z)]
+    ratio = z * (x * (a * x + b * z) + p * (t * x + n * z)) * over
+    top = (
+        z * (2.0 * a * x + b * z + t * p),
+        none,
+        x * (a * x + 2.0 * b * z) + p * (t * x + 2.0 * n * z),
+        z * (t * x + n * z),
+    )
+    low = 2.0 * G + eta * z, theta * (2.0 * G + eta * z), eta * G + 2.0 * lam * z, none
+    first = [(up - ratio * down) * over for up, down in zip(top, low, strict=True)]
+    tops = {(0, 0): 2.0 * a * z, (0, 2): 2.0 * (a * x + b * z) + t * p, (0, 3): t * z, (2, 3): t * x + 2.0 * n * z}
+    tops |= {(2, 2): 2.0 * (b * x + n * p)}
+    lows = {(0, 0): 2.0, (0, 1): 2.0 * theta, (1, 1): 2.0 * theta * theta, (0, 2): eta, (1, 2): theta * eta}
+    lows |= {(2, 2): 2.0 * lam}
+    # γ y z/o with o = x + y + ζ z + v0²
+    roll, edge = g * y * z * out, (1.0, 1.0, zeta, 0.0)
+    rolled = [(g * part - roll * down) * out for part, down in zip((none, z, y, none), edge, strict=True)]
+    bends = {}
+    for i in range(4):
+        for j in range(i, 4):
+            bend = tops.get((i, j), none) - ratio * lows.get((i, j), 0.0) - first[i] * low[j] - first[j] * low[i]
+            tilted = (g if (i, j) == (1, 2) else 0.0) - rolled[i] * edge[j] - rolled[j] * edge[i]
+            bends[i, j] = -scale * (bend * over + tilted * out)
+    return bends

@@ -1,4 +1,4 @@
-"""A ball that moves in its socket, by steps that keep its energy: for demonstrations, tests and drop tests."""
+"""Simulation of a ball in its socket by energy-momentum steps: for demonstrations, tests and drop tests."""
 
 from __future__ import annotations
 
@@ -25,7 +25,11 @@ TONNE = 1e-3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Motion:
-    """A ball over time.
+    """Motion of a ball over time.
+
+    Without bristles and adhesion it is computed by a method of order 2: errors of positions and phases fall with the
+    square of the step. Energy and angular momentum are conserved to rounding at any step, see `drift` and
+    `angular_drift`.
 
     Attributes
     ----------
@@ -42,6 +46,8 @@ class Motion:
         What damping and friction took since the beginning, in N mm; what bristles hold is among it.
     work : array (steps,)
         What the pull on the ball did since then, in N mm.
+    pull_moment : array (steps, 3) or None
+        Integral of the moment r x pull over the time since then, in N mm s. None with bristles or adhesion.
     deflection : array (steps, 4), or four numbers
         Of bristles, in mm.
     attached : array (steps,) or bool
@@ -62,6 +68,7 @@ class Motion:
     energy: Numbers
     lost: Numbers
     work: Numbers
+    pull_moment: Numbers | None = None
     deflection: Any = (0.0, 0.0, 0.0, 0.0)
     attached: Any = False
     ended: str = ""
@@ -90,6 +97,27 @@ class Motion:
             return float(numpy.max(abs(self.total - self.total[0])) / max(self.kinetic.max(), self.energy.max()))
 
     @cached_property
+    def angular_momentum(self) -> Numbers:
+        """Angular momentum of the ball's centre about the socket's centre, in N mm s: (steps, 3)."""
+        return TONNE * self.mass * numpy.cross(self.position, self.velocity)
+
+    @property
+    def angular_drift(self) -> float | None:
+        """Largest change of the angular momentum less `pull_moment` over the largest product m r v; 0 but for rounding.
+
+        In a cup it is the component about the dome axis. None where the angular momentum is not conserved: friction,
+        bristles and a retarded liner have a moment about the socket's centre.
+        """
+        given, cup = self.element.constants, self.element.cup
+        if self.pull_moment is None or given.static + given.viscous + given.time > 0.0:
+            return None
+        balance = self.angular_momentum - self.pull_moment
+        change = numpy.linalg.norm(balance - balance[0], axis=1) if cup is None else (balance - balance[0]) @ cup.dome
+        reach = numpy.linalg.norm(self.position, axis=1) * numpy.linalg.norm(self.velocity, axis=1)
+        largest = TONNE * self.mass * float(reach.max())
+        return float(abs(change).max()) / largest if largest > 0.0 else 0.0
+
+    @cached_property
     def depth(self) -> Numbers:
         """The indentation in mm; below 0 it is the way to the touch-down. (steps,)."""
         return numpy.linalg.norm(self.position, axis=1) - float(self.element.joint.clearance)
@@ -106,6 +134,7 @@ class Motion:
             "largest_force": float(force.max()),
             **{name: float(values[-1]) for name, values in ends.items()},
             "drift": self.drift,
+            "angular_drift": self.angular_drift,
             "ended": self.ended,
         }
 
@@ -128,9 +157,11 @@ def simulate(
     duration: float,
     step: float,
 ) -> Motion:
-    """A ball in a socket at rest, by steps that keep its energy to rounding.
+    """Simulate a ball in a socket at rest, by steps that conserve energy and angular momentum to rounding.
 
-    Bristles and what sticks have a state of their own; with them the motion is integrated by LSODA, to 1e-10.
+    The method is of order 2: halving the step divides the errors of positions and phases by four. Conserved energy
+    does not bound these errors. Bristles and adhesion have a state of their own; with them the motion is integrated by
+    LSODA, with a tolerance of 1e-10.
 
     Parameters
     ----------
@@ -161,9 +192,10 @@ def simulate(
     plain = getattr(element, "element", element)
     if not isinstance(plain, ForceElement):
         raise TypeError(f"element must be a ForceElement, got {shown(element)}")
-    heavy = _above_nothing("mass", mass)
-    turning = 0.4 * heavy * element.constants.ball_radius**2 if inertia is None else _above_nothing("inertia", inertia)
-    steps = _above_nothing("duration", duration) / _above_nothing("step", step)
+    heavy = _inertial("mass", mass)
+    turning = 0.4 * heavy * element.constants.ball_radius**2 if inertia is None else _inertial("inertia", inertia)
+    duration = _above_nothing("duration", duration)
+    steps = duration / _above_nothing("step", step)
     require("the number of steps", steps, steps <= _MOST, f"there is room for {_MOST:g}")
     count = max(int(numpy.ceil(steps - 1e-9)), 1)
     begun = Ball(*three(position), *three(velocity), *three(spin))
@@ -195,7 +227,7 @@ class _Thrown:
         return self._moved(states, self.plain(states[:, :3]), lost=none, work=none, ended=_why(self.plain, states[0]))
 
     def stepped(self) -> Motion:
-        """By steps that keep the energy."""
+        """Simulate by energy-momentum steps."""
         h, count, given = self.step, self.count, (self.element.potential, self.element.constants)
         states, lost = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
         pulls = _pulls(self.pull, h * (numpy.arange(count) + 0.5))
@@ -203,9 +235,12 @@ class _Thrown:
         march, rows = (stepping.march, pulls.tolist()) if plain else (self.element.march, pulls)
         good = march(*given, self.begun, TONNE * self.mass, TONNE * self.inertia, rows, h, states, lost)
         ended = "" if good == count else _why(self.plain, states[good + 1], good * h, h)
-        states, lost = states[: good + 1], lost[: good + 1]
-        work = numpy.cumsum(numpy.sum(pulls[:good] * numpy.diff(states[:, :3], axis=0), axis=1))
-        return self._moved(states, self.plain(states[:, :3]), lost=lost, work=numpy.append(0.0, work), ended=ended)
+        states, lost, pulls = states[: good + 1], lost[: good + 1], pulls[:good]
+        position = states[:, :3]
+        work = numpy.cumsum(numpy.sum(pulls * numpy.diff(position, axis=0), axis=1))
+        moment = numpy.cumsum(h / 2 * numpy.cross(position[:-1] + position[1:], pulls), axis=0)
+        sums = {"work": numpy.append(0.0, work), "pull_moment": numpy.vstack([numpy.zeros(3), moment])}
+        return self._moved(states, self.plain(position), lost=lost, ended=ended, **sums)
 
     def carried(self) -> Motion:
         """With what the contact carries along."""
@@ -247,6 +282,17 @@ def _why(element: ForceElement, state: Numbers, time: float = 0.0, step: float =
     x, y, z, *rates = state.tolist()
     notes = element((x, y, z), rates[:3], rates[3:]).notes
     return f"after {time:g} s: {'; '.join(notes) or f'a step of {step:g} s did not converge'}"
+
+
+_MASSES = (1e-100, 1e100)
+"""Range of masses and moments of inertia whose products are neither zero nor infinite."""
+
+
+def _inertial(name: str, value: Any) -> float:
+    number = one_number(name, value)
+    low, high = _MASSES
+    require(name, number, low <= number <= high, f"{name} must lie between {low:g} and {high:g}")
+    return number
 
 
 def _above_nothing(name: str, value: Any) -> float:

@@ -170,32 +170,53 @@ ROUNDED = 0.1
 
 
 class Sliding(NamedTuple):
-    """How the ball slides: slip at the pole (mm/s), spin about the load (rad/s), lever² (mm²), N, and f over slip."""
+    """Slip of a ball and its friction.
+
+    (`x`, `y`, `z`) is the velocity v across the load and (`bx`, `by`, `bz`) is b = R1 ω x n, both in mm/s. `spin` is
+    the one about the load in rad/s, `lever_squared` is in mm². `normal` is N, `speed` the effective slip speed q, and
+    `rate` is N μ(q)/q plus viscous friction. The force of friction is -rate (push v + mixed b). Its moment is
+    -rate R1 n x (mixed v + turn b) across the load and -rate drill lever² spin about it.
+    """
 
     x: Array
     y: Array
     z: Array
+    bx: Array
+    by: Array
+    bz: Array
     spin: Array
     lever_squared: Array
     normal: Array
     rate: Array
+    speed: Array
+    push: Array
+    mixed: Array
+    turn: Array
+    drill: Array
 
 
 def sliding(place: Place, force: Array, velocity: Three, spin: Three, given: Constants) -> Sliding:
-    """The slip of the ball's surface at the pole of the contact, v + ω x R1 n across n, and friction's rate."""
+    """Compute the slip of the ball on the patch and friction's rate, from velocities across n and about it."""
     (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, given.ball_radius
     nx, ny, nz = place.x, place.y, place.z
     speed, turning = vx * nx + vy * ny + vz * nz, wx * nx + wy * ny + wz * nz
-    sx = vx - speed * nx + R1 * (wy * nz - wz * ny)
-    sy = vy - speed * ny + R1 * (wz * nx - wx * nz)
-    sz = vz - speed * nz + R1 * (wx * ny - wy * nx)
+    ax, ay, az = vx - speed * nx, vy - speed * ny, vz - speed * nz
+    bx, by, bz = R1 * (wy * nz - wz * ny), R1 * (wz * nx - wx * nz), R1 * (wx * ny - wy * nx)
     m = versine(place)
-    lever = given.socket_radius * friction.drill_lever(m)
-    squared = lever * lever * m * (2.0 - m)
-    q = friction.combined(sx * sx + sy * sy + sz * sz, squared * turning * turning, given.transition_speed)
+    lever, kappa = given.socket_radius * friction.drill_lever(m), friction.tilt_share(m)
+    squared, share = lever * lever * m * (2.0 - m), kappa * kappa
+    aa, bb, cross = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, 2.0 * (ax * bx + ay * by + az * bz)
+    both, still = aa + bb, given.transition_speed * given.transition_speed
+    drilled, twisted = squared * turning * turning, kappa * (aa - bb)
+    q2, slope, tilt, drill, twist = friction.effective_slip(
+        both + cross, share * (both - cross), drilled, twisted, still, share, m
+    )
+    q, tilt, twist = sqrt(q2), share * tilt, kappa * twist
     mu = friction.coefficient_at(q, given.sliding, given.static, given.stribeck_speed)
     N = force * friction.grip(m)
-    return Sliding(sx, sy, sz, turning, squared, N, N * (mu / q + given.viscous))
+    rate, mean = N * (mu / q + given.viscous), slope + tilt
+    push, turn = mean + twist, mean - twist
+    return Sliding(ax, ay, az, bx, by, bz, turning, squared, N, rate, q, push, slope - tilt, turn, drill)
 
 
 def versine(place: Place) -> Array:
@@ -218,12 +239,17 @@ def reaction(place: Place, contact: Elastic, velocity: Three, spin: Three, given
     if given.static + given.viscous == 0.0:
         none = 0.0 * normal
         return fx, fy, fz, none, none, none
-    slip = sliding(place, normal, velocity, spin, given)
-    tx, ty, tz = -slip.rate * slip.x, -slip.rate * slip.y, -slip.rate * slip.z
-    R1, drill = given.ball_radius, -slip.rate * slip.lever_squared * slip.spin
-    mx = R1 * (ny * tz - nz * ty) + drill * nx
-    my = R1 * (nz * tx - nx * tz) + drill * ny
-    mz = R1 * (nx * ty - ny * tx) + drill * nz
+    ax, ay, az, bx, by, bz, twirl, lever, _, rate, _, push, mixed, turn, drill = sliding(
+        place, normal, velocity, spin, given
+    )
+    push, mixed = -rate * push, -rate * mixed
+    tx, ty, tz = push * ax + mixed * bx, push * ay + mixed * by, push * az + mixed * bz
+    R1, drill = given.ball_radius, -rate * drill * lever * twirl
+    turn, mixed = -rate * turn * R1, mixed * R1
+    gx, gy, gz = mixed * ax + turn * bx, mixed * ay + turn * by, mixed * az + turn * bz
+    mx = ny * gz - nz * gy + drill * nx
+    my = nz * gx - nx * gz + drill * ny
+    mz = nx * gy - ny * gx + drill * nz
     return fx + tx, fy + ty, fz + tz, mx, my, mz
 
 
@@ -233,10 +259,13 @@ def dissipation(place: Place, contact: Elastic, velocity: Three, spin: Three, gi
     speed = vx * place.x + vy * place.y + vz * place.z
     normal = pressed(contact, speed, given)
     slip = sliding(place, normal, velocity, spin, given)
-    tx, ty, tz = vx - speed * place.x, vy - speed * place.y, vz - speed * place.z
     drag = given.time * contact.damped_force * place.over
-    rubbed = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z + slip.lever_squared * slip.spin * slip.spin
-    return (normal - contact.normal) * speed + drag * (tx * tx + ty * ty + tz * tz) + slip.rate * rubbed
+    aa = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z
+    cross = slip.x * slip.bx + slip.y * slip.by + slip.z * slip.bz
+    bb = slip.bx * slip.bx + slip.by * slip.by + slip.bz * slip.bz
+    rubbed = slip.push * aa + 2.0 * slip.mixed * cross + slip.turn * bb
+    rubbed = rubbed + slip.drill * slip.lever_squared * slip.spin * slip.spin
+    return (normal - contact.normal) * speed + drag * aa + slip.rate * rubbed
 
 
 def tangent(place: Place, contact: Elastic, given: Constants) -> tuple[Array, ...]:
