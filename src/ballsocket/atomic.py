@@ -20,6 +20,11 @@ _SHORT = 40  # characters of a name, so that what is made of it is no longer tha
 _YOUNG = 60.0  # seconds
 
 
+def is_draft(name: str) -> bool:
+    """Check if a name is that of a draft folder from a killed process."""
+    return name.startswith(".") and name.endswith(_DRAFT)
+
+
 def check_folder(path: Path) -> None:
     """Raise ValueError where there is no folder to write a file into."""
     if not path.parent.is_dir():

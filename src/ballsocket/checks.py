@@ -63,7 +63,7 @@ def numeric(name: str, value: Any) -> Array:
         value = _array_of(name, value)
     if is_plain(value) and not isinstance(value, bool):
         return _in_range(name, value)
-    if not hasattr(value, "dtype") or isinstance(value, numpy.ma.MaskedArray) or not _is_real(value):
+    if not hasattr(value, "dtype") or isinstance(value, numpy.ma.MaskedArray | numpy.matrix) or not _is_real(value):
         raise TypeError(_refusal(name, value))
     return common(value)[0]  # integers as floats, before they are added
 
@@ -110,11 +110,17 @@ def _is_real(value: Any) -> bool:
 
 
 def _refusal(name: str, value: Any) -> str:
-    what = f"an array of {value.dtype}" if getattr(value, "shape", ()) else shown(value)
-    if isinstance(value, numpy.ma.MaskedArray):
-        what = "a masked array"
+    what = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
+    for kind, title in _OTHER_ARRAYS.items():
+        if isinstance(value, kind):
+            what = title
+    if type(value).__name__ == "DataFrame":
+        what = "a DataFrame: take one of its columns"
     hint = "; text with units belongs in a joint file or on the command line" if isinstance(value, str) else ""
     return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {what}{hint}"
+
+
+_OTHER_ARRAYS = {numpy.ma.MaskedArray: "a masked array", numpy.matrix: "a numpy.matrix: use numpy.asarray"}
 
 
 def refuse_unnamed(loads: tuple[Any, ...]) -> None:
@@ -224,6 +230,7 @@ def shown(value: Any) -> str:
         text = repr(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits; lists in lists in lists
         return f"({type(value).__name__} too long to show)"
+    text = " ".join(line.strip() for line in text.splitlines())
     return text if len(text) < _LONGEST else f"{text[:40]}..."
 
 

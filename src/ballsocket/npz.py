@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 from zipfile import BadZipFile, ZipFile
 
 import numpy
 
 from .arrays import Numbers
 from .atomic import at_once
+from .input_files import open_input
 
 
 def write_arrays(path: Path, **named: Any) -> None:
@@ -35,11 +37,24 @@ def read_arrays(path: Path) -> dict[str, Numbers]:
         There is none, or it cannot be read.
     """
     try:
-        with ZipFile(path) as whole:
-            damaged = whole.testzip()  # NumPy alone believes a damaged shape that is smaller
-        if damaged is not None:
-            raise ValueError(f"{path.name} is damaged")
-        with numpy.load(path, allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
+        with open_input(path) as stream:
+            with ZipFile(stream) as archive:
+                damaged = archive.testzip()  # NumPy accepts a damaged, smaller shape without this test
+                members = len(archive.infolist())
+            if damaged is not None or members != _count_of(stream):
+                raise ValueError(f"{path.name} is damaged")
+            stream.seek(0)
+            with numpy.load(stream, allow_pickle=False) as file:
+                return {name: file[name] for name in file.files}
     except (BadZipFile, EOFError, KeyError, RuntimeError) as error:
         raise ValueError(f"{path.name} is damaged") from error
+
+
+def _count_of(stream: BinaryIO) -> int:
+    """Read the number of members from the end record of an archive; a damaged directory lists fewer."""
+    stream.seek(-_END, os.SEEK_END)
+    return int.from_bytes(stream.read(_END)[10:12], "little")
+
+
+_END = 22
+"""Length in bytes of the end record of an archive without a comment."""

@@ -1,16 +1,9 @@
 """Whatever comes in, the answer is an answer or one sentence, and comes within 5 s and 1 GB."""
 
-import shutil
-from contextlib import contextmanager
-from itertools import count
-from unittest import mock
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from typer.main import get_command
 
-from ballsocket.cli import root
 from ballsocket.io.joint_file import joint_of, parse_joint
 from ballsocket.io.joint_toml import tables_of
 
@@ -23,31 +16,7 @@ STORED = ([], [], [], [], ["--store", "store"])
 MODELS = (*CLOSED * 6, [], ["--all"])
 
 
-@pytest.fixture(scope="module", autouse=True)
-def built_once():
-    """The command line, which is otherwise put together for each command: half of the time that they take."""
-    with mock.patch.object(root, "app", get_command(root.app)):
-        yield
-
-
-@pytest.fixture
-def fresh(tmp_path):
-    """A folder for each input, removed after it."""
-    number = count()
-
-    @contextmanager
-    def folder():
-        path = tmp_path / str(next(number))
-        path.mkdir()
-        try:
-            yield path
-        finally:
-            shutil.rmtree(path)
-
-    return folder
-
-
-@inputs(14)
+@inputs(7)
 @given(raw=joint_files.raw, model=st.sampled_from(MODELS))
 def test_joint_files(fresh, raw, model):
     with fresh() as folder:
@@ -56,14 +25,14 @@ def test_joint_files(fresh, raw, model):
             check_run(run("press", "joint.toml", *model, folder=folder))
 
 
-@inputs(20)
+@inputs(10)
 @given(line=flags.line)
 def test_command_lines(fresh, line):
     with fresh() as folder, within_limits():
         check_run(run(*line, folder=folder))
 
 
-@inputs(10)
+@inputs(5)
 @given(raw=study_files.raw, csv=study_files.csv, store=st.sampled_from(STORED))
 def test_study_files(fresh, raw, csv, store):
     with fresh() as folder:
@@ -73,7 +42,7 @@ def test_study_files(fresh, raw, csv, store):
             check_run(run("study", "study.toml", *store, folder=folder))
 
 
-@inputs(6)
+@inputs(3)
 @given(csv=study_files.csv, store=st.sampled_from(STORED))
 def test_tables_of_numbers(fresh, csv, store):
     pytest.importorskip("pandas")
@@ -84,7 +53,7 @@ def test_tables_of_numbers(fresh, csv, store):
             check_run(run("study", "study.toml", *store, folder=folder))
 
 
-@inputs(24)
+@inputs(12)
 @given(raw=joint_files.raw)
 def test_uploads(raw):
     """What a browser hands in is a joint, or refused; written down, it is read as the same."""

@@ -19,7 +19,7 @@ def _read(query):
     return read_link(parse_qs(query, keep_blank_values=True))
 
 
-@inputs(25)
+@inputs(12)
 @given(query=links.query)
 def test_links(query):
     """A screen has a link that leads back to it, but for the last digit of an angle."""

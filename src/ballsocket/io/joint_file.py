@@ -16,7 +16,7 @@ from ..joint.dimensions import LENGTHS
 from ..kinds import Kind
 from ..model.answer import checked_load
 from ..presets import materials
-from ..quantities import CUP, LAYER, LOADS, MATERIAL, STRENGTH
+from ..quantities import CUP, LAYER, LOADS, MATERIAL, STRESS_LIMITS
 from .toml import parse_toml, read_toml, table_of
 from .units import as_given, parse
 
@@ -25,12 +25,12 @@ _AIM = ("tilt", "direction")
 _TABLES = {
     "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
     "joint": (*LENGTHS, "support"),
-    "liner": ("material", *MATERIAL, *STRENGTH),
-    "ball": ("material", *MATERIAL, *STRENGTH),
+    "liner": ("material", *MATERIAL, *STRESS_LIMITS),
+    "ball": ("material", *MATERIAL, *STRESS_LIMITS),
     "cup": (*CUP, *_CHOICES),
     "load": (*LOADS, *_AIM),
 }
-KEYS: Mapping[str, Sequence[str]] = {**_TABLES, "backing": (*LAYER, "material", *MATERIAL, *STRENGTH)}
+KEYS: Mapping[str, Sequence[str]] = {**_TABLES, "backing": (*LAYER, "material", *MATERIAL, *STRESS_LIMITS)}
 _HEADS = {"backing": "[[backing]]"}
 _MOST_LAYERS = 20
 
@@ -54,14 +54,14 @@ def read_joint(path: str | Path) -> JointFile:
     The file is TOML: a table `joint` with two of `ball_radius`, `socket_radius`, `clearance` (or `head_diameter`,
     `diametral_clearance` in their places) and `liner_thickness` (or `outer_radius`, `outer_diameter`: of the liner, or
     of the shell where one is right behind it); tables `liner` and (for a ball that is not rigid) `ball`, each with a
-    `material` by name or `young` and `poisson`, or both, where the numbers win, and the strengths `yield_stress`,
-    `fatigue_limit`, `allowable_pressure`, which may be left out; a table `load` with one of `force`,
+    `material` by name or `young` and `poisson`, or both, where the numbers win, and the limits `proportional_limit`,
+    `yield_stress`, `fatigue_limit`, `allowable_pressure`, which may be left out; a table `load` with one of `force`,
     `indentation`, `half_angle`. What is behind the liner is rigid, or is an array of tables `[[backing]]` from the
     liner outwards, each with a `thickness` and a material as above; `support` in the table `joint` says whether its
     outermost surface is "fixed" (without a word) or "free". A table `cup` holds what finite elements ask for,
     `arc_of_cover`, `chamfer`, and `interface`, which is "bonded" or "sliding", and where the cup faces: `inclination`,
-    `anteversion`, and `side`, which is "right" or "left". Values are text with a unit ("16 mm", "3 kN", "1 GPa",
-    "40 deg") or bare numbers in mm, N, MPa, degrees.
+    `anteversion`, and `side`, which is "right" or "left". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40
+    deg") or bare numbers in mm, N, MPa, degrees.
 
     Returns
     -------
@@ -212,7 +212,7 @@ def _layer(name: str, table: Mapping[str, Any]) -> Layer:
 
 def _material(name: str, table: Mapping[str, Any], standing: Material | None = None) -> Material:
     """A material from a table with `material` (by name), numbers that win over its own, or both; else what stands."""
-    known = {**MATERIAL, **STRENGTH}
+    known = {**MATERIAL, **STRESS_LIMITS}
     numbers: dict[str, Any] = {
         key: parse(f"{name}.{key}", table[key], quantity.kind) for key, quantity in known.items() if key in table
     }

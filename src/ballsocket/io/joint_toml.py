@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import degrees, inf, isinf, nextafter, radians
 from typing import Any
 
@@ -41,7 +40,7 @@ def tables_of(file: JointFile) -> Tables:
         tables["ball"] = _material(joint.ball)
     if joint.backing:
         tables["backing"] = [_layer(layer) for layer in joint.backing]
-    if file.cup != Cup():
+    if file.cup != Cup() or file.cup.oriented:
         tables["cup"] = cup_table(file.cup)
     if file.load:
         tables["load"] = {name: _bare(name, value) for name, value in file.load.items()}
@@ -51,12 +50,13 @@ def tables_of(file: JointFile) -> Tables:
 
 
 def cup_table(cup: Cup) -> Tables:
-    """The table `cup` of a joint file; where the cup faces is left out where that is straight down."""
-    numbers = {name: _bare(name, getattr(cup, name)) for name in CUP}
-    table = {**numbers, "interface": cup.interface.value, "side": cup.side.value}
-    if replace(cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT) == cup:
-        return {name: table[name] for name in ("arc_of_cover", "chamfer", "interface")}
-    return table
+    """Return the table `cup` of a joint file, without default angles."""
+    numbers = {name: _bare(name, getattr(cup, name)) for name in CUP if cup.oriented or name not in _ORIENTATION}
+    side = {"side": cup.side.value} if cup.oriented or cup.side is not Side.RIGHT else {}
+    return {**numbers, "interface": cup.interface.value, **side}
+
+
+_ORIENTATION = ("inclination", "anteversion")
 
 
 def _aim(aim: Mapping[str, Any]) -> Tables:
@@ -115,10 +115,10 @@ def _layer(layer: Layer) -> Tables:
 
 def _material(material: Material) -> Tables:
     """By its name where it is a preset; with the numbers that differ where it has a preset's name."""
-    numbers = {"young": material.young, "poisson": material.poisson, **material.strengths}
+    numbers = {"young": material.young, "poisson": material.poisson, **material.stress_limits}
     numbers = {name: float(value) for name, value in numbers.items()}
     for key, preset in materials.items():
-        if preset.name == material.name and set(preset.strengths) <= set(numbers):
+        if preset.name == material.name and set(preset.stress_limits) <= set(numbers):
             changed = {name: value for name, value in numbers.items() if getattr(preset, name) != value}
             return {"material": key, **changed}
     return numbers

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..checks import check_text, nearest, plain_name, shown
+from ..input_files import resolve_input
 from ..presets import joints
 from .joint_file import JointFile, joint_of, read_joint
 
@@ -46,6 +47,6 @@ def _called(name: Any, folder: Path) -> JointFile:
         raise ValueError("joint is empty")
     if plain_name(name) in joints:
         return JointFile(joints[plain_name(name)], {})
-    if not (folder / name).is_file():
+    if not resolve_input(folder / name).is_file():
         raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
     return read_joint(folder / name)

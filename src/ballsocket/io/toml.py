@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ..checks import shown
+from ..input_files import open_input
 
 Made = TypeVar("Made")
 
@@ -31,7 +32,7 @@ def read_toml(path: Path, kind: str, make: Callable[[Mapping[str, Any]], Made]) 
     OSError
         The file cannot be read.
     """
-    with path.open("rb") as stream:
+    with open_input(path) as stream:
         raw = stream.read(MOST + 1)
     return parse_toml(raw, path.name, kind, make)
 

@@ -1,6 +1,7 @@
-"""The door for units: text with a unit becomes a number in mm, N, MPa or rad; inside there are only numbers.
+"""Conversion of text with units to numbers in mm, N, MPa or rad.
 
-A bare number is taken as mm, N, MPa or degrees.
+A bare number is taken as mm, N, MPa or degrees. No other module calls pint. Its parser also evaluates arithmetic, which
+can take unlimited time. It therefore receives only names of single units.
 """
 
 from __future__ import annotations
@@ -15,16 +16,24 @@ from typing import Any
 from ..checks import shown
 from ..kinds import Kind
 
-LONGEST = 200
+LONGEST = 100
 """Characters of a quantity."""
 
-_FACTOR = r"[A-Za-z\u00b5\u03bc\u00b0]+(?:\s*(?:\*\*|\^)\s*-?[1-9]|[2\u00b2])?"
-# a number and a product or quotient of units: pint alone would also evaluate any arithmetic put before it
-_QUANTITY = re.compile(
-    rf"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)\s*({_FACTOR}(?:(?:\s*[*/]\s*|\s+){_FACTOR})*)", re.ASCII
+Units = Mapping[str, int]
+"""Product of units: exponents by the names of pint."""
+
+_LARGEST_EXPONENT = 9
+_NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_TOKEN = re.compile(
+    r"""(?P<blank>\s+)
+    | (?P<name>[A-Za-z\u00b5\u03bc\u00b0]+)
+      (?:(?P<digit>[2-9\u00b2\u00b3](?!\d))|\s*(?:\*\*|\^)\s*(?P<power>-?[1-9])(?!\d))?
+    | (?P<sign>[*/()\u00b7\u00d7])""",
+    re.ASCII | re.VERBOSE,
 )
+_PRODUCT_SIGNS = ("*", "/", "·", "×")
+_SUPERSCRIPTS = str.maketrans("\u00b2\u00b3", "23")
 _INFINITE = re.compile(r"\s*[-+]?inf(?:inity)?\s*", re.IGNORECASE)
-_SQUARE = re.compile(r"(?<=[A-Za-z])[2\u00b2]")  # of units as people and the CF conventions write them: mm², mm2
 
 _IN_RADIANS = re.compile(r"; \S+ degrees are \S+ radians$")
 _REFUSED = re.compile(r"(?P<name>\w+) = \S+ is not allowed: (?P<rule>.*)")
@@ -91,24 +100,128 @@ def _number(name: str, value: float | str, kind: str) -> float:
 
 
 def _quantity(name: str, text: str, kind: str) -> float:
-    found = _QUANTITY.fullmatch(text.strip())
-    if found is None:
-        raise ValueError(_refusal(name, text, kind))
-    number, unit = found.groups()
     try:
-        return float(registry().Quantity(float(number), _plain(unit)).to(_plain(Kind(kind).typed)).magnitude)
-    except Exception as error:  # whatever pint makes of units that nobody meant: it has no list of them
+        number, unit = split_quantity(text)
+        return convert(number, parse_units(unit), parse_units(Kind(kind).typed))
+    except ValueError as error:
         raise ValueError(_refusal(name, text, kind)) from error
 
 
-def _plain(unit: str) -> str:
-    """A unit as pint reads it."""
-    return _SQUARE.sub("**2", unit)
+def split_quantity(text: str) -> tuple[float, str]:
+    """Split text into a number and the text of its unit, which may be empty.
+
+    Raises
+    ------
+    ValueError
+        Text of more than `LONGEST` characters, or without a number at its beginning.
+    """
+    stripped = text.strip()
+    number = _NUMBER.match(stripped) if len(text) <= LONGEST else None
+    if number is None:
+        raise ValueError(f"{shown(text)} does not begin with a number")
+    return float(number[0]), stripped[number.end() :].strip()
+
+
+def parse_units(text: str) -> Units:
+    """Parse a product or quotient of units, such as "mm^3/(N m)", without evaluating any arithmetic.
+
+    Exponents are integers from -9 to 9. A slash divides by the next unit or bracket.
+
+    Raises
+    ------
+    ValueError
+        Text of more than `LONGEST` characters, an unknown unit, or text that is not a product of units.
+
+    Examples
+    --------
+    >>> parse_units("kN/mm²")
+    {'kilonewton': 1, 'millimeter': -2}
+    """
+    if len(text) > LONGEST:
+        raise ValueError(f"a unit has at most {LONGEST} characters, got {len(text)}")
+    tokens = _tokens(text)
+    units = _product(tokens) if tokens else {}
+    if tokens:
+        raise ValueError(f"{shown(text)} has an unexpected {tokens[-1][0]!r}")
+    if any(abs(exponent) > _LARGEST_EXPONENT for exponent in units.values()):
+        raise ValueError(f"an exponent of {shown(text)} is not -{_LARGEST_EXPONENT} to {_LARGEST_EXPONENT}")
+    return {name: exponent for name, exponent in units.items() if exponent}
+
+
+def _tokens(text: str) -> list[re.Match[str]]:
+    """Split text into names with exponents and signs, in reverse order."""
+    tokens, end = [], 0
+    while end < len(text):
+        token = _TOKEN.match(text, end)
+        if token is None:
+            raise ValueError(f"{shown(text)} is not a product of units")
+        tokens.append(token)
+        end = token.end()
+    return [token for token in reversed(tokens) if not token["blank"]]
+
+
+def _product(tokens: list[re.Match[str]]) -> dict[str, int]:
+    """Parse factors from the end of `tokens`, up to a closing bracket."""
+    units: dict[str, int] = {}
+    sign = 1
+    while True:
+        for name, exponent in _factor(tokens).items():
+            units[name] = units.get(name, 0) + sign * exponent
+        following = tokens[-1]["sign"] if tokens else ")"
+        if following == ")":
+            return units
+        sign = -1 if following == "/" else 1
+        if following in _PRODUCT_SIGNS:
+            tokens.pop()
+
+
+def _factor(tokens: list[re.Match[str]]) -> dict[str, int]:
+    token = tokens.pop() if tokens else None
+    if token is not None and token["name"]:
+        power = token["power"] or (token["digit"] or "1").translate(_SUPERSCRIPTS)
+        return {_unit_name(token["name"]): int(power)}
+    if token is None or token["sign"] != "(":
+        raise ValueError("a unit is missing before or behind a sign")
+    units = _product(tokens)
+    if not tokens:
+        raise ValueError("a bracket does not close")
+    tokens.pop()
+    return units
+
+
+def _unit_name(text: str) -> str:
+    import pint
+
+    try:
+        name = str(_registry().get_name("degree" if text == "\u00b0" else text))
+    except (pint.PintError, ValueError) as error:
+        raise ValueError(f"{shown(text)} is not a known unit") from error
+    if not _registry()._is_multiplicative(name):  # decibels, degrees of Celsius
+        raise ValueError(f"{shown(text)} is logarithmic or has an offset: use a unit that is a factor")
+    return name
+
+
+def convert(number: float, units: Units, target: Units) -> float:
+    """Convert a number from one product of units to another of the same dimension.
+
+    Raises
+    ------
+    ValueError
+        Units of another dimension, or a number out of range.
+    """
+    import pint
+
+    registry = _registry()
+    given, wanted = (registry.Unit(pint.util.UnitsContainer(each)) for each in (units, target))
+    try:
+        return float(registry.Quantity(number, given).to(wanted).magnitude)
+    except (pint.PintError, ArithmeticError, ValueError) as error:
+        raise ValueError(f"{given} has another dimension than {wanted}") from error
 
 
 @cache
-def registry() -> Any:
-    """Where pint keeps its units; made once, which takes a while."""
+def _registry() -> Any:
+    """Load the unit definitions of pint on first use, because loading takes long."""
     import pint
 
     return pint.UnitRegistry()

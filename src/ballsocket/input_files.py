@@ -1,0 +1,108 @@
+"""Access to input files: every reader opens the files of users here.
+
+A server restricts its processes to certain folders by the environment variable of `restricted`. Child processes inherit
+this variable. The command line reads any file of its user.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from .checks import shown
+
+_VARIABLE = "BALLSOCKET_INPUT_FOLDERS"
+_opened: ContextVar[list[Path] | None] = ContextVar("opened_inputs", default=None)
+
+
+@dataclass(frozen=True)
+class AllowedFolders:
+    """Folders whose contents may be read.
+
+    Parameters
+    ----------
+    folders : tuple of Path
+        Paths without symbolic links.
+    """
+
+    folders: tuple[Path, ...]
+
+    def resolve(self, path: Path, name: str) -> Path:
+        """Resolve all symbolic links and ".." of a path; `name` stands for it in the message.
+
+        Raises
+        ------
+        ValueError
+            A path outside the folders.
+        """
+        resolved = resolved_path(path)
+        if not any(resolved.is_relative_to(folder) for folder in self.folders):
+            raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
+        return resolved
+
+
+def restricted(folders: Iterable[Path]) -> Mapping[str, str]:
+    """Return the environment variable that restricts a process and its child processes to the given folders."""
+    return {_VARIABLE: json.dumps([str(resolved_path(folder)) for folder in folders])}
+
+
+def resolve_input(path: Path) -> Path:
+    """Resolve and check the path of an input file, before any access to the file.
+
+    Raises
+    ------
+    ValueError
+        A path outside the allowed folders.
+    """
+    allowed = os.environ.get(_VARIABLE)
+    if allowed is None:
+        return path
+    return AllowedFolders(tuple(map(Path, json.loads(allowed)))).resolve(path, str(path))
+
+
+def open_input(path: Path) -> BinaryIO:
+    """Open an input file for reading bytes.
+
+    Raises
+    ------
+    ValueError
+        A path from which this process may not read, or no regular file there.
+    OSError
+        The file cannot be read.
+    """
+    resolved = resolve_input(path)
+    if _VARIABLE in os.environ and resolved.exists() and not resolved.is_file():
+        raise ValueError(f"{shown(str(path))} is not a regular file")
+    stream = resolved.open("rb")
+    opened = _opened.get()
+    if opened is not None and path not in opened:
+        opened.append(path)
+    return stream
+
+
+@contextmanager
+def recorded_inputs() -> Iterator[list[Path]]:
+    """Record the paths of all input files that are opened in this context, each once."""
+    opened: list[Path] = []
+    token = _opened.set(opened)
+    try:
+        yield opened
+    finally:
+        _opened.reset(token)
+        outer = _opened.get()
+        if outer is not None:
+            outer += [path for path in opened if path not in outer]
+
+
+def resolved_path(path: Path) -> Path:
+    """Resolve a path; raise ValueError where the system cannot resolve it."""
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError) as error:  # a circle of links, a name that is too long
+        raise ValueError(f"{shown(str(path))} cannot be resolved: {error}") from error

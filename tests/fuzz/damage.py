@@ -1,0 +1,100 @@
+"""Strategies for damaged files: seeds with replaced, missing or doubled values, lines and bytes."""
+
+from hypothesis import strategies as st
+
+from . import words
+from .words import number, odd_text, quantity
+
+ODD_VALUES = st.one_of(
+    quantity.map(words.toml),
+    number,
+    odd_text.map(words.toml),
+    st.sampled_from(("true", "[]", "{}", "[1, 2]", '["a"]', "{a = 1}", "1979-05-27", "", "[" * 500, "9" * 400)),
+)
+_BYTES = st.sampled_from((b"", b"\0", b"\xff", b"[", b'"', b"\n", b",", b" " * 3000, b"(" * 2000, b"\r")) | st.binary(
+    max_size=4
+)
+
+
+def _lines(seed):
+    return seed.decode("utf-8").splitlines()
+
+
+def _with_value(seed, position, value):
+    """Replace the value of one entry of a file."""
+    lines = _lines(seed)
+    entries = [i for i, line in enumerate(lines) if " = " in line]
+    if not entries:
+        return seed
+    i = entries[position % len(entries)]
+    lines[i] = f"{lines[i].partition(' = ')[0]} = {value}"
+    return "\n".join(lines).encode("utf-8", "surrogatepass")
+
+
+def _with_cell(seed, position, column, cell):
+    """Replace one cell of a table."""
+    lines = _lines(seed)
+    i = position % len(lines)
+    cells = lines[i].split(",")
+    cells[column % len(cells)] = cell
+    lines[i] = ",".join(cells)
+    return "\n".join(lines).encode("utf-8", "surrogatepass")
+
+
+def _without_line(seed, position, times):
+    lines = _lines(seed)
+    i = position % len(lines)
+    return "\n".join([*lines[:i], *lines[i : i + 1] * times, *lines[i + 1 :]]).encode()
+
+
+def _with_bytes(seed, position, width, wound):
+    position %= max(len(seed), 1)
+    return seed[:position] + wound + seed[position + width :]
+
+
+_position = st.integers(0, 5000)
+
+
+def file_of(*seeds):
+    """Draw the bytes of a file: a seed, usually with one fault."""
+    seed = st.sampled_from(seeds)
+    once = st.one_of(
+        st.builds(_with_value, seed, _position, ODD_VALUES),
+        st.builds(_with_value, seed, _position, ODD_VALUES),
+        st.builds(_without_line, seed, _position, st.sampled_from((0, 2))),
+        st.builds(_with_bytes, seed, _position, st.integers(0, 6), _BYTES),
+    )
+    return st.one_of(seed, once, once, once, st.binary(max_size=80))
+
+
+def table_of(*seeds):
+    """Draw the bytes of a table."""
+    seed = st.sampled_from(seeds)
+    once = st.one_of(
+        st.builds(_with_cell, seed, _position, st.integers(0, 6), number | odd_text | quantity),
+        st.builds(_with_cell, seed, st.just(0), st.integers(0, 6), odd_text | st.sampled_from(HEADS)),
+        st.builds(_without_line, seed, _position, st.sampled_from((0, 2))),
+        st.builds(_with_bytes, seed, _position, st.integers(0, 6), _BYTES),
+    )
+    return st.one_of(seed, once, once, once, st.binary(max_size=80))
+
+
+HEADS = (
+    "force [N]", "force [kN]", "force" + " " * 3000 + "!", "force (" + " " * 3000 + "x", "time [s]", "phase [%]",
+    "force [%BW]", "flexion", "force_x [N]", "Fx", "indentation [um]", "area_mm2", "force_", "pressure [MPa]",
+    "angle_deg", "half_angle_deg", "indentation_uncertainty_um", "max_pressure_psi", "force [N", "[N]", "'", '"',
+    "(" * 999, "a(" * 999,
+)  # fmt: skip
+"""Valid, misspelt and hostile column heads."""
+
+_PIECES = (
+    *("mm", "mm", "N", "m", "J", "MPa", "9", "kkm", "%", "(N m)", "mm^3/(N m)", "mm³/J", "mm/m", "µm", "°", "e", "inf"),
+    *("2", "3", "^2", "^3", "**3", "^9", "^-1", "^9^9^9^9", "**9**9", "^99", "³", "^(9^9)", "^", "**"),
+    *("/", "/", "*", " ", "·", "//", "(", ")", "/(", "^", " " * 90, "(" * 60, "m/" * 40),
+)
+coefficient = st.builds(
+    lambda first, pieces: first + "".join(pieces),
+    st.sampled_from(("1e-6 ", "2", "1.066e-6 ", "9", "-1 ", "1e308 ", "1e999", "nan ", "", "9" * 90)),
+    st.lists(st.sampled_from(_PIECES), max_size=7),
+)
+"""Numbers with units, and arithmetic in the place of units."""

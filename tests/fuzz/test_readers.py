@@ -1,0 +1,254 @@
+"""Readers of files and units: every input gives a result or a one-sentence refusal within seconds."""
+
+import io
+import os
+from contextlib import contextmanager
+from pathlib import Path
+from unittest import mock
+
+import numpy
+import pytest
+from hypothesis import event, given
+from hypothesis import strategies as st
+
+from ballsocket.cli import root
+from ballsocket.cli.tools.call import words_of
+from ballsocket.evidence.question import read_question
+from ballsocket.hip.coefficients import share_of_slide, wear_factor, wear_per_energy
+from ballsocket.hip.cycle_file import Reading, read_cycle
+from ballsocket.hip.file import read_hip
+from ballsocket.identify.file import read_identify
+from ballsocket.input_files import restricted
+from ballsocket.io.units import parse
+from ballsocket.kinds import Kind
+from ballsocket.npz import read_arrays
+from ballsocket.sphere.scans import read_scan
+
+from ..cli.command import run
+from ..places import EXAMPLES
+from . import damage
+from .limits import check_run, check_sentence, inputs, within_limits
+from .words import mistyped, number, odd_text, quantity
+
+
+@contextmanager
+def refused_in_a_sentence():
+    """Check that errors are those that the command line prints in one sentence."""
+    with within_limits(), numpy.errstate(all="ignore"):
+        try:
+            yield
+            event("read")
+        except OSError as error:
+            check_sentence(root._one_line(f"{error.filename}: {error.strerror}"))
+        except ValueError as error:
+            check_sentence(root._one_line(str(error)))
+        except (ArithmeticError, MemoryError) as error:
+            check_sentence(root._one_line(str(error)) or "too large")
+
+
+PHASES = numpy.linspace(0.0, 1.0, 11)
+
+
+def _table(*heads):
+    columns = (PHASES, 2000 + 900 * numpy.cos(6.2832 * PHASES), 20 * (PHASES - PHASES**2), 0 * PHASES, 0 * PHASES)
+    rows = [",".join(f"{value:.4g}" for value in row) for row in zip(*columns, strict=True)]
+    return "\n".join([",".join(heads), *rows]).encode()
+
+
+CSV = _table("time [s]", "force [N]", "flexion [deg]", "adduction [deg]", "rotation [deg]")
+ORTHOLOAD = b"\n".join(
+    [b"Cycle\tFx\tFy\tFz\tF", b"[%]\t[N]\t[N]\t[N]\t[N]"]
+    + [f"{10 * i}\t{100 + i * (10 - i)}\t{-50}\t{-2000 - i * (10 - i)}\t2000".encode() for i in range(11)]
+)
+REACTIONS = b"\t".join(b"hip_r_on_femur_r_in_pelvis_f" + axis for axis in (b"x", b"y", b"z"))
+STO = b"\n".join(
+    [b"walk", b"version=1", b"nRows=11", b"nColumns=7", b"inDegrees=yes", b"endheader"]
+    + [b"time\thip_flexion_r\thip_adduction_r\thip_rotation_r\t" + REACTIONS]
+    + [f"{i / 10}\t{i * (10 - i) / 3:.3g}\t1\t0\t50\t2000\t100".encode() for i in range(11)]
+)
+HIPS = (
+    b'joint = "hip-28"\ncycles = 1e6\nreport_at = [1e6]\n[cup]\ntilt = "30 deg"\n[cycle]\nfile = "cycle.csv"\n'
+    b'instants = 12\n[wear]\nlaw = "archard"\ncoefficient = "1e-6 mm^3/(N m)"\nring_width = "10 deg"\n',
+    b'joint = "hip-28"\n[cycle]\nname = "iso-14242-1"\ninstants = 10\n[wear]\nlaw = "cross-shear"\ncoefficient = 1e-6\n'
+    b'circular = 2e-6\nring_width = 10\n[film]\nviscosity = "0.003"\n'
+    b'ball_roughness = "10 nm"\ncup_roughness = "1 um"\n',
+    b'joint = "hip-28"\nbody_weight = "800 N"\ncycles_per_year = 1e6\nyears = 3\nreport_years = [3]\n'
+    b'[wear]\nlaw = "energy"\ncoefficient = "1e-5 mm^3/J"\nfriction = 0.05\nring_width = 10\n'
+    b'[[activity]]\nname = "walking"\nshare = 0.9\n'
+    b'instants = 10\n[[activity]]\nname = "stairs-up"\nper_year = 1e4\ninstants = 10\n',
+    (EXAMPLES / "hip_in_use.toml").read_bytes(),
+    (EXAMPLES / "hip_of_many.toml").read_bytes(),
+)
+MEASURED = (
+    b'joint = "hip-28"\n[free]\nclearance = "0.02..0.3 mm"\nliner.young = {median = "1 GPa", factor = 1.5}\n'
+    b'[machine.m]\ncompliance = "0.1 um/kN"\noffset = "-1..1 um"\n[[data]]\nfile = "points.csv"\nuncertainty = "2 %"\n'
+    b'machine = "m"\n[[data]]\nquantity = "area"\nvalues = ["50 mm^2", "90 mm^2"]\nforce = ["500 N", "1 kN"]\n'
+    b'uncertainty = "5 mm^2"\n',
+    (EXAMPLES / "measured_areas.toml").read_bytes(),
+)
+POINTS = (
+    b"force_N,indentation_um\n500,20\n1000,31\n2000,45\n",
+    b"# a remark\nforce [kN],half_angle [deg],half_angle_uncertainty_deg\n0.5,20,1\n1,25,1\n2,31,1\n",
+)
+QUESTIONS = ((EXAMPLES / "evidence.toml").read_bytes(),)
+
+
+@inputs(14)
+@given(text=damage.coefficient | quantity, read=st.sampled_from((wear_factor, wear_per_energy, share_of_slide)))
+def test_coefficients(text, read):
+    with refused_in_a_sentence():
+        assert read("coefficient", text) >= 0
+
+
+@inputs(6)
+@given(text=damage.coefficient | quantity | odd_text, kind=st.sampled_from(tuple(Kind)))
+def test_quantities(text, kind):
+    with refused_in_a_sentence():
+        parse("number", text, kind)
+
+
+@inputs(6)
+@given(raw=damage.table_of(CSV, ORTHOLOAD, STO), side=st.sampled_from((None, 700.0)))
+def test_cycle_tables(fresh, raw, side):
+    with fresh() as folder, refused_in_a_sentence():
+        (folder / "cycle.csv").write_bytes(raw)
+        cycle = read_cycle(folder / "cycle.csv", instants=12, body_weight=side, reading=Reading(closing=0.5))
+        assert numpy.isfinite(numpy.asarray(cycle.force(PHASES))).all()
+
+
+@inputs(5)
+@given(raw=damage.file_of(*HIPS), table=damage.table_of(CSV))
+def test_hip_files(fresh, raw, table):
+    with fresh() as folder, refused_in_a_sentence():
+        (folder / "hip.toml").write_bytes(raw)
+        (folder / "cycle.csv").write_bytes(table)
+        read_hip(folder / "hip.toml")
+
+
+@inputs(1)
+@given(raw=damage.file_of(*HIPS[:3]), table=damage.table_of(CSV))
+def test_hips_in_use(fresh, raw, table):
+    with fresh() as folder, within_limits():
+        (folder / "hip.toml").write_bytes(raw)
+        (folder / "cycle.csv").write_bytes(table)
+        check_run(run("hip", "hip.toml", "--json", folder=folder))
+
+
+@inputs(5)
+@given(raw=damage.file_of(*MEASURED), table=damage.table_of(*POINTS))
+def test_measurements(fresh, raw, table):
+    with fresh() as folder, refused_in_a_sentence():
+        (folder / "measured.toml").write_bytes(raw)
+        (folder / "points.csv").write_bytes(table)
+        (folder / "measured_areas.csv").write_bytes(table)
+        (folder / "measured_hip.toml").write_bytes((EXAMPLES / "measured_hip.toml").read_bytes())
+        read_identify(folder / "measured.toml")
+
+
+@inputs(3)
+@given(raw=damage.file_of(*QUESTIONS), hip=damage.file_of(*HIPS[:2]))
+def test_questions_of_evidence(fresh, raw, hip):
+    with fresh() as folder, refused_in_a_sentence():
+        (folder / "question.toml").write_bytes(raw)
+        (folder / "hip_in_use.toml").write_bytes(hip)
+        (folder / "cycle.csv").write_bytes(CSV)
+        assert read_question(folder / "question.toml").files[0] == folder / "question.toml"
+
+
+def _meshes():
+    """A small bore as STL, PLY and OBJ."""
+    angle, azimuth = numpy.meshgrid(numpy.linspace(0.05, 1.2, 12), numpy.linspace(0, 6.28, 24))
+    points = 14.1 * numpy.stack(
+        [numpy.sin(angle) * numpy.cos(azimuth), numpy.sin(angle) * numpy.sin(azimuth), numpy.cos(angle)], axis=-1
+    ).reshape(-1, 3)
+    rows = [" ".join(f"{x:.5f}" for x in point) for point in points]
+    faces = [f"{i} {i + 1} {i + 12}" for i in range(200)]
+    ply = f"ply\nformat ascii 1.0\nelement vertex {len(rows)}\nproperty float x\nproperty float y\nproperty float z\n"
+    ply += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    obj = "\n".join(["v " + row for row in rows] + [f"f {i + 1} {i + 2} {i + 13}" for i in range(200)])
+    stl = numpy.zeros(200, dtype=[("n", "<f4", 3), ("p", "<f4", (3, 3)), ("a", "<u2")])
+    for i in range(200):
+        stl["p"][i] = points[[i, i + 1, i + 12]]
+    return {
+        "ply": "\n".join([ply.rstrip(), *rows, *("3 " + face for face in faces)]).encode(),
+        "obj": obj.encode(),
+        "stl": b"\0" * 80 + (200).to_bytes(4, "little") + stl.tobytes(),
+    }
+
+
+MESHES = _meshes()
+_wound = st.sampled_from((b"", b"\0", b"\xff\xff\xff\x7f", b"nan ", b"1e999 ", b"-", b"\n")) | st.binary(max_size=5)
+
+
+def _hurt(raw, wounds):
+    for position, width, wound in wounds:
+        position %= max(len(raw), 1)
+        raw = raw[:position] + wound + raw[position + width :]
+    return raw
+
+
+wounds = st.lists(st.tuples(st.integers(0, 20_000), st.integers(0, 8), _wound), max_size=3)
+
+
+@inputs(2)
+@given(kind=st.sampled_from(tuple(MESHES)), wounds=wounds, cut=st.integers(0, 4))
+def test_scans(fresh, kind, wounds, cut):
+    pytest.importorskip("meshio")
+    with fresh() as folder, refused_in_a_sentence():
+        raw = _hurt(MESHES[kind], wounds)
+        (folder / f"bore.{kind}").write_bytes(raw[: len(raw) // cut] if cut > 1 else raw)
+        read_scan(folder / f"bore.{kind}")
+
+
+def _archive():
+    stream = io.BytesIO()
+    numpy.savez(stream, rings=numpy.arange(12.0).reshape(3, 4), count=3, identity="run")
+    return stream.getvalue()
+
+
+ARCHIVE = _archive()
+
+
+@inputs(5)
+@given(bits=st.lists(st.integers(0, 8 * len(ARCHIVE) - 1), max_size=2), wounds=wounds)
+def test_archives(fresh, bits, wounds):
+    """An archive that can be read has all members, with the numbers that were written."""
+    with fresh() as folder, refused_in_a_sentence():
+        raw = bytearray(ARCHIVE)
+        for bit in bits:
+            raw[bit // 8] ^= 1 << bit % 8
+        (folder / "kept.npz").write_bytes(_hurt(bytes(raw), wounds[:1]))
+        arrays = read_arrays(folder / "kept.npz")
+        if not wounds:
+            assert len(arrays) == 3
+
+
+_argument = st.one_of(
+    quantity, odd_text, number, st.floats(), st.integers(), st.booleans(), st.none(), st.lists(odd_text, max_size=3),
+    st.sampled_from(("hip-28", "../x.toml", "/etc/passwd", "--help", "./" * 110 + "../x", "a.toml", "tabulated")),
+)  # fmt: skip
+_call = st.tuples(
+    mistyped(("press", "study", "wear", "identify", "curve", "models", "evidence")),
+    st.dictionaries(
+        mistyped(("joint", "force", "model", "file", "steps", "indentation", "units")), _argument, max_size=4
+    ),
+    st.none() | damage.file_of(*HIPS[:2], *MEASURED),
+)
+
+
+@inputs(3)
+@given(call=_call, runs=st.integers(0, 9))
+def test_calls_of_assistants(fresh, call, runs):
+    """A call is refused, or becomes a command that reads only files in its folder."""
+    name, arguments, content = call
+    with fresh() as folder:
+        if content is not None:
+            arguments = {**arguments, "content": content.decode("utf-8", "replace")}
+        with refused_in_a_sentence():
+            words = words_of(name, arguments, folder)
+            assert all(isinstance(word, str) for word in words)
+            assert not any(Path(word).is_absolute() or word.startswith("..") for word in words)
+            if runs or words[0] not in ("press", "models", "curve"):
+                return
+            with mock.patch.dict(os.environ, restricted((folder, Path(os.environ["BALLSOCKET_CACHE"])))):
+                check_run(run(*words, folder=folder))

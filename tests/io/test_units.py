@@ -1,0 +1,85 @@
+"""Products of units: parsing, refusals, and parsing time proportional to the length."""
+
+import time
+
+import pytest
+
+from ballsocket.hip.coefficients import share_of_slide, wear_factor, wear_per_energy
+from ballsocket.io.units import LONGEST, convert, parse, parse_units
+
+ENDLESS = [
+    "1e-6 9^9^9^9",
+    "1e-6 mm^9^9^9",
+    "1e-6 9^9^9",
+    "1e-6 (9**9**9)*mm",
+    "1e-6 2^2^2^2^2^2^2^2",
+    "1e-6 mm^3/(N m)^9^9^9",
+    "1e-6 mm^(9^9^9)",
+    "1e-6 mm^-9**9**9",
+]
+
+
+@pytest.mark.parametrize("text", ENDLESS)
+@pytest.mark.parametrize("read", [wear_factor, wear_per_energy, share_of_slide])
+def test_a_coefficient_is_not_evaluated(text, read):
+    start = time.process_time()
+    with pytest.raises(ValueError, match=r"coefficient = .* is not a coefficient, such as '1e-6 mm"):
+        read("coefficient", text)
+    assert time.process_time() - start < 2.0  # pint loads its definitions once
+
+
+@pytest.mark.parametrize(
+    ("text", "units"),
+    [
+        ("mm^3/(N m)", {"millimeter": 3, "newton": -1, "meter": -1}),
+        ("mm³/(N·m)", {"millimeter": 3, "newton": -1, "meter": -1}),
+        ("mm3 / (N * m)", {"millimeter": 3, "newton": -1, "meter": -1}),
+        ("N/mm m", {"newton": 1, "millimeter": -1, "meter": 1}),
+        ("1/mm", None),
+        ("mm**-2", {"millimeter": -2}),
+        ("m/m", {}),
+        ("", {}),
+        ("°", {"degree": 1}),
+        ("((mm))", {"millimeter": 1}),
+    ],
+)
+def test_a_product_of_units_is_parsed(text, units):
+    if units is None:
+        with pytest.raises(ValueError, match="is not a product of units"):
+            parse_units(text)
+    else:
+        assert parse_units(text) == units
+
+
+@pytest.mark.parametrize(
+    "text", ["mm/", "/mm", "(mm", "mm)", "()", "mm^10", "mm^0", "mm^^2", "mm^1.5", "mm+mm", "9", "kkm", "mm^9 mm^9"]
+)
+def test_anything_else_is_no_product_of_units(text):
+    with pytest.raises(ValueError, match=r"."):
+        parse_units(text)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("text", ["2e31 dB", "1 dBm", "1 degC", "1 Np"])
+def test_units_of_another_scale_than_a_factor_are_refused(text):
+    with pytest.raises(ValueError, match=r"is not a coefficient, such as '1e-6 mm/m'"):
+        share_of_slide("coefficient", text)
+
+
+def test_a_quantity_has_at_most_a_hundred_characters():
+    assert parse("ball_radius", f"16{' ' * (LONGEST - 4)}mm", "length") == 16
+    with pytest.raises(ValueError, match="ball_radius = '16  .* is not a length, such as '16 mm'"):
+        parse("ball_radius", f"16{' ' * LONGEST}mm", "length")
+    with pytest.raises(ValueError, match="a unit has at most 100 characters, got 101"):
+        parse_units("m" * 101)
+
+
+@pytest.mark.parametrize("unit", ["K", "Qm^9 Qm^-9 Qm^-8", "parsec^9"])
+def test_units_that_do_not_convert_are_refused(unit):
+    with pytest.raises(ValueError, match="has another dimension than"):
+        convert(1.0, parse_units(unit), {"millimeter": 1})
+
+
+def test_a_coefficient_of_four_hundred_digits_is_too_large():
+    with pytest.raises(ValueError, match="coefficient = 1000.* is too large a number"):
+        wear_factor("coefficient", 10**400)
