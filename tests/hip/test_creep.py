@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Archard, InUse, Ladder, iso_14242_1, logarithmic
+from ballsocket.hip import Archard, InUse, Ladder, constrained_share, iso_14242_1, logarithmic
 
 from .test_wear import TILTED, K, hip
 
@@ -89,6 +89,36 @@ def test_radiographs_see_bedding_in_and_then_a_slope():
 
 
 @pytest.mark.long
+def test_a_layer_that_cannot_spread_strains_by_the_constrained_modulus():
+    """Uniaxial strain: σr = σθ = ν/(1 - ν) σz, hence εz = σz (1 - 2 ν²/(1 - ν))/E."""
+    for poisson in (0.0, 0.3, 0.4, 0.49, 0.5):
+        assert constrained_share(poisson) == pytest.approx(1 - 2 * poisson**2 / (1 - poisson), abs=1e-15)
+    assert 1 / constrained_share(0.4) == pytest.approx(15 / 7)
+    with pytest.raises(ValueError, match="poisson = 0.6 is not allowed"):
+        constrained_share(0.6)
+
+
+def test_a_confined_ladder_strains_by_its_share_and_the_default_is_that_of_a_bar():
+    share = constrained_share(0.4)
+    confined = replace(LADDER, confinement=share)
+    for seconds in (1.0, 1e4, 1e8):
+        assert confined.response(seconds) == pytest.approx(share * LADDER.response(seconds), rel=1e-15)
+        pressure = np.array([1.0, 10.0])
+        after = [one.advanced(one.rested(2), pressure, seconds) for one in (LADDER, confined)]
+        assert after[1] == pytest.approx(share * after[0], rel=1e-14)
+    assert (replace(LADDER, confinement=1.0).response(1e4) == LADDER.response(1e4)).all()
+    with pytest.raises(ValueError, match="confinement = 1.5 is not allowed"):
+        replace(LADDER, confinement=1.5)
+
+
+def test_a_confined_liner_creeps_less_and_both_have_a_note():
+    free, confined = (hip(creep=logarithmic(share)) for share in (1.0, constrained_share(0.4)))
+    deep, less = (use.after(1e3).last.creep_depth for use in (free, confined))
+    assert constrained_share(0.4) * deep < less < deep  # pressures fall less where less creeps
+    assert any("the strain of a laterally constrained liner is 0.47 of that" in note for note in free.notes)
+    assert any("creep strain is 0.467 of that of a free bar" in note for note in confined.notes)
+
+
 def test_creep_in_half_the_steps_is_the_same(monkeypatch):
     from ballsocket.hip import blocks
 

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from ballsocket.hip import constrained_share
 from ballsocket.hip.coefficients import share_of_slide, wear_factor
 from ballsocket.hip.file import read_hip
 
@@ -84,10 +85,10 @@ def test_a_preset_in_place_of_a_joint(tmp_path):
     ("old", "new", "refused"),
     [
         ("mm^3/(N m)", "mm^3/(N mm)", r"1 mm\^3/\(N mm\) is 1000 mm\^3/\(N m\), so that this is 0.001066 mm"),
-        ("mm^3/(N m)", "mm^3/N", r"has not the dimension of mm\^3/\(N m\)"),
+        ("mm^3/(N m)", "mm^3/N", r"has the wrong unit; expected mm\^3/\(N m\)"),
         ('coefficient = "1.066e-6 mm^3/(N m)" #', "#", r"\[wear\] needs a coefficient"),
         ('law = "archard"', 'law = "archart"', "law 'archart' is not known; did you mean 'archard'"),
-        ('law = "archard"', 'law = "area"', "has not the dimension of mm/mm, a depth over a length of sliding"),
+        ('law = "archard"', 'law = "area"', "has the wrong unit; expected mm/mm, a depth over a length of sliding"),
         ('law = "archard"', 'law = "cross-shear"', "the law 'cross-shear' needs circular"),
         ('law = "archard"', 'law = "energy"', "the law 'energy' needs a friction"),
         ('law = "archard"', 'law = "archard"\nfriction = 0.1', "friction belongs to the law 'energy'"),
@@ -146,7 +147,7 @@ def test_ways_to_write_a_wear_factor(text):
         ("1e-9 mm3/Nmm", r"is for mm of sliding: .* is 1000 mm\^3/\(N m\), so that this is 1e-06"),
         ("1e-9 mm^2/N", r"1 mm\^2/N is 1000 mm\^3/\(N m\)"),
         ("1e-9 mm^3/(kN m)", r"for another length of sliding|is 0.001 mm\^3/\(N m\)"),
-        ("1 kg", "has not the dimension"),
+        ("1 kg", "has the wrong unit"),
         ("1e-6 __import__", "is not a coefficient, such as"),
         ("much", "is not a coefficient, such as"),
         (True, "is not a coefficient, such as"),
@@ -168,6 +169,9 @@ def test_creep_and_film_in_a_file(tmp_path):
     film = '[film]\nviscosity = 1e-3\ncup_roughness = "0.5 um"\nfriction = 0.04\n'
     given = read_hip(told(tmp_path, text=f"{TEXT}\n[creep]\n{film}"))
     assert len(given.use.creep.times) == 9
+    assert given.use.creep.confinement == 1.0
+    walls = read_hip(told(tmp_path, text=f'{TEXT}\n[creep]\nconfinement = "constrained"\n'))
+    assert walls.use.creep.confinement == constrained_share(0.4)
     assert given.lubricant.cup_roughness == pytest.approx(5e-4)
     own = "[creep]\ncompliances = [1e-3, 2e-3]\ntimes = [60, 3600]\nseconds_per_cycle = 3\n"
     given = read_hip(told(tmp_path, text=f"{TEXT}\n{own}"))
@@ -182,6 +186,7 @@ def test_creep_and_film_in_a_file(tmp_path):
         ('[creep]\nlaw = "logarithmic"\ntimes = [1]', "times belongs to the law 'kelvin-voigt'"),
         ("[creep]\ntimes = [1]", "compliances = None must be a list of numbers"),
         ("[creep]\ntimes = [1]\ncompliances = [1, 2]", "as many compliances as times"),
+        ('[creep]\nconfinement = "walls"', "confinement 'walls' is not known"),
         ("[creep]\nseconds_per_cycle = 0", "seconds_per_cycle = 0 is not allowed"),
         ("[film]\nviscosity = -1", "viscosity = -1 is not allowed"),
         ("[film]\nviscosities = 1", "'viscosities' in .film. is not known; did you mean 'viscosity'"),

@@ -82,8 +82,29 @@ def test_a_contact_at_the_rim_is_told_with_its_instant_and_place():
     assert history.last.edge_distance.min() == 0
     note = next(note for note in history.notes if note.startswith("edge loading: in the first cycle"))
     assert "of 72 instants, most at 11.8 % of the cycle, 0° from the cup's uppermost point" in note
-    told = history.summary()["history"][-1]["edge"]
-    assert (told["distance_mm"], told["place_deg"]) == (0.0, pytest.approx(0.0, abs=0.1))
+    edge = history.summary()["history"][-1]["edge"]
+    assert (edge["distance_mm"], edge["place_deg"]) == (0.0, pytest.approx(0.0, abs=0.1))
+    assert 0 < edge["pressure_at_rim_MPa"] < history.last.max_pressure
+    first = history.summary()["cycle"]["edge"]["pressure_at_rim_MPa"]
+    assert f"the pressure in the outermost ring is at most {first:.3g} MPa" in note
+
+
+@pytest.mark.parametrize("surface", [bs.Springs(), bs.ClosedShell()], ids=["springs", "shell"])
+def test_the_distance_to_the_rim_falls_to_zero_without_a_step(surface):
+    """One load at tilts by 0.5°: each moves the edge by at most 0.26 mm, and a shell's as `Sphere` has it."""
+    tilts = np.radians(np.arange(36.0, 56.0, 0.5))
+    loads = 1500.0 * np.stack([np.sin(tilts), 0 * tilts, np.cos(tilts)])
+    cycle = Cycle(name="tilting", force=lambda t: loads, angles=flexion().angles, instants=len(tilts))
+    use = hip(cycle=cycle, cup=bs.Cup(), surface=surface)
+    distance = use.edge_distance(use.unworn)
+    steps = np.diff(distance[distance > 0])
+    assert len(steps) > 10
+    assert steps.max() < 0
+    assert abs(steps).max() < 0.26
+    assert distance[distance > 0].min() < 0.26
+    model = bs.Sphere(cup=bs.Cup(), surface=surface)
+    expected = model.press(use.joint, force=1500.0, tilt=tilts[:10:3]).edge_distance
+    assert distance[:10:3] == pytest.approx(expected, abs=0.1)
 
 
 def test_the_place_at_the_rim_is_where_the_load_leans():

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -32,7 +33,7 @@ from ballsocket.hip.creep import UNVERIFIED
 from ballsocket.hip.file import read_hip
 from ballsocket.hip.lives import kept
 from ballsocket.hip.patients import Patient
-from ballsocket.output.hip_bands import band_sections
+from ballsocket.output.hip_bands import band_sections, print_bands
 from ballsocket.output.hip_plots import penetration_curve
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
@@ -159,8 +160,76 @@ def test_the_command_tells_bands_and_what_matters_and_what_is_not_verified(tmp_p
         assert 0 < last[name]["low"] < last[name]["median"] < last[name]["high"]
         assert set(answer["sobol"][name]) == {"coefficient", "clearance"}
     assert answer["uncertainty"]["patients"] == 4
+    assert answer["valid"] is True
     assert answer["uncertainty"]["scatter"]["coefficient"]["factor"] == 1.5
     assert UNVERIFIED in answer["notes"]
+
+
+def test_the_population_has_a_band_for_each_coefficient_that_all_of_it_shares():
+    """Converted results are those of patients who were worn with the shared coefficient."""
+    differing = {
+        "coefficient": LogNormal(median=K, factor=1.5),
+        "body_weight": Normal(mean=800.0, deviation=130.0),
+        "cycles_per_year": LogNormal(median=1e6, factor=1.5),
+        "clearance": Rectangular(low=0.08, high=0.12),
+    }
+    one = scatter(**differing)
+    lives, bands = population(one, [1e5, 5e5], patients=8)
+    table = bands.shared.results
+    for name, coefficient in bands.shared.values.items():
+        shared = np.full(8, coefficient)
+        direct = replace(lives, values={**lives.values, "coefficient": shared}).all().table[:, :, :3]
+        assert table[name][:, :, 0] == pytest.approx(direct[:, :, 0], rel=0.02)  # volume
+        assert table[name] == pytest.approx(direct, rel=0.15)
+        low, high = bands.population_band("volume", name)
+        known_low, known_high = np.quantile(direct[:, :, 0], [0.025, 0.975], axis=0)
+        assert low == pytest.approx(known_low, rel=0.01)
+        assert high == pytest.approx(known_high, rel=0.01)
+    assert bands.shared.values["high"] / bands.shared.values["median"] == pytest.approx(1.5**1.96, rel=1e-3)
+
+
+def test_the_band_of_the_patients_is_narrower_than_that_of_the_predictions():
+    one = scatter(coefficient=LogNormal(median=K, factor=1.5), body_weight=Normal(mean=800.0, deviation=80.0))
+    bands = uncertainty(one, one.use.after(FEW), count=8)
+    low, high = bands.population_band("volume")
+    least, most = bands.band("volume")
+    assert least[-1] < low[-1] < high[-1] < most[-1]
+    assert high[-1] / low[-1] == pytest.approx(1.1 ** (2 * 1.96), rel=0.15)
+    volume = bands.summary()["bands"][-1]["volume"]
+    assert list(volume) == ["low", "median", "high", "given_coefficient"]
+    assert list(volume["given_coefficient"]) == ["low", "median", "high"]
+    assert volume["given_coefficient"]["median"]["high"] == high[-1]
+    assert bands.summary()["uncertainty"]["coefficient"] == bands.shared.values
+    (note,) = (note for note in bands.notes if "unknown, but the same for all patients: 95 % between 4.8" in note)
+    assert note.endswith(" mm³/(N m)")
+
+
+def test_a_narrow_terminal_shows_every_number_of_the_bands(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    one = scatter(coefficient=LogNormal(median=K, factor=1.5), body_weight=Normal(mean=800.0, deviation=80.0))
+    print_bands(uncertainty(one, one.use.after(FEW), count=8))
+    printed = capsys.readouterr().out
+    assert "coefficient" in printed
+    assert "…" not in printed
+
+
+def test_without_an_unknown_coefficient_bands_are_of_patients_and_with_it_alone_of_predictions():
+    tight = population(scatter(clearance=Rectangular(low=0.05, high=0.2)), [FEW], patients=4)[1]
+    alone = population(scatter(coefficient=LogNormal(median=K, factor=1.5)), [FEW], patients=4)[1]
+    assert (tight.subject, alone.subject) == ("patients", "predictions")
+    for bands in (tight, alone):
+        assert bands.shared is None
+        assert "given_coefficient" not in bands.summary()["bands"][0]["volume"]
+        with pytest.raises(ValueError, match="with coefficient and another quantity"):
+            bands.population_band("volume")
+
+
+def test_an_unknown_band_is_refused():
+    bands = many(4)[1]
+    with pytest.raises(ValueError, match="coefficient = 'middle' is not allowed: low, median, high"):
+        bands.population_band("volume", "middle")
+    with pytest.raises(ValueError, match="'edge_distance' has no band for one coefficient: volume, depth"):
+        bands.population_band("edge_distance")
 
 
 def test_a_page_has_the_band_of_the_patients_and_what_matters():
@@ -169,9 +238,13 @@ def test_a_page_has_the_band_of_the_patients_and_what_matters():
     bands = uncertainty(one, history, count=2)
     sections = band_sections(history, bands)
     assert list(sections) == ["penetration", "patients", "matters"]
-    assert "the band holds 95 % of the patients" in sections["penetration"][1]
+    assert (
+        "the band holds 95 % of the predictions, the dark band that share of the patients" in sections["penetration"][1]
+    )
     filled = penetration_curve(history, bands).axes[0].collections[0].get_paths()[0].get_extents()
     assert filled.y1 == pytest.approx(bands.band("penetration")[1][-1])
+    dark = penetration_curve(history, bands).axes[0].collections[1].get_paths()[0].get_extents()
+    assert dark.y1 == pytest.approx(bands.population_band("penetration")[1][-1])
 
 
 @pytest.mark.parametrize(
@@ -192,6 +265,11 @@ def test_a_page_has_the_band_of_the_patients_and_what_matters():
         ("count = 100\ntilt = { low = 0, high = 9 }", "count = 100 is not allowed: a power of two"),
         ("seed = -1\ntilt = { low = 0, high = 9 }", "seed = -1 is not allowed: a whole number"),
         ("count = 8", "nothing scatters: coefficient, clearance"),
+        (
+            "clearance = { low = '0.3 mm', high = '0.5 mm' }",
+            "clearance = 0.1 mm lies outside its tolerance of 0.3 to 0.5 mm: change one of them",
+        ),
+        ("coefficient = { median = 1e-5, factor = 1.1 }", "coefficient = 1.066e-06 lies outside its tolerance"),
     ],
 )
 def test_what_is_wrong_with_what_scatters_is_said(tmp_path, line, refused):
@@ -229,6 +307,21 @@ def test_patients_are_kept_and_more_are_added(tmp_path):
         kept(tmp_path, scatter(coefficient=LogNormal(median=K, factor=2.0)), [FEW], 0)
 
 
+def test_the_command_prints_bands_of_patients_uncut_and_why_their_contacts_are_not_valid(tmp_path):
+    """In 80 columns, of springs outside the range of their formula."""
+    path = short(tmp_path, extra=SCATTER)
+    path.write_text(path.read_text().replace('liner_thickness = "8 mm"', 'liner_thickness = "1.2 mm"'))
+    words = "hip", str(path), "--patients", "4"
+    shown = run(*words, columns=80)
+    assert shown.returncode == 0, shown.stderr
+    assert "…" not in shown.stdout
+    assert "valid in 0 % of the predictions" in shown.stdout
+    assert "contact at the rim: " in shown.stdout
+    notes = json.loads(run(*words, "--json").stdout)["notes"]
+    assert any(note.startswith("outside R2/L") and "usual patient, in the first cycle" in note for note in notes)
+    assert any("4 of 4 patients have contacts outside the validity" in note for note in notes)
+
+
 def test_no_patients_leave_no_folder(tmp_path):
     with pytest.raises(ValueError, match="patients = 0 is not allowed"):
         many(0, tmp_path / "none")
@@ -247,6 +340,22 @@ def test_every_patient_has_a_row(tmp_path):
     assert band["median"] == pytest.approx(np.median(volumes), rel=1e-6)
     assert 0 < json.loads(done.stdout)["uncertainty"]["quick_run_off"]["volume"] < 0.01
     assert UNVERIFIED in json.loads(done.stdout)["notes"]
+    assert json.loads(done.stdout)["valid"] is True
+
+
+def test_bands_are_valid_where_every_answered_patient_is():
+    one = scatter(clearance=Rectangular(low=0.05, high=0.2))
+    bands = population(one, [5e2, FEW], patients=3)[1]
+    assert bands.valid is True
+
+    def with_patients(valid, refused):
+        contact = np.stack([np.full((3, 3), 0.5), np.array(valid, dtype=float)], axis=-1)
+        return replace(bands, lived=replace(bands.lived, contact=contact, refused=np.array(refused)))
+
+    first_report = [[1, 1, 1], [1, 0, 1], [1, 1, 1]]
+    assert with_patients(first_report, ["", "", ""]).valid is False
+    assert with_patients(first_report, ["", "dislocated", ""]).valid is True
+    assert with_patients([[1, 1, 1]] * 3, ["dislocated"] * 3).valid is False
 
 
 @pytest.mark.long

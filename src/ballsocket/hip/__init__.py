@@ -1,6 +1,6 @@
 """The hip in use: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
-from .creep import Ladder, logarithmic
+from .creep import Ladder, constrained_share, logarithmic
 from .cycle import Cycle, Frame, Spring
 from .film import Film, Lubricant
 from .gait import constant_load, flexion, iso_14242_1, iso_14242_1_key_points, iso_14242_4, rocking, two_axis
@@ -32,6 +32,7 @@ __all__ = [
     "Scatter",
     "Spring",
     "constant_load",
+    "constrained_share",
     "flexion",
     "in_vivo",
     "iso_14242_1",

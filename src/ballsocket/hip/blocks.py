@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from math import inf
 from types import MappingProxyType
 from typing import Any
@@ -16,6 +17,7 @@ from .creep import Ladder
 from .laws import Pass, steepest
 from .near import near_cells
 from .set_up import SetUp
+from .springs import Rest
 
 _FIRST = 1e-2  # of the time in which what wears fastest would be worn in
 _SAFE, _LEAST, _MOST = 0.8, 0.2, 4.0
@@ -118,7 +120,8 @@ class Run:
         rest = near.bed.rest(self.use.loads, depth, self.rest, self.use.tether)
         self.rest = rest
         self.settled = self.settled and rest.settled
-        self._pass = Pass(pressure=rest.pressure, sliding=near.sliding)
+        shares = partial(near.bed.contact_shares, rest, depth)
+        self._pass = Pass(pressure=rest.pressure, sliding=near.sliding, shares=shares)
         worn = near.bed.smoothed(self.use.wear.depth(self._pass))
         return numpy.concatenate([worn, self._ball_rate, [float(self._pass.work @ near.bed.areas)]])
 
@@ -138,14 +141,19 @@ class Run:
 
     @property
     def state(self) -> dict[str, Any]:
-        """What it takes to go on from here, as numbers and arrays."""
-        return {name: getattr(self, name) for name in _STATE}
+        """State of the run before the next block: a resumed run equals an uninterrupted run bit by bit."""
+        numbers = {name: getattr(self, name) for name in _STATE}
+        return {**numbers, "cells": self._near.cells, "slope": self._slope, **_rest_arrays(self.rest)}
 
     def resume(self, state: Mapping[str, Numbers]) -> None:
-        """Go on from a state that was kept."""
+        """Continue from a stored state with its contacts, without solving them again."""
         for name, kind in _STATE.items():
             setattr(self, name, kind(state[name]))
-        self._look()
+        self._near = near_cells(self.use, state["cells"])
+        self._creep = self.crept[state["cells"]]
+        self._slope = state["slope"]
+        self.rest = _rest_of(state)
+        self._pass = Pass(pressure=self.rest.pressure, sliding=self._near.sliding)
 
     def until(self, count: float, listen: Callable[[float], None]) -> Run:
         """This run, gone on until so many cycles are done."""
@@ -243,6 +251,25 @@ _STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(
         "margin": float,
     }
 )
+
+
+def _rest_arrays(rest: Rest) -> dict[str, Any]:
+    """Return contacts as named arrays of a checkpoint."""
+    arrays = {"rest_displacement": rest.displacement, "rest_pressure": rest.pressure, "rest_settled": rest.settled}
+    if rest.levels is not None:
+        arrays["level_displacement"], arrays["level_pressure"] = rest.levels
+    return arrays
+
+
+def _rest_of(state: Mapping[str, Numbers]) -> Rest:
+    """Read contacts from the arrays of a checkpoint; see `_rest_arrays`."""
+    solved = "level_displacement" in state
+    return Rest(
+        displacement=state["rest_displacement"],
+        pressure=state["rest_pressure"],
+        settled=bool(state["rest_settled"]),
+        levels=(state["level_displacement"], state["level_pressure"]) if solved else None,
+    )
 
 
 def _shared(length: float, left: float) -> float:

@@ -16,7 +16,7 @@ from .history import Report
 from .laws import OwnLaw
 from .set_up import SetUp
 
-_VERSION = 3
+_VERSION = 5
 _NAME = "hip_in_use.npz"
 
 

@@ -6,20 +6,17 @@ import re
 from typing import Any
 
 from ..checks import require, shown
-from ..io.units import LONGEST, registry
+from ..io.units import convert, parse, parse_units, split_quantity
+from ..kinds import Kind
 
-_TEXT = re.compile(r"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*)?", re.ASCII)
-_POWER = re.compile(r"(?<=[A-Za-z])([2-9])")
-_PLAIN = str.maketrans({"³": "3", "²": "2", "·": "*", "×": "*", "μ": "u", "µ": "u"})
-_ALLOWED = re.compile(r"[A-Za-z0-9 */^().-]{1,40}")
-_WORK = re.compile(r"(?<!\()\bN[ *]*(m|mm)\b")
+_WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")
 """A force times a length behind a stroke, which people write without brackets."""
 
 WEAR_FACTOR = "mm^3/(N m)"
-_METRES = ("mm**3/(N*m)", "m**3/(N*m)")
+_METRES = (WEAR_FACTOR, "m^3/(N m)")
 """Units of a wear factor for metres of sliding, of which there is nothing to mistake."""
 
-_JOULES = (*_METRES, "mm**3/J", "mm**3/kJ", "mm**3/MJ", "m**3/J")
+_JOULES = (*_METRES, "mm^3/J", "mm^3/kJ", "mm^3/MJ", "m^3/J")
 """The same for work."""
 
 
@@ -72,30 +69,30 @@ def share_of_slide(name: str, value: Any) -> float:
     """
     number, unit = _parts(name, value, "mm/m")
     if unit:
-        number *= _converted(name, value, unit, "1", "mm/mm, a depth over a length of sliding")
+        number *= _convert_one(name, value, unit, "", "mm/mm, a depth over a length of sliding")
     require(name, number, 0 <= number < float("inf"), "a wear coefficient is at least 0, and finite")
     return number
 
 
 def _parts(name: str, value: Any, example: str) -> tuple[float, str]:
-    """The number and the unit, in pint's words."""
+    """Split a coefficient into its number and the text of its unit."""
     if isinstance(value, int | float) and not isinstance(value, bool):
-        return float(value), ""
-    found = _TEXT.fullmatch(value.strip()) if isinstance(value, str) and len(value) <= LONGEST else None
-    if found is None:
-        raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'")
-    unit = _POWER.sub(r"**\1", (found[2] or "").translate(_PLAIN).replace("^", "**"))
-    unit = _WORK.sub(r"(N*\1)", unit)
-    if unit and not _ALLOWED.fullmatch(unit):
-        raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'")
-    return float(found[1]), re.sub(r"(?<=[A-Za-z0-9)])\s+(?=[A-Za-z(])", "*", unit)
+        return parse(name, value, Kind.NUMBER), ""
+    try:
+        number, unit = split_quantity(value if isinstance(value, str) else "")
+        unit = _WORK.sub(r"(N*\1)", unit)
+        parse_units(unit)
+    except ValueError as error:
+        raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'") from error
+    return number, unit
 
 
-def _factor(name: str, value: Any, number: float, unit: str, known: tuple[str, ...] = _METRES) -> float:
-    """From a unit to mm³/(N m)."""
-    factor = _converted(name, value, unit, _METRES[0], f"{WEAR_FACTOR}, a volume over a force and a length of sliding")
-    units = registry()
-    if not any(units.Unit(unit) == units.Unit(good) and _same(unit, good) for good in known):
+def _factor(name: str, value: Any, number: float, unit: str, allowed: tuple[str, ...] = _METRES) -> float:
+    """Convert one unit to mm³/(N m)."""
+    factor = _convert_one(
+        name, value, unit, WEAR_FACTOR, f"{WEAR_FACTOR}, a volume over a force and a length of sliding"
+    )
+    if parse_units(unit) not in [parse_units(each) for each in allowed]:
         written = unit.replace("**", "^").replace("N*m", "N m")
         slid = "for mm of sliding" if abs(factor / 1000 - 1) < 1e-9 else "for another length of sliding"
         raise ValueError(
@@ -105,15 +102,8 @@ def _factor(name: str, value: Any, number: float, unit: str, known: tuple[str, .
     return factor
 
 
-def _same(one: str, other: str) -> bool:
-    units = registry()
-    return bool(dict(units.Unit(one)._units) == dict(units.Unit(other)._units))
-
-
-def _converted(name: str, value: Any, unit: str, into: str, wanted: str) -> float:
-    units = registry()
+def _convert_one(name: str, value: Any, unit: str, target: str, meaning: str) -> float:
     try:
-        given = units.Quantity(1.0, unit)
-        return float(given.to(into if into != "1" else "dimensionless").magnitude)
-    except Exception as error:  # whatever pint makes of units that nobody meant
-        raise ValueError(f"{name} = {shown(value)} has not the dimension of {wanted}") from error
+        return convert(1.0, parse_units(unit), parse_units(target))
+    except ValueError as error:
+        raise ValueError(f"{name} = {shown(value)} has the wrong unit; expected {meaning}") from error

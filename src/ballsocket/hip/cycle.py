@@ -159,6 +159,11 @@ class Cycle:
         """That each instant lasts: (instants,)."""
         return numpy.full(self.instants, self.duration / self.instants)
 
+    @property
+    def activity_slices(self) -> tuple[tuple[str, slice], ...]:
+        """Name and instants of the only activity."""
+        return ((self.name, slice(0, self.instants)),)
+
     def told(self, instant: int) -> str:
         """Where in the cycle an instant is, in words."""
         return f"{100 * self.phases[instant]:.1f} % of the cycle"

@@ -112,6 +112,8 @@ def _cycle(found: Measured, order: str, reading: Reading) -> Cycle:
     columns, motion = found.columns, reading.motion
     phase, duration = phases_of(columns)
     for title, values in columns.items():
+        if title.startswith("force"):
+            _check_size(title, values)
         if title != clock_of(columns):
             check_closed(title, values, reading.closing, *(("°", 180 / pi) if title in ANGLES else (" N", 1.0)))
         if title in ANGLES:
@@ -129,6 +131,17 @@ def _cycle(found: Measured, order: str, reading: Reading) -> Cycle:
         frame=Frame.CUP if frame == "cup" else Frame.BODY,
         notes=() if motion is None else (f"the motion is that of {motion.name}",),
     )
+
+
+def _check_size(title: str, values: Numbers) -> None:
+    """Raise ValueError for a force (N) beyond any hip joint, as from a wrong unit or a damaged table."""
+    largest = float(abs(values).max())
+    if largest > _LARGEST_FORCE:
+        raise ValueError(f"{title} goes to {largest:.4g} N; allowed are forces up to {_LARGEST_FORCE:g} N")
+
+
+_LARGEST_FORCE = 1e9
+"""Largest allowed force in N, beyond any hip and any test machine."""
 
 
 def _check_turn(title: str, values: Numbers) -> None:

@@ -27,12 +27,15 @@ class Worst:
         The instant, in words.
     reaching : int
         Instants in which the contact reaches the rim.
+    pressure : float
+        Largest pressure in MPa in the outermost ring of cells in any instant.
     """
 
     distance: float
     place: float
     told: str
     reaching: int
+    pressure: float = 0.0
 
     @property
     def where(self) -> str:
@@ -42,7 +45,13 @@ class Worst:
     def summary(self) -> dict[str, Any]:
         """For JSON."""
         place = degrees(self.place)
-        return {"distance_mm": self.distance, "at": self.told, "place_deg": place, "instants_at_rim": self.reaching}
+        return {
+            "distance_mm": self.distance,
+            "at": self.told,
+            "place_deg": place,
+            "instants_at_rim": self.reaching,
+            "pressure_at_rim_MPa": self.pressure,
+        }
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,10 +64,13 @@ class Edge:
         The arc in mm from the contact's edge, where it is nearest; 0 where it reaches it.
     place : array (loaded,)
         Where that is around the cup's axis, in rad from its uppermost point.
+    pressure : array (loaded,)
+        Largest pressure in MPa in the outermost ring of cells.
     """
 
     distance: Numbers
     place: Numbers
+    pressure: Numbers
 
     def nearest(self, use: Placed) -> int | None:
         """Which of the contacts comes nearest; of several, that of the largest load; None where nothing is pressed."""
@@ -77,25 +89,41 @@ class Edge:
             place=float(self.place[chosen]),
             told=use.cycle.told(int(use.loaded[chosen])),
             reaching=int((self.distance <= 0).sum()),
+            pressure=float(self.pressure.max()),
         )
 
 
-def edge_of(grid: Grid, reach: float, radius: float, field: Numbers) -> Edge:
-    """The edges of contacts in a bore of this radius in mm, which reaches so far (rad).
+def edge_of(grid: Grid, radius: float, field: Numbers, pressure: Numbers, inset: float) -> Edge:
+    """Find the edges of contacts towards the end of the bore.
 
-    They are found from what falls to 0 there as a straight line does: (loaded, cells).
+    Parameters
+    ----------
+    grid : Grid
+    radius : float
+        Radius of the bore in mm.
+    field : array (loaded, cells)
+        Positive in the contact and negative outside; linear interpolation between two cells gives its zero.
+    pressure : array (loaded, cells)
+        In MPa.
+    inset : float
+        Distance of the edge inside that zero, as a share of a ring's width. If it is positive, pressure in the last
+        ring means a contact that reaches the rim.
     """
-    polar, around = grid.polar, grid.azimuth
-    rows = field.reshape(len(field), len(polar), len(around))
+    rows = field.reshape(len(field), grid.rings, grid.meridians)
+    nodes = grid.polar - inset * numpy.diff(grid.edges)
+    if inset > 0:
+        nodes[-1] = grid.reach
     ends = (rows > 0) & numpy.concatenate([rows[:, 1:] <= 0, numpy.ones_like(rows[:, :1], dtype=bool)], axis=1)
-    fall = rows[:, :-1] - rows[:, 1:]
-    share = numpy.divide(rows[:, :-1], fall, out=numpy.ones_like(fall), where=ends[:, :-1])
-    edges = polar[:-1, None] + share * numpy.diff(polar)[:, None]
-    edges = numpy.concatenate([edges, numpy.full_like(edges[:, :1], reach)], axis=1)
-    furthest = numpy.where(ends, edges, 0.0).max(axis=1, initial=0.0)
+    last = numpy.concatenate([numpy.arange(1, grid.rings), [grid.rings - 2]])  # extrapolates beyond the last ring
+    fall = rows - rows[:, last]
+    share = numpy.divide(rows, fall, out=numpy.full_like(rows, numpy.inf), where=ends & (fall != 0))
+    steps = (nodes[last] - nodes)[:, None]
+    edges = numpy.where(share * steps >= 0, nodes[:, None] + share * steps, grid.reach)
+    furthest = numpy.where(ends, numpy.minimum(edges, grid.reach), 0.0).max(axis=1, initial=0.0)
     return Edge(
-        distance=(reach - furthest.max(axis=1, initial=0.0)) * radius,
-        place=_middle(furthest, rows[:, -1], around),
+        distance=(grid.reach - furthest.max(axis=1, initial=0.0)) * radius,
+        place=_middle(furthest, rows[:, -1], grid.azimuth),
+        pressure=pressure.reshape(rows.shape)[:, -1].max(axis=1, initial=0.0),
     )
 
 

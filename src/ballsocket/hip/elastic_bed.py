@@ -14,11 +14,13 @@ from ..gaps import LinearGap
 from ..joint import Joint
 from ..sphere.compliance import Compliance, compliance_on
 from ..sphere.directions import sized
+from ..sphere.edges import Edges
 from ..sphere.gap import Separation, sunk
 from ..sphere.grid import Grid, even_grid
 from ..sphere.search import Bed
 from ..sphere.search import Rest as BedRest
 from ..sphere.surfaces import ClosedShell, RealCup
+from .contact_shares import contact_shares, grid_neighbours
 from .levels import Levels, each_of, levels_of
 from .smoothing import Smoothing
 from .springs import FREE, Rest
@@ -37,11 +39,14 @@ class ElasticBed:
     compliance : Compliance
     clearance, socket_radius : float
         In mm.
+    edges : Edges
+        Relation of pressure and gap at the edge of a contact.
     """
 
     compliance: Compliance
     clearance: float
     socket_radius: float
+    edges: Edges
 
     @property
     def grid(self) -> Grid:
@@ -89,9 +94,26 @@ class ElasticBed:
         """All cells."""
         return numpy.ones(len(self.areas), dtype=bool)
 
+    @property
+    def inset(self) -> float:
+        """Distance of the edge inside the zero of `edge_field`, as a share of a ring."""
+        return self.edges.inset
+
     def edge_field(self, rest: Rest, depth: Numbers) -> Numbers:
-        """What falls to 0 at the edge of the contacts as a straight line does: (loads, cells)."""
-        return rest.pressure**2
+        """Compute the levels in mm, with 0 at the edge of the contacts: (loads, cells)."""
+        shape = (len(rest.pressure), self.grid.rings, self.grid.meridians)
+        pressure = rest.pressure.reshape(shape)
+        overlap = rest.displacement @ self.normals - self.clearance - depth
+        gap = self.compliance.displacement(pressure) - overlap.reshape(shape)
+        return self.edges.levels(pressure, gap).reshape(rest.pressure.shape)
+
+    @cached_property
+    def _neighbours(self) -> Numbers:
+        return grid_neighbours(self.grid)
+
+    def contact_shares(self, rest: Rest, depth: Numbers) -> Numbers:
+        """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells)."""
+        return contact_shares(self.edge_field(rest, depth), self._neighbours, self.inset)
 
     def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None, tether: Numbers = FREE) -> Rest:
         """Where balls come to rest under loads; see `SpringBed.rest`.
@@ -141,4 +163,5 @@ def elastic_bed(surface: RealCup | ClosedShell, joint: Joint, cup: Cup, width: f
         compliance=compliance_on(surface, joint, cup, cells),
         clearance=float(joint.clearance),
         socket_radius=float(joint.socket_radius),
+        edges=surface.edges(joint, cup, cells),
     )

@@ -53,13 +53,19 @@ class Facing:
 
     def passed(self, done: Pass) -> Pass:
         """What the points of the ball go through, with the work of each instant as the socket has it."""
-        field = numpy.zeros((len(done.pressure), self.whole))
-        field[:, self.socket_cells] = done.pressure
-        pressure = self.on_ball.of(field)
+        pressure = self._on_ball(done.pressure)
         given = (done.pressure * done.sliding.steps) @ self.socket_areas
         found = (pressure * self.sliding.steps) @ self.areas
         share = numpy.divide(given, found, out=numpy.zeros_like(given), where=found > 0)
-        return Pass(pressure=pressure * share[:, None], sliding=self.sliding)
+        return Pass(
+            pressure=pressure * share[:, None], sliding=self.sliding, shares=lambda: self._on_ball(done.contact)
+        )
+
+    def _on_ball(self, values: Numbers) -> Numbers:
+        """Interpolate values of the socket's cells (instants, n) at those of the ball: (instants, m)."""
+        field = numpy.zeros((len(values), self.whole))
+        field[:, self.socket_cells] = values
+        return self.on_ball.of(field)
 
 
 def facing(use: SetUp, cells: Numbers) -> Facing:

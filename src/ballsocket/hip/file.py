@@ -33,7 +33,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
     ),
     "cup": (*KEYS["cup"], "tilt"),
     "cycle": CYCLE_KEYS,
-    "creep": ("law", "compliances", "times", "seconds_per_cycle"),
+    "creep": ("law", "compliances", "times", "confinement", "seconds_per_cycle"),
     "film": ("viscosity", "ball_roughness", "cup_roughness", "friction"),
     "wear": WEAR_KEYS,
     "uncertainty": SCATTER_KEYS,
@@ -68,11 +68,11 @@ def read_hip(path: str | Path) -> HipFile:
     has a `law` ("archard", "energy", "area", "cross-shear"), its `coefficient` in mm³/(N m), the `ball_coefficient` of
     a ball that wears too, `contact` ("springs", "shell", "cup"), the `model` whose springs they are, `ring_width`.
     `creep`, which may be empty, has a `law` ("logarithmic", unverified, or "kelvin-voigt" with `compliances` in 1/MPa
-    and `times` in s) and `seconds_per_cycle`. `film` has `viscosity` in Pa s, `ball_roughness`, `cup_roughness`,
-    `friction`. `uncertainty` says what differs between patients (`coefficient`, `clearance`, `inclination`,
-    `anteversion` or `tilt`, `body_weight`, `cycles_per_year`), each by a distribution as in study files, with `count`
-    (of samples, a power of two) and `seed`. At the top: `cycles`, `report_at` (a list), or of activities `years` and
-    `report_years`; `body_weight`.
+    and `times` in s), a `confinement` ("unconfined" or "constrained") and `seconds_per_cycle`. `film` has `viscosity`
+    in Pa s, `ball_roughness`, `cup_roughness`, `friction`. `uncertainty` lists the quantities that differ between
+    patients (`coefficient`, `clearance`, `inclination`, `anteversion` or `tilt`, `body_weight`, `cycles_per_year`),
+    each by a distribution as in study files, with `count` (of samples, a power of two) and `seed`. At the top:
+    `cycles`, `report_at` (a list), or of activities `years` and `report_years`; `body_weight`.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         wear=given_law(wear),
         ball_wear=given_ball_law(wear),
         surface=given_surface(wear),
-        creep=given_creep(content),
+        creep=given_creep(content, float(given.joint.liner.poisson)),
         seconds_per_cycle=given_seconds(table_of(content, "creep")),
         **width,
     )

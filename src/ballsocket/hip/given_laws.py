@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -14,7 +14,7 @@ from ..kinds import Kind
 from ..models.foundation import RadialFoundation
 from ..sphere.surfaces import ClosedShell, RealCup, Springs
 from .coefficients import share_of_slide, wear_factor, wear_per_energy
-from .creep import Ladder, logarithmic
+from .creep import Ladder, constrained_share, logarithmic
 from .film import Lubricant
 from .laws import Archard, AreaLaw, CrossShear, EnergyLaw, Law
 
@@ -73,21 +73,27 @@ def _cross_shear(table: Mapping[str, Any]) -> Law:
 
 _CREEPS = ("logarithmic", "kelvin-voigt")
 _ELEMENTS = ("compliances", "times")
+_CONFINEMENTS: Mapping[str, Callable[[float], float]] = MappingProxyType(
+    {"unconfined": lambda poisson: 1.0, "constrained": constrained_share}
+)
+"""Functions from Poisson's ratio to the strain of the liner over that of a bar, by their names in files."""
 
 
-def given_creep(content: Mapping[str, Any]) -> Ladder | None:
-    """The creep of [creep]; none without that table."""
+def given_creep(content: Mapping[str, Any], poisson: float) -> Ladder | None:
+    """Return the creep law of the table [creep] for a liner of this Poisson's ratio; None without that table."""
     if "creep" not in content:
         return None
     table = table_of(content, "creep")
     given = [name for name in _ELEMENTS if name in table]
     name = known_name("creep law", table.get("law", "kelvin-voigt" if given else "logarithmic"), _CREEPS)
+    confined = known_name("confinement", table.get("confinement", "unconfined"), _CONFINEMENTS)
+    confinement = _CONFINEMENTS[confined](poisson)
     if name == "logarithmic":
         if given:
             raise ValueError(f"{given[0]} belongs to the law 'kelvin-voigt', and the law is {name!r}")
-        return logarithmic()
+        return logarithmic(confinement)
     compliances, times = (_numbers(each, table.get(each)) for each in _ELEMENTS)
-    return Ladder(compliances=compliances, times=times)
+    return Ladder(compliances=compliances, times=times, confinement=confinement)
 
 
 def _numbers(name: str, value: Any) -> tuple[float, ...]:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain
 from math import degrees
 from typing import Any
 
 import numpy
 
 from ..arrays import Numbers
+from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_notes
 from .edge import Edge, Worst
 from .film import Lubricant
 from .mix import Mix
@@ -38,6 +42,8 @@ class Report:
         From the edge of each contact of the cycle to the end of the bore in mm; 0 where it reaches it.
     edge_place : array (loaded,)
         Where that is around the cup's axis, in rad from its uppermost point.
+    edge_pressure : array (loaded,)
+        Largest pressure in MPa in the outermost ring of cells.
     crept : array (rings, meridians)
         Depth of creep in mm.
     creep_depth : float
@@ -46,6 +52,8 @@ class Report:
         Worn depth of the ball in mm, in the cells of `facing.ball_grid`; empty where it does not wear.
     ball_volume, ball_depth : float
         Worn away of the ball: mm³, and mm at the deepest point.
+    worst_contacts : array (activities, 5)
+        Contact with the largest pressure in each activity; see `contact_checks.COLUMNS`.
     settled : bool
         Whether every contact balanced its load.
     """
@@ -61,11 +69,13 @@ class Report:
     max_pressure: float
     edge_distance: Numbers
     edge_place: Numbers
+    edge_pressure: Numbers
     crept: Numbers
     creep_depth: float = 0.0
     ball_wear: Numbers = field(default_factory=lambda: numpy.zeros(0))
     ball_volume: float = 0.0
     ball_depth: float = 0.0
+    worst_contacts: Numbers = field(default_factory=lambda: numpy.zeros((0, len(COLUMNS))))
     settled: bool = True
 
     @property
@@ -76,7 +86,7 @@ class Report:
     @property
     def edge(self) -> Edge:
         """How near the contacts come to the rim."""
-        return Edge(distance=self.edge_distance, place=self.edge_place)
+        return Edge(distance=self.edge_distance, place=self.edge_place, pressure=self.edge_pressure)
 
     def summary(self) -> dict[str, Any]:
         """For JSON, in mm, MPa, mm³."""
@@ -137,11 +147,37 @@ class History:
         """Whether every contact balanced its load."""
         return all(report.settled for report in self.reports)
 
+    @cached_property
+    def contact_checks(self) -> tuple[tuple[ContactCheck, ...], ...]:
+        """Checks of the contact model at each report, one for each activity with contact."""
+        return tuple(self.use.contact_checks(report.worst_contacts) for report in self.reports)
+
+    @property
+    def valid(self) -> bool:
+        """True if every contact balances its load and the worst contacts are inside their model's validity."""
+        return self.settled and self.contact_valid
+
+    @property
+    def contact_valid(self) -> bool:
+        """True if the worst contacts, unworn and at the reports, are inside the validity of their model."""
+        return all(check.valid for check in (*self.use.unworn_checks, *chain(*self.contact_checks)))
+
+    @property
+    def utilisation(self) -> float | None:
+        """Largest utilisation, unworn and at the reports; None where no yield stress is known."""
+        return largest_utilisation((*self.use.unworn_checks, *chain(*self.contact_checks)))
+
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is to be said of it."""
+        """Notes on cycle, cup, laws, contact model and rim."""
         unsettled = () if self.settled else (_UNSETTLED,)
-        return (*self.use.notes, *self._worn_through, *self._at_the_rim, *unsettled)
+        return (*self._contact_notes, *self.use.notes, *self._worn_through, *self._at_the_rim, *unsettled)
+
+    @property
+    def _contact_notes(self) -> tuple[str, ...]:
+        """Notes of the contact model, each at its first occurrence."""
+        later = (_LATER.format(report.cycles) for report in self.reports)
+        return tuple(list_notes([(_NEW, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)]))
 
     @property
     def _worn_through(self) -> tuple[str, ...]:
@@ -166,7 +202,7 @@ class History:
         for when, worst in seen:
             if worst is not None and worst.reaching:
                 of = len(self.use.loaded)
-                return (_REACHES.format(when, worst.reaching, of, worst.where),)
+                return (_REACHES.format(when, worst.reaching, of, worst.where, worst.pressure),)
         return ()
 
     def summary(self) -> dict[str, Any]:
@@ -188,25 +224,39 @@ class History:
                     "speed_mm_s": self.use.largest_speed,
                 },
             },
+            "contact": {
+                "model": self.use.contact_model.name,
+                "valid": self.contact_valid,
+                "utilisation": self.utilisation,
+                "unworn": [check.summary() for check in self.use.unworn_checks],
+            },
             "film": self.use.film(self.lubricant).summary(),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
-            "history": [self._seen(report) for report in self.reports],
+            "history": list(map(self._seen, self.reports, self.contact_checks)),
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
             "notes": list(self.notes),
         }
 
-    def _seen(self, report: Report) -> dict[str, Any]:
-        """A report for JSON, with years where the activities are counted by them."""
+    def _seen(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
+        """Return a report as data for JSON, with its contacts, and with years if the cycles per year are known."""
         mix = self.use.cycle
         years = {"years": report.cycles / mix.per_year} if isinstance(mix, Mix) else {}
-        return {**report.summary(), **years, "edge": _told(report.edge.worst(self.use))}
+        contact = {
+            "valid": report.settled and all(check.valid for check in checks),
+            "utilisation": largest_utilisation(checks),
+            "contact": [check.summary() for check in checks],
+        }
+        return {**report.summary(), **years, "edge": _told(report.edge.worst(self.use)), **contact}
 
 
 _THIN = 0.25
 _THROUGH = "worn through: after {:g} cycles the depth is {:.3g} mm in a liner of {:g} mm; what follows has no meaning"
 _THINNER = "after {:g} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of a whole one"
 _NEW, _LATER = "in the first cycle", "after {:g} cycles"
-_REACHES = "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}"
+_REACHES = (
+    "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}; "
+    "the pressure in the outermost ring is at most {:.3g} MPa"
+)
 _UNSETTLED = "a contact did not balance its load: no digit of this run is to be trusted"
 
 

@@ -27,10 +27,18 @@ class Pass:
     pressure : array (instants, points)
         In MPa.
     sliding : Sliding
+    shares : function, optional
+        Function that computes `contact`. Without it, a cell with a positive pressure is in contact completely.
     """
 
     pressure: Numbers
     sliding: Sliding
+    shares: Callable[[], Numbers] | None = None
+
+    @cached_property
+    def contact(self) -> Numbers:
+        """Share of each point's cell that is in contact, from 0 to 1: (instants, points)."""
+        return (self.pressure > 0).astype(float) if self.shares is None else self.shares()
 
     @cached_property
     def work(self) -> Numbers:
@@ -130,6 +138,8 @@ class EnergyLaw:
 class AreaLaw:
     """dh = C v dt, v being the speed of sliding, wherever there is contact, whatever the pressure.
 
+    A cell at the edge of the contact wears in proportion to its contact share.
+
     Parameters
     ----------
     coefficient : float
@@ -142,8 +152,7 @@ class AreaLaw:
         _check_coefficient(self.coefficient)
 
     def depth(self, cycle: Pass) -> Numbers:
-        touching: Numbers = cycle.pressure > 0
-        return self.coefficient * numpy.einsum("tp,tp->p", touching, cycle.sliding.steps)
+        return self.coefficient * numpy.einsum("tp,tp->p", cycle.contact, cycle.sliding.steps)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -233,5 +242,5 @@ def steepest(law: Law, done: Pass) -> float:
     nudge = _NUDGE * float(done.pressure.max(initial=0.0))
     if not nudge > 0:
         return 0.0
-    more = Pass(pressure=done.pressure + nudge * (done.pressure > 0), sliding=done.sliding)
+    more = Pass(pressure=done.pressure + nudge * (done.pressure > 0), sliding=done.sliding, shares=lambda: done.contact)
     return float((law.depth(more) - law.depth(done)).max() / nudge)

@@ -21,7 +21,7 @@ from ..npz import read_arrays, write_arrays
 from ..studies.axes import SampleAxis
 from ..studies.distributions import Distribution
 from .checkpoint import checkpoint
-from .patients import ANSWERS, Scatter, answers_of
+from .patients import ANSWERS, Scatter, answers_of, contact_over
 
 _PIECE = 16
 """Patients: about half a second of work."""
@@ -44,10 +44,23 @@ class Lived:
         Of `ANSWERS`; NaN where there is none.
     refused : array of str (patients,)
         Why there is none; empty where there is one.
+    contact : array (patients, 1 + looks, 2)
+        Utilisation and validity (1 or 0) of the contact, unworn and at each report.
     """
 
     table: Numbers
     refused: Numbers
+    contact: Numbers
+
+    @property
+    def peak_utilisation(self) -> Numbers:
+        """Largest utilisation from the first cycle to each report: (patients, looks), NaN where it is not known."""
+        return numpy.maximum.accumulate(self.contact[:, :, 0], axis=1)[:, 1:]
+
+    @property
+    def valid(self) -> Numbers:
+        """Validity from the first cycle to each report, 1 or 0: (patients, looks)."""
+        return numpy.minimum.accumulate(self.contact[:, :, 1], axis=1)[:, 1:]
 
 
 def joined(parts: Sequence[Lived]) -> Lived:
@@ -55,6 +68,7 @@ def joined(parts: Sequence[Lived]) -> Lived:
     return Lived(
         table=numpy.concatenate([one.table for one in parts]),
         refused=numpy.concatenate([one.refused for one in parts]),
+        contact=numpy.concatenate([one.contact for one in parts]),
     )
 
 
@@ -100,15 +114,20 @@ class Lives:
         """
         if fingerprint() != self.code:
             raise RuntimeError(f"this worker has ballsocket {fingerprint()}, and {self.code} asks")
-        found = [self._lived(number) for number in self.patients(piece)]
-        return Lived(table=numpy.stack([one for one, _ in found]), refused=numpy.array([why for _, why in found]))
+        tables, contacts, refusals = zip(*(self._lived(number) for number in self.patients(piece)), strict=True)
+        return Lived(table=numpy.stack(tables), refused=numpy.array(refusals), contact=numpy.stack(contacts))
 
-    def _lived(self, number: int) -> tuple[Numbers, str]:
+    def _lived(self, number: int) -> tuple[Numbers, Numbers, str]:
+        """Wear the hip of one patient; return its results, its contacts, and an error message."""
         values = {name: float(each[number]) for name, each in self.values.items()}
         try:
-            return answers_of(self.scatter.patient(values).seen(self.counts)), ""
+            patient = self.scatter.patient(values)
+            reports = patient.seen(self.counts)
+            return answers_of(reports), contact_over(patient.use, reports), ""
         except ValueError as error:
-            return numpy.full((len(self.counts), len(ANSWERS)), numpy.nan), str(error)
+            answers = numpy.full((len(self.counts), len(ANSWERS)), numpy.nan)
+            contact = numpy.full((1 + len(self.counts), 2), numpy.nan)
+            return answers, contact, str(error)
 
     def all(self, engine: Engine = _HERE, store: Kept | None = None, listen: Listener = lambda done: None) -> Lived:
         """Every patient, those of a store not anew."""
@@ -185,7 +204,7 @@ class Kept:
             raise ValueError(f"{self.folder} keeps other patients, or those of another version: give another folder")
 
     def write(self, piece: int, lived: Lived) -> None:
-        write_arrays(self._path(piece), table=lived.table, refused=lived.refused)
+        write_arrays(self._path(piece), table=lived.table, refused=lived.refused, contact=lived.contact)
 
     def found(self, lives: Lives) -> dict[int, Lived]:
         """The pieces that are there, whole."""
@@ -229,6 +248,8 @@ def columns(lives: Lives, lived: Lived) -> Iterator[tuple[str, Numbers]]:
     for look, count in enumerate(lives.counts):
         for place, (name, unit) in enumerate(ANSWERS.items()):
             yield f"{name}_{unit}_at_{count:g}", lived.table[:, look, place]
+        yield f"peak_utilisation_at_{count:g}", lived.peak_utilisation[:, look]
+        yield f"valid_at_{count:g}", lived.valid[:, look]
 
 
 _ANGLES = ("inclination", "anteversion", "tilt")

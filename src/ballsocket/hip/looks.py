@@ -102,11 +102,13 @@ def report_of(run: Run) -> Report:
         max_pressure=float(rest.pressure.max(initial=0.0)),
         edge_distance=edge.distance,
         edge_place=edge.place,
+        edge_pressure=edge.pressure,
         crept=crept.reshape(shape),
         creep_depth=float(crept.max()),
         ball_wear=run.ball,
         ball_volume=run.ball_volume,
         ball_depth=float(run.ball.max(initial=0.0)),
+        worst_contacts=use.worst_contacts(rest, depth),
         settled=run.settled and all(each.settled for each in (rest, *only)),
     )
 

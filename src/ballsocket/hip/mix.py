@@ -157,6 +157,15 @@ class Mix:
         """The largest force of all activities, in N."""
         return max(each.largest_force for each in self._cycles)
 
+    @property
+    def activity_slices(self) -> tuple[tuple[str, slice], ...]:
+        """Name and instants of each activity."""
+        begin, slices = 0, []
+        for cycle in self._cycles:
+            slices.append((cycle.name, slice(begin, begin + cycle.instants)))
+            begin += cycle.instants
+        return tuple(slices)
+
     def told(self, instant: int) -> str:
         """Where in which activity an instant is, in words."""
         for each in self._cycles:

@@ -15,6 +15,7 @@ from ..checks import check_names, require
 from ..sphere.surfaces import Springs
 from ..studies.distributions import Distribution
 from .blocks import Run
+from .contact_checks import utilisation_and_validity
 from .cycle import Cycle
 from .history import Report
 from .laws import CrossShear, Law
@@ -186,6 +187,13 @@ class Patient:
 def answers_of(reports: Sequence[Report]) -> Numbers:
     """The numbers of `ANSWERS` that are seen: (reports, answers)."""
     return numpy.array([[_answer(report, name) for name in ANSWERS] for report in reports])
+
+
+def contact_over(use: InUse, reports: Sequence[Report]) -> Numbers:
+    """Compute utilisation and validity of the contact, unworn and at each report."""
+    return utilisation_and_validity(
+        use.contact_model, use.joint, [use.unworn_worst, *(report.worst_contacts for report in reports)]
+    )
 
 
 def _answer(report: Report, name: str) -> float:

@@ -31,7 +31,7 @@ class Placed:
     cycle : Cycle or Mix
         In the body's frame, as the cup's orientation is. On a left cup it is mirrored.
     cup : Cup
-        Arc of cover and where it faces; where the cycle's standard says a tilt, that of a cup that faces down.
+        Arc of cover and orientation. A cup without a given orientation takes the tilt of the cycle's standard.
     """
 
     joint: Joint
@@ -115,10 +115,9 @@ class Placed:
 
     @cached_property
     def placed(self) -> Cup:
-        """The cup as the cycle finds it: where it faces straight down and a standard has a tilt, it has that tilt."""
-        upright = self.cup.inclination == 0 and self.cup.anteversion == 0
+        """Cup of the run: with its own orientation if set, else with the tilt of the cycle's standard."""
         tilt = self.cycle.cup_tilt
-        return self.cup.tilted(tilt) if upright and tilt is not None else self.cup
+        return self.cup if self.cup.oriented or tilt is None else self.cup.tilted(tilt)
 
     @property
     def reach(self) -> float:

@@ -11,6 +11,7 @@ from ..checks import shown
 from ..io.toml import table_of
 from ..io.units import parse
 from ..kinds import Kind
+from ..studies.distributions import check_nominal
 from ..studies.scatter import Read, distribution_of
 from .coefficients import share_of_slide, wear_factor, wear_per_energy
 from .laws import AreaLaw, EnergyLaw
@@ -61,7 +62,21 @@ def uncertain(content: Mapping[str, Any], use: InUse) -> Uncertain:
     if count < 2 or count & (count - 1):
         raise ValueError(f"count = {count} is not allowed: a power of two of samples, such as {COUNT}")
     weight = _weight(content) if "body_weight" in scattered else None
-    return Uncertain(scatter=Scatter(use=use, distributions=scattered, body_weight=weight), count=count, seed=seed)
+    scatter = Scatter(use=use, distributions=scattered, body_weight=weight)
+    for name, value in _nominal(use).items():
+        if name in scattered:
+            check_nominal(name, value, scattered[name], _KINDS.get(name, Kind.NUMBER).written)
+    return Uncertain(scatter=scatter, count=count, seed=seed)
+
+
+def _nominal(use: InUse) -> dict[str, float]:
+    """Return the nominal values of the quantities that may differ between patients."""
+    wear: Any = use.wear
+    coefficient = getattr(wear, "straight", getattr(wear, "coefficient", None))
+    cup = use.placed
+    values = {"clearance": use.joint.clearance, "inclination": cup.inclination, "anteversion": cup.anteversion}
+    known = values if coefficient is None else {**values, "coefficient": coefficient}
+    return {name: float(value) for name, value in known.items()}
 
 
 def _weight(content: Mapping[str, Any]) -> float | None:

@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, partial
 from math import inf, radians
 from typing import Any
 
 import numpy
 
 from ..arrays import Numbers, is_plain
-from ..checks import require
+from ..checks import require, shown
 from ..cup import Cup
 from ..fem.shapes import socket_shape
+from ..joint import Joint
+from ..model import Model
+from ..models.foundation import RadialFoundation
 from ..sphere.grid import Grid, even_grid, grid
 from ..sphere.model import Sphere
 from ..sphere.surfaces import ClosedShell, RealCup, Springs
 from ..validity import inside
-from .creep import Ladder
+from .contact_checks import ContactCheck, check_contact, half_angles
+from .creep import Ladder, creep_note
+from .cycle import Cycle
 from .edge import Edge, edge_of
 from .elastic_bed import elastic_bed
 from .film import Film, Lubricant, film
 from .first import First, first_of
 from .laws import Law, Pass
+from .mix import Mix
 from .placing import Placed
 from .sliding import Sliding
 from .spots import ball_grid
@@ -30,6 +36,8 @@ from .springs import CycleBed, Rest, spring_bed
 
 FINEST = radians(0.5)
 """The narrowest rings."""
+
+_DIAMETERS = 1.0, 1000.0  # mm, of the head and of the bore
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -45,8 +53,15 @@ class SetUp(Placed):
     tolerance: float = 4e-3
 
     def __post_init__(self) -> None:
+        for name, kind in (("joint", Joint), ("cycle", Cycle | Mix), ("cup", Cup)):
+            if not isinstance(getattr(self, name), kind):
+                raise TypeError(f"{name} must be a {name.capitalize()}, got {shown(getattr(self, name))}")
         if not all(map(is_plain, self.joint.numbers())):
             raise ValueError("a hip in use is one joint, and this one has arrays of numbers")
+        for name, radius in (("head_diameter", self.joint.ball_radius), ("bore diameter", self.joint.socket_radius)):
+            diameter = 2.0 * float(radius)
+            low, high = _DIAMETERS
+            require(name, diameter, low <= diameter <= high, "a hip in use has a diameter of 1 mm to 1000 mm")
         require("ring_width", self.ring_width, FINEST <= self.ring_width <= radians(10.0), "0.5 to 10 degrees")
         require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
         if not isinstance(self.surface, Springs):
@@ -71,9 +86,15 @@ class SetUp(Placed):
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be said of the cycle, the cup and the law."""
-        crept = self.creep.notes if self.creep else ()
         worn = (*self.wear.notes, *(self.ball_wear.notes if self.ball_wear else ()))
-        return (*self.cycle.notes, *self._placing_notes, *worn, *crept)
+        return (*self.cycle.notes, *self._placing_notes, *worn, *self._creep_notes)
+
+    @property
+    def _creep_notes(self) -> tuple[str, ...]:
+        if self.creep is None:
+            return ()
+        confinement = creep_note(self.creep, float(self.joint.liner.poisson))
+        return (*self.creep.notes, *([confinement] if confinement else []))
 
     @cached_property
     def grid(self) -> Grid:
@@ -111,7 +132,7 @@ class SetUp(Placed):
     def edge(self, rest: Rest, depth: Numbers | float = 0.0) -> Edge:
         """How near the edge of each contact comes to the end of the bore, and where."""
         field = self.bed.edge_field(rest, self._everywhere(depth))
-        return edge_of(self.grid, self.reach, self.bed.socket_radius, field)
+        return edge_of(self.grid, self.bed.socket_radius, field, rest.pressure, self.bed.inset)
 
     def edge_distance(self, rest: Rest, depth: Numbers | float = 0.0) -> Numbers:
         """The arc in mm from the edge of each contact to the end of the bore where it is nearest: (loaded,).
@@ -129,9 +150,62 @@ class SetUp(Placed):
         field = numpy.asarray(depth)
         return field if field.ndim == 2 else numpy.broadcast_to(field, self.bed.areas.shape)
 
-    def passed(self, rest: Rest) -> Pass:
-        """What the points of the socket go through under these contacts."""
-        return Pass(pressure=rest.pressure, sliding=self.sliding)
+    @cached_property
+    def contact_model(self) -> Model:
+        """Contact model that matches the run: radial springs, or the sphere in its cup."""
+        if isinstance(self.surface, Springs):
+            return RadialFoundation(modulus=self.surface.modulus)
+        return Sphere(cup=self._around, surface=self.surface, ring_width=self.ring_width)
+
+    @cached_property
+    def _activities(self) -> tuple[tuple[str, Numbers], ...]:
+        """Name of each activity with contact, and its loads as indices into the loaded instants."""
+        indices = {
+            number: numpy.flatnonzero((self.loaded >= part.start) & (self.loaded < part.stop))
+            for number, (_, part) in enumerate(self.cycle.activity_slices)
+        }
+        return tuple((self.cycle.activity_slices[number][0], each) for number, each in indices.items() if len(each))
+
+    def worst_contacts(self, rest: Rest, depth: Numbers | float = 0.0) -> Numbers:
+        """Compute the contact with the largest pressure in each activity with contact: (activities, `COLUMNS`)."""
+        largest = rest.pressure.max(axis=1, initial=0.0)
+        rows = numpy.array([loads[largest[loads].argmax()] for _, loads in self._activities], dtype=int)
+        worn = self._everywhere(depth)
+        worn = worn[rows] if worn.ndim == 2 else worn
+        overlap = rest.displacement[rows] @ self.bed.normals - self.bed.clearance - worn
+        chosen = Rest(displacement=rest.displacement[rows], pressure=rest.pressure[rows], settled=rest.settled)
+        return numpy.stack(
+            [
+                rows,
+                numpy.linalg.norm(self.loads[rows], axis=1),
+                numpy.maximum(overlap.max(axis=1, initial=0.0), 0.0),
+                half_angles(self.grid, self.reach, self.bed.edge_field(chosen, worn)),
+                largest[rows],
+            ],
+            axis=1,
+        )
+
+    def contact_checks(self, worst: Numbers) -> tuple[ContactCheck, ...]:
+        """Check the contact model for each activity with contact, from a table of `worst_contacts`."""
+        return tuple(
+            check_contact(self.contact_model, self.joint, row, activity, self.cycle.told(int(self.loaded[int(row[0])])))
+            for (activity, _), row in zip(self._activities, worst, strict=True)
+        )
+
+    @cached_property
+    def unworn_worst(self) -> Numbers:
+        """Worst contacts of the first cycle; see `worst_contacts`."""
+        return self.worst_contacts(self.unworn)
+
+    @cached_property
+    def unworn_checks(self) -> tuple[ContactCheck, ...]:
+        """Checks of the contact model in the first cycle."""
+        return self.contact_checks(self.unworn_worst)
+
+    def passed(self, rest: Rest, depth: Numbers | float = 0.0) -> Pass:
+        """Collect pressures and slides of the socket's points under these contacts, on a bore worn by a depth in mm."""
+        shares = partial(self.bed.contact_shares, rest, self._everywhere(depth))
+        return Pass(pressure=rest.pressure, sliding=self.sliding, shares=shares)
 
     @cached_property
     def unworn(self) -> Rest:

@@ -12,6 +12,7 @@ from ..arrays import Numbers
 from ..sphere.directions import sized
 from ..sphere.gap import sunk
 from ..sphere.grid import Grid
+from .contact_shares import contact_shares, grid_neighbours, subset_neighbours
 
 _ROUNDS = 60
 TOLERANCE = 1e-8
@@ -51,6 +52,8 @@ class CycleBed(Protocol):
     @property
     def directions(self) -> Numbers: ...
     @property
+    def normals(self) -> Numbers: ...
+    @property
     def areas(self) -> Numbers: ...
     @property
     def stiffest(self) -> float: ...
@@ -58,7 +61,10 @@ class CycleBed(Protocol):
     def near(self, rest: Rest, depth: Numbers, margin: float) -> Numbers: ...
     def rest(self, loads: Numbers, depth: Numbers, start: Rest | None = None, tether: Numbers = FREE) -> Rest: ...
     def smoothed(self, depth: Numbers) -> Numbers: ...
+    @property
+    def inset(self) -> float: ...
     def edge_field(self, rest: Rest, depth: Numbers) -> Numbers: ...
+    def contact_shares(self, rest: Rest, depth: Numbers) -> Numbers: ...
 
 
 def spring_bed(grid: Grid, modulus: float, clearance: float, socket_radius: float) -> SpringBed:
@@ -70,6 +76,7 @@ def spring_bed(grid: Grid, modulus: float, clearance: float, socket_radius: floa
         modulus=modulus,
         clearance=clearance,
         socket_radius=socket_radius,
+        neighbours=grid_neighbours(grid),
     )
 
 
@@ -87,6 +94,8 @@ class SpringBed:
         K in MPa/mm.
     clearance, socket_radius : float
         In mm.
+    neighbours : array (2, 2, cells)
+        Numbers of the neighbouring cells; see `grid_neighbours`.
     """
 
     directions: Numbers
@@ -95,11 +104,16 @@ class SpringBed:
     modulus: float
     clearance: float
     socket_radius: float
+    neighbours: Numbers
 
     def part(self, cells: Numbers) -> SpringBed:
         """Some of the cells alone."""
         return replace(
-            self, directions=self.directions[:, cells], normals=self.normals[:, cells], areas=self.areas[cells]
+            self,
+            directions=self.directions[:, cells],
+            normals=self.normals[:, cells],
+            areas=self.areas[cells],
+            neighbours=subset_neighbours(self.neighbours, cells),
         )
 
     def near(self, rest: Rest, depth: Numbers, margin: float) -> Numbers:
@@ -112,9 +126,18 @@ class SpringBed:
         """A depth as it is: springs carry every wave of the grid alike."""
         return depth
 
+    @property
+    def inset(self) -> float:
+        """Distance of the edge inside the zero of `edge_field`, as a share of a cell: 0 on springs."""
+        return 0.0
+
     def edge_field(self, rest: Rest, depth: Numbers) -> Numbers:
-        """What falls to 0 at the edge of the contacts as a straight line does: (loads, cells)."""
+        """Compute the overlap in mm, with 0 at the edge of the contacts: (loads, cells)."""
         return rest.displacement @ self.normals - self.clearance - depth
+
+    def contact_shares(self, rest: Rest, depth: Numbers) -> Numbers:
+        """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells)."""
+        return contact_shares(self.edge_field(rest, depth), self.neighbours, self.inset)
 
     @property
     def stiffest(self) -> float:

@@ -11,12 +11,15 @@ import numpy
 
 from ..arrays import Numbers
 from ..checks import shown
+from ..input_files import open_input
 
 _LARGEST = 10_000_000
 _ROWS = 5, 100_000
-_HEAD = re.compile(r"\s*\"?\s*([A-Za-z_]+)'?\s*(?:[\[(]\s*([^\])]+?)\s*[\])])?\s*\"?\s*")
-_WORDS = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
-_BEGINS = re.compile(r"\s*\"?\s*(time|phase|cycle)\b", re.IGNORECASE)
+# possessive quantifiers (*+, ++) keep the matching time proportional to the length
+_HEAD = re.compile(r"\s*+\"?\s*+([A-Za-z_]++)'?\s*+(?:[\[(]([^\])]++)[\])])?\s*+\"?\s*+")
+_WORDS = re.compile(r"[^\s\[(]++(?:\s{0,20}+[\[(][^\])]{0,60}+[\])])?")
+_BEGINS = re.compile(r"\s*+\"?\s*+(time|phase|cycle)\b", re.IGNORECASE)
+_UNIT = re.compile(r"\s*+[\[(]?\s*+[A-Za-z%°]++\s*+[\])]?\s*+")
 _LINES_BEFORE = 100
 _END = "endheader"
 
@@ -77,7 +80,7 @@ def parted_head(head: str) -> tuple[str, str | None]:
     match = _HEAD.fullmatch(head)
     if match is None:
         raise ValueError(f"the head {shown(head)} is not a name with a unit, such as 'force [N]'")
-    return match[1].lower(), match[2]
+    return match[1].lower(), match[2] and match[2].strip()
 
 
 def read_table(path: Path) -> Table:
@@ -90,7 +93,7 @@ def read_table(path: Path) -> Table:
     OSError
         The file cannot be read.
     """
-    with path.open("rb") as stream:
+    with open_input(path) as stream:
         raw = stream.read(_LARGEST + 1)
     if len(raw) > _LARGEST:
         raise ValueError(f"the table is larger than {_LARGEST} bytes")
@@ -145,7 +148,7 @@ def _has_time(line: str) -> bool:
 
 
 def _is_unit(cell: str) -> bool:
-    return bool(re.fullmatch(r"\s*[\[(]?\s*[A-Za-z%°]+\s*[\])]?\s*", cell)) and cell.strip().lower() not in (
+    return bool(_UNIT.fullmatch(cell)) and cell.strip().lower() not in (
         "nan",
         "inf",
     )

@@ -1,0 +1,230 @@
+"""Validity of the contact model at the worst instant of each activity, from the contacts of a whole cycle.
+
+A run solves its contacts on the grid of the bore. Here the contact with the largest pressure in each activity becomes
+a `Contact` of the matching model. That `Contact` supplies validity, utilisation and notes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import degrees, isfinite, nan
+from typing import Any
+
+import numpy
+
+from ..arrays import Array, Numbers
+from ..contact import Contact, strength
+from ..elastic.exact import Exact
+from ..joint import Joint
+from ..model import Model
+from ..sphere.grid import Grid
+from ..validity import Status
+
+COLUMNS = ("instant", "force", "indentation", "half_angle", "max_pressure")
+"""Columns of a table of worst contacts: index of the instant, N, mm, rad, MPa."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GridLaws:
+    """Quantities of contacts on a grid; NaN for quantities that the run does not compute."""
+
+    half_angle: Array
+    max_pressure: Array
+    max_pressure_angle: Array = nan
+    pole_pressure: Array = nan
+    stiffness: Array = nan
+    energy: Array = nan
+    foundation_modulus: Array = nan
+    pressure_integral: Array = nan
+
+    def pressure(self, angle: Array) -> Array:
+        """Return NaN: the pressure of a worn bore does not depend on one angle alone."""
+        return nan * angle
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class GridContact(Contact):
+    """Contact on the grid of a run.
+
+    Its von Mises stress is a fitted ratio times the largest pressure, with an error of typically 6 %. If the yield
+    stress is within that error, the ratio is computed from the exact solution at the same half angle.
+    """
+
+    def _largest_von_mises(self) -> Array:
+        estimate = super()._largest_von_mises()
+        if not isinstance(self.max_pressure, float) or not self._may_yield(estimate):
+            return estimate
+        ratio = exact_stress_ratio(self.joint, self.half_angle)
+        return ratio * self.max_pressure if isfinite(ratio) else estimate
+
+    def _may_yield(self, estimate: float) -> bool:
+        """Check if yield or the end of linear elasticity is within the error of an estimate of the stress (MPa)."""
+        yield_stress = self.joint.liner.yield_stress
+        low, high = strength.between(self, estimate)
+        return yield_stress is not None and any(low <= limit * yield_stress <= high for limit in _NOTED_UTILISATIONS)
+
+
+_NOTED_UTILISATIONS = 1.0, strength.ELASTIC
+"""Utilisations at which a note appears."""
+
+
+@lru_cache(maxsize=256)
+def exact_stress_ratio(joint: Joint, half_angle: float) -> float:
+    """Compute the largest von Mises stress in the liner over the largest pressure; NaN without an exact solution."""
+    try:
+        contact = Exact().press(joint, half_angle=half_angle)
+        return float(contact.von_mises / contact.max_pressure)
+    except ValueError:
+        return nan
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactCheck:
+    """Verdict of the contact model on the worst instant of one activity.
+
+    Attributes
+    ----------
+    activity : str
+    instant : str
+        Instant of the largest pressure, in words.
+    force, max_pressure, half_angle : float
+        Load in N, largest pressure in MPa, half angle in rad of a round contact of the same area.
+    utilisation : float, optional
+        Largest von Mises stress over yield stress; None where no yield stress is known.
+    utilisation_note : str
+        Reason why the utilisation does not cover the liner; empty where it does.
+    valid : bool
+        True inside the validity of the contact model.
+    notes : tuple of str
+        Notes of the contact model.
+    """
+
+    activity: str
+    instant: str
+    force: float
+    max_pressure: float
+    half_angle: float
+    utilisation: float | None
+    utilisation_note: str
+    valid: bool
+    notes: tuple[str, ...]
+
+    def summary(self) -> dict[str, Any]:
+        """Return the check as data for JSON."""
+        return {
+            "activity": self.activity,
+            "at": self.instant,
+            "force_N": self.force,
+            "max_pressure_MPa": self.max_pressure,
+            "half_angle_deg": degrees(self.half_angle),
+            "utilisation": self.utilisation,
+            "utilisation_note": self.utilisation_note or None,
+            "valid": self.valid,
+            "notes": list(self.notes),
+        }
+
+
+def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
+    """Compute half angles in rad of round contacts of the same area: (contacts,).
+
+    Parameters
+    ----------
+    grid : Grid
+    reach : float
+        End of the bore, in rad from the dome's pole.
+    field : array (contacts, cells)
+        Positive in the contact and linear across its edge. A field that is 0 outside marks the cells alone.
+    """
+    rows = field.reshape(len(field), grid.rings, grid.meridians)
+    inner, outer = rows[:, :-1], rows[:, 1:]
+    fall = inner - outer
+    crossing = numpy.divide(inner, fall, out=numpy.full_like(fall, 0.5), where=(inner < 0) | (outer < 0))
+    low, high = numpy.where(inner > 0, 0.0, crossing), numpy.where(outer > 0, 1.0, crossing)
+    pressed = (inner > 0) | (outer > 0)
+    polar, step = grid.polar[:-1, None], numpy.diff(grid.polar)[:, None]
+    between = numpy.where(pressed, numpy.cos(polar + low * step) - numpy.cos(polar + high * step), 0.0)
+    ends = (rows[:, 0] > 0) * (1 - numpy.cos(grid.polar[0])), (rows[:, -1] > 0) * _versine(grid.polar[-1], reach)
+    versine = (between.sum(axis=1) + ends[0] + ends[1]).mean(axis=1)
+    return numpy.arccos(numpy.clip(1 - versine, -1.0, 1.0))
+
+
+def _versine(polar: float, reach: float) -> float:
+    return float(numpy.cos(polar) - numpy.cos(reach))
+
+
+def grid_contact(model: Model, joint: Joint, worst: Numbers) -> GridContact:
+    """Build the contact of one row of a table of worst contacts, or of a table (contacts, `COLUMNS`)."""
+    plain = worst.ndim == 1
+    force, indentation, half_angle, max_pressure = (float(x) if plain else x for x in worst.T[1:])
+    return GridContact(
+        model=model,
+        joint=joint,
+        status=Status.OK if plain else numpy.zeros(len(worst), dtype=numpy.int8),
+        laws=GridLaws(half_angle=half_angle, max_pressure=max_pressure),
+        force=force,
+        indentation=indentation,
+    )
+
+
+def utilisation_and_validity(model: Model, joint: Joint, stages: Sequence[Numbers]) -> Numbers:
+    """Compute the largest utilisation of all activities, and validity (1 or 0), at each stage of a run: (stages, 2).
+
+    `stages` are tables of worst contacts. Utilisation is NaN where no yield stress is known.
+    """
+    shape = (len(stages), -1)
+    table = numpy.concatenate(stages)
+    if not len(table):
+        return numpy.tile([nan, 1.0], (len(stages), 1))
+    contact = grid_contact(model, joint, table)
+    utilisation, valid = (
+        numpy.broadcast_to(numpy.asarray(x, dtype=float), len(table)) for x in (contact.utilisation, contact.valid)
+    )
+    return numpy.stack([utilisation.reshape(shape).max(axis=1), valid.reshape(shape).min(axis=1)], axis=1)
+
+
+def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, instant: str) -> ContactCheck:
+    """Check the contact of one row of a table of worst contacts."""
+    contact = grid_contact(model, joint, worst)
+    utilisation = float(contact.utilisation)
+    return ContactCheck(
+        activity=activity,
+        instant=instant,
+        force=float(contact.force),
+        max_pressure=float(contact.max_pressure),
+        half_angle=float(contact.half_angle),
+        utilisation=utilisation if isfinite(utilisation) else None,
+        utilisation_note=contact.utilisation_note,
+        valid=bool(contact.valid),
+        notes=contact.notes,
+    )
+
+
+def largest_utilisation(checks: Sequence[ContactCheck]) -> float | None:
+    """Return the largest utilisation of some checks; None where none is known."""
+    return max((check.utilisation for check in checks if check.utilisation is not None), default=None)
+
+
+def list_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator[str]:
+    """List the notes of checks at several stages of a run, each kind of note once, at its first occurrence.
+
+    A missing yield stress holds throughout the run: its note names no instant.
+
+    Parameters
+    ----------
+    stages : sequence of pairs
+        Stage in words ("in the first cycle") and its checks. Notes that differ in numbers alone are of one kind.
+    """
+    listed = set()
+    for stage, checks in stages:
+        for check in sorted(checks, key=_severity):
+            for note in check.notes:
+                kind = "".join(letter for letter in note if not letter.isdigit())
+                if kind not in listed:
+                    listed.add(kind)
+                    yield note if note == check.utilisation_note else f"{note} ({stage}, at {check.instant})"
+
+
+def _severity(check: ContactCheck) -> tuple[float, float]:
+    return -(check.utilisation or 0.0), -check.max_pressure

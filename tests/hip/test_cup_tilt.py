@@ -1,0 +1,94 @@
+"""Orientation of the cup: an explicit orientation, 0 included, replaces the tilt of the cycle's standard."""
+
+import json
+import pickle
+from dataclasses import replace
+from math import degrees, radians
+from urllib.parse import parse_qs
+
+import pytest
+
+import ballsocket as bs
+from ballsocket.app.asked import FIRST, written
+from ballsocket.app.gaiting import gait_of
+from ballsocket.app.in_use import Use, hip_of
+from ballsocket.app.screen import START, link_of, read_link
+from ballsocket.app.wearing import life_of
+from ballsocket.hip import Archard, InUse, Scatter, iso_14242_1
+from ballsocket.hip.file import read_hip
+from ballsocket.io.joint_file import JointFile
+from ballsocket.io.joint_toml import cup_table, tables_of
+from ballsocket.studies import Normal
+
+from ..cli.command import run
+from .test_file import told
+from .test_wear import hip
+
+TILT = 'tilt = "30 deg" # between the load and the cup\'s axis'
+
+
+def tilt_of(use):
+    return round(degrees(use.placed.inclination), 9)
+
+
+@pytest.mark.parametrize("words", [{"inclination": 0}, {"inclination": 0.0}, {"anteversion": 0.0}])
+def test_an_explicit_zero_is_worn_upright(words):
+    use = hip(cup=bs.Cup(**words))
+    assert tilt_of(use) == 0
+    assert not any("standard has it" in note for note in use.notes)
+    assert tilt_of(hip(cup=bs.Cup(arc_of_cover=2.8))) == 30
+
+
+def test_a_sweep_of_tilts_is_continuous_at_zero():
+    zero, tilted = (hip(cup=bs.Cup(inclination=radians(tilt))).after(2e5).last for tilt in (0.0, 1e-4))
+    assert zero.volume == pytest.approx(tilted.volume, rel=1e-5)
+    assert zero.max_pressure == pytest.approx(tilted.max_pressure, rel=1e-4)
+    assert zero.edge_distance.min() == pytest.approx(tilted.edge_distance.min(), abs=1e-3)
+    assert zero.edge_distance.min() > 4
+
+
+@pytest.mark.parametrize("change", [("30 deg", "0 deg"), (TILT, 'inclination = "0 deg"'), (TILT, "anteversion = 0")])
+def test_a_file_with_an_explicit_zero(tmp_path, change):
+    assert tilt_of(read_hip(told(tmp_path, change)).use) == 0
+    assert tilt_of(read_hip(told(tmp_path, (TILT, ""))).use) == 30
+
+
+def test_the_command_wears_an_upright_cup(tmp_path):
+    short = ("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]")
+    upright = json.loads(run("hip", str(told(tmp_path, ("30 deg", "0 deg"), *short)), "--json").stdout)
+    tilted = json.loads(run("hip", str(told(tmp_path, (TILT, ""), *short)), "--json").stdout)
+    assert upright["cycle"]["edge"]["distance_mm"] > 4 + tilted["cycle"]["edge"]["distance_mm"]
+    assert any("tilted by 30°" in note for note in tilted["notes"])
+
+
+def test_a_cup_remembers_that_an_angle_was_given():
+    given, default = bs.Cup(inclination=0.0), bs.Cup()
+    assert given == default
+    assert given.oriented
+    assert not default.oriented
+    for copy in (pickle.loads(pickle.dumps(default)), replace(default, chamfer=0.0)):
+        assert not copy.oriented
+    assert default.tilted(0.0).oriented
+    assert cup_table(default).keys() == {"arc_of_cover", "chamfer", "interface"}
+    assert cup_table(replace(default, side=bs.Side.LEFT))["side"] == "left"
+    assert "inclination" in cup_table(given)
+    assert "cup" in tables_of(JointFile(bs.joints["hip-28"], {}, cup=given))
+
+
+def test_patients_with_a_tilt_of_zero():
+    use = InUse(joint=bs.joints["hip-28"], cycle=iso_14242_1(24), wear=Archard(coefficient=1e-6), cup=bs.Cup())
+    scatter = Scatter(use=use, distributions={"tilt": Normal(mean=0.2, deviation=0.05)})
+    assert tilt_of(scatter.patient({"tilt": 0.0}).use) == 0
+    assert tilt_of(scatter.patient({}).use) == 30
+
+
+def test_the_explorer_keeps_an_explicit_zero(tmp_path):
+    upright = replace(START, file=replace(START.file, cup=bs.Cup(inclination=0.0)))
+    assert tilt_of(hip_of(START.file, Use())) == 30
+    assert tilt_of(hip_of(upright.file, Use())) == 0
+    assert read_link(parse_qs(link_of(upright))).file.cup.oriented
+    assert not read_link(parse_qs(link_of(START))).file.cup.oriented
+    assert gait_of(upright.file, Use(), None) != gait_of(START.file, Use(), None)
+    assert life_of(upright.file, Use()) != life_of(START.file, Use())
+    question = written(replace(FIRST, wear="yes"), upright.file, Use(), tmp_path)
+    assert tilt_of(read_hip(question.hip).use) == 0

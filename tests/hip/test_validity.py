@@ -1,0 +1,181 @@
+"""Validity, utilisation and notes of the contact model in a run: equal to those of a press of the same joint."""
+
+import json
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.hip import Activity, Archard, InUse, Mix, Scatter, constant_load, in_vivo, iso_14242_1, population
+from ballsocket.hip.contact_checks import half_angles
+from ballsocket.studies import LogNormal
+
+from ..cli.command import run
+from .test_file import told
+
+UPRIGHT = bs.Cup(inclination=0.0)
+QUICK = {"ring_width": radians(5.0), "wear": Archard(coefficient=1e-6), "cup": UPRIGHT}
+HIP = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
+WIDE = bs.Joint(
+    ball_radius=18.0,
+    clearance=0.1,
+    liner_thickness=2.0,
+    liner=bs.Material(young=800.0, poisson=0.49, yield_stress=21.0),
+)
+
+
+def use_of(joint, cycle, **words):
+    return InUse(joint=joint, cycle=cycle, **QUICK | words)
+
+
+def test_a_liner_that_yields_is_not_valid():
+    """80 kN on a liner that yields at 21 MPa: 204 MPa."""
+    use = use_of(HIP, constant_load(12, force=80e3))
+    history, press = use.after(1e4), bs.HessForsbach().press(HIP, force=80e3)
+    (check,) = use.unworn_checks
+    assert not press.valid
+    assert not history.valid
+    assert history.settled
+    assert check.max_pressure == pytest.approx(204.0, rel=1e-2)
+    assert check.utilisation == pytest.approx(press.utilisation, rel=1e-2)
+    assert history.utilisation == check.utilisation
+    assert any("times the yield stress of the liner" in note and "in the first cycle" in note for note in history.notes)
+
+
+def test_springs_outside_their_range_are_not_valid():
+    """Both notes of a press are in the run, each once."""
+    use = use_of(WIDE, iso_14242_1(24))
+    history, press = use.after(1e5, [5e4]), bs.HessForsbach().press(WIDE, force=3000.0)
+    assert not press.valid
+    assert not history.valid
+    assert len(press.notes) == 2
+    for note in press.notes:
+        assert sum(sentence.startswith(note) for sentence in history.notes) == 1
+
+
+def test_a_missing_yield_stress_is_noted_without_an_instant():
+    joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=0.4))
+    notes = use_of(joint, constant_load(12, force=2000.0)).after(1e4).notes
+    assert "strength not checked: the liner has no yield stress" in notes
+
+
+def test_every_activity_is_checked():
+    """Stumbling yields; walking does not."""
+    parts = [Activity(cycle=in_vivo(name, 880.0, 24), per_year=1e4) for name in ("walking", "stumbling")]
+    use = use_of(HIP, Mix(activities=tuple(parts)), cup=bs.Cup(inclination=radians(20.0)))
+    walking, stumbling = use.unworn_checks
+    assert (walking.activity, stumbling.activity) == ("walking", "stumbling")
+    assert walking.utilisation < 0.5
+    assert stumbling.utilisation == pytest.approx(1.03, abs=0.03)
+    assert not any("yield" in note for note in walking.notes)
+    assert stumbling.valid
+    history = use.after(1e4)
+    assert any("1.0 times the yield" in note and "of stumbling" in note for note in history.notes)
+    assert [check.activity for check in history.contact_checks[0]] == ["walking", "stumbling"]
+
+
+@pytest.mark.parametrize(
+    "joint", [HIP, WIDE, replace(HIP, ball=bs.STEEL, clearance=0.05)], ids=["hip", "wide", "steel"]
+)
+@pytest.mark.parametrize("force", [300.0, 3e3, 3e4])
+def test_an_unworn_run_has_the_notes_of_a_press(joint, force):
+    use = use_of(joint, constant_load(8, force=force), ring_width=radians(3.0))
+    press, (check,) = bs.HessForsbach().press(joint, force=force), use.unworn_checks
+    assert check.valid == press.valid
+    assert [note.split(" times")[0][:-3] for note in check.notes] == [
+        note.split(" times")[0][:-3] for note in press.notes
+    ]
+    assert check.half_angle == pytest.approx(press.half_angle, abs=radians(0.2))
+    assert check.utilisation == pytest.approx(press.utilisation, rel=2e-2)
+
+
+def test_a_worn_bore_has_its_own_validity():
+    """A narrow contact on a nearly incompressible liner is valid; worn in it is wide, and its springs are not."""
+    joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=0.46, yield_stress=21.0))
+    use = use_of(joint, iso_14242_1(24).scaled(0.25))
+    history = use.after(1e7, [1e5])
+    assert use.unworn_checks[0].valid
+    assert not history.contact_checks[-1][0].valid
+    assert not history.valid
+    assert history.contact_checks[-1][0].half_angle > use.unworn_checks[0].half_angle
+
+
+@pytest.mark.parametrize("surface", [bs.ClosedShell(), bs.RealCup()])
+def test_an_elastic_run_has_the_validity_of_the_sphere(surface):
+    cycle = constant_load(8, force=40e3)
+    use = use_of(HIP, cycle, surface=surface, ring_width=radians(4.0))
+    press = bs.Sphere(cup=UPRIGHT, surface=surface, ring_width=radians(4.0)).press(HIP, force=40e3)
+    (check,) = use.unworn_checks
+    assert use.contact_model.name == "sphere"
+    assert check.valid == press.valid
+    assert check.utilisation == pytest.approx(press.utilisation, rel=3e-2)
+    small = use_of(HIP, cycle.scaled(1e-4), surface=surface, ring_width=radians(4.0)).unworn_checks[0]
+    assert not small.valid
+    assert any("the contact spans few rings" in note for note in small.notes)
+
+
+def test_half_angles_of_round_patches():
+    use = use_of(HIP, iso_14242_1(8))
+    axis = np.array([np.sin(0.4), 0.0, np.cos(0.4)])
+    for angle in (0.2, 0.5, 0.9):
+        field = (axis @ use.bed.directions - np.cos(angle))[None]
+        assert half_angles(use.grid, use.reach, field)[0] == pytest.approx(angle, abs=4e-3)
+        assert half_angles(use.grid, use.reach, (field > 0) * 1.0)[0] == pytest.approx(angle, abs=3e-2)
+
+
+def test_a_run_without_a_yield_stress_has_no_utilisation():
+    joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=0.4))
+    history = use_of(joint, iso_14242_1(12)).after(1e4)
+    assert history.utilisation is None
+    assert history.summary()["contact"]["utilisation"] is None
+
+
+def test_a_run_without_contact_has_no_check():
+    history = use_of(HIP, constant_load(8, force=0.0)).after(1e4)
+    assert history.use.unworn_checks == ()
+    assert history.valid
+
+
+def test_the_command_reports_validity(tmp_path):
+    changes = {
+        "5e6\n": "1e4\n",
+        "[1e6, 2e6, 5e6]": "[]",
+        "instants = 100": "instants = 20",
+        'name = "iso-14242-1"': 'name = "constant-load"\nforce = "80 kN"',
+        '"30 deg"': '"0 deg"',
+    }
+    file = told(tmp_path, *changes.items())
+    process = run("hip", str(file), "--json")
+    answer = json.loads(process.stdout)
+    assert process.returncode == 0
+    assert answer["valid"] is False
+    assert answer["contact"]["valid"] is False
+    assert answer["contact"]["model"] == "hess-forsbach"
+    assert answer["contact"]["unworn"][0]["utilisation"] == answer["contact"]["utilisation"] > 4
+    assert answer["history"][0]["valid"] is False
+    assert answer["history"][0]["contact"][0]["notes"]
+    assert "yield stress" in " ".join(answer["notes"])
+
+
+def test_a_stored_run_keeps_its_checks(tmp_path):
+    use = use_of(WIDE, iso_14242_1(12))
+    once, again = (replace(use).after(1e4, store=tmp_path) for _ in range(2))
+    assert once.contact_checks == again.contact_checks
+
+
+def test_patients_have_their_validity():
+    scatter = Scatter(
+        use=use_of(HIP, iso_14242_1(24)), distributions={"body_weight": LogNormal(median=800.0, factor=3.0)}
+    )
+    cohort, bands = population(scatter, [1e5, 1e6], patients=32)
+    summary = bands.summary()["bands"][-1]
+    weights = cohort.values["body_weight"]
+    heavy = int((weights > np.quantile(weights, 0.95)).argmax())
+    assert 0.5 < summary["valid"] < 1
+    assert summary["peak_utilisation"]["low"] < 0.5 < 1 < summary["peak_utilisation"]["high"]
+    assert bands.peak_utilisation[heavy, 0] == pytest.approx(
+        scatter.patient({"body_weight": weights[heavy]}).use.unworn_checks[0].utilisation
+    )
+    assert any("outside the validity of the contact model" in note for note in bands.notes)
