@@ -87,6 +87,7 @@ def test_gaps_are_left_out_on_request(tmp_path):
     path = csv(tmp_path, "force_N,indentation_um\n100,2\n200,\n300,4\n")
     (kept,) = read_measured(path, uncertainty="1 um", gaps=Gaps.LEAVE_OUT)
     np.testing.assert_allclose(kept.force, [100.0, 300.0])
+    np.testing.assert_allclose(kept.order, [0.0, 2.0])
 
 
 QUESTION = """
@@ -128,6 +129,18 @@ def test_a_file_is_read_and_answered(question):
     assert given.free == {"clearance": (0.02, 0.3), "liner_young": (400.0, 2000.0)}
     truth = {"clearance": HIP.clearance, "liner_young": HIP.liner.young, "frame.compliance": 5e-6}
     assert given.identified().point == pytest.approx(truth, rel=2e-3)
+
+
+def test_the_drift_of_a_machine_is_read_with_the_order_of_the_readings(question):
+    text = question.read_text("utf-8").replace('offset = "2 um"', 'offset = "2 um"\ndrift = "-1..1 um"')
+    read = CONTACT.indentation + 5e-6 * FORCE + 0.002 + 3e-4 * np.arange(4.0, -1.0, -1.0)
+    values = ", ".join(f'"{1e3 * value:.6f} um"' for value in read)
+    force = ", ".join(f'"{each} N"' for each in FORCE)
+    inline = f'quantity = "indentation"\nvalues = [{values}]\nforce = [{force}]\norder = [4, 3, 2, 1, 0]'
+    question.write_text(text.replace('file = "press.csv"', inline), "utf-8")
+    given = read_identify(question)
+    assert given.data[0].machine.drift == pytest.approx((-1e-3, 1e-3))
+    assert given.identified().point["frame.drift"] == pytest.approx(3e-4, rel=0.05)
 
 
 SWING = """

@@ -75,7 +75,7 @@ def test_a_film_that_saturates_says_at_least():
     honest = identified(measured("max_pressure", film, saturation=7.0), free=free)
     taken = identified(measured("max_pressure", film), free=free)
     assert honest["liner.young"].value == pytest.approx(1000.0, rel=0.01)
-    assert taken["liner.young"].value < 900.0
+    assert taken.point["liner_young"] < 900.0
 
 
 def test_a_heavy_tail_bears_outliers():
@@ -86,7 +86,7 @@ def test_a_heavy_tail_bears_outliers():
     normal, heavy = identified(data), identified(data, scatter=HeavyTailed())
     errors = [abs(np.log(found.point["clearance"] / 0.1)) for found in (normal, heavy)]
     assert errors[1] < 0.5 * errors[0]
-    assert "value 18 of indentation is" in normal.notes[0]
+    assert any(note.startswith("value 18 of indentation is") for note in normal.notes)
     assert any("there are outliers" in note for note in normal.notes)
 
 
@@ -105,7 +105,7 @@ def test_areas_and_pressures_tell_the_product_alone(quantities):
     assert product.exponents == {"clearance": 1.0, "liner_young": 1.0}
     assert product.low < 100.0 < product.high < 1.2 * product.low
     assert found.notes[0] == (
-        "the data tell clearance · liner_young, but not clearance and liner_young apart: "
+        "only clearance · liner_young is identifiable from these data, clearance and liner_young separately are not: "
         "measure indentation or free play"
     )
     assert found.summary()["valid"] is False
@@ -257,11 +257,13 @@ def test_what_is_no_question_is_refused(model, joint, data, said):
 
 
 def test_a_liner_whose_two_elastic_numbers_are_free_is_not_told_by_a_press():
-    """Poisson's ratio and the modulus make one stiffness."""
+    """Poisson's ratio and the modulus make one stiffness: each value of the one has its own of the other."""
     found = identified(measured("indentation"), free={**FREE, "liner.poisson": (0.3, 0.48)})
-    assert found.information.untold == ("liner_poisson",)
+    assert found.information.untold == ("liner_young", "liner_poisson")
     assert found.information.rank == 2
-    assert found.notes[0].startswith("the data do not tell liner_poisson; of what is usually measured ")
+    assert found.notes[0].startswith(
+        "liner_young and liner_poisson are not identifiable from these data; of the usual measurements "
+    )
 
 
 def test_data_that_no_model_answers_are_told():

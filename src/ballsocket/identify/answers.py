@@ -96,12 +96,12 @@ class Answers:
         return _read(contact, count, each, where) + _added(each, machines, contact, where)
 
     def _by_depth(self, joint: Joint, machines: Columns, each: Measured, factor: float) -> Array:
-        """Answers at indentations that a machine reads: its own share, and its zero, are taken off first."""
-        compliance, offset = (machines[each.machine.key(part)] for part in ("compliance", "offset"))
+        """Compute results at measured indentations, corrected for compliance and zero of the machine."""
+        compliance, zero = _of_machine(each, machines)
         force: Array = each.values if each.quantity == "force" else 0.0 * each.values
-        contact = self._press(joint, "indentation", _depth(factor * each.loads - offset))
+        contact = self._press(joint, "indentation", _depth(factor * each.loads - zero))
         for _ in range(_ROUNDS if each.machine.compliance else 0):
-            depth = _depth(factor * each.loads - offset - compliance * force)
+            depth = _depth(factor * each.loads - zero - compliance * force)
             contact = self._press(joint, "indentation", depth)
             if contact is not None:
                 stiffness = arrays.where(arrays.isfinite(contact.stiffness), contact.stiffness, 0.0)
@@ -141,11 +141,17 @@ def _rows(found: Array) -> Array:
 
 
 def _added(each: Measured, machines: Columns, contact: Contact, where: slice) -> Array:
-    """What the machine adds to an indentation."""
+    """Compute the addition of the machine to an indentation."""
     if each.quantity != "indentation" or not each.machine.name:
         return 0.0
-    compliance, offset = (machines[each.machine.key(part)] for part in ("compliance", "offset"))
-    return compliance * _rows(contact.force)[:, where] + offset
+    compliance, zero = _of_machine(each, machines)
+    return compliance * _rows(contact.force)[:, where] + zero
+
+
+def _of_machine(each: Measured, machines: Columns) -> tuple[Array, Array]:
+    """Return the compliance of the machine, and its zero at each reading."""
+    compliance, offset, drift = (machines[each.machine.key(part)] for part in ("compliance", "offset", "drift"))
+    return compliance, offset + drift * each.order
 
 
 def _of_joint(joint: Joint, each: Measured) -> Array:

@@ -48,7 +48,7 @@ def head_of(text: str) -> Head:
     ValueError
         A name that is not known; no unit, or one of something else.
     """
-    plain = re.sub(r"\s*[\[(]\s*(.*?)\s*[\])]\s*$", r"_\1", text.strip()).replace(" ", "_")
+    plain = _without_brackets(text.strip()).replace(" ", "_")
     known = [name for name in _KNOWN if plain == name or plain.startswith(f"{name}_")]
     if not known:
         raise ValueError(
@@ -64,6 +64,14 @@ def head_of(text: str) -> Head:
     if not unit:
         raise ValueError(f"column {shown(text)} has no unit: write {name}_{kind.suffix}, or another unit")
     return Head(name, parse(f"the unit of {text}", f"1 {unit}", kind))
+
+
+def _without_brackets(head: str) -> str:
+    """Rewrite a unit in brackets at the end of a head as a part of its name."""
+    begin = min((head.index(bracket) for bracket in "[(" if bracket in head), default=-1)
+    if begin < 0 or head[-1] not in "])":
+        return head
+    return f"{head[:begin].rstrip()}_{head[begin + 1 : -1].strip()}"
 
 
 def read_measured(
@@ -115,7 +123,7 @@ def read_measured(
         if name not in columns:
             raise ValueError(f"{path.name} has no column of {name}: it has {', '.join(columns)}")
         wanted = [each for each in (kind, name, name + _BESIDE, kind + _BESIDE, "angle") if each in columns]
-        rows = _whole(path.name, {each: columns[each] for each in wanted}, gaps)
+        rows, order = _whole(path.name, {each: columns[each] for each in wanted}, gaps)
         sets.append(
             Measured(
                 quantity=name,
@@ -123,6 +131,7 @@ def read_measured(
                 uncertainty=_uncertainty(path.name, name, rows, uncertainty),
                 saturation=saturation,
                 machine=machine if "indentation" in (name, kind) else PERFECT,
+                order=order,
                 name=path.name,
                 **_beside(kind, rows, load_uncertainty),
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
@@ -156,8 +165,8 @@ def _load_of(columns: Mapping[str, Numbers], load: str, title: str) -> str:
     return next((name for name in _LOADS if name in columns), "")
 
 
-def _whole(title: str, columns: dict[str, Numbers], gaps: Gaps) -> dict[str, Numbers]:
-    """Rows without gaps."""
+def _whole(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple[dict[str, Numbers], Numbers]:
+    """Select the rows without gaps, and return their numbers from 0."""
     missing = numpy.isnan(numpy.stack(list(columns.values())))
     rows = missing.any(axis=0)
     if rows.any() and gaps is Gaps.REFUSE:
@@ -169,7 +178,7 @@ def _whole(title: str, columns: dict[str, Numbers], gaps: Gaps) -> dict[str, Num
         )
     if rows.all():
         raise ValueError(f"{title} has no row without a gap")
-    return {name: column[~rows] for name, column in columns.items()}
+    return {name: column[~rows] for name, column in columns.items()}, numpy.flatnonzero(~rows).astype(float)
 
 
 def _uncertainty(title: str, name: str, rows: Mapping[str, Numbers], given: float | str | None) -> Any:

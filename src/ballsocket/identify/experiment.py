@@ -1,4 +1,4 @@
-"""The next measurement: which quantity, at which load, would tell most about what is not told yet."""
+"""The next measurement: the quantity and the load from which the data would gain most information."""
 
 from __future__ import annotations
 
@@ -38,18 +38,26 @@ class Candidate:
         In N; None of a number of the joint.
     machine : Machine
         What would read an indentation.
+    order : float
+        Number of the reading, for a machine whose zero drifts.
     """
 
     quantity: str
     uncertainty: float
     force: float | None = None
     machine: Machine = PERFECT
+    order: float = 0.0
 
     def measured(self, value: float) -> Measured:
-        """The set of data that it would be."""
+        """Convert the candidate to a set of data."""
         words: dict[str, Any] = {} if self.force is None else {"force": self.force}
         return Measured(
-            quantity=self.quantity, values=value, uncertainty=self.uncertainty, machine=self.machine, **words
+            quantity=self.quantity,
+            values=value,
+            uncertainty=self.uncertainty,
+            machine=self.machine,
+            order=self.order,
+            **words,
         )
 
 
@@ -65,7 +73,7 @@ class Gain:
     left : dict of str to float
         By unknown, its uncertainty afterwards over that of today.
     settles : tuple of str
-        Unknowns that are not told today, and would be.
+        Unknowns that this measurement would make identifiable.
     """
 
     candidate: Candidate
@@ -100,7 +108,7 @@ class Experiment:
 
     @property
     def settling(self) -> tuple[str, ...]:
-        """Quantities any one of which would tell everything that is not told."""
+        """Quantities that would each make every unknown identifiable."""
         found = [gain.candidate.quantity for gain in self.gains if set(gain.settles) == set(self.untold)]
         return tuple(name for name in USUAL if name in found) if self.untold else ()
 
@@ -131,14 +139,14 @@ def experiment(found: Identified, candidates: Iterable[Candidate] | None = None)
     rows = _slopes(found, chosen)
     kept = [(each, row) for each, row in zip(chosen, rows, strict=True) if numpy.isfinite(row).all()]
     gains = [_gain(found, each, row) for each, row in kept]
-    return Experiment(tuple(sorted(gains, key=lambda gain: -gain.bits)), found.information.untold)
+    return Experiment(tuple(sorted(gains, key=lambda gain: -gain.bits)), found.information.unidentifiable)
 
 
 def usual(found: Identified) -> tuple[Candidate, ...]:
     """What could be measured next: see `experiment`."""
     forces = _forces(found)
     pairs = [(name, None) if name in OF_JOINT else (name, force) for name in USUAL for force in forces]
-    plain = [Candidate(name, 1.0, force, _machine(found, name)) for name, force in dict.fromkeys(pairs)]
+    plain = [Candidate(name, 1.0, force, *_machine(found, name)) for name, force in dict.fromkeys(pairs)]
     values = _answers(found, plain, found.best.places)
     return tuple(
         replace(each, uncertainty=_uncertainty(found, each.quantity, value))
@@ -154,10 +162,13 @@ def _forces(found: Identified) -> list[float]:
     return numpy.linspace(0.0, _BEYOND * (most or 2000.0), _LOADS + 1)[1:].tolist()
 
 
-def _machine(found: Identified, quantity: str) -> Machine:
-    """The machine that reads indentations today."""
-    machines = [each.machine for each in found.data if each.machine is not PERFECT]
-    return machines[0] if quantity == "indentation" and machines else PERFECT
+def _machine(found: Identified, quantity: str) -> tuple[Machine, float]:
+    """Choose the machine of the present indentations, and the number of its next reading."""
+    orders = {each.machine: each.order for each in found.data if each.machine is not PERFECT}
+    if quantity != "indentation" or not orders:
+        return PERFECT, 0.0
+    machine, order = next(iter(orders.items()))
+    return machine, float(order.max()) + 1
 
 
 def _uncertainty(found: Identified, quantity: str, value: float) -> float:
@@ -196,5 +207,5 @@ def _gain(found: Identified, candidate: Candidate, slopes: Numbers) -> Gain:
         candidate=candidate,
         bits=log(1 + told) / log(4),
         left=dict(zip(names, numpy.sqrt(after / numpy.diagonal(before)).tolist(), strict=True)),
-        settles=tuple(name for name in found.information.untold if name in settled),
+        settles=tuple(name for name in found.information.unidentifiable if name in settled),
     )

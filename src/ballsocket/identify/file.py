@@ -30,7 +30,7 @@ from .scatter import HeavyTailed, NormalScatter, Scatter
 from .unknowns import Given
 
 _OF_FILE = ("file", "quantities", "load", "gaps")
-_OF_VALUES = ("quantity", "values", "angle", "mass", *LOADS)
+_OF_VALUES = ("quantity", "values", "angle", "mass", "order", *LOADS)
 _OF_BOTH = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
 _TABLES: Mapping[str, tuple[str, ...]] = {
     "": (*PARTS, "model", "scatter", "free", "machine", "data"),
@@ -65,7 +65,8 @@ def read_identify(path: str | Path) -> IdentifyFile:
     which of its columns are `quantities` and which the `load`, and `gaps` ("refuse", "leave-out"); or a `quantity`
     with `values` (one or a list) and its load, a "frequency" also its `mass`; for either `uncertainty` ("1 um", "2
     %"), `load_uncertainty`, `saturation`, `machine`. `[machine.NAME]` has `compliance` and `offset`, numbers or two
-    ends. Paths are taken from the file's own folder.
+    ends, and `drift` per reading, counted by the rows of the file or by `order`. Paths are taken from the file's own
+    folder.
 
     Raises
     ------
@@ -165,6 +166,8 @@ def _of_values(table: Mapping[str, Any], machine: Machine) -> Measured:
     name = known_name("quantity", table["quantity"], _READ)
     values = _numbers(name, table["values"], _READ[name].kind)
     loads: dict[str, Any] = {kind: _numbers(kind, table[kind], LOADS[kind].kind) for kind in LOADS if kind in table}
+    if "order" in table:
+        loads["order"] = _numbers("order", table["order"], Kind.NUMBER)
     if "angle" in table:
         loads["angle"] = _numbers("angle", table["angle"], Kind.ANGLE)
     return Measured(
@@ -172,7 +175,7 @@ def _of_values(table: Mapping[str, Any], machine: Machine) -> Measured:
         values=values,
         uncertainty=uncertainty_of(_READ[name], table["uncertainty"], values),
         own=_own(name, table),
-        load_uncertainty=_load_uncertainty(table, next(iter(loads), "force")),
+        load_uncertainty=_load_uncertainty(table, next((kind for kind in LOADS if kind in table), "force")),
         machine=machine,
         name=check_text("name", table.get("name", "")),
         **loads,

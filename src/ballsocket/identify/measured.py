@@ -38,15 +38,25 @@ MACHINE: Mapping[str, Quantity] = MappingProxyType(
             "Cm",
             "compliance of the machine",
             Kind.COMPLIANCE,
-            "What frame and fixtures give way.",
+            "Deformation of frame and fixtures per force.",
             Unit("µm/kN", 1e6),
+            allows=lambda value: value >= 0,
+            allowed="a machine's compliance (mm/N) is 0 or more",
         ),
         "offset": Quantity(
             "offset", "d0", "zero offset", Kind.LENGTH, "Indentation that is read at first touch.", Unit("µm", 1e3)
         ),
+        "drift": Quantity(
+            "drift",
+            "dd",
+            "drift of the zero",
+            Kind.LENGTH,
+            "Change of the zero from one reading to the next.",
+            Unit("µm", 1e3),
+        ),
     }
 )
-"""What a machine adds to an indentation."""
+"""Errors of a machine that add to an indentation."""
 
 Between = float | tuple[float, float]
 """A number that is known, or the ends between which it is unknown."""
@@ -54,7 +64,7 @@ Between = float | tuple[float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Machine:
-    """A machine that adds to the indentations it reads: d + compliance x force + offset.
+    """A machine that adds to the indentations it reads: d + compliance x force + offset + drift x order.
 
     Parameters
     ----------
@@ -62,6 +72,8 @@ class Machine:
         Of frame and fixtures in mm/N; two ends make it an unknown that is found with the others.
     offset : float or (low, high)
         Of the zero in mm.
+    drift : float or (low, high)
+        Drift of the zero in mm per reading; `Measured.order` numbers the readings.
     name : str
         Machines of one name are one: several sets of data may share its unknowns.
 
@@ -73,6 +85,7 @@ class Machine:
 
     compliance: Between = 0.0
     offset: Between = 0.0
+    drift: Between = 0.0
     name: str = "machine"
 
     def __post_init__(self) -> None:
@@ -85,7 +98,7 @@ class Machine:
             ):
                 raise ValueError(f"{part} = {shown(value)} must be a number, or two ends that go upwards")
         low = self.compliance[0] if isinstance(self.compliance, tuple) else self.compliance
-        require("compliance", low, low >= 0, "a machine's compliance (mm/N) is 0 or more")
+        require("compliance", low, MACHINE["compliance"].allows(low), MACHINE["compliance"].allowed)
 
     def _parts(self) -> list[tuple[str, Between]]:
         return [(part, getattr(self, part)) for part in MACHINE]
@@ -139,6 +152,8 @@ class Measured:
         What a film or sensor reads at most: values there say that the quantity is at least so much.
     machine : Machine
         What reads the indentations.
+    order : array
+        Numbers of the readings in the order of measurement, for a drift of the zero. Default 0, 1, 2, ...
     own : Own
         What one's own quantity is, of any name.
     name : str
@@ -166,6 +181,7 @@ class Measured:
     angle: Any = None
     saturation: float = inf
     machine: Machine = PERFECT
+    order: Any = None
     own: Own | None = None
     name: str = ""
     described: Quantity = field(init=False)
@@ -174,6 +190,8 @@ class Measured:
     """The name of the load; empty where there is none."""
 
     def __post_init__(self) -> None:
+        if not isinstance(self.machine, Machine):
+            raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
         if self.own is None:
             self._set("quantity", known_name("quantity", self.quantity, MEASURED))
         self._set("described", MEASURED[self.quantity] if self.own is None else self.own.described)
@@ -192,12 +210,20 @@ class Measured:
             self._set("angle", FIELD["angle"].checked(self._beside("angle", self.angle, values)))
         if self.machine is not PERFECT and "indentation" not in (self.quantity, self.load):
             raise ValueError(f"{self._called(self.quantity)} has a machine, which belongs to an indentation")
+        self._set("order", self._readings(values))
 
     def _set(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
 
     def _called(self, what: str) -> str:
         return f"{self.name}: {what}" if self.name else what
+
+    def _readings(self, values: Numbers) -> Numbers:
+        if self.order is None:
+            return numpy.arange(float(values.size))
+        order = self._beside("order", self.order, values)
+        require(self._called("order"), order, abs(order) < inf, "numbers of readings must be finite")
+        return order
 
     def _check_values(self, values: Numbers) -> None:
         gaps = numpy.flatnonzero(numpy.isnan(values))
@@ -236,8 +262,8 @@ class Measured:
         self._check_unloaded(row, values)
 
     def _check_unloaded(self, load: Numbers, values: Numbers) -> None:
-        """Nothing is measured where nothing is pressed, but by a machine whose zero is off."""
-        if self.machine.offset == 0.0:
+        """Raise ValueError for a value without a load, except from a machine with a zero error."""
+        if self.machine.offset == 0.0 and self.machine.drift == 0.0:
             said = f"at first touch there is no {self.described.title}, unless the machine's zero is off"
             require(self._called(self.load), load, (load > 0) | (values == 0), said)
 
@@ -264,8 +290,9 @@ class Measured:
 
 def _row(name: str, numbers: Any) -> Numbers:
     try:
-        row = numpy.atleast_1d(numpy.asarray(numbers, dtype=float))
-    except (TypeError, ValueError) as error:
+        plain = numpy.asarray(numbers)
+        row = numpy.atleast_1d(plain.astype(float, casting="safe" if plain.dtype.kind == "c" else "unsafe"))
+    except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name} = {shown(numbers)} must be numbers") from error
     if row.ndim != 1 or row.size == 0:
         raise ValueError(f"{name} of shape {row.shape} must be a row of numbers")

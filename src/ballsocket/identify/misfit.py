@@ -1,4 +1,4 @@
-"""How far a model is from the data at numbers that are tried, and how that changes with them."""
+"""Residuals of a model against the data, and their derivatives with respect to the unknowns."""
 
 from __future__ import annotations
 
@@ -14,26 +14,29 @@ from .scatter import Scatter
 from .unknowns import Scales, log_prior
 
 Slopes = Callable[[Answers, Scales, Numbers], tuple[Numbers, Numbers]]
-"""From places (unknowns,) to the answers (data,) and their slopes (data, unknowns) along the places."""
+"""Function from scaled unknowns (..., unknowns) to results (..., data) and derivatives (..., data, unknowns)."""
 
 
 def by_differences(answers: Answers, scales: Scales, places: Numbers) -> tuple[Numbers, Numbers]:
-    """Answers and slopes by central differences in one press of arrays, one-sided at the ends: for any model."""
-    step = answers.model.smooth_step * numpy.eye(len(places))
-    beside = numpy.clip(numpy.concatenate([places[None], places + step, places - step]), scales.low, scales.high)
-    found = answers.at(scales.values(beside))
-    count = len(places)
-    here, above, below = found[0], found[1 : 1 + count], found[1 + count :]
-    up, down = (numpy.diagonal(part) for part in (beside[1 : 1 + count], beside[1 + count :]))
-    above, up = _or_here(above, up, here, places)
-    below, down = _or_here(below, down, here, places)
-    return here, ((above - below) / numpy.where(up > down, up - down, inf)[:, None]).T
+    """Compute results and central differences in one array call, one-sided at the range ends."""
+    count = places.shape[-1]
+    points = places.reshape(-1, 1, count)
+    step = answers.model.smooth_step * numpy.eye(count)
+    stencil = numpy.clip(numpy.concatenate([points, points + step, points - step], axis=1), scales.low, scales.high)
+    found = answers.at(scales.values(stencil.reshape(-1, count))).reshape(*stencil.shape[:2], -1)
+    here, above, below = found[:, 0], found[:, 1 : 1 + count], found[:, 1 + count :]
+    up, down = (numpy.diagonal(part, axis1=1, axis2=2) for part in numpy.split(stencil[:, 1:], 2, axis=1))
+    above, up = _or_here(above, up, here, points[:, 0])
+    below, down = _or_here(below, down, here, points[:, 0])
+    slopes = (above - below) / numpy.where(up > down, up - down, inf)[..., None]
+    shape = places.shape[:-1]
+    return here.reshape(*shape, -1), slopes.swapaxes(1, 2).reshape(*shape, -1, count)
 
 
-def _or_here(found: Numbers, at: Numbers, here: Numbers, places: Numbers) -> tuple[Numbers, Numbers]:
-    """The point itself in place of one beside it that has no answer."""
-    lost = numpy.isnan(found).any(axis=1)
-    return numpy.where(lost[:, None], here, found), numpy.where(lost, places, at)
+def _or_here(found: Numbers, at: Numbers, here: Numbers, points: Numbers) -> tuple[Numbers, Numbers]:
+    """Replace a neighbour without a result by the point itself."""
+    lost = numpy.isnan(found).any(axis=-1)
+    return numpy.where(lost[..., None], here[:, None], found), numpy.where(lost, points, at)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +51,8 @@ class Misfit:
     slopes : callable
         `by_differences`, or `by_tracing`.
     value, uncertainty : array (data,)
+    widening : float
+        Factor on all uncertainties, 1 or more: observed scatter over the stated uncertainties.
     cut_off : array (data,)
         Which values only say "at least so much".
     """
@@ -57,6 +62,7 @@ class Misfit:
     scatter: Scatter
     slopes: Slopes
     uncertainty: Numbers
+    widening: float = 1.0
     value: Numbers = field(init=False)
     cut_off: Numbers = field(init=False)
 
@@ -68,9 +74,14 @@ class Misfit:
         object.__setattr__(self, "cut_off", cut)
         object.__setattr__(self, "value", numpy.where(cut, limits, values))
 
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom: values less the unknowns without a stated distribution."""
+        return len(self.value) - sum(not each.known for each in self.scales.unknowns)
+
     def standard(self, found: Numbers) -> Numbers:
-        """How many uncertainties the answers are from the values."""
-        return (found - self.value) / self.uncertainty
+        """Compute (answer - value)/uncertainty with the widened uncertainties."""
+        return (found - self.value) / (self.widening * self.uncertainty)
 
     def residuals(self, found: Numbers) -> Numbers:
         """One for each of the data, whose half sum of squares is -ln of the likelihood but for a constant."""
@@ -78,14 +89,16 @@ class Misfit:
         return numpy.where(self.cut_off, self.scatter.beyond(z)[0], self.scatter.misfit(z))
 
     def both(self, places: Numbers) -> tuple[Numbers, Numbers]:
-        """Residuals, those of what was known among them, and their slopes."""
+        """Compute residuals (..., data), those of stated distributions included, and their derivatives."""
         found, slopes = self.slopes(self.answers, self.scales, places)
         z = self.standard(found)
-        bend = numpy.where(self.cut_off, self.scatter.beyond(z)[1], self.scatter.slope(z)) / self.uncertainty
+        bend = numpy.where(self.cut_off, self.scatter.beyond(z)[1], self.scatter.slope(z))
+        bend = bend / (self.widening * self.uncertainty)
         known = numpy.array([each.known for each in self.scales.unknowns])
+        unit = numpy.broadcast_to(numpy.eye(places.shape[-1])[known], (*places.shape[:-1], known.sum(), len(known)))
         return (
-            numpy.concatenate([self.residuals(found), self.scales.surprise(places)[known]]),
-            numpy.concatenate([bend[:, None] * slopes, numpy.eye(len(places))[known]]),
+            numpy.concatenate([self.residuals(found), self.scales.surprise(places)[..., known]], axis=-1),
+            numpy.concatenate([bend[..., None] * slopes, unit], axis=-2),
         )
 
     def costs(self, places: Numbers) -> Numbers:
@@ -105,8 +118,17 @@ class Misfit:
     def information(self, places: Numbers) -> Numbers:
         """Fisher's information that the data hold about the places, (unknowns, unknowns)."""
         found, slopes = self.slopes(self.answers, self.scales, places)
-        weights = numpy.where(self.cut_off, self._of_cut_off(found), self.scatter.told) / self.uncertainty**2
-        return (slopes * weights[:, None]).T @ slopes
+        return (slopes * self._weights(found)[:, None]).T @ slopes
+
+    def shifts(self, places: Numbers, errors: Numbers) -> Numbers:
+        """Compute JᵀW δ for errors δ (kinds, data) of the values: (unknowns, kinds)."""
+        found, slopes = self.slopes(self.answers, self.scales, places)
+        return slopes.T @ (self._weights(found) * errors).T
+
+    def _weights(self, found: Numbers) -> Numbers:
+        """Compute the information of each value about its result, in 1/unit²."""
+        each = numpy.where(self.cut_off, self._of_cut_off(found), self.scatter.told)
+        return each / (self.widening * self.uncertainty) ** 2
 
     def _of_cut_off(self, found: Numbers) -> Numbers:
         """-d²/dz² of ln P(reading above): (h² + h pull), h the hazard and pull that of the density."""

@@ -1,4 +1,4 @@
-"""From measurements to the numbers of a joint: what fits best, how well the data tell it, and what they cannot."""
+"""Identification of joint parameters from measurements, with bands and identifiability."""
 
 from __future__ import annotations
 
@@ -17,33 +17,37 @@ from ..model import Model
 from ..model.answer import check_joint
 from ..studies.parameters import varied
 from .answers import Answers
-from .information import WIDE, Information
+from .bands import banded
+from .information import Information
 from .measured import Measured
 from .misfit import Misfit, Slopes, by_differences
 from .scatter import NormalScatter, Scatter
 from .search import Found, found
-from .unknowns import Given, Scales, unknowns_of
+from .unknowns import Given, Scales, Unknown, unknowns_of
 
 if TYPE_CHECKING:
     from .experiment import Experiment
     from .posterior import Posterior
+    from .sensitivity import Sensitivity
 
 _NORMAL = NormalScatter()
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """One number as the data tell it.
+    """Estimate of one unknown with its band.
 
     Attributes
     ----------
     name, unit : str
     value : float
-        NaN where the data do not tell it and no more than two ends were known.
+        NaN for an unidentifiable unknown without a stated distribution.
     low, high : float
-        Its band of 95 %; the two ends where it is not told.
+        Band of 95 % from the profile likelihood within the ranges of all unknowns.
     left : float
-        What is left of the width that was known.
+        Width of the band over the prior range.
+    limited_by : tuple of str
+        Unknowns whose ranges limit the band, its own name included. Empty where the data alone limit it.
     """
 
     name: str
@@ -52,38 +56,50 @@ class Estimate:
     low: float
     high: float
     left: float
+    limited_by: tuple[str, ...] = ()
+
+    @property
+    def identifiable(self) -> bool:
+        """True for an identifiable unknown, or one with a stated distribution."""
+        return self.value == self.value
 
     @property
     def told(self) -> bool:
-        return self.value == self.value
+        """Earlier name of `identifiable`."""
+        return self.identifiable
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON; a value that is not told is None."""
-        value = self.value if self.told else None
+        """Return one dictionary for JSON; an unidentifiable value is None."""
+        value = self.value if self.identifiable else None
         return {
             "name": self.name,
             "unit": self.unit,
             "value": value,
             "low": self.low,
             "high": self.high,
-            "told": self.told,
+            "identifiable": self.identifiable,
+            "told": self.identifiable,
+            "limited_by": list(self.limited_by),
         }
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Identified:
-    """What measurements tell of a joint.
+    """Joint parameters identified from measurements.
 
     Attributes
     ----------
     misfit : Misfit
         Data, model and unknowns.
     best : Found
-        Where the search ended.
+        Point of the smallest misfit.
+    information : Information
+        Information at that point, and profile intervals of the unknowns.
     """
 
     misfit: Misfit
     best: Found
+    information: Information
 
     @property
     def model(self) -> Model:
@@ -110,26 +126,22 @@ class Identified:
         return varied(self.misfit.answers.joint, own)[0]
 
     @cached_property
-    def information(self) -> Information:
-        """What the data can tell there."""
-        places = self.best.places
-        return Information(self.scales, places, self.misfit.information(places))
-
-    @cached_property
     def estimates(self) -> dict[str, Estimate]:
-        """Each unknown with its band of 95 %; one that the data do not tell has no value."""
-        left, untold = self.information.deviations, self.information.untold
-        half = WIDE * numpy.sqrt(numpy.diagonal(self.information.covariance))
-        ends = [numpy.clip(self.best.places + side * half, self.scales.low, self.scales.high) for side in (-1, 1)]
-        low, high = (self.scales.values(end).tolist() for end in ends)
-        return {
-            each.name: Estimate(each.name, each.quantity.unit, float("nan"), each.low, each.high, left[each.name])
-            if each.name in untold
-            else Estimate(
-                each.name, each.quantity.unit, self.point[each.name], low[place], high[place], left[each.name]
-            )
-            for place, each in enumerate(self.scales.unknowns)
-        }
+        """Estimates with bands of 95 % by unknown; an unidentifiable unknown has no value."""
+        return {each.name: self._estimate(index) for index, each in enumerate(self.scales.unknowns)}
+
+    def _estimate(self, index: int) -> Estimate:
+        unknown, information = self.scales.unknowns[index], self.information
+        interval, name = information.intervals[index], unknown.name
+        low, high = (self._end(unknown, self.scales.values(end.theta)[index]) for end in (interval.low, interval.high))
+        value = float("nan") if name in information.unidentifiable else self.point[name]
+        left, limits = information.deviations[name], information.limited_by(name)
+        return Estimate(name, unknown.quantity.unit, value, low, high, left, limits)
+
+    @staticmethod
+    def _end(unknown: Unknown, value: float) -> float:
+        """Return the end of a band, snapped to the end of the range within rounding."""
+        return next((end for end in (unknown.low, unknown.high) if abs(value - end) <= 1e-9 * abs(end)), float(value))
 
     def __getitem__(self, name: str) -> Estimate:
         return self.estimates[name.replace(".", "_") if name.replace(".", "_") in self.estimates else name]
@@ -145,36 +157,55 @@ class Identified:
         each = self.data[place]
         loads = numpy.linspace(each.loads.min(), each.loads.max(), count)
         words: dict[str, Any] = {each.load: loads, "values": numpy.ones(count), "saturation": inf}
-        row = replace(each, uncertainty=1.0, load_uncertainty=0.0, **words)
+        sort = numpy.argsort(each.loads)
+        order = numpy.interp(loads, each.loads[sort], each.order[sort])
+        row = replace(each, uncertainty=1.0, load_uncertainty=0.0, order=order, **words)
         answers = replace(self.misfit.answers, data=(row,))
         return loads, answers.at(self.scales.values(self.best.places[None]))[0]
 
     @property
     def residuals(self) -> tuple[Numbers, ...]:
-        """Values less answers in uncertainties, a row for each set; of one that was cut off what it falls short."""
-        z = self.misfit.standard(numpy.concatenate(self.answers))
+        """Values less results in stated uncertainties, a row for each set; for a saturated value its shortfall."""
+        z = self.misfit.widening * self.misfit.standard(numpy.concatenate(self.answers))
         short = numpy.where(self.misfit.cut_off, numpy.maximum(-z, 0.0), -z)
         return tuple(numpy.split(short, numpy.cumsum([len(each) for each in self.data])[:-1]))
 
     @property
     def freedom(self) -> int:
-        """Data beyond what is found."""
-        return len(self.misfit.value) - self.information.rank
+        """Degrees of freedom: values less the unknowns without a stated distribution."""
+        return self.misfit.freedom
 
     @property
     def spread(self) -> float:
-        """Root of χ² over the degrees of freedom, which is 1 where uncertainties are right; NaN of none."""
+        """Root of χ² over the degrees of freedom (Birge's ratio): 1 for right uncertainties; NaN without freedom."""
         total = sum(float(numpy.sum(row**2)) for row in self.residuals)
         return (total / self.freedom) ** 0.5 if self.freedom > 0 else float("nan")
 
     @property
+    def identifiable(self) -> bool:
+        """True if every unknown without a stated distribution is identifiable."""
+        return not self.information.unidentifiable
+
+    @property
     def told(self) -> bool:
-        """Whether the data tell every unknown of which no more than two ends were known."""
-        return not self.information.untold
+        """Earlier name of `identifiable`."""
+        return self.identifiable
+
+    @cached_property
+    def sensitivity(self) -> tuple[Sensitivity, ...]:
+        """Shifts of the estimates by known machine errors: zero offset, compliance and drift."""
+        from .sensitivity import sensitivities
+
+        return sensitivities(self)
+
+    def shift_ratio(self, error: Sensitivity, name: str) -> float:
+        """Compute the ratio of a shift to half the width of the band; 0 for an unidentifiable unknown."""
+        each = self.estimates[name]
+        return 2 * abs(error.shifts[name]) / (each.high - each.low) if each.identifiable else 0.0
 
     @cached_property
     def notes(self) -> tuple[str, ...]:
-        """What the data cannot tell, what would; data that do not fit; ends that are touched; models beyond trust."""
+        """Remarks on identifiability, ends of ranges, fit, machine errors, and validity of the model."""
         from .remarks import remarks
 
         return remarks(self)
@@ -196,7 +227,7 @@ class Identified:
         """One dictionary for JSON in mm, N, MPa, rad."""
         return {
             "model": self.model.name,
-            "valid": self.told and self.best.converged,
+            "valid": self.identifiable and self.best.converged,
             "converged": self.best.converged,
             "estimates": [each.summary() for each in self.estimates.values()],
             "products": [each.summary() for each in self.information.products],
@@ -205,8 +236,11 @@ class Identified:
                 "unknowns": len(self.scales.names),
                 "condition": _finite(self.information.condition),
                 "eigenvalues": self.information.eigenvalues.tolist(),
+                "unidentifiable": list(self.information.unidentifiable),
             },
+            "sensitivity": [each.summary() for each in self.sensitivity],
             "spread": _finite(self.spread),
+            "widening": self.misfit.widening,
             "degrees_of_freedom": self.freedom,
             "data": [
                 {"name": each.name, "quantity": each.quantity, "residuals": row.tolist()}
@@ -217,7 +251,7 @@ class Identified:
         }
 
     def __repr__(self) -> str:
-        rows = [f"{each.name} {_told(each)}" for each in self.estimates.values()]
+        rows = [f"{each.name} {_described(each)}" for each in self.estimates.values()]
         products = [
             f"{each.name} = {each.value:.4g} {each.unit} ({each.low:.4g} to {each.high:.4g})"
             for each in self.information.products
@@ -225,10 +259,10 @@ class Identified:
         return "\n".join([*rows, *products, *self.notes])
 
 
-def _told(each: Estimate) -> str:
+def _described(each: Estimate) -> str:
     unit = f" {each.unit}" if each.unit != "1" else ""
     band = f"{each.low:.4g} to {each.high:.4g}{unit}"
-    return f"= {each.value:.4g}{unit} ({band})" if each.told else f"is not told: {band}"
+    return f"= {each.value:.4g}{unit} ({band})" if each.identifiable else f"is not identifiable: {band}"
 
 
 def _finite(number: float) -> float | None:
@@ -245,10 +279,10 @@ def identify(
     slopes: Slopes = by_differences,
     seed: int = 0,
 ) -> Identified:
-    """Find the numbers of a joint that fit measurements best, and tell how well those tell them.
+    """Identify joint parameters from measurements, with bands and identifiability.
 
-    Maximum likelihood (with what was known of an unknown, where that is a distribution) by least squares from the best
-    of a search; bands from the information of the data there.
+    The method is maximum likelihood, with the stated distributions of unknowns, by least squares after a global search.
+    Bands of 95 % come from the profile likelihood. They widen if the data scatter more than stated.
 
     Parameters
     ----------
@@ -304,7 +338,7 @@ def identify(
     for _ in range(_ROUNDS if any(each.load and each.load_uncertainty.any() for each in sets) else 0):
         misfit = replace(misfit, uncertainty=_with_loads(misfit, best))
         best = found(misfit, seed)
-    return Identified(misfit, best)
+    return Identified(*banded(misfit, best))
 
 
 _ROUNDS = 2  # of weights that depend on where the best point is

@@ -14,6 +14,7 @@ _FEWEST, _MOST = 16, 128
 _STARTS = 2
 _SAME = 1e-2  # in deviations of what was known, and in cost: ends of two searches that are one
 _STEPS = 60
+_TIE = 1e-6  # difference of cost that counts as equal
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,11 +46,18 @@ def found(misfit: Misfit, seed: int) -> Found:
     ValueError
         No point between the ends has an answer for all data.
     """
-    ends = sorted((_descended(misfit, start) for start in _starts(misfit, seed)), key=lambda each: each.cost)
-    best = ends[0]
-    apart = [each for each in ends[1:] if numpy.max(abs(each.places - best.places)) > _SAME]
+    ends = [descended(misfit, start) for start in _starts(misfit, seed)]
+    best = _central(misfit, ends)
+    apart = [each for each in ends if numpy.max(abs(each.places - best.places)) > _SAME]
     near = tuple(each.places for each in apart if each.cost < best.cost + 2.0)
     return Found(best.places, best.cost, best.converged, near)
+
+
+def _central(misfit: Misfit, ends: list[Found]) -> Found:
+    """Choose the end of least cost; among equal costs, that nearest to the middle of the ranges."""
+    least, middle = min(each.cost for each in ends), (misfit.scales.low + misfit.scales.high) / 2
+    lowest = [each for each in ends if each.cost <= least + _TIE]
+    return min(lowest, key=lambda each: float(numpy.max(abs(each.places - middle))))
 
 
 def _starts(misfit: Misfit, seed: int) -> list[Numbers]:
@@ -74,8 +82,8 @@ def _starts(misfit: Misfit, seed: int) -> list[Numbers]:
     return [points[first], points[other]] if numpy.isfinite(costs[other]) and away[other] else [points[first]]
 
 
-def _descended(misfit: Misfit, start: Numbers) -> Found:
-    """Least squares from a start; slopes come with every press."""
+def descended(misfit: Misfit, start: Numbers) -> Found:
+    """Minimise the misfit from a start by least squares with derivatives."""
     from scipy.optimize import least_squares
 
     kept: dict[bytes, tuple[Numbers, Numbers]] = {}

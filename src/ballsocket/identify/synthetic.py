@@ -1,4 +1,4 @@
-"""Synthetic truth: what the same measurements of a joint whose numbers are known would have told, again and again."""
+"""Coverage of the bands: identification of a known joint from many synthetic sets of data."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy
 
 from ..arrays import Numbers
 from ..checks import require
-from .information import WIDE, Information
+from .bands import banded
 from .measured import Measured
 from .search import found as searched
 
@@ -19,26 +19,32 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """What many synthetic sets of data told of a truth.
+    """Estimates and bands from many synthetic sets of data.
 
     Attributes
     ----------
     names : tuple of str
     truth : array (unknowns,)
         In deviations of what was known, as all that follows.
-    middle, half : array (trials, unknowns)
-        Estimates, and half the widths of their bands of 95 %.
+    middle, low, high : array (trials, unknowns)
+        Estimates, and the ends of their bands of 95 %.
     """
 
     names: tuple[str, ...]
     truth: Numbers
     middle: Numbers
-    half: Numbers
+    low: Numbers
+    high: Numbers
+
+    @property
+    def half(self) -> Numbers:
+        """Half the widths of the bands."""
+        return (self.high - self.low) / 2
 
     @property
     def coverage(self) -> dict[str, float]:
         """The share of the bands that hold the truth, by unknown: 0.95 is right."""
-        held = abs(self.middle - self.truth) <= self.half
+        held = (self.low <= self.truth) & (self.truth <= self.high)
         return dict(zip(self.names, held.mean(axis=0).tolist(), strict=True))
 
     @property
@@ -65,19 +71,21 @@ def trials(found: Identified, count: int = 200, seed: int = 0) -> Trials:
     """
     require("count", count, count > 0, "1 trial or more")
     random = numpy.random.default_rng(seed)
-    middle, half = [], []
+    stated = replace(found.misfit, uncertainty=found.misfit.widening * found.misfit.uncertainty, widening=1.0)
+    middle, low, high = [], [], []
     for number in range(count):
-        misfit = replace(found.misfit, answers=replace(found.misfit.answers, data=drawn(found, random)))
-        places = searched(misfit, seed + number).places
-        left = Information(found.scales, places, misfit.information(places)).covariance
-        middle.append(places)
-        half.append(WIDE * numpy.sqrt(numpy.diagonal(left)))
-    return Trials(found.scales.names, found.best.places, numpy.array(middle), numpy.array(half))
+        misfit = replace(stated, answers=replace(stated.answers, data=drawn(found, random)))
+        _, best, information = banded(misfit, searched(misfit, seed + number))
+        middle.append(best.places)
+        low.append([each.low.theta[index] for index, each in enumerate(information.intervals)])
+        high.append([each.high.theta[index] for index, each in enumerate(information.intervals)])
+    return Trials(found.scales.names, found.best.places, *map(numpy.array, (middle, low, high)))
 
 
 def drawn(found: Identified, random: numpy.random.Generator) -> tuple[Measured, ...]:
-    """Measurements drawn once more, of the joint of the best point; what loads are off by is in the values."""
-    wide = numpy.split(found.misfit.uncertainty, numpy.cumsum([len(each) for each in found.data])[:-1])
+    """Draw synthetic measurements for the joint of the best point; load errors are included in the values."""
+    effective = found.misfit.widening * found.misfit.uncertainty
+    wide = numpy.split(effective, numpy.cumsum([len(each) for each in found.data])[:-1])
     return tuple(
         replace(each, values=_values(each, row, off * found.misfit.scatter.draw(len(each), random)))
         for each, row, off in zip(found.data, found.answers, wide, strict=True)

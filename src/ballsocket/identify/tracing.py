@@ -15,7 +15,7 @@ from .unknowns import Scales
 
 
 def by_tracing(answers: Answers, scales: Scales, places: Numbers) -> tuple[Numbers, Numbers]:
-    """Answers and slopes by JAX, compiled for each set of data when first asked, which takes seconds.
+    """Compute answers and derivatives by JAX, compiled at the first call for each set of data, which takes seconds.
 
     Raises
     ------
@@ -29,9 +29,12 @@ def by_tracing(answers: Answers, scales: Scales, places: Numbers) -> tuple[Numbe
     needs("jax", "jax")
     import jax
 
+    values = scales.values(places)
     with jax.enable_x64(True):
-        here, slopes = _compiled(answers)(scales.values(places))
-    return numpy.asarray(here), numpy.asarray(slopes) * scales.growth(places)
+        rows = [_compiled(answers)(row) for row in values.reshape(-1, values.shape[-1])]
+    here, slopes = (numpy.stack([numpy.asarray(row[part]) for row in rows]) for part in (0, 1))
+    shape = places.shape[:-1]
+    return here.reshape(*shape, -1), slopes.reshape(*shape, -1, places.shape[-1]) * scales.growth(places)[..., None, :]
 
 
 @lru_cache(maxsize=8)

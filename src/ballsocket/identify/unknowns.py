@@ -69,6 +69,12 @@ class Unknown:
             return log(self.prior.factor)
         return (self.to_scale(self.high) - self.to_scale(self.low)) / sqrt(12)
 
+    def is_physical(self, side: int, place: float) -> bool:
+        """Check if a value lies at a physical limit of the range, such as a compliance of 0."""
+        end = self.high if side > 0 else self.low
+        beyond = end + side * 1e-6 * max(abs(end), 1e-12)
+        return abs(place - self.to_scale(end) / self.span) < 1e-6 and not self.quantity.allows(beyond)
+
     def to_scale(self, value: Array) -> Array:
         return numpy.log(value) if self.logarithmic else value
 
