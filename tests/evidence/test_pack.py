@@ -1,5 +1,6 @@
 """Evidence for a question: what is refused, what is gathered, and whether it still says the same."""
 
+import copy
 import json
 import shutil
 from functools import partial
@@ -11,10 +12,14 @@ import pytest
 import ballsocket as bs
 from ballsocket.evidence import matrix
 from ballsocket.evidence.code_checks import CHECKS
-from ballsocket.evidence.folder import PAGE, QUESTION, RECORD, SUMS, contradictions, differences, made_by, write
+from ballsocket.evidence.comparison import compare, contradictions
+from ballsocket.evidence.credibility import FACTORS, model_risk
+from ballsocket.evidence.folder import PAGE, QUESTION, RECORD, SUMS, source_files
 from ballsocket.evidence.inputs import inputs
 from ballsocket.evidence.pack import gathered
 from ballsocket.evidence.question import read_question
+from ballsocket.evidence.requirements import assessed, gaps
+from ballsocket.evidence.scatter import scattered
 from ballsocket.evidence.wear import rates, worn
 from ballsocket.paper.plan import Plan
 
@@ -23,46 +28,16 @@ from ..places import EXAMPLES, ROOT
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
 from ballsocket.output.evidence_page import evidence_page
 
-ASKED = """
-question = "May it be?"
-context_of_use = "A test."
-joint = "hip-36"
+from .small_pack import QUESTION_TEXT, page
 
-[risk]
-influence = "low"
-consequence = "high"
-
-[required]
-accuracy = "5 %"
-limits = ["max_pressure <= 15 MPa", "edge_distance >= 1 mm"]
-
-[matrix]
-clearance = ["0.05 mm", "0.15 mm"]
-force = ["2 kN", "4 kN"]
-
-[tolerances]
-liner_young = "750 +- 75 MPa"
-
-[friction]
-coefficient = 0.06
-"""
+pytestmark = pytest.mark.xdist_group("evidence")  # the pack is gathered once
 
 
 @pytest.fixture
 def asked(tmp_path):
     path = tmp_path / "asked.toml"
-    path.write_text(ASKED, encoding="utf-8")
+    path.write_text(QUESTION_TEXT, encoding="utf-8")
     return path
-
-
-@pytest.fixture(scope="module")
-def pack(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("pack")
-    (folder / "asked.toml").write_text(ASKED, encoding="utf-8")
-    question = read_question(folder / "asked.toml")
-    record = gathered(question, folder / "data")
-    write(question, record, evidence_page(record), folder / "out")
-    return question, record, folder
 
 
 @pytest.mark.parametrize(
@@ -95,7 +70,7 @@ def pack(tmp_path_factory):
     ],
 )
 def test_a_question_that_is_wrong_is_told_how(asked, old, new, message):
-    asked.write_text(ASKED.replace(old, new), encoding="utf-8")
+    asked.write_text(QUESTION_TEXT.replace(old, new), encoding="utf-8")
     with pytest.raises(ValueError, match=message):
         read_question(asked)
 
@@ -162,7 +137,7 @@ def test_an_angle_and_its_opposite_are_not_taken_for_each_other(tmp_path):
 
 
 def test_layers_have_the_sources_of_their_materials(asked):
-    asked.write_text(ASKED.replace("hip-36", "metal.toml"), encoding="utf-8")
+    asked.write_text(QUESTION_TEXT.replace("hip-36", "metal.toml"), encoding="utf-8")
     file = EXAMPLES / "metal_backed_hip.toml"
     (asked.parent / "metal.toml").write_bytes(file.read_bytes())
     question = read_question(asked)
@@ -181,44 +156,49 @@ def test_a_pack_is_computed_again_and_what_was_changed_is_named(pack, tmp_path):
     (out / RECORD).write_text(json.dumps(record), encoding="utf-8")
     lines = (out / SUMS).read_text("utf-8").splitlines()
     (out / SUMS).write_text("\n".join(line for line in lines if PAGE not in line), encoding="utf-8")
-    count, found = differences(out, page=evidence_page)
-    assert count > 200
-    assert sorted(each.where for each in found) == sorted(
-        [
-            RECORD,
-            PAGE,  # not listed
-            PAGE,  # says what the record said
-            "matrix[1].numbers.max_pressure",
-            "matrix[0].valid",
-            "limits[0].verdict",
-            "approved",
-        ]
+    found = compare(out, page)
+    assert found.count > 200
+    assert (
+        sorted(each.where for each in found.differences)
+        == sorted(
+            [
+                RECORD,  # another sum
+                RECORD,  # another form
+                PAGE,  # not listed
+                PAGE,  # as the record was
+                "matrix[1].numbers.max_pressure",
+                "matrix[0].valid",
+                "limits[0].verdict",
+                "approved",
+                "requirements[0].evidence",
+                "requirements[0].status",
+                "requirements[0].gap",
+                "matrix",
+            ][:-1]
+        )
     )
-    assert made_by(out) == record["version"]
+    assert found.made_by == record["version"]
 
 
-def test_a_pack_that_disagrees_with_itself_is_told(pack, tmp_path):
-    out = Path(shutil.copytree(pack[2] / "out", tmp_path / "out"))
+def test_a_pack_that_disagrees_with_itself_is_reported(pack):
+    out = pack[2] / "out"
     record = json.loads((out / RECORD).read_text("utf-8"))
-    assert list(contradictions(record, out, evidence_page)) == []
-    record["code_verification"][0]["observed"] = 3.0
+    files = {name: (out / name).read_bytes() for name in (QUESTION, RECORD, PAGE)}
+    assert list(contradictions(record, files, page)) == []
     record["credibility"][0]["missing"] = "nothing at all"
-    assert [each.where for each in contradictions(record, out, None)] == [
-        "code_verification[0].observed",
+    record["adequacy"]["met"] = 13
+    assert [each.where for each in contradictions(record, {RECORD: files[RECORD]}, page)] == [
+        RECORD,
         "credibility[0].missing",
+        "adequacy.met",
     ]
-    text = (out / PAGE).read_text("utf-8")
-    (out / PAGE).write_text(text.replace("not kept", "kept"), encoding="utf-8")
-    whole = json.loads((out / RECORD).read_text("utf-8"))
-    assert [each.where for each in contradictions(whole, out, evidence_page)] == [PAGE]
-    assert list(contradictions({**whole, "version": "9.9"}, out, evidence_page)) == []  # its words may be others
 
 
 def test_sums_that_are_no_text_are_told(pack, tmp_path):
     out = Path(shutil.copytree(pack[2] / "out", tmp_path / "out"))
     (out / SUMS).write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ValueError, match=r"holds no pack of evidence: checksums.txt is not text"):
-        differences(out)
+        compare(out, page)
 
 
 def test_wear_stands_in_the_matrix_and_the_joint_that_wears_most_is_worn_to_the_end(asked):
@@ -228,7 +208,7 @@ def test_wear_stands_in_the_matrix_and_the_joint_that_wears_most_is_worn_to_the_
     hip += "[wear]\nlaw = 'archard'\ncoefficient = '1e-6 mm^3/(N m)'\nring_width = 8\n"
     hip += "[uncertainty]\ncoefficient = {median = '1e-6 mm^3/(N m)', factor = 1.5}\ncount = 4\n"
     (asked.parent / "hip.toml").write_text(hip, encoding="utf-8")
-    text = ASKED.replace('clearance = ["0.05 mm", "0.15 mm"]', 'head_diameter = ["32 mm", "36 mm"]')
+    text = QUESTION_TEXT.replace('clearance = ["0.05 mm", "0.15 mm"]', 'head_diameter = ["32 mm", "36 mm"]')
     asked.write_text(text + '\n[wear]\nfile = "hip.toml"\n', encoding="utf-8")
     question = read_question(asked)
     cases = matrix.cases(question)
@@ -246,18 +226,34 @@ def test_wear_stands_in_the_matrix_and_the_joint_that_wears_most_is_worn_to_the_
 
 def test_a_folder_without_a_pack_is_told(tmp_path):
     with pytest.raises(ValueError, match="holds no pack of evidence"):
-        differences(tmp_path)
+        compare(tmp_path, page)
     (tmp_path / "checksums.txt").write_text("0  ../../etc/passwd\n", encoding="utf-8")
-    with pytest.raises(ValueError, match="which is no file of the pack"):
-        differences(tmp_path)
+    with pytest.raises(ValueError, match="question.toml is missing"):
+        compare(tmp_path, page)
+    (tmp_path / QUESTION).touch()
+    with pytest.raises(ValueError, match="which is not a file of the pack"):
+        compare(tmp_path, page)
 
 
 def test_the_page_needs_nothing_beside_it_and_takes_words_as_text(pack, asked):
     _, record, folder = pack
     page = (folder / "out" / "evidence.html").read_text("utf-8")
     assert "http" not in page.replace("http-equiv", "")
-    assert (folder / "out" / QUESTION).read_text("utf-8") == ASKED
+    assert (folder / "out" / QUESTION).read_text("utf-8") == QUESTION_TEXT
     assert "<script>" not in evidence_page({**record, "question": "<script>alert(1)</script>"})
+
+
+def test_a_note_of_several_methods_stands_once_after_their_names(pack):
+    _, record, folder = pack
+    page = (folder / "out" / "evidence.html").read_text("utf-8")
+    shared = [
+        (note, [method["name"] for method in piece["methods"] if note in method["notes"]])
+        for piece in record["calculation"]
+        for note in piece["methods"][0]["notes"]
+    ]
+    assert any(len(names) > 1 for _, names in shared)
+    for note, names in shared:
+        assert f"<li>{', '.join(names)}: {note}</li>" in page
 
 
 @pytest.mark.parametrize("name", CHECKS)
@@ -277,7 +273,7 @@ def test_the_example_is_a_question():
 
 
 def test_where_the_cup_turns_the_load_is_off_its_axis(asked, tmp_path):
-    turned = ASKED.replace('clearance = ["0.05 mm", "0.15 mm"]', 'inclination = ["40 deg", "60 deg"]')
+    turned = QUESTION_TEXT.replace('clearance = ["0.05 mm", "0.15 mm"]', 'inclination = ["40 deg", "60 deg"]')
     asked.write_text(turned.replace("[tolerances]", "[cup]\narc_of_cover = 160\n[tolerances]"), encoding="utf-8")
     with pytest.raises(ValueError, match="belongs to a table"):
         read_question(asked)
@@ -287,3 +283,157 @@ def test_where_the_cup_turns_the_load_is_off_its_axis(asked, tmp_path):
     steep, flat = (matrix.rows(question, [case])[0] for case in reversed(matrix.cases(question)))
     assert steep.numbers["edge_distance"] < flat.numbers["edge_distance"]
     assert matrix.worst([steep, flat])["edge_distance"] is steep
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "used"),
+    [
+        ('liner_young = "700 +- 100 MPa"', 700.0),  # the preset has 1000 MPa, outside
+        ('liner_young = "900 +- 150 MPa"', 900.0),  # inside, but not where the tolerance says
+        ('liner_young = "600 .. 800 MPa"', 700.0),  # a range states no nominal value: the middle
+        ('liner_young = "900 .. 1200 MPa"', 1000.0),  # which the joint's value may have
+    ],
+)
+def test_a_tolerance_states_the_nominal_value(asked, tolerance, used):
+    text = QUESTION_TEXT.replace("hip-36", "hip-28").replace('liner_young = "750 +- 75 MPa"', tolerance)
+    asked.write_text(text, encoding="utf-8")
+    question = read_question(asked)
+    assert question.file.joint.liner.young == used
+    assert [(each.name, each.stated, each.used) for each in question.recentred] == (
+        [] if used == 1000.0 else [("liner_young", 1000.0, used)]
+    )
+    row = next(each for each in inputs(question) if each["name"] == "liner_young")
+    assert row["value"] == used
+    assert (row["source"] == "nominal value of its tolerance in the question") == (used != 1000.0)
+
+
+def test_the_worst_case_lies_in_the_band_of_its_tolerance(asked):
+    """The joint of the preset has 1000 MPa, whose pressure lies above the band."""
+    text = QUESTION_TEXT.replace("hip-36", "hip-28").replace("750 +- 75 MPa", "700 +- 100 MPa")
+    asked.write_text(text, encoding="utf-8")
+    question = read_question(asked)
+    worst = matrix.worst(matrix.rows(question, matrix.cases(question)))["max_pressure"]
+    band = scattered(question, worst.case)["bands"]["max_pressure"]
+    assert band["low"] < worst.numbers["max_pressure"] < band["high"]
+    assert band["median"] == pytest.approx(worst.numbers["max_pressure"], rel=1e-3)
+
+
+def test_a_tolerance_of_a_diameter_is_that_of_its_radius(asked):
+    asked.write_text(
+        QUESTION_TEXT.replace('liner_young = "750', 'head_diameter = "36.4 +- 0.2 mm"\nliner_young = "750')
+    )
+    question = read_question(asked)
+    assert question.file.joint.ball_radius == pytest.approx(18.2)
+    row = next(each for each in inputs(question) if each["name"] == "ball_radius")
+    assert (row["value"], row["tolerance"]) == (pytest.approx(18.2), "18.1 to 18.3")
+
+
+def test_a_case_outside_its_tolerance_is_noted(asked):
+    asked.write_text(QUESTION_TEXT.replace('liner_young = "750', 'clearance = "0.1 +- 0.02 mm"\nliner_young = "750'))
+    question = read_question(asked)
+    found = scattered(question, {"clearance": 0.15, "force": 4000.0})
+    assert found["notes"] == [
+        "radial clearance 0.15 mm of the worst case lies outside its tolerance of 0.08 to 0.12 mm: the bands "
+        "cover the tolerance and do not include the worst case"
+    ]
+    assert scattered(question, {"clearance": 0.11, "force": 4000.0})["notes"] == []
+
+
+def test_invisible_characters_are_refused(asked):
+    asked.write_text(QUESTION_TEXT.replace("May it be?", "May \u202eti be?"), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"asked.toml has the invisible character U\+202E in line 2"):
+        read_question(asked)
+
+
+def test_a_named_file_cannot_take_the_place_of_the_pieces(asked):
+    (asked.parent / "data").mkdir()
+    (asked.parent / "data" / "joint.toml").write_bytes((EXAMPLES / "hip.toml").read_bytes())
+    asked.write_text(QUESTION_TEXT.replace("hip-36", "data/joint.toml"), encoding="utf-8")
+    with pytest.raises(ValueError, match="'data/joint.toml' is reserved for a file of the pack"):
+        source_files(read_question(asked))
+
+
+# risk and credibility
+
+
+def risky(record, influence, consequence="medium"):
+    return assessed({**record, "risk": model_risk(influence, consequence)})
+
+
+def test_risk_sets_the_goals_and_so_what_is_adequate(pack):
+    record = pack[1]
+    low, medium, high = (risky(record, influence) for influence in ("low", "medium", "high"))
+    goals = [[each["goal"] for each in found["credibility"]] for found in (low, medium, high)]
+    assert goals[0] < goals[1] < goals[2]
+    assert low["adequacy"]["met"] > medium["adequacy"]["met"] > high["adequacy"]["met"]
+    reached = [[each["reached"] for each in found["credibility"]] for found in (low, medium, high)]
+    assert reached[0] == reached[1] == reached[2]
+    assert model_risk("high", "low")["rank"] == model_risk("low", "high")["rank"] == 3
+    assert (model_risk("low", "low")["level"], model_risk("high", "high")["level"]) == ("low", "high")
+
+
+def test_goals_grow_with_the_risk_and_are_levels_of_their_gradation():
+    assert len(FACTORS) == 13
+    for factor in FACTORS:
+        assert list(factor.goals) == sorted(factor.goals)
+        assert len(factor.goals) == 5
+        assert ord(factor.goals[-1]) - ord("a") < len(factor.gradation)
+
+
+def level(record, factor):
+    found = {each["factor"]: each for each in assessed(record)["credibility"]}[factor]
+    return found["reached"], found["missing"]
+
+
+def test_levels_follow_from_the_results(pack):
+    record = copy.deepcopy(pack[1])
+    record["limits"] = record["limits"][:1]  # of the largest pressure, which has an error bar
+    assert level(record, "discretization error") == ("d", "nothing")
+    near = copy.deepcopy(record)
+    near["matrix"][0]["errors"]["max_pressure"] = 0.04
+    near["limits"][0]["high"] = near["matrix"][0]["numbers"]["max_pressure"] * 1.01
+    assert level(near, "discretization error")[0] == "c"
+    assert "a verdict could change" in level(near, "discretization error")[1]
+    far = copy.deepcopy(near)
+    far["matrix"][0]["errors"]["max_pressure"] = 0.4
+    assert level(far, "discretization error")[0] == "b"
+    for row in far["matrix"]:
+        row["errors"] = {}
+    assert level(far, "discretization error")[0] == "a"
+    assert level(pack[1], "discretization error") == (
+        "b",
+        "an error bar for the edge distance, or a margin to the limit",
+    )
+
+
+def test_failed_checks_lower_the_levels(pack):
+    record = copy.deepcopy(pack[1])
+    record["code_verification"][0]["passed"] = False
+    assert level(record, "numerical code verification")[0] == level(record, "software quality assurance")[0] == "a"
+    record["calculation"][0]["deviation"]["max_pressure"] = 0.3
+    assert level(record, "numerical solver error")[0] == "b"
+    record["matrix"][0]["numbers"]["utilisation"] = 1.2
+    assert level(record, "model form")[0] == "b"
+    assert "exceeds the yield stress" in level(record, "model form")[1]
+    record["uncertainty"] = None
+    assert level(record, "model inputs")[0] == "a"
+    for each in (*record["claims"], *record["comparators"]):
+        each["applicability"]["verdict"] = "does not apply"
+    for name in ("test conditions", "equivalency of input parameters", "output comparison"):
+        assert level(record, name)[0] == "a", name
+
+
+def test_every_requirement_is_a_row_and_gaps_are_rows_too(pack):
+    record = pack[1]
+    rows = {row["id"]: row for row in record["requirements"]}
+    assert len(rows) == len(record["requirements"])
+    assert (rows["L1"]["status"], rows["L2"]["status"]) == ("not met", "met")
+    assert rows["E2"]["gap"] == "an error bar of the edge distance"
+    assert rows["U1"]["status"] == "not met"  # the band reaches beyond 15 MPa
+    assert rows["U2"]["status"] == "not known"
+    assert sum(name.startswith("F") for name in rows) == 13
+    assert {row["gap"] == "" for row in rows.values() if row["status"] == "met"} == {True}
+    assert all(row["gap"] for row in rows.values() if row["status"] != "met")
+    without = [row for row in rows.values() if row["id"].startswith("I") and row["status"] == "not met"]
+    assert [row["requirement"] for row in without] == ["source of the coefficient of friction"]
+    assert {row["id"] for row in gaps(record)} == {name for name, row in rows.items() if row["status"] != "met"}

@@ -59,3 +59,16 @@ def test_the_paper_s_hip_is_trusted_and_thin_stiff_liners_are_not():
     contact = bs.HessForsbach().press(thin, force=30_000.0)
     assert not contact.valid
     assert any("nearly incompressible" in note for note in contact.notes)
+
+
+def test_a_plane_layer_is_not_trusted_for_liners_thicker_than_twice_the_radius():
+    thick, thin = (
+        bs.Joint(
+            ball_radius=14.0, clearance=0.1, liner_thickness=14.1 / ratio, liner=bs.Material(young=1e3, poisson=0.0)
+        )
+        for ratio in (0.4, 0.6)
+    )
+    for joint, valid in ((thick, False), (thin, True)):
+        contact = bs.PlaneLayer().press(joint, half_angle=np.radians(13.0))
+        assert contact.valid == valid
+        assert any("R2/L" in note for note in contact.notes) == (not valid)

@@ -1,208 +1,133 @@
-"""The folder of a pack: written with checksums, and computed again to see whether it still says the same."""
+"""Folder of a pack: its files, checksums, digest and signature."""
 
 from __future__ import annotations
 
 import json
-import re
-import tempfile
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from hashlib import sha256
-from math import inf, isclose
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..atomic import write_text
+from ..atomic import at_once, is_draft
 from ..checks import shown
-from ..engines.local import Engine, Serial
-from ..fingerprint import fingerprint
-from .credibility import FACTORS
-from .pack import Listener, gathered, silent
-from .question import Question, read_question
+from .question import Question
+from .signature import sign
+
+if TYPE_CHECKING:
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 QUESTION, RECORD, PAGE, SUMS = "question.toml", "evidence.json", "evidence.html", "checksums.txt"
-CLOSE = 1e-9
-"""Relative: what two runs on different machines may differ by."""
+SIGNATURE = f"{SUMS}.sig"
+"""File name of the signature, as `ssh-keygen -Y sign` writes it."""
 
-_FREE = ("version", "made_with", "made_on", "credibility")
-"""What may differ with machine and day; credibility must be what the pack's own record comes to."""
+WORK = "data"
+"""Folder of stored results of a stopped run. It does not belong to the pack."""
 
-_HERE = Serial()
+_RESERVED = {name.casefold() for name in (QUESTION, RECORD, PAGE, SUMS, SIGNATURE, WORK)}
 
+_HASH_LENGTH = 64 + len("  ")
+"""Characters before the name in a line of the checksums."""
 
-def write(question: Question, record: Mapping[str, Any], page: str, folder: Path) -> Path:
-    """The page in its folder, beside the question with the files that it names, the record and the checksums."""
-    for path in question.files:
-        target = folder / (QUESTION if path == question.path else path.relative_to(question.path.parent))
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if target.resolve() != path.resolve():
-            target.write_bytes(path.read_bytes())
-    write_text(folder / RECORD, json.dumps(record, indent=1, allow_nan=False) + "\n")
-    written = write_text(folder / PAGE, page)
-    write_text(folder / SUMS, "".join(f"{_sum(folder / name)}  {name}\n" for name in _names(question)))
-    return written
+PageMaker = Callable[[Mapping[str, Any], str], str]
+"""Function from a record and the digest of the pack to the page."""
 
 
-def _names(question: Question) -> list[str]:
-    """The files of a pack, but their sums."""
-    return sorted({*(_name(question, path) for path in question.files), RECORD, PAGE})
+def write(question: Question, record: Mapping[str, Any], page: PageMaker, folder: Path) -> Path:
+    """Write a pack: the question with the files that it names, the record, the page and the checksums.
 
-
-def _name(question: Question, path: Path) -> str:
-    return QUESTION if path == question.path else path.relative_to(question.path.parent).as_posix()
-
-
-def _sum(path: Path) -> str:
-    return sha256(path.read_bytes()).hexdigest()
-
-
-@dataclass(frozen=True)
-class Difference:
-    """Something in a pack that is not as it was written down."""
-
-    where: str
-    written: Any
-    now: Any
-
-    def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
-        return {"where": self.where, "written": self.written, "now": self.now}
-
-    def __str__(self) -> str:
-        return f"{self.where}: written {shown(self.written)}, now {shown(self.now)}"
-
-
-def differences(
-    folder: Path,
-    listen: Listener = silent,
-    engine: Engine = _HERE,
-    page: Callable[[Mapping[str, Any]], str] | None = None,
-) -> tuple[int, list[Difference]]:
-    """How many numbers and words were compared, and what differs: files by their sums, all the rest computed again.
-
-    Parameters
-    ----------
-    folder : Path
-    listen : callable
-        Told the name of each piece when it is there.
-    engine : Engine
-    page : callable, optional
-        Makes the page of a record: the page of the folder must say what its record says. Not asked of a pack that
-        another version of the code wrote, whose words may be others.
+    A signature of an earlier pack in the folder is removed.
 
     Raises
     ------
     ValueError
-        A folder that holds no pack.
+        A named file with the name of a file of the pack.
     OSError
-        A file cannot be read.
+        A folder that cannot be written to.
     """
-    sums, record = _sums(folder), _read(folder)
-    question = read_question(folder / QUESTION)
-    files = [*sums, *((name, "not listed") for name in _names(question) if name not in dict(sums))]
-    found = [Difference(name, kept, _now(folder / name)) for name, kept in files if _now(folder / name) != kept]
-    with tempfile.TemporaryDirectory() as room:
-        again = json.loads(json.dumps(gathered(question, Path(room), listen, engine)))
-    pairs = [
-        each
-        for name in {**again, **record}
-        if name not in _FREE
-        for each in _pairs(record.get(name), again.get(name), name)
-    ]
-    try:
-        own = list(contradictions(record, folder, page))
-    except (LookupError, TypeError, ValueError, AttributeError):  # parts are missing, or are something else
-        own = [Difference(RECORD, "a record that lacks parts", "whole")]
-    return len(pairs) + len(files), [*found, *(each for each in pairs if not _same(each)), *own]
+    contents = {name: path.read_bytes() for name, path in source_files(question).items()}
+    contents[RECORD] = record_bytes(record)
+    contents[PAGE] = page_bytes(page(json.loads(contents[RECORD]), digest(contents)))
+    (folder / SIGNATURE).unlink(missing_ok=True)
+    for name, content in contents.items():
+        _write(folder / name, content)
+    _write(folder / SUMS, sums_bytes(contents))
+    return folder / PAGE
 
 
-def contradictions(
-    record: Mapping[str, Any], folder: Path, page: Callable[[Mapping[str, Any]], str] | None
-) -> Iterator[Difference]:
-    """Where a pack disagrees with itself: checks with what they observed, factors and page with the record.
+def source_files(question: Question) -> dict[str, Path]:
+    """Return the question file and the files that it names, by their names in the pack.
 
     Raises
     ------
-    LookupError, TypeError, ValueError, AttributeError
-        A record that lacks parts.
+    ValueError
+        A named file with the name of a file of the pack.
     """
-    for place, each in enumerate(record.get("code_verification", ())):
-        if each["passed"] and not each["low"] <= each["observed"] <= (inf if each["high"] is None else each["high"]):
-            yield Difference(f"code_verification[{place}].observed", each["observed"], "not what has passed")
-    if record.get("version") != fingerprint():
-        return
-    said = record.get("credibility")
-    for pair in _pairs(said, [factor.summary(record) for factor in FACTORS], "credibility"):
-        if not _same(pair):
-            yield pair
-    text = (folder / PAGE).read_text(encoding="utf-8", errors="replace") if (folder / PAGE).is_file() else ""
-    if page is not None and _words(text) != _words(page(record)):
-        yield Difference(PAGE, "another page", f"what {RECORD} says")
+    named = {path.relative_to(question.path.parent).as_posix(): path for path in question.files[1:]}
+    for name in named:
+        if name.split("/")[0].casefold() in _RESERVED:
+            raise ValueError(f"{shown(name)} is reserved for a file of the pack: rename the file in the question")
+    return {QUESTION: question.path, **named}
 
 
-def _words(page: str) -> str:
-    """A page without its pictures, whose bytes are those of the library that draws."""
-    return _PICTURE.sub("", page)
+def names_of(question: Question) -> list[str]:
+    """Return the names of the files that the checksums list."""
+    return sorted({*source_files(question), RECORD, PAGE})
 
 
-_PICTURE = re.compile(r"data:image/[^']*")
+def record_bytes(record: Mapping[str, Any]) -> bytes:
+    """Serialize a record in its canonical form."""
+    return (json.dumps(record, indent=1, allow_nan=False) + "\n").encode()
 
 
-def made_by(folder: Path) -> str:
-    """The version that wrote a pack."""
-    return str(_read(folder).get("version", "unknown"))
+def page_bytes(page: str) -> bytes:
+    """Encode a page in its canonical form."""
+    return page.encode()
 
 
-def _now(path: Path) -> str:
-    return _sum(path) if path.is_file() else "missing"
+def sums_bytes(contents: Mapping[str, bytes]) -> bytes:
+    """Format SHA-256 checksums like `sha256sum`, sorted by name."""
+    return "".join(f"{sha256(content).hexdigest()}  {name}\n" for name, content in sorted(contents.items())).encode()
 
 
-def _sums(folder: Path) -> list[tuple[str, str]]:
-    try:
-        lines = (folder / SUMS).read_text(encoding="utf-8").splitlines()
-    except FileNotFoundError as error:
-        raise ValueError(f"{folder} holds no pack of evidence: {SUMS} is not there") from error
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{folder} holds no pack of evidence: {SUMS} is not text") from error
-    listed = [(name, kept) for kept, _, name in (line.partition("  ") for line in lines)]
-    for name, _ in listed:
-        if not name or Path(name).is_absolute() or ".." in Path(name).parts:
-            raise ValueError(f"{SUMS} names {shown(name)}, which is no file of the pack")
-    return listed
+def digest(contents: Mapping[str, bytes]) -> str:
+    """Compute the SHA-256 digest of a pack from the checksums of all its files except the page.
+
+    The page shows the digest and so cannot be part of it. It follows from the record, byte by byte, and `--check`
+    compares these bytes: two packs of one digest have the same page.
+    """
+    return sha256(sums_bytes({name: content for name, content in contents.items() if name != PAGE})).hexdigest()
 
 
-def _read(folder: Path) -> dict[str, Any]:
-    try:
-        record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-    except (FileNotFoundError, ValueError, RecursionError) as error:
-        raise ValueError(f"{folder} holds no pack of evidence: {RECORD} cannot be read") from error
-    if not isinstance(record, dict):
-        raise ValueError(f"{RECORD} holds no record")
-    return record
+def digest_of(folder: Path) -> str:
+    """Compute the digest of the pack in a folder from its checksums."""
+    lines = (folder / SUMS).read_bytes().splitlines(keepends=True)
+    return sha256(b"".join(line for line in lines if line[_HASH_LENGTH:] != PAGE.encode() + b"\n")).hexdigest()
 
 
-def _pairs(written: Any, now: Any, where: str) -> Iterator[Difference]:
-    """Every leaf, as it was written and as it is."""
-    if isinstance(now, dict) and isinstance(written, dict):
-        for name in sorted({*now, *written}):
-            yield from _pairs(written.get(name), now.get(name), f"{where}.{name}")
-    elif isinstance(now, list) and isinstance(written, list) and len(now) == len(written):
-        for place, (one, other) in enumerate(zip(written, now, strict=True)):
-            yield from _pairs(one, other, f"{where}[{place}]")
-    else:
-        yield Difference(where, written, now)
+def sign_pack(folder: Path, key: Ed25519PrivateKey, sums: bytes | None = None) -> Path:
+    """Sign the checksums of a pack, or compared bytes of them, and write the signature file."""
+    message = (folder / SUMS).read_bytes() if sums is None else sums
+    return _write(folder / SIGNATURE, sign(message, key).encode())
 
 
-def _same(pair: Difference) -> bool:
-    if _is_number(pair.now) and _is_number(pair.written):
-        return isclose(pair.written, pair.now, rel_tol=CLOSE, abs_tol=_SMALL) or pair.where.endswith(_SPENT)
-    return type(pair.written) is type(pair.now) and bool(pair.written == pair.now)
+def check_room(folder: Path, question: Question) -> None:
+    """Raise ValueError for a folder with files that do not belong to the pack."""
+    names = {*names_of(question), SUMS, SIGNATURE}
+    expected = {*names, WORK, *(parent.as_posix() for name in names for parent in Path(name).parents)}
+    present = [path.name for path in folder.iterdir()] if folder.is_dir() else []
+    unexpected = sorted(name for name in present if name not in _tops(expected) and not is_draft(name))
+    if unexpected:
+        raise ValueError(
+            f"{folder} holds other files ({shown(unexpected[0])}): a pack needs an empty folder, choose another --out"
+        )
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, float | int) and not isinstance(value, bool)
+def _tops(names: set[str]) -> set[str]:
+    return {name.split("/")[0] for name in names}
 
 
-_SMALL = 1e-12
-_SPENT = ("seconds", "observed")
-"""What is measured: times, and errors at the size of rounding, which have their own bounds."""
+def _write(path: Path, content: bytes) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with at_once(path) as draft:
+        draft.write_bytes(content)
+    return path

@@ -1,51 +1,27 @@
-"""The files that a file names: what has to come along so that it can be read elsewhere."""
+"""Input files of an evidence question, which its pack contains."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from ..checks import shown
-from ..io.toml import read_toml
 
-_MOST = 50
+_MAX_FILES = 50
 
 
-def files_of(path: Path) -> tuple[Path, ...]:
-    """A TOML file, the files in its folder that it names, and those that these name.
+def packed_files(question: Path, opened: Iterable[Path]) -> tuple[Path, ...]:
+    """Check the files that a question opened, and return them with the question first.
 
     Raises
     ------
     ValueError
-        A name that leads out of the folder; too many files.
+        A file outside the folder of the question; too many files.
     """
-    found, left = {path: None}, [path]
-    while left:
-        here = left.pop()
-        for text in _texts(read_toml(here, "question", dict)):
-            there = here.parent / text
-            if len(text) < 200 and there.is_file() and there not in found:
-                _check_inside(text)
-                found[there] = None
-                left += [there] if there.suffix == ".toml" else []
-        if len(found) > _MOST:
-            raise ValueError(f"{path.name} and what it names are more than {_MOST} files")
-    return tuple(found)
-
-
-def _check_inside(text: str) -> None:
-    if Path(text).is_absolute() or ".." in Path(text).parts:
-        raise ValueError(f"{shown(text)} lies outside the folder of its file: put it beside that")
-
-
-def _texts(part: Any) -> Iterator[str]:
-    """Every text in the tables of a file that may be a file's name."""
-    if isinstance(part, dict):
-        for each in part.values():
-            yield from _texts(each)
-    elif isinstance(part, list):
-        for each in part:
-            yield from _texts(each)
-    elif isinstance(part, str) and part.strip() and "\0" not in part and "\n" not in part:
-        yield part
+    files = tuple(dict.fromkeys((question, *opened)))
+    for path in files:
+        if not path.is_relative_to(question.parent) or ".." in path.relative_to(question.parent).parts:
+            raise ValueError(f"{shown(str(path))} lies outside the folder of {question.name}: put it beside that file")
+    if len(files) > _MAX_FILES:
+        raise ValueError(f"{question.name} names {len(files) - 1} files: at most {_MAX_FILES - 1} are allowed")
+    return files

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from datetime import date
 from functools import partial
 from hashlib import sha256
 from math import degrees
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
 from ..engines.local import Engine, Serial
@@ -19,9 +22,10 @@ from .calculation import beside, largest_deviation, rival
 from .code_checks import CHECKS
 from .comparator import applicability, reach_asked
 from .comparators import CLAIMS, PUBLISHED, claim
-from .credibility import FACTORS
+from .credibility import model_risk
 from .inputs import inputs, made_with
 from .question import Question
+from .requirements import assessed
 from .scatter import scattered
 from .wear import rates, worn
 
@@ -60,13 +64,35 @@ def gathered(question: Question, folder: Path, listen: Listener = silent, engine
     return _record(question, found, worst, {**first, **second})
 
 
+def count_kept(question: Question, folder: Path) -> int:
+    """Count the stored results of a question from a stopped run."""
+    return sum(1 for name in _folders(question) for path in (folder / name).glob("*.json"))
+
+
+def remove_kept(folder: Path) -> None:
+    """Remove the stored results of all questions from a folder, and the empty folder."""
+    for path in folder.glob("*-*"):
+        if _KEPT.fullmatch(path.name):
+            rmtree(path, ignore_errors=True)
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def _folders(question: Question) -> tuple[str, str]:
+    return f"{_FIRST}-{_digest(question)}", f"{_LATER}-{_digest(question)}"
+
+
+_FIRST, _LATER, _LENGTH = "first", "later", 12
+_KEPT = re.compile(rf"({_FIRST}|{_LATER})-[0-9a-f]{{{_LENGTH}}}")
+
+
 def plan(question: Question) -> Plan:
     """What does not depend on where the worst cases are."""
     cases = matrix.cases(question)
     first = next(iter(question.axes))
     blocks = [tuple(case for case in cases if case[first] == value) for value in question.axes[first]]
     return Plan(
-        name=f"first-{_digest(question)}",
+        name=_folders(question)[0],
         parts={
             "matrix": {f"block {number}": partial(_block, question, block) for number, block in enumerate(blocks)},
             "wear_rates": {
@@ -97,7 +123,7 @@ def later(question: Question, places: Mapping[str, matrix.Row]) -> Plan:
         parts["uncertainty"] = {"": partial(scattered, question, worst)}
     if matrix.WEAR.name in places:
         parts["wear"] = {"": partial(worn, question, places[matrix.WEAR.name].case)}
-    return Plan(name=f"later-{_digest(question)}", parts=parts)
+    return Plan(name=_folders(question)[1], parts=parts)
 
 
 def _digest(question: Question) -> str:
@@ -105,7 +131,7 @@ def _digest(question: Question) -> str:
     digest = sha256()
     for path in question.files:
         digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
+    return digest.hexdigest()[:_LENGTH]
 
 
 def _block(question: Question, those: Sequence[matrix.Case]) -> list[dict[str, Any]]:
@@ -154,9 +180,10 @@ def _record(
         "made_on": date.today().isoformat(),
         "question": question.text,
         "context_of_use": question.context,
-        "risk": {"influence": question.influence, "consequence": question.consequence},
+        "risk": model_risk(question.influence, question.consequence),
         "required": {"accuracy": question.accuracy, "limits": [str(limit) for limit in question.limits]},
         "inputs": inputs(question),
+        "recentred": [each.summary() for each in question.recentred],
         "model": {"name": question.model.name, "call": _CALL},
         "matrix": [row.summary() for row in found],
         "worst": {name: row.summary() for name, row in worst.items()},
@@ -173,8 +200,7 @@ def _record(
     for each in (*record["claims"], *record["comparators"]):
         each["applicability"] = applicability(each["reaches"], asked, tilted)
     record["accurate"] = _accurate(record)
-    record["credibility"] = [factor.summary(record) for factor in FACTORS]
-    return record
+    return {**record, **assessed(record)}
 
 
 def _drawn(question: Question, worst: Mapping[str, matrix.Row]) -> dict[str, Any] | None:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
-from math import prod
+from dataclasses import dataclass, replace
+from math import isclose, prod
 from pathlib import Path
 from typing import Any
+from unicodedata import category
 
 from ..catalogue import off_axis, reference
 from ..checks import check_text, nearest, require, shown
 from ..hip.file import read_hip
+from ..input_files import open_input, recorded_inputs, resolve_input
 from ..io.joint_file import KEYS, JointFile, check_keys
 from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of
@@ -19,11 +21,11 @@ from ..io.units import parse
 from ..model import Model
 from ..quantities import QUANTITIES
 from ..studies.design import check_values, grid
-from ..studies.distributions import Distribution
+from ..studies.distributions import Distribution, Rectangular
 from ..studies.limits import Limit
-from ..studies.parameters import AIMS, LOADS, PARAMETERS, contradiction
+from ..studies.parameters import AIMS, LOADS, PARAMETERS, contradiction, nominal, varied
 from ..studies.phrases import limit_of, spread_of
-from .named_files import files_of
+from .named_files import packed_files
 
 LEVELS = ("low", "medium", "high")
 MOST = 2000
@@ -41,6 +43,20 @@ FILE_KEYS = {
     "wear": ("file",),
 }
 _PERCENT = re.compile(r"\s*([\d.]+(?:[eE][-+]?\d+)?)\s*%\s*")
+
+
+@dataclass(frozen=True)
+class Recentred:
+    """Input whose nominal value is taken from its tolerance instead of the joint's file or preset."""
+
+    name: str
+    stated: float
+    used: float
+
+    def summary(self) -> dict[str, Any]:
+        """Return one dictionary for JSON, with the units of files."""
+        factor = PARAMETERS[self.name].written.factor
+        return {"name": self.name, "stated": self.stated * factor, "used": self.used * factor}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,6 +79,8 @@ class Question:
         What must be kept.
     tolerances : mapping of str to Distribution
         What scatters.
+    recentred : tuple of Recentred
+        Inputs whose tolerance states another nominal value than the joint's file or preset.
     sources : mapping of str to str
         Where inputs come from, by their names.
     friction : float, optional
@@ -86,6 +104,7 @@ class Question:
     axes: Mapping[str, tuple[float, ...]]
     limits: tuple[Limit, ...]
     tolerances: Mapping[str, Distribution]
+    recentred: tuple[Recentred, ...]
     sources: Mapping[str, str]
     friction: float | None
     hip: Path | None
@@ -118,7 +137,12 @@ def read_question(path: str | Path) -> Question:
         A file cannot be read.
     """
     path = Path(path)
-    return read_toml(path, "question", lambda content: _question(content, path))
+    with recorded_inputs() as opened:
+        question = read_toml(path, "question", lambda content: _question(content, path))
+    files = packed_files(path, opened)
+    for file in files:
+        _check_visible(file)
+    return replace(question, files=files)
 
 
 def _question(content: Mapping[str, Any], path: Path) -> Question:
@@ -128,6 +152,8 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
         check_keys(part, name, f"in [{name}]", FILE_KEYS)
     axes = {name: _several(name, value) for name, value in parts["matrix"].items()}
     _check_axes(axes)
+    tolerances, given = _tolerances(parts["tolerances"]), joint_in(content, path.parent)
+    file, recentred = _recentred(given, tolerances, axes)
     elements = content.get("finite_elements", False)
     if not isinstance(elements, bool):
         raise ValueError(f"finite_elements = {shown(elements)} must be true or false")
@@ -137,16 +163,17 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
         influence=_level(parts["risk"], "influence", "of the model on the decision"),
         consequence=_level(parts["risk"], "consequence", "of a wrong decision"),
         accuracy=_accuracy(parts["required"]),
-        file=joint_in(content, path.parent),
+        file=file,
         axes=axes,
         limits=_limits(parts["required"].get("limits", [])),
-        tolerances=_tolerances(parts["tolerances"]),
+        tolerances=tolerances,
+        recentred=recentred,
         sources=_sources(table_of(content, "sources")),
         friction=_friction(parts["friction"]),
         hip=_hip(parts["wear"], path.parent),
         finite_elements=elements,
         path=path,
-        files=files_of(path),
+        files=(path,),
     )
 
 
@@ -216,6 +243,40 @@ def _tolerances(part: Mapping[str, Any]) -> Mapping[str, Distribution]:
     return spreads
 
 
+def _recentred(
+    file: JointFile, tolerances: Mapping[str, Distribution], axes: Mapping[str, Any]
+) -> tuple[JointFile, tuple[Recentred, ...]]:
+    """Set each input that the matrix does not vary to the nominal value of its tolerance.
+
+    700 +- 100 states 700. A range such as 0.40 .. 0.45 states none: the joint's value is used, or the middle of the
+    range where that value lies outside.
+    """
+    found = []
+    for name, spread in tolerances.items():
+        stated = None if name in axes or name in LOADS else nominal(file.joint, name)
+        used = float(spread.frozen.median())
+        inside = isinstance(spread, Rectangular) and stated is not None and spread.low <= stated <= spread.high
+        if stated is not None and not inside and not isclose(stated, used, rel_tol=1e-9):
+            found.append(Recentred(name, stated, used))
+    joint, _ = varied(file.joint, {each.name: each.used for each in found})
+    return replace(file, joint=joint), tuple(found)
+
+
+def _check_visible(path: Path) -> None:
+    """Raise ValueError for an invisible character, which can change the text of a page."""
+    if path.suffix != ".toml":
+        return
+    with open_input(path) as stream:
+        text = stream.read().decode("utf-8-sig")
+    for number, line in enumerate(text.splitlines(), 1):
+        for character in line:
+            if category(character) == "Cf" and character not in _JOINERS:
+                raise ValueError(f"{path.name} has the invisible character U+{ord(character):04X} in line {number}")
+
+
+_JOINERS = "\u200c\u200d"
+"""Invisible characters that some scripts need between letters."""
+
 ALMOST_ALL = (0.001, 0.999)
 """Shares of what scatters, between which it is."""
 
@@ -243,7 +304,7 @@ def _hip(part: Mapping[str, Any], folder: Path) -> Path | None:
     if "file" not in part:
         return None
     path = folder / check_text("file", part["file"])
-    if not path.is_file():
+    if not resolve_input(path).is_file():
         raise ValueError(f"[wear] file = {shown(part['file'])} is not there")
     read_hip(path)
     return path

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy
@@ -12,7 +12,7 @@ from ..catalogue import reference
 from ..quantities import QUANTITIES
 from ..studies.axes import Method
 from ..studies.design import sample
-from ..studies.parameters import AIMS, LOADS, pressable
+from ..studies.parameters import AIMS, LOADS, PARAMETERS, pressable
 from ..studies.sensitivity import sensitivity
 from ..studies.usual import usual
 from .matrix import Case
@@ -58,8 +58,23 @@ def scattered(question: Question, case: Case) -> dict[str, Any]:
             for name in ("max_pressure", "half_angle")
         },
         "aligned": any(name in AIMS for name in case),
+        "notes": list(_outside(question, case)),
         "call": "ballsocket.evidence.scatter.scattered(question, case)",
     }
+
+
+def _outside(question: Question, case: Case) -> Iterator[str]:
+    """Note the inputs of the worst case that lie outside their tolerance."""
+    for name in (name for name in question.tolerances if name in case):
+        low, high = (float(question.tolerances[name].frozen.ppf(end)) for end in (0.0, 1.0))
+        if not low <= case[name] <= high:
+            quantity = PARAMETERS[name]
+            value, least, most = (f"{number * quantity.written.factor:g}" for number in (case[name], low, high))
+            unit = f" {quantity.written.text}".rstrip()
+            yield (
+                f"{quantity.title} {value}{unit} of the worst case lies outside its tolerance of {least} to "
+                f"{most}{unit}: the bands cover the tolerance and do not include the worst case"
+            )
 
 
 def _known(values: Any, good: Numbers, count: int) -> Numbers:

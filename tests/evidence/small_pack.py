@@ -1,0 +1,56 @@
+"""Small question and its pack, computed once for all tests of one process."""
+
+import json
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
+
+from ballsocket.evidence.folder import write
+from ballsocket.evidence.pack import gathered
+from ballsocket.evidence.question import read_question
+from ballsocket.output.evidence_page import evidence_page
+
+QUESTION_TEXT = """
+question = "May it be?"
+context_of_use = "A test."
+joint = "hip-36"
+
+[risk]
+influence = "low"
+consequence = "high"
+
+[required]
+accuracy = "5 %"
+limits = ["max_pressure <= 15 MPa", "edge_distance >= 1 mm"]
+
+[matrix]
+clearance = ["0.05 mm", "0.15 mm"]
+force = ["2 kN", "4 kN"]
+
+[tolerances]
+liner_young = "750 +- 75 MPa"
+
+[friction]
+coefficient = 0.06
+"""
+
+
+@cache
+def small_pack():
+    """Return the question, its record, and a folder with the pack in `out` and its stored results in `data`."""
+    folder = Path(mkdtemp(prefix="ballsocket-test-"))
+    (folder / "asked.toml").write_text(QUESTION_TEXT, encoding="utf-8")
+    question = read_question(folder / "asked.toml")
+    record = gathered(question, folder / "data")
+    write(question, record, page, folder / "out")
+    return question, record, folder
+
+
+def page(record, digest):
+    """Return the page, drawn once for each record and digest."""
+    return _page(json.dumps(record), digest)
+
+
+@cache
+def _page(record, digest):
+    return evidence_page(json.loads(record), digest)

@@ -1,0 +1,435 @@
+"""Forged packs with consistent checksums: each fails the check with a reason."""
+
+import copy
+import json
+import os
+import re
+import shutil
+import subprocess
+from base64 import b64decode, b64encode
+from datetime import date, timedelta
+from hashlib import sha256
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("xarray", reason="the extra for studies is not installed")
+from ballsocket.engines import Serial
+from ballsocket.evidence import comparison
+from ballsocket.evidence.comparison import compare, signature_of
+from ballsocket.evidence.folder import (
+    PAGE,
+    QUESTION,
+    RECORD,
+    SIGNATURE,
+    SUMS,
+    digest,
+    digest_of,
+    record_bytes,
+    sign_pack,
+)
+from ballsocket.evidence.requirements import assessed
+
+from .small_pack import page
+
+pytestmark = pytest.mark.xdist_group("evidence")
+
+FIGURE = re.compile(rb"(?<=data:image/svg\+xml;base64,)[A-Za-z0-9+/=]+")
+
+
+@pytest.fixture
+def out(pack, tmp_path, monkeypatch):
+    """Copy the pack. Its question is computed once for all forgeries; another test computes it completely."""
+    monkeypatch.setattr(comparison, "gathered", lambda *arguments: copy.deepcopy(pack[1]))
+    return Path(shutil.copytree(pack[2] / "out", tmp_path / "out"))
+
+
+def record_of(out):
+    return json.loads((out / RECORD).read_bytes())
+
+
+def seal(out, *more):
+    """Rewrite the checksums."""
+    names = sorted([QUESTION, RECORD, PAGE, *more])
+    lines = [f"{sha256((out / name).read_bytes()).hexdigest()}  {name}\n" for name in names if (out / name).exists()]
+    (out / SUMS).write_bytes("".join(lines).encode())
+
+
+def plain_page(record, digest):
+    """Make a page without figures, which is fast."""
+    return f"{digest} {json.dumps(record)}"
+
+
+def redraw(out, record, maker=plain_page):
+    """Write a record and its page."""
+    (out / RECORD).write_bytes(record_bytes(record))
+    (out / PAGE).write_text(maker(record, digest({n: (out / n).read_bytes() for n in (QUESTION, RECORD)})), "utf-8")
+
+
+def in_page(old, new):
+    def forge(out):
+        text = (out / PAGE).read_bytes()
+        assert old in text
+        (out / PAGE).write_bytes(text.replace(old, new, 1))
+
+    return forge
+
+
+def in_record(change, judged_again=False):
+    """Change a record, and redraw its page."""
+
+    def forge(out):
+        record = record_of(out)
+        change(record)
+        redraw(out, {**record, **assessed(record)} if judged_again else record)
+
+    return forge
+
+
+def swap_figure(out):
+    false = b64encode(b"<svg xmlns='http://www.w3.org/2000/svg'><text y='20'>All limits kept, 3 MPa</text></svg>")
+    (out / PAGE).write_bytes(FIGURE.sub(false, (out / PAGE).read_bytes(), count=1))
+
+
+def figure_of_another_pack(out):
+    record = record_of(out)
+    for row in record["matrix"]:
+        row["numbers"]["max_pressure"] *= 0.5
+    theirs = FIGURE.findall(page(record, digest_of(out)).encode())
+    ours = FIGURE.findall((out / PAGE).read_bytes())
+    assert theirs[1] != ours[1]
+    (out / PAGE).write_bytes((out / PAGE).read_bytes().replace(ours[1], theirs[1]))
+
+
+def change_a_letter_of_a_figure(out):
+    (figure, *_) = FIGURE.findall((out / PAGE).read_bytes())
+    svg = b64decode(figure)
+    (out / PAGE).write_bytes(
+        (out / PAGE).read_bytes().replace(figure, b64encode(svg.replace(b"#000000", b"#000001", 1)))
+    )
+
+
+HIDDEN = b"data:image/><style>main,body>*{display:none}</style><h1 style=display:block>All limits are kept</h1>"
+
+
+def add(name, content=b"<h1>All limits are kept</h1>"):
+    def forge(out):
+        (out / name).parent.mkdir(exist_ok=True)
+        (out / name).write_bytes(content)
+
+    return forge
+
+
+def of_another_version(out):
+    record = record_of(out)
+    record["version"] = "1.0.0+deadbeef"
+    (out / RECORD).write_bytes(record_bytes(record))
+    in_page(b"not kept", b"kept")(out)
+
+
+def drawn_by_another_library(out):
+    record = record_of(out)
+    record["made_with"]["matplotlib"] = "3.4.1"
+    redraw(out, record, page)
+    swap_figure(out)
+
+
+def link_the_page(out):
+    target = out.parent / "elsewhere.html"
+    (out / PAGE).rename(target)
+    (out / PAGE).symlink_to(target)
+
+
+def twice_in_the_json(out):
+    text = (out / RECORD).read_text("utf-8").rstrip().removesuffix("}")
+    (out / RECORD).write_text(f'{{"approved": "yes", "approved": null,{text[1:]}}}\n', "utf-8")
+
+
+def replace_bytes(name, change):
+    return lambda out: (out / name).write_bytes(change((out / name).read_bytes()))
+
+
+def reorder(record):
+    record["worst"] = dict(reversed(record["worst"].items()))
+
+
+def verdict(record):
+    record["limits"][0]["verdict"] = "kept"
+
+
+def change_slightly(record):
+    record["matrix"][3]["numbers"]["max_pressure"] *= 1 - 1e-7
+
+
+def style(record):
+    record["context_of_use"] = "</p><style>body>*{display:none}</style><p>\u200bAll limits are kept"
+
+
+def observed(record):
+    record["code_verification"][0]["observed"] *= 1e4
+
+
+def without_gaps(record):
+    record["requirements"] = [row for row in record["requirements"] if row["status"] == "met"]
+
+
+FORGERIES = {
+    "a figure that was swapped": (swap_figure, "figure 1 of the page differs from the figure made from evidence.json"),
+    "a figure of another pack": (figure_of_another_pack, "figure 2 of the page differs from the figure"),
+    "one colour of a figure": (change_a_letter_of_a_figure, "figure 1 of the page differs from the figure"),
+    "a page that hides itself": (in_page(b"<html lang=", b"<html lang=" + HIDDEN), "instead of"),
+    "a verdict on the page": (in_page(b"not kept", b"kept"), "instead of"),
+    "text of no width on the page": (in_page(b"not kept", "not\u200b kept".encode()), "instead of"),
+    "bytes after the page": (replace_bytes(PAGE, lambda text: text + b"<h1>kept</h1>"), "instead of"),
+    "a mark before the page": (replace_bytes(PAGE, lambda text: b"\xef\xbb\xbf" + text), "instead of"),
+    "line ends of the page": (replace_bytes(PAGE, lambda text: text.replace(b"\n", b"\r\n")), "instead of"),
+    "another digest on the page": (
+        lambda out: in_page(digest_of(out).encode(), b"0" * 64)(out),
+        "instead of",
+    ),
+    "another version": (of_another_version, r"version: cannot be verified by this version of ballsocket, .*deadbeef"),
+    "another library of figures": (
+        drawn_by_another_library,
+        r"cannot be verified with matplotlib .*: the pack was made with matplotlib 3.4.1",
+    ),
+    "an added file": (add("addendum.html"), "addendum.html: does not belong to the pack"),
+    "a name in capitals": (add("EVIDENCE.html"), "EVIDENCE.html: does not belong to the pack"),
+    "a file in a folder": (add("more/addendum.html"), "more/addendum.html: does not belong to the pack"),
+    "pieces of a run": (add("data/first.json"), "data/first.json: does not belong to the pack"),
+    "an empty folder": (lambda out: (out / "more").mkdir(), "more: does not belong to the pack"),
+    "a link": (link_the_page, "evidence.html: is a symbolic link"),
+    "a link to a folder": (lambda out: (out / "more").symlink_to(out.parent), "more: is a symbolic link"),
+    "no page": (lambda out: (out / PAGE).unlink(), "evidence.html: written 'not listed', now 'missing'"),
+}
+
+FORGED_RECORDS = {
+    "a verdict in both": (in_record(verdict), r"limits\[0\].verdict: written 'kept', now 'not kept'"),
+    "a verdict in both, judged again": (in_record(verdict, True), r"limits\[0\].verdict: written 'kept'"),
+    "a number by a ten-millionth": (in_record(change_slightly), r"matrix\[3\].numbers.max_pressure: written 15.5"),
+    "styles in the words": (in_record(style), "context_of_use: written '</p><style>"),
+    "an error that was observed": (in_record(observed), r"code_verification\[0\].observed"),
+    "a level of a factor": (
+        in_record(lambda record: record["credibility"][7].update(reached="d", adequate=True)),
+        r"credibility\[7\].reached: written 'd', now 'a'",
+    ),
+    "gaps that were left out": (in_record(without_gaps), "requirements: written"),
+    "an empty word more": (
+        in_record(lambda record: record.update(approved=None)),
+        "approved: written None, now 'absent'",
+    ),
+    "a word less": (in_record(lambda record: record.pop("recentred")), "recentred: written 'absent'"),
+    "another order": (in_record(reorder), "worst: has its keys in another order"),
+    "a number as text": (
+        in_record(lambda record: record["limits"][0].update(beyond="1")),
+        r"limits\[0\].beyond: written '1', now 1",
+    ),
+    "words behind the date": (
+        in_record(lambda record: record.update(made_on="2026-01-01, approved")),
+        "made_on: must be",
+    ),
+    "a date to come": (
+        in_record(lambda record: record.update(made_on=str(date.today() + timedelta(days=9)))),
+        "made_on: must be a date that is not in the future",
+    ),
+    "words among the libraries": (
+        in_record(lambda record: record["made_with"].update(numpy="2.4.6 and approved by the authority")),
+        "made_with: holds more than the names and versions",
+    ),
+    "another library": (in_record(lambda record: record["made_with"].update(approved="yes")), "made_with: holds more"),
+    "a key twice": (twice_in_the_json, "evidence.json: differs from the canonical form"),
+    "line ends of the record": (
+        replace_bytes(RECORD, lambda text: text.replace(b"\n", b"\r\n")),
+        "evidence.json: differs from the canonical form",
+    ),
+    "bytes after the record": (
+        replace_bytes(RECORD, lambda text: text + b" \n"),
+        "evidence.json: differs from the canonical form",
+    ),
+    "a comment in the question": (
+        replace_bytes(QUESTION, lambda text: text + b"# approved\n"),
+        "the page differs from the page made from evidence.json",  # it shows the digest
+    ),
+}
+"""Forged records with matching pages."""
+
+
+@pytest.mark.parametrize("name", [*FORGERIES, *FORGED_RECORDS])
+def test_a_forged_pack_fails_with_a_sentence(name, out):
+    forge, sentence = (FORGERIES | FORGED_RECORDS)[name]
+    maker = plain_page if name in FORGED_RECORDS else page
+    redraw(out, record_of(out), maker)
+    forge(out)
+    seal(out, *(["addendum.html"] if (out / "addendum.html").exists() else []))
+    comparison = compare(out, maker)
+    assert any(re.search(sentence, str(difference)) for difference in comparison.differences), [
+        str(difference) for difference in comparison.differences
+    ]
+    assert all(difference.summary() for difference in comparison.differences)
+
+
+def test_a_record_of_which_no_page_can_be_made_is_reported(out):
+    record = record_of(out)
+    del record["recentred"]
+    (out / RECORD).write_bytes(record_bytes(record))
+    assert any("no page can be made of it" in str(difference) for difference in compare(out, page).differences)
+
+
+def test_the_pack_itself_passes(out):
+    comparison = compare(out, page)
+    assert comparison.differences == ()
+    assert comparison.digest == digest_of(out)
+    assert comparison.digest in (out / PAGE).read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: text.replace(b"\n", b"\r\n"),
+        lambda text: b"\xef\xbb\xbf" + text,
+        lambda text: b"".join(reversed(text.splitlines(keepends=True))),
+        lambda text: text + text,
+        lambda text: text.upper(),
+        lambda text: text.rstrip(),
+    ],
+)
+def test_checksums_have_one_form(out, change):
+    (out / SUMS).write_bytes(change((out / SUMS).read_bytes()))
+    assert compare(out, page).differences
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="a system without pipes that have names")
+def test_a_pipe_is_named_and_not_opened(out):
+    os.mkfifo(out / "wait")
+    assert "wait: does not belong to the pack" in map(str, compare(out, page).differences)
+
+
+def test_a_folder_of_many_files_is_no_pack(out):
+    for number in range(300):
+        (out / f"{number}.txt").touch()
+    with pytest.raises(ValueError, match="holds more than 200 files"):
+        compare(out, page)
+
+
+# signatures
+
+
+@pytest.fixture
+def keys():
+    pytest.importorskip("cryptography", reason="the extra for signatures is not installed")
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
+
+    return [Ed25519PrivateKey.from_private_bytes(bytes([number]) * 32) for number in (1, 2)]
+
+
+def public(key):
+    from ballsocket.evidence.signature import public_key_of
+
+    return public_key_of(key)
+
+
+def test_a_signature_is_verified_by_its_key(out, keys):
+    sign_pack(out, keys[0])
+    assert signature_of(out, public(keys[0])).summary() == {
+        "fingerprint": public(keys[0]).fingerprint,
+        "verified": True,
+    }
+    assert signature_of(out).expected is None
+    assert compare(out, page).differences == ()
+
+
+def of_another_pack(out):
+    signature = (out / SIGNATURE).read_bytes()
+    in_record(verdict, True)(out)
+    seal(out)
+    (out / SIGNATURE).write_bytes(signature)
+
+
+def another_purpose(out):
+    text = (out / SIGNATURE).read_text("ascii").splitlines()
+    blob = b64decode("".join(text[1:-1])).replace(b"ballsocket", b"softballet")
+    (out / SIGNATURE).write_text("\n".join([text[0], b64encode(blob).decode(), text[-1], ""]))
+
+
+def with_tail(out):
+    text = (out / SIGNATURE).read_text("ascii").splitlines()
+    blob = b64decode("".join(text[1:-1])) + b"\0"
+    (out / SIGNATURE).write_text("\n".join([text[0], b64encode(blob).decode(), text[-1], ""]))
+
+
+@pytest.mark.parametrize(
+    ("forge", "sentence"),
+    [
+        (replace_bytes(SIGNATURE, lambda text: text[:-60]), "the signature is damaged: its file is cut off"),
+        (replace_bytes(SIGNATURE, lambda text: b""), "the signature is damaged"),
+        (replace_bytes(SIGNATURE, lambda text: text.replace(b"A", b"B")), "the signature is"),
+        (with_tail, "bytes follow its end"),
+        (another_purpose, "is for the purpose b'softballet', not for 'ballsocket'"),
+        (of_another_pack, "is of other checksums: the pack was changed after it was signed"),
+        (replace_bytes(SUMS, lambda text: text + b"\n"), "is of other checksums"),
+        (lambda out: (out / SIGNATURE).unlink(), "checksums.txt.sig is missing: the pack is not signed"),
+    ],
+)
+def test_a_signature_that_does_not_hold_says_why(out, keys, forge, sentence):
+    sign_pack(out, keys[0])
+    forge(out)
+    with pytest.raises(ValueError, match=sentence):
+        signature_of(out, public(keys[0]))
+
+
+def test_a_check_signs_and_verifies_the_checksums_that_it_compared(out, keys, monkeypatch, capsys):
+    """Checksums that replace the compared ones during a check are neither signed nor verified."""
+    command = import_module("ballsocket.cli.evidence")
+    sums = (out / SUMS).read_bytes()
+
+    comparison = compare(out, page)
+    (out / SUMS).write_bytes(b"others")
+    monkeypatch.setattr(command, "compare", lambda *words: comparison)
+    command._check(out, Serial(), False, keys[0], None)
+    assert signature_of(out, public(keys[0]), sums).expected
+    with pytest.raises(ValueError, match="is of other checksums"):
+        signature_of(out, public(keys[0]))
+    command._check(out, Serial(), False, None, public(keys[0]))
+    assert "signature verified: by SHA256:" in capsys.readouterr().out
+
+
+def test_a_signature_by_another_key_is_refused(out, keys):
+    sign_pack(out, keys[1])
+    with pytest.raises(ValueError, match="the signature is by another key, SHA256:.* not by SHA256:"):
+        signature_of(out, public(keys[0]))
+
+
+@pytest.mark.skipif(shutil.which("ssh-keygen") is None, reason="ssh-keygen is not installed")
+def test_the_tool_of_the_standard_verifies_our_signatures_and_we_verify_its(out, keys, tmp_path):
+    from ballsocket.evidence.signature import read_private_key, read_public_key
+
+    key = tmp_path / "key"
+    subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-C", "someone", "-f", key], check=True)
+    sign_pack(out, read_private_key(key))
+    assert signature_of(out, read_public_key(tmp_path / "key.pub")).expected
+    allowed = tmp_path / "allowed"
+    allowed.write_text(f"someone {(tmp_path / 'key.pub').read_text()}")
+    command = ["ssh-keygen", "-Y", "verify", "-f", allowed, "-I", "someone", "-n", "ballsocket", "-s", out / SIGNATURE]
+    process = subprocess.run(command, input=(out / SUMS).read_bytes(), capture_output=True, check=True)
+    fingerprint = read_public_key(tmp_path / "key.pub").fingerprint
+    assert fingerprint in process.stdout.decode()
+    ours = (out / SIGNATURE).read_bytes()
+    (out / SIGNATURE).unlink()
+    subprocess.run(["ssh-keygen", "-q", "-Y", "sign", "-n", "ballsocket", "-f", key, out / SUMS], check=True)
+    assert (out / SIGNATURE).read_bytes() == ours
+    assert signature_of(out).key.fingerprint == fingerprint
+    subprocess.run(["ssh-keygen", "-q", "-p", "-N", "secret", "-f", key], check=True)
+    with pytest.raises(ValueError, match="is protected by a passphrase: sign with ssh-keygen -Y sign"):
+        read_private_key(key)
+
+
+@pytest.mark.parametrize("text", ["", "ssh-rsa AAAA me", "ssh-ed25519", "ssh-ed25519 AAAA", "ssh-ed25519 ?", "\xff"])
+def test_a_file_without_a_key_is_refused(tmp_path, keys, text):
+    from ballsocket.evidence.signature import read_private_key, read_public_key
+
+    path = tmp_path / "key"
+    path.write_text(text, "latin-1")
+    with pytest.raises(ValueError, match="key must be a public Ed25519 key"):
+        read_public_key(path)
+    with pytest.raises(ValueError, match="key must be a private key of OpenSSH"):
+        read_private_key(path)
