@@ -1,6 +1,7 @@
 """The element in C: the same numbers as the element in Python."""
 
 import ctypes
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -151,3 +152,9 @@ def test_parameters_that_are_not_allowed_have_a_sentence(plain):
 def test_names_that_c_does_not_allow_are_refused(name):
     with pytest.raises(ValueError, match="name must be letters"):
         CElement(element=ForceElement(bs.HessForsbach(), HIP), name=name)
+
+
+def test_a_name_neither_opens_nor_closes_a_comment():
+    element = ForceElement(bs.HessForsbach(), replace(HIP, name="a /* b */ c /*/ d"))
+    joint = CElement(element=element, name="joint").about["joint"]
+    assert "a ? b ? c ?/ d" in joint

@@ -10,6 +10,7 @@ from xml.etree.ElementTree import fromstring
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
 
 import ballsocket as bs
 from ballsocket.cli.force_elements import ElementWords, identifier
@@ -17,6 +18,7 @@ from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
 from ballsocket.export import TARGETS, CElement, Job
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.law_fit import expression_fit, power_fit
+from ballsocket.export.trusted import trusted_depth
 from ballsocket.io.joint_file import JointFile
 
 from ..cli.command import run
@@ -102,18 +104,45 @@ def test_the_expression_of_a_closed_form_is_the_closed_form():
     assert fit.error < 1e-12
 
 
-def test_one_expression_holds_any_law_and_says_how_far_it_is_off():
+def test_one_expression_holds_any_law_as_deep_as_its_model_is_valid():
     fit = expression_fit(TABULATED, 0.05)
-    assert fit.error < 1e-4
-    depths = np.array([2e-4, 0.011, 0.049])
+    assert fit.error < 1e-5
+    assert_allclose(fit.depth, 1e-3 * trusted_depth(TABULATED))
+    depths = np.array([2e-4, 0.011, 0.049, 0.99e3 * fit.depth])
     forces = fit(1e-3 * (HIP.clearance + depths))
     assert_allclose(forces, TABULATED.potential(depths)[1], rtol=2 * fit.error)
 
 
-@pytest.mark.parametrize(("element", "near"), [(DAMPED, 1e-12), (TABULATED, 1e-4)])
+def test_an_expression_deeper_than_the_load_and_the_model_is_fitted_to_the_load():
+    assert_allclose(expression_fit(TABULATED, 0.3).depth, 3e-4)
+
+
+def test_beyond_its_fit_an_expression_continues_with_its_slope_and_reports_its_error():
+    fit = expression_fit(TABULATED, 0.05)
+    deepest = 1e3 * fit.depth
+    before, at, after, twice = fit(1e-3 * (HIP.clearance + deepest * np.array([0.9999, 1.0, 1.0001, 2.0])))
+    assert_allclose(after - at, at - before, rtol=1e-3)
+    law = TABULATED.potential(np.array([2.0 * deepest]))[1][0]
+    assert_allclose(abs(twice / law - 1), fit.error_beyond, rtol=1e-6)
+    assert 0.01 < fit.error_beyond < 0.1
+    assert "deeper it continues as a power law" in fit.range_note
+
+
+def test_a_law_without_a_range_of_its_expression_has_no_note():
+    assert expression_fit(PLAIN, 0.05).range_note == ""
+
+
+def test_the_terminal_and_the_file_state_the_range_of_an_expression(tmp_path):
+    finished = run("export", "opensim", "hip-28", "--out", "hip", folder=tmp_path)
+    note = expression_fit(ForceElement(bs.Tabulated(), bs.joints["hip-28"]), 0.0).range_note
+    assert note in finished.stderr.replace("\n", " ")
+    assert note in (tmp_path / "hip" / "hip.osim").read_text()
+
+
+@pytest.mark.parametrize(("element", "near"), [(DAMPED, 1e-12), (TABULATED, 1e-5)])
 def test_an_expression_in_words_is_the_law_with_its_damping(element, near):
     text = expression_fit(element, 0.05).text("d", "ddot", 4.0)
-    words = {"max": max, "sqrt": sqrt, "exp": exp, "d": 1.3e-4, "ddot": 0.02}
+    words = {"max": max, "min": min, "sqrt": sqrt, "exp": exp, "d": 1.3e-4, "ddot": 0.02}
     force = eval(text.replace("^", "**"), words)
     assert_allclose(force, -element((0.0, 0.0, 0.13), (0.0, 0.0, 20.0)).force[2], rtol=near)
     assert eval(text.replace("^", "**"), words | {"d": 5e-5}) == 0.0
@@ -147,6 +176,12 @@ def test_a_table_says_what_the_model_says_up_to_the_load_of_the_file(tmp_path):
     contact = bs.Tabulated().press(HIP.replace(liner=bs.Material(young=1000.0, poisson=0.4)), force=3000.0)
     assert_allclose(rows["max_pressure_MPa"][-1], contact.max_pressure, rtol=1e-6)
     assert_allclose(np.gradient(rows["energy_N_mm"], rows["indentation_mm"])[50], rows["force_N"][50], rtol=1e-3)
+
+
+def test_missing_folders_are_created_with_their_parents(tmp_path):
+    finished = run("export", "table", "hip-28", "--out", "new/parts/hip", folder=tmp_path)
+    assert (finished.returncode, finished.stderr) == (0, "")
+    assert (tmp_path / "new" / "parts" / "hip" / "hip_law.csv").is_file()
 
 
 def test_the_cup_of_a_file_has_its_rim_and_a_file_without_one_is_a_whole_sphere():
@@ -203,8 +238,8 @@ def test_what_is_no_command_is_a_sentence_and_the_sources_are_there(variable, va
     [
         (("adams", "--out", "hip"), "target 'adams' is not known; known: c, opensim, mujoco, drake, exudyn, modelica"),
         (("mujocoo", "--out", "hip"), "did you mean 'mujoco'?"),
-        (("table", "--out", "nowhere/hip"), "'nowhere' is no folder to write hip into"),
         (("table", "--out", "file"), "'file' is a file; a folder is needed"),
+        (("table", "--out", "file/new/hip"), "'file' is a file; a folder is needed"),
         (("table", "--out", "hip", "--model", "fem"), "finite elements are too noisy for a law"),
     ],
 )
@@ -294,6 +329,7 @@ def drake_momentum(tools, folder):
         made.add_joint(builder, plant, ball, cup, socket_centre=(-0.01, 0.0, 0.0))
     simulator = Simulator(builder.Build())
     simulator.get_mutable_integrator().request_initial_step_size_target(1e-5)
+    simulator.get_mutable_integrator().set_target_accuracy(1e-9)
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     plant.SetPositions(context, [1, 0, 0, 0, 5e-5, 0, 2e-5, 1, 0, 0, 0, 0.01, 0, 0])
     plant.SetVelocities(context, [3, -2, 1, 0.06, 0.02, 0.08, 0.5, 1, -2, 0, 0, 0])
@@ -303,16 +339,142 @@ def drake_momentum(tools, folder):
         yield np.concatenate([found.translational(), found.rotational()]), plant.GetVelocities(context)[3:6]
 
 
+BOX_INERTIA = 0.7 / 12 * np.diag([0.04**2 + 0.02**2, 0.06**2 + 0.02**2, 0.06**2 + 0.04**2])
+BALL_INERTIA = 0.4 * 0.018**2 * np.eye(3)
+
+
+def exudyn_momentum(tools, folder):
+    import exudyn as exu
+    from exudyn import itemInterface as items  # noqa: N813 - a module's name
+    from exudyn.utilities import RigidBodyInertia
+
+    mbs = exu.SystemContainer().AddSystem()
+    quantities = exu.OutputVariableType
+
+    def body(mass, inertia, position, velocity, spin):
+        return mbs.CreateRigidBody(
+            inertia=RigidBodyInertia(mass=mass, inertiaTensor=inertia),
+            nodeType=exu.NodeType.RotationRotationVector,
+            referencePosition=position,
+            initialVelocity=velocity,
+            initialAngularVelocity=spin,
+        )
+
+    cup = body(0.7, BOX_INERTIA, [0.01, 0, 0], [0, 0, 0], [0.5, 1, -2])
+    ball = body(1.0, BALL_INERTIA, [5e-5, 0, 2e-5], [0.06, 0.02, 0.08], [3, -2, 1])
+    markers = [
+        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=number, localPosition=centre))
+        for number, centre in ((cup, [-0.01, 0, 0]), (ball, [0, 0, 0]))
+    ]
+    with tools.module(folder, "meeting_exudyn") as made:
+        made.add_joint(mbs, *markers)
+    mbs.Assemble()
+
+    def momentum():
+        linear, angular = np.zeros(3), np.zeros(3)
+        for number, mass, inertia in ((cup, 0.7, BOX_INERTIA), (ball, 1.0, BALL_INERTIA)):
+            names = (quantities.Position, quantities.Velocity, quantities.RotationMatrix)
+            position, velocity, axes = (mbs.GetObjectOutputBody(number, name, [0, 0, 0]) for name in names)
+            spin = mbs.GetObjectOutputBody(number, quantities.AngularVelocityLocal, [0, 0, 0])
+            linear += mass * velocity
+            angular += mass * np.cross(position, velocity) + axes.reshape(3, 3) @ inertia @ spin
+        return np.concatenate([linear, angular]), np.array(velocity)
+
+    yield momentum()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime = 0.005
+    settings.timeIntegration.numberOfSteps = 1000
+    settings.timeIntegration.automaticStepSize = False
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.RK44)
+    yield momentum()
+
+
+def velocity_of_the_ball_after_two_bodies_met():
+    """Integrate Newton's and Euler's equations of box and ball around the element in Python, to order 8."""
+    masses, inertias = (0.7, 1.0), (BOX_INERTIA, BALL_INERTIA)
+    lever = np.array([-0.01, 0.0, 0.0])  # of the socket's centre in the box
+
+    def rate(_, y):
+        (x0, v0, w0, A0), (x1, v1, w1, A1) = ((s[:3], s[3:6], s[6:9], s[9:].reshape(3, 3)) for s in (y[:18], y[18:]))
+        arm = x1 - x0  # of the ball's centre from the box's
+        seen = v1 - v0 - np.cross(A0 @ w0, arm)
+        spin = A1 @ w1 - A0 @ w0
+        load = LOSSY(1e3 * (A0.T @ arm - lever), 1e3 * (A0.T @ seen), A0.T @ spin)
+        force, moment = A0 @ load.force, 1e-3 * (A0 @ load.moment)
+        torques = A0.T @ (-moment - np.cross(arm, force)), A1.T @ moment
+        bodies = zip(masses, inertias, (v0, v1), (w0, w1), (A0, A1), (-force, force), torques, strict=True)
+        rates = [
+            [v, F / mass, np.linalg.solve(inertia, T - np.cross(w, inertia @ w)), (A @ np.cross(np.eye(3), w)).ravel()]
+            for mass, inertia, v, w, A, F, T in bodies
+        ]
+        return np.concatenate([*rates[0], *rates[1]])
+
+    axes = np.eye(3).ravel()
+    box = [0.01, 0, 0, 0, 0, 0, 0.5, 1, -2, *axes]
+    ball = [5e-5, 0, 2e-5, 0.06, 0.02, 0.08, 3, -2, 1, *axes]
+    options = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-13, "max_step": 1e-4}
+    return solve_ivp(rate, (0.0, 0.005), np.array([*box, *ball], dtype=float), **options).y[21:24, -1]
+
+
+@pytest.fixture(scope="module")
+def velocity_after():
+    return velocity_of_the_ball_after_two_bodies_met()
+
+
 @pytest.mark.long
 @needs_compiler
 @pytest.mark.parametrize(
-    ("target", "momentum", "package"), [("mujoco", mujoco_momentum, "mujoco"), ("drake", drake_momentum, "pydrake")]
+    ("target", "momentum", "package"),
+    [
+        ("mujoco", mujoco_momentum, "mujoco"),
+        ("drake", drake_momentum, "pydrake"),
+        ("exudyn", exudyn_momentum, "exudyn"),
+    ],
 )
-def test_ball_and_free_socket_keep_their_momentum_and_its_moment(target, momentum, package, tools, tmp_path):
-    """The socket turns, and friction drags at it: action is reaction in force and moment."""
+def test_ball_and_free_socket_keep_their_momentum_and_its_moment(
+    target, momentum, package, tools, velocity_after, tmp_path
+):
+    """The socket rotates and friction acts on it: action equals reaction, and velocities are those it sees."""
     if find_spec(package) is None:
         pytest.skip(f"{package} is not installed")
     assert written(target, LOSSY, tmp_path, name="meeting")[1] == ""
     (before, speed), (after, slowed) = momentum(tools, tmp_path)
     assert np.linalg.norm(slowed - speed) > 0.01  # they met
     assert_allclose(after, before, atol=1e-14)
+    assert_allclose(slowed, velocity_after, atol=1e-6)
+
+
+@pytest.mark.long
+@needs_compiler
+def test_two_joints_on_one_plant_of_drake_act_as_each_does_alone(tools, tmp_path):
+    if find_spec("pydrake") is None:
+        pytest.skip("pydrake is not installed")
+    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+    from pydrake.multibody.tree import SpatialInertia
+    from pydrake.systems.analysis import Simulator
+    from pydrake.systems.framework import DiagramBuilder
+
+    written("drake", LOSSY, tmp_path, name="pair")
+
+    def final_positions(starts):
+        builder = DiagramBuilder()
+        plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
+        inertia = SpatialInertia.SolidSphereWithMass(1.0, 0.018)
+        balls = [plant.AddRigidBody(f"ball{number}", inertia) for number in range(len(starts))]
+        plant.Finalize()
+        with tools.module(tmp_path, "pair_drake") as made:
+            for ball in balls:
+                made.add_joint(builder, plant, ball)
+        simulator = Simulator(builder.Build())
+        simulator.get_mutable_integrator().request_initial_step_size_target(1e-5)
+        simulator.get_mutable_integrator().set_target_accuracy(1e-9)
+        context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+        plant.SetPositions(context, np.concatenate([[1, 0, 0, 0, *start] for start in starts]))
+        simulator.AdvanceTo(0.003)
+        return plant.GetPositions(context).reshape(-1, 7)[:, 4:]
+
+    starts = [(1.3e-4, 0.0, 0.0), (0.0, 1.2e-4, 3e-5), (0.0, 0.0, -1.25e-4)]
+    alone = [final_positions([start])[0] for start in starts]
+    assert_allclose(final_positions(starts), alone, atol=1e-9)
+    assert np.linalg.norm(alone - np.array(starts), axis=1).min() > 1e-5

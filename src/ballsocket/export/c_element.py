@@ -103,7 +103,7 @@ class CElement:
 
     @property
     def about(self) -> dict[str, str]:
-        joint = re.sub(r"[^\x20-\x7e]|\*/|--|\\", "?", repr(self.element.joint.with_floats()))
+        joint = re.sub(r"[^\x20-\x7e]|\*/|/\*|--|\\", "?", repr(self.element.joint.with_floats()))
         return {"version": __version__, "model": self.element.model.name, "joint": joint}
 
 

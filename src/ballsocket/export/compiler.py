@@ -1,19 +1,66 @@
-"""The compiler of C on this machine."""
+"""C compiler, and the platform of the libraries that it builds."""
 
 from __future__ import annotations
 
 import os
+import platform
 import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 _NAMES = ("cc", "gcc", "clang")
-_ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
-LIBRARY_ENDING = _ENDINGS.get(sys.platform, ".so")
 _SHARED = ("-shared",) if sys.platform == "win32" else ("-fPIC", "-shared")
+_SYSTEMS = {"linux": "linux", "darwin": "darwin", "win32": "windows"}
+_ENDINGS = {"windows": ".dll", "darwin": ".dylib"}
+_PROCESSORS = {"amd64": "x86_64", "arm64": "aarch64", "i386": "x86", "i686": "x86"}
+_BITS = {"x86_64": 64, "aarch64": 64, "x86": 32}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Platform:
+    """Operating system and processor of a library, named as in FMI 3.
+
+    Attributes
+    ----------
+    system : str
+        "linux", "windows", "darwin", ...
+    processor : str
+        "x86_64", "aarch64", "x86", ...
+    """
+
+    system: str
+    processor: str
+
+    def __str__(self) -> str:
+        return f"{self.processor}-{self.system}"
+
+    @property
+    def bits(self) -> int:
+        return _BITS.get(self.processor, 64 if sys.maxsize > 2**32 else 32)
+
+    @property
+    def library_ending(self) -> str:
+        return _ENDINGS.get(self.system, ".so")
+
+
+def _this_platform() -> Platform:
+    processor = platform.machine().lower()
+    processor = _PROCESSORS.get(processor, processor)
+    if sys.maxsize < 2**32 and processor == "x86_64":
+        processor = "x86"  # a 32-bit Python on a 64-bit system
+    return Platform(system=_SYSTEMS.get(sys.platform, sys.platform), processor=processor)
+
+
+THIS_PLATFORM = _this_platform()
+LIBRARY_ENDING = THIS_PLATFORM.library_ending
+
+_ELF_MACHINES: Mapping[int, str] = {0x3E: "x86_64", 0xB7: "aarch64", 0x03: "x86"}
+_PE_MACHINES: Mapping[int, str] = {0x8664: "x86_64", 0xAA64: "aarch64", 0x014C: "x86"}
+_MACH_O_PROCESSORS: Mapping[int, str] = {0x01000007: "x86_64", 0x0100000C: "aarch64"}
 
 
 class NoCompiler(RuntimeError):  # noqa: N818 - a sentence for people
@@ -38,25 +85,70 @@ def compiler() -> list[str]:
     return [found]
 
 
-def shared_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Path:
-    """Compile sources of a folder into a library that other programs load; the environment's CFLAGS are obeyed.
+def compile_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Platform:
+    """Compile sources of a folder into a shared library; CC and CFLAGS of the environment apply.
+
+    Returns
+    -------
+    Platform
+        Platform in the header of the library; a cross-compiler builds for another platform than this machine.
 
     Raises
     ------
     NoCompiler
-        There is no compiler, or it refuses, with its first complaint.
+        A missing compiler, a failed one (with its first error message), or an unknown output format.
     """
-    chosen = _words("CFLAGS")
-    words = [*compiler(), "-std=c99", "-O2", *chosen, *_SHARED, *options, *sources, "-o", str(library), "-lm"]
+    flags = _words("CFLAGS")
+    words = [*compiler(), "-std=c99", "-O2", *flags, *_SHARED, *options, *sources, "-o", str(library), "-lm"]
     try:
-        done = subprocess.run(words, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
+        finished = subprocess.run(words, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
     except (OSError, subprocess.TimeoutExpired) as error:
         raise NoCompiler(f"the compiler {words[0]} could not be run: {error}") from error
-    if done.returncode:
-        told = done.stderr.splitlines() or ["it says nothing"]
-        said = next((line for line in told if "error" in line), told[0])
-        raise NoCompiler(f"the compiler {words[0]} ended with {done.returncode}: {said:.200}")
+    if finished.returncode:
+        lines = finished.stderr.splitlines() or ["it printed no message"]
+        message = next((line for line in lines if "error" in line), lines[0])
+        raise NoCompiler(f"the compiler {words[0]} ended with {finished.returncode}: {message:.200}")
+    try:
+        return library_platform((folder / library).read_bytes())
+    except (OSError, ValueError) as error:
+        raise NoCompiler(f"the compiler {words[0]} wrote no usable library: {error}") from error
+
+
+def shared_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Path:
+    """Compile sources of a folder into a shared library for this machine.
+
+    Raises
+    ------
+    NoCompiler
+        As `compile_library`, and for a library of another platform, which is removed.
+    """
+    built_for = compile_library(sources, library, folder, options)
+    if built_for != THIS_PLATFORM:
+        (folder / library).unlink()
+        raise NoCompiler(f"the compiler {compiler()[0]} builds for {built_for}, not for this machine, {THIS_PLATFORM}")
     return library
+
+
+def library_platform(header: bytes) -> Platform:
+    """Read the platform of a library from its first bytes: ELF, PE or Mach-O.
+
+    Raises
+    ------
+    ValueError
+        Another format, or an unknown processor.
+    """
+    if header[:4] == b"\x7fELF":
+        system, machine, machines = "linux", int.from_bytes(header[18:20], "little"), _ELF_MACHINES
+    elif header[:2] == b"MZ":
+        start = int.from_bytes(header[0x3C:0x40], "little") + 4
+        system, machine, machines = "windows", int.from_bytes(header[start : start + 2], "little"), _PE_MACHINES
+    elif header[:4] == b"\xcf\xfa\xed\xfe":
+        system, machine, machines = "darwin", int.from_bytes(header[4:8], "little"), _MACH_O_PROCESSORS
+    else:
+        raise ValueError(f"its first bytes are {header[:4].hex()}, not those of ELF, PE or Mach-O")
+    if machine not in machines:
+        raise ValueError(f"it is for an unknown processor of {system}, number {machine:#x}")
+    return Platform(system=system, processor=machines[machine])
 
 
 def _words(name: str) -> list[str]:

@@ -12,7 +12,8 @@ from ..dynamics import ForceElement
 from ..model import Model
 from .trusted import trusted_depth
 
-_POINTS, _DEGREE = 400, 10
+_POINTS, _DEGREE = 400, 18
+_NEGLIGIBLE_ERROR = 1e-6
 _FROM = 0.05  # of the depth: below, a law of touch-down is a power of its own
 
 
@@ -63,9 +64,11 @@ def _smallest(of: Callable[[float], float], low: float = 0.5, high: float = 4.0)
 
 @dataclass(frozen=True, kw_only=True)
 class ExpressionFit:
-    """A law as one expression, in m and N, of the distance of the centres.
+    """A force law as one expression, in m and N, of the distance between the centres.
 
-    That of radial springs is F = G d² (3 c + 2 d)/(c + d)²; any other G d^n exp(a1 t + a2 t² + ...), t² = d/(d + h).
+    The expression of radial springs is F = G d² (3 c + 2 d)/(c + d)², which holds at every depth. Any other law is
+    fitted as F = G d^n exp(a1 t + a2 t² + ...), t² = d/(d + h), up to the indentation `depth`. Beyond it the expression
+    continues with the same force and slope as a power of d: a polynomial would diverge there.
 
     Attributes
     ----------
@@ -76,11 +79,15 @@ class ExpressionFit:
     power : float
         n.
     coefficients : tuple of float
-        a1, a2, ...; none of radial springs.
+        a1, a2, ...; empty for radial springs.
     depth : float
-        In m.
+        Largest fitted indentation in m.
+    power_beyond : float
+        Exponent of d beyond `depth`.
     error : float
-        The largest, over the force at the same depth, from a thousandth of the depth on.
+        Largest relative error of the force, from a thousandth of `depth` up to `depth`.
+    error_beyond : float
+        Largest relative error of the force from `depth` to twice `depth`.
     """
 
     scale: float
@@ -89,29 +96,45 @@ class ExpressionFit:
     power: float
     coefficients: tuple[float, ...]
     depth: float
+    power_beyond: float = 0.0
     error: float = 0.0
+    error_beyond: float = 0.0
 
     def __call__(self, distance: Numbers) -> Numbers:
-        """F in N at distances of the centres in m."""
+        """Compute F in N at distances between the centres in m."""
         d = numpy.maximum(distance - self.clearance, 0.0)
         if not self.coefficients:
             return self.scale * _springs(d, self.clearance)
-        t = numpy.sqrt(d / (d + self.length))
-        return self.scale * d**self.power * numpy.exp(numpy.polyval((*self.coefficients[::-1], 0.0), t))
+        fitted = numpy.minimum(d, self.depth)
+        t = numpy.sqrt(fitted / (fitted + self.length))
+        exponential = numpy.exp(numpy.polyval((*self.coefficients[::-1], 0.0), t))
+        return self.scale * fitted**self.power * exponential * (d / self.depth).clip(1.0) ** self.power_beyond
 
     def text(self, distance: str, rate: str, hysteresis: float) -> str:
-        """The force towards the socket's centre as an expression, with Hunt and Crossley's damping (s/m)."""
+        """Write the force towards the socket's centre as an expression, with Hunt and Crossley's damping (s/m)."""
         c = repr(self.clearance)
         u = f"max({distance}-{c},0)"
         if self.coefficients:
+            fitted = f"min({u},{self.depth!r})"
             nested = "0"
             for a in reversed(self.coefficients):
                 nested = f"t*({a!r}+{nested})"
-            t = f"sqrt({u}/({u}+{self.length!r}))"
-            force = f"{self.scale!r}*{u}^{self.power!r}*exp({nested.replace('t', t)})"
+            t = f"sqrt({fitted}/({fitted}+{self.length!r}))"
+            beyond = f"max({u}/{self.depth!r},1)^{self.power_beyond!r}"
+            force = f"{self.scale!r}*{fitted}^{self.power!r}*exp({nested.replace('t', t)})*{beyond}"
         else:
             force = f"{self.scale!r}*{u}^2*(2*{u}+{3 * self.clearance!r})/max({distance},{c})^2"
         return f"{force}*max(1+{hysteresis!r}*{rate},0)" if hysteresis else force
+
+    @property
+    def range_note(self) -> str:
+        """Note on the accuracy within and beyond the fitted depth; empty for an exact expression."""
+        if self.error_beyond <= _NEGLIGIBLE_ERROR:
+            return ""
+        return (
+            f"the expression is within {100 * self.error:.1g} % of the law up to {1e6 * self.depth:.4g} um of "
+            f"indentation; deeper it continues as a power law, {100 * self.error_beyond:.1g} % off at twice that depth"
+        )
 
 
 def _springs(d: Numbers, c: float) -> Numbers:
@@ -119,17 +142,25 @@ def _springs(d: Numbers, c: float) -> Numbers:
 
 
 def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
-    """One expression for a law, up to a depth in mm."""
+    """Fit one expression to a law, up to `depth` in mm or the valid depth of its model, whichever is more."""
     c, R2 = element.constants.clearance, element.constants.socket_radius
-    looked = numpy.geomspace(1e-3 * depth, depth, 997)
-    forces = element.potential(looked)[1]
-    ratio = forces / _springs(looked, c)
-    words = {"clearance": 1e-3 * c, "depth": 1e-3 * depth}
+    fitted_depth = max(depth, trusted_depth(element))
+    d = numpy.geomspace(1e-3 * fitted_depth, fitted_depth, 997)
+    forces = element.potential(d)[1]
+    ratio = forces / _springs(d, c)
+    words = {"clearance": 1e-3 * c, "depth": 1e-3 * fitted_depth}
     if c > 0.0 and numpy.ptp(ratio) < 1e-12 * ratio[0]:
-        made = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **words)
+        fit = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **words)
     else:
-        made = _fitted(element, depth, c or 1e-3 * R2, words)
-    return replace(made, error=float(numpy.max(abs(made(1e-3 * (c + looked)) / forces - 1.0))))
+        fit = _fitted(element, fitted_depth, c or 1e-3 * R2, words)
+    deeper = numpy.linspace(fitted_depth, max(min(2.0 * fitted_depth, element.wall), fitted_depth), 100)
+    return replace(fit, error=_largest_error(fit, element, d), error_beyond=_largest_error(fit, element, deeper))
+
+
+def _largest_error(fit: ExpressionFit, element: ForceElement, d: Numbers) -> float:
+    """Compute the largest relative error of a fit at indentations in mm where the element has a force."""
+    forces = element.potential(d)[1]
+    return float(numpy.nanmax(abs(fit(1e-3 * (element.constants.clearance + d)) / forces - 1.0)))
 
 
 def _fitted(element: ForceElement, depth: float, h: float, words: dict[str, float]) -> ExpressionFit:
@@ -137,10 +168,15 @@ def _fitted(element: ForceElement, depth: float, h: float, words: dict[str, floa
     d = h * t * t / (1.0 - t * t)
     _, force, stiffness = element.potential(d)
     power = round(2.0 * float(stiffness[0] * d[0] / force[0])) / 2.0
-    found = numpy.polynomial.Polynomial.fit(t, numpy.log(force / d**power), _DEGREE).convert().coef
-    scale = float(numpy.exp(found[0])) * 1e3**power
-    coefficients = tuple(map(float, found[1:]))
-    return ExpressionFit(scale=scale, length=1e-3 * h, power=power, coefficients=coefficients, **words)
+    fit = numpy.polynomial.Polynomial.fit(t, numpy.log(force / d**power), _DEGREE).convert().coef
+    return ExpressionFit(
+        scale=float(numpy.exp(fit[0])) * 1e3**power,
+        length=1e-3 * h,
+        power=power,
+        power_beyond=float(stiffness[-1] * d[-1] / force[-1]),
+        coefficients=tuple(map(float, fit[1:])),
+        **words,
+    )
 
 
 def depth_of(element: ForceElement, load: dict[str, float]) -> float:

@@ -62,31 +62,42 @@ class Job:
 
 @dataclass(frozen=True, kw_only=True)
 class Target:
-    """A program: what it is called, its files, and what is compiled for it; a sentence says what could not be.
+    """Program that joints are exported to.
 
-    `without` is what it has no words for, of `_LOSSES`.
+    Attributes
+    ----------
+    name, title : str
+    texts : function
+        The files of a job, by name.
+    compiled : function
+        Compiles the libraries of the program into a folder; returns a note on missing ones.
+    note : function
+        Note on the accuracy of a job's files; empty without one.
+    without : tuple of str
+        Features that the program cannot represent, by the names of `_LOSSES`.
     """
 
     name: str
     title: str
     texts: Callable[[Job], Texts]
     compiled: Callable[[Job, Path], str] = lambda job, folder: ""
+    note: Callable[[Job], str] = lambda job: ""
     without: tuple[str, ...] = ()
 
     def write(self, job: Job, folder: Path) -> tuple[list[Path], str]:
-        """Write the files into a folder; the paths, and a sentence on what is missing, empty where nothing is.
+        """Write the files into a folder; return their paths and notes on missing or limited features.
 
         Raises
         ------
         OSError
             A folder that cannot be made, or written to.
         """
-        folder.mkdir(exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
         paths = []
         for name, text in self.texts(job).items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             paths.append(write_text(folder / name, text))
-        return paths, "; ".join(filter(None, (self.compiled(job, folder), self._left_out(job))))
+        return paths, "; ".join(filter(None, (self.compiled(job, folder), self._left_out(job), self.note(job))))
 
     def _left_out(self, job: Job) -> str:
         lost = [name for name in self.without if _LOSSES[name](job.element.constants)]
@@ -118,7 +129,7 @@ def _library(job: Job, folder: Path) -> str:
 
 def _opensim(job: Job) -> Texts:
     fit, element = job.expression, job.element
-    near = f"the law to {fit.error:.1e} up to {1e6 * fit.depth:.4g} um of indentation"
+    near = fit.range_note or f"within {100 * fit.error:.1g} % of the law"
     lost = element.damping.hysteresis if element.damping else 0.0
     expression = fit.text("d", "ddot", 1e3 * lost)
     ball = repr(0.4 * (1e-3 * element.constants.ball_radius) ** 2)
@@ -196,7 +207,13 @@ TARGETS: Mapping[str, Target] = {
     target.name: target
     for target in (
         Target(name="c", title="sources of C99 that need no library", texts=Job.program_texts),
-        Target(name="opensim", title="an expression force in an .osim file", texts=_opensim, without=_LINE_OF_CENTRES),
+        Target(
+            name="opensim",
+            title="an expression force in an .osim file",
+            texts=_opensim,
+            note=lambda job: job.expression.range_note,
+            without=_LINE_OF_CENTRES,
+        ),
         Target(name="mujoco", title="a passive plug-in, and a callback", texts=_mujoco, compiled=_plugin),
         Target(name="drake", title="a LeafSystem", texts=_drake, compiled=_library),
         Target(name="exudyn", title="a user function, and its hollow sphere", texts=_exudyn, compiled=_library),

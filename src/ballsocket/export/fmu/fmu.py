@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import platform
-import sys
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,38 +17,32 @@ from ...dynamics import ForceElement
 from ...version import __version__
 from ..c_element import CElement, filled
 from ..c_text import c_number
-from ..compiler import LIBRARY_ENDING, NoCompiler, shared_library
+from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library
 from ..trusted import trusted_depth
 from ..tunable import TUNABLES
 from .description import About, build_description, fmi2_description, fmi3_description
 from .variables import Variable, variables
 
-_SYSTEMS = {"linux": "linux", "darwin": "darwin", "win32": "win"}
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)  # an archive of the same element is the same archive
 
 
 @dataclass(frozen=True, kw_only=True)
 class Standard:
-    """A version of FMI."""
+    """A version of FMI; `folder` names the folder of a platform's binaries."""
 
     version: str
     wrapper: str
-    folder: str
+    folder: Callable[[Platform], str]
     describe: Callable[[About, Sequence[Variable]], bytes]
 
 
-def _folders() -> tuple[str, str]:
-    """What both versions call the machine that this runs on."""
-    system = _SYSTEMS.get(sys.platform, sys.platform)
-    bits = "64" if sys.maxsize > 2**32 else "32"
-    processor = {"amd64": "x86_64", "arm64": "aarch64"}.get(machine := platform.machine().lower(), machine)
-    return f"{system}{bits}", f"{processor}-{ {'win': 'windows'}.get(system, system) }"
+def _fmi2_folder(platform: Platform) -> str:
+    return f"{ {'windows': 'win'}.get(platform.system, platform.system) }{platform.bits}"
 
 
-_FMI2, _FMI3 = _folders()
 STANDARDS: Mapping[int, Standard] = {
-    2: Standard(version="2.0", wrapper="fmi2.c", folder=_FMI2, describe=fmi2_description),
-    3: Standard(version="3.0", wrapper="fmi3.c", folder=_FMI3, describe=fmi3_description),
+    2: Standard(version="2.0", wrapper="fmi2.c", folder=_fmi2_folder, describe=fmi2_description),
+    3: Standard(version="3.0", wrapper="fmi3.c", folder=str, describe=fmi3_description),
 }
 
 
@@ -139,7 +131,7 @@ class Fmu:
         return About(name=self.name, guid=self.guid, text=text, tool=f"ballsocket {__version__}", sources=texts)
 
     def write(self, path: Path) -> Written:
-        """Write the archive; where there is no compiler it holds the sources alone, and the outcome says so.
+        """Write the archive; `missing` states the binary that it lacks.
 
         Raises
         ------
@@ -152,7 +144,13 @@ class Fmu:
             files["sources/buildDescription.xml"] = build_description(self.about)
         missing = ""
         try:
-            files[f"binaries/{self.standard.folder}/{self.name}{LIBRARY_ENDING}"] = self._binary()
+            platform, binary = self._binary()
+            files[f"binaries/{self.standard.folder(platform)}/{self.name}{platform.library_ending}"] = binary
+            if platform != THIS_PLATFORM:
+                missing = (
+                    f"the binary is for {platform}, the platform of its compiler; "
+                    f"the binary for {THIS_PLATFORM} is missing"
+                )
         except NoCompiler as error:
             missing = f"{error}; the sources are there, the binary is not"
         with at_once(Path(path)) as draft, zipfile.ZipFile(draft, "w") as archive:
@@ -162,9 +160,11 @@ class Fmu:
                 archive.writestr(entry, files[name], zipfile.ZIP_DEFLATED, 9)
         return Written(path=Path(path), missing=missing)
 
-    def _binary(self) -> bytes:
-        with TemporaryDirectory() as made:
-            folder = Path(made)
+    def _binary(self) -> tuple[Platform, bytes]:
+        with TemporaryDirectory() as temporary:
+            folder = Path(temporary)
             for name, text in self.sources.items():
                 (folder / name).write_text(text, encoding="utf-8")
-            return shared_library(self.about.sources, folder / f"{self.name}{LIBRARY_ENDING}", folder).read_bytes()
+            library = folder / f"{self.name}{LIBRARY_ENDING}"
+            platform = compile_library(self.about.sources, library, folder)
+            return platform, library.read_bytes()

@@ -1,0 +1,106 @@
+"""Platform of compiled libraries: it is read from their header."""
+
+import shutil
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import ballsocket as bs
+from ballsocket.dynamics import ForceElement
+from ballsocket.export import TARGETS, Job
+from ballsocket.export.compiler import THIS_PLATFORM, NoCompiler, Platform, compile_library, library_platform
+from ballsocket.export.fmu import Fmu
+
+from ..cli.command import run
+from ..joints import HIP
+from .library import needs_compiler
+
+ELEMENT = ForceElement(bs.HessForsbach(), HIP)
+MINGW = "x86_64-w64-mingw32-gcc"
+WINDOWS_HEADER = b"MZ".ljust(0x3C, b"\0") + (0x80).to_bytes(4, "little")
+WINDOWS_HEADER = WINDOWS_HEADER.ljust(0x80, b"\0") + b"PE\0\0" + (0x8664).to_bytes(2, "little")
+
+
+def elf(machine):
+    return b"\x7fELF".ljust(18, b"\x02") + machine.to_bytes(2, "little")
+
+
+@pytest.mark.parametrize(
+    ("header", "name", "ending"),
+    [
+        (elf(0x3E), "x86_64-linux", ".so"),
+        (elf(0xB7), "aarch64-linux", ".so"),
+        (WINDOWS_HEADER, "x86_64-windows", ".dll"),
+        (b"\xcf\xfa\xed\xfe" + (0x0100000C).to_bytes(4, "little"), "aarch64-darwin", ".dylib"),
+    ],
+)
+def test_the_platform_of_a_library_is_read_from_its_header(header, name, ending):
+    platform = library_platform(header)
+    assert (str(platform), platform.library_ending, platform.bits) == (name, ending, 64)
+
+
+@pytest.mark.parametrize(("header", "message"), [(b"#!/b", "not those of ELF"), (elf(0x1234), "number 0x1234")])
+def test_a_file_of_another_format_is_refused(header, message):
+    with pytest.raises(ValueError, match=message):
+        library_platform(header)
+
+
+def test_this_python_runs_on_the_platform_that_its_own_header_states():
+    header = Path(sys.executable).resolve().read_bytes()[:4096]
+    assert library_platform(header) == THIS_PLATFORM
+
+
+@pytest.fixture
+def cross_compiler(tmp_path, monkeypatch):
+    """A compiler that writes the header of a Windows library."""
+    script = tmp_path / "cross-gcc"
+    script.write_text(
+        f"#!{sys.executable}\nimport sys\nopen(sys.argv[sys.argv.index('-o') + 1], 'wb').write({WINDOWS_HEADER!r})\n"
+    )
+    script.chmod(0o755)
+    monkeypatch.setenv("CC", str(script))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+@pytest.mark.parametrize(("version", "folder"), [(2, "win64"), (3, "x86_64-windows")])
+def test_an_fmu_files_the_binary_of_a_cross_compiler_under_its_platform(version, folder, cross_compiler, tmp_path):
+    written = Fmu(element=ELEMENT, name="hip", version=version).write(tmp_path / "hip.fmu")
+    with zipfile.ZipFile(written.path) as archive:
+        binaries = [name for name in archive.namelist() if name.startswith("binaries/")]
+    assert binaries == [f"binaries/{folder}/hip.dll"]
+    assert written.missing == (
+        f"the binary is for x86_64-windows, the platform of its compiler; the binary for {THIS_PLATFORM} is missing"
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+def test_a_library_for_another_platform_is_not_left_for_a_program_of_this_machine(cross_compiler, tmp_path):
+    job = Job(element=ELEMENT, name="hip", depth=0.05)
+    _, missing = TARGETS["drake"].write(job, tmp_path / "hip")
+    assert f"builds for x86_64-windows, not for this machine, {THIS_PLATFORM}; the sources are there" in missing
+    assert not (tmp_path / "hip" / job.words["library"]).exists()
+
+
+@pytest.mark.skipif(shutil.which("true") is None, reason="there is no command that writes nothing")
+def test_a_compiler_that_writes_nothing_is_reported(tmp_path, monkeypatch):
+    monkeypatch.setenv("CC", "true")
+    with pytest.raises(NoCompiler, match="true wrote no usable library"):
+        compile_library(["one.c"], tmp_path / "one.so", tmp_path)
+
+
+@pytest.mark.skipif(shutil.which(MINGW) is None, reason=f"{MINGW} is not installed")
+def test_a_real_cross_compiler_builds_a_windows_library(tmp_path, monkeypatch):
+    monkeypatch.setenv("CC", MINGW)
+    finished = run("fmu", "hip-28", "--out", "hip.fmu", folder=tmp_path)
+    assert finished.returncode == 0
+    with zipfile.ZipFile(tmp_path / "hip.fmu") as archive:
+        binary = archive.read("binaries/x86_64-windows/hip.dll")
+    assert library_platform(binary) == Platform(system="windows", processor="x86_64")
+
+
+@needs_compiler
+def test_a_compiler_of_this_machine_builds_for_it(tmp_path):
+    (tmp_path / "one.c").write_text("int one(void) { return 1; }\n")
+    assert compile_library(["one.c"], tmp_path / "one.so", tmp_path) == THIS_PLATFORM
