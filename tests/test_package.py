@@ -105,7 +105,7 @@ def test_presets_cite_the_publications_their_source_names():
     for preset in CITABLE:
         assert keys(preset)
     assert keys(bs.ALUMINA) == ["nistsrd150", "kutz2009"]
-    assert set(keys(bs.joints["hip-28"])) == {"plank2007", "hess2021", "dipuccio2015"}
+    assert set(keys(bs.joints["hip-28"])) == {"plank2007", "hess2021", "dipuccio2015", "bergstrom2010"}
     named = bs.Material(young=1.0, poisson=0.3, source="Smith & Johnson 1985; Hertz 18820; Kirk & Reedy 1988, p. 3")
     assert keys(named) == ["kirk1988"]
 
@@ -150,7 +150,7 @@ def test_a_comparison_says_why():
 
 
 def test_one_list_of_columns():
-    names = [*(column.name for column in COLUMNS), "utilisation"]
+    names = [*(column.name for column in COLUMNS), "utilisation", "utilisation_note"]
     assert list(bs.Hertz().press(HIP, force=1.0).summary())[1:-2] == names
     nothing = bs.compare(bs.joints["tilting-pad-pivot"], force=1.0, models={"bonded-layer": bs.BondedLayer()})
     assert list(nothing.summary()["results"][0])[1:-3] == names

@@ -38,7 +38,7 @@ from ballsocket.quantities import (
     MATERIAL,
     PARTS,
     QUANTITIES,
-    STRENGTH,
+    STRESS_LIMITS,
 )
 from ballsocket.studies.design import check_values, grid
 from ballsocket.studies.labels import described
@@ -64,7 +64,7 @@ def test_every_quantity_of_contact_joint_and_cup_is_an_attribute_and_no_other_nu
     assert _numbers(contact) | _numbers(HIP) == {*CONTACT, *BEARING, *DERIVED, *JOINT, *FIT, "shell"} - {
         "edge_distance"
     }
-    assert _numbers(replace(HIP.liner, **dict.fromkeys(STRENGTH, 1.0))) == {*MATERIAL, *STRENGTH}
+    assert _numbers(replace(HIP.liner, **dict.fromkeys(STRESS_LIMITS, 1.0))) == {*MATERIAL, *STRESS_LIMITS}
     assert _numbers(bs.Layer(thickness=3.0, material=bs.TITANIUM)) == set(LAYER)
     assert _numbers(bs.Cup()) - {"rim"} == set(CUP)
 
@@ -99,7 +99,7 @@ def test_tables_studies_and_json_speak_of_the_same_objects():
 
 def test_nothing_is_named_or_written_twice():
     assert len(QUANTITIES) == sum(
-        map(len, (CONTACT, BEARING, JOINT, FIT, MATERIAL, STRENGTH, PARTS, LAYER, CUP, AIM, FIELD, DERIVED))
+        map(len, (CONTACT, BEARING, JOINT, FIT, MATERIAL, STRESS_LIMITS, PARTS, LAYER, CUP, AIM, FIELD, DERIVED))
     )
     shared = {each.symbol for each in (*MATERIAL.values(), *PARTS.values())}
     symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]

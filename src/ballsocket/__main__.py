@@ -1,3 +1,6 @@
+"""The command `ballsocket` as `python -m ballsocket`."""
+
 from .cli import main
 
-main()
+if __name__ == "__main__":
+    main()

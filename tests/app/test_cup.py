@@ -15,11 +15,13 @@ pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("skfem")
 from ballsocket.app import cupping
 from ballsocket.app.angle_map import angle_map
+from ballsocket.app.bore_map import pressed_bore
 from ballsocket.app.cupping import Stood
 from ballsocket.app.jobs import Job
 from ballsocket.app.page import Page
 from ballsocket.app.reading import Reading
 from ballsocket.app.running import Done
+from ballsocket.app.views.cup import _hint
 from ballsocket.cup import Cup, Side
 from ballsocket.output.unit_systems import Units
 
@@ -84,6 +86,16 @@ def test_the_view_says_what_the_sphere_says(at_once):
     edits(page, "cup.inclination", 90)
     assert "dislocated: the load pushes the ball out" in told(page, "trouble")
     assert told(page, "numbers") == ""
+
+
+def test_an_orientation_of_zero_is_shown_and_not_replaced():
+    """A cup without an orientation is offered the usual one, and its map has no directions of the body."""
+    joint = bs.joints["hip-28"]
+    upright, default = (bs.Sphere(cup=cup).press(joint, force=2000.0) for cup in (Cup(inclination=0.0), Cup()))
+    assert "cup.usual" in _hint(default)
+    assert _hint(upright) == ""
+    assert ">front</text>" in pressed_bore(upright)
+    assert ">front</text>" not in pressed_bore(default)
 
 
 @pytest.mark.parametrize(

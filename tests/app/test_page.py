@@ -230,3 +230,10 @@ def test_a_report_has_the_joint_its_inputs_and_no_machine(view):
     assert ("<span class='holds'>bears it: " in text) == (view == "press")
     assert "localhost" not in text
     assert "http" not in text.replace("http://www.w3.org", "")
+
+
+@pytest.mark.parametrize("number", ["inf", "nan", "1e400", "2.5", "-1"])
+def test_an_instant_of_a_link_is_a_whole_number(number, caplog):
+    page = Page(f"view=gait&use.instant={number}")
+    assert "This link cannot be read: instant = " in unescape(trouble(page))
+    assert not caplog.records

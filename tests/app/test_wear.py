@@ -94,8 +94,10 @@ def made(scale):
     cycles = np.array([0.0, 1.0, 2.0])
     grown = scale * cycles
     grid = bs.sphere.grid.grid(radians(90.0), radians(10.0))
+    unworn, worn = {"utilisation": 1.5 - scale}, {"utilisation": None}
     summary = {
-        "history": [{"edge_distance": 1.0, "penetration_of_creep": 0.0, "max_pressure": 5.0}],
+        "history": [{"edge_distance": 1.0, "penetration_of_creep": 0.0, "max_pressure": 5.0, "contact": [worn]}],
+        "contact": {"valid": scale > 0.1, "unworn": [unworn]},
         "cycle": {"peaks": {"max_pressure_MPa": 10.0}},
     }
     return wearing.Worn(
@@ -119,6 +121,9 @@ def made(scale):
 def test_two_designs_are_beside_each_other_in_one_scale():
     found = {"one": made(0.1), "other": made(0.2)}
     assert "<td>40 (+100 %)</td>" in wear_numbers(found)
+    assert "<td>utilisation σv/σy, new</td><td>1.4</td>" in wear_numbers(found)
+    assert wear_numbers(found).count("outside the range in which this model can be trusted") == 1
+    assert "✗ one: outside" in wear_numbers(found)
     inches = Reading(units=Units.IMPERIAL)
     assert "penetration [mil]" in penetration_chart(found, inches)
     assert "largest pressure, new [psi]" in wear_numbers(found, inches)
@@ -190,3 +195,4 @@ def test_patients_whose_coefficient_scatters_make_the_band():
     assert (found.penetration[1:] < found.high[1:]).all()
     assert found.high[-1] / found.penetration[-1] == pytest.approx(1.5**1.96, rel=0.25)
     assert "64 patients" in found.band
+    assert "95 % of the predictions" in found.band

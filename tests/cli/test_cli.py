@@ -13,6 +13,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket import cli
+from ballsocket.cli.words import echo_json
 
 from ..places import EXAMPLES
 from .command import run, run_process
@@ -57,6 +58,42 @@ def test_a_disk_that_is_full_is_one_line():
             [sys.executable, "-m", "ballsocket", "presets"], stdout=out, stderr=subprocess.PIPE, encoding="utf-8"
         )
     assert (done.returncode, done.stderr) == (2, "ballsocket: output: No space left on device\n")
+
+
+def test_misuse_is_misuse_where_nothing_can_be_written():
+    full = Path("/dev/full")
+    if not full.exists():
+        pytest.skip("there is no such device here")
+    with full.open("w") as out:
+        done = subprocess.run([sys.executable, "-m", "ballsocket", "pres"], stderr=out, stdout=subprocess.PIPE)
+    assert (done.returncode, done.stdout) == (2, b"")
+
+
+def test_a_terminal_of_unknown_width_shows_the_table():
+    usual, unknown = (run("press", "hip-28", "--force", "1000", columns=columns) for columns in (80, 0))
+    assert unknown.returncode == 0
+    assert unknown.stdout == usual.stdout
+
+
+@pytest.mark.parametrize("force", ["1e308", "-1e308", "1.1e9"])
+def test_a_force_that_no_hip_bears_is_refused_in_one_line(force, tmp_path):
+    rows = "\n".join(f"{i / 10},{force if i else 1000},{i * (10 - i)}" for i in range(11))
+    (tmp_path / "cycle.csv").write_text(f"time [s],force [N],flexion [deg]\n{rows}\n", encoding="ascii")
+    (tmp_path / "hip.toml").write_text(
+        'joint = "hip-28"\n[cycle]\nfile = "cycle.csv"\nclosing = 0.5\n[wear]\ncoefficient = 1e-6\n', encoding="ascii"
+    )
+    done = run("hip", "hip.toml", "--json", folder=tmp_path)
+    size = f"{float(force.strip('-')):.4g}".replace("+", r"\+")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch(
+        rf"ballsocket: hip.toml: cycle.csv: force goes to {size} N; allowed are forces up to 1e\+09 N\n", done.stderr
+    )
+
+
+def test_an_infinite_result_is_a_failure_in_one_line(monkeypatch, capsys):
+    with pytest.raises(ArithmeticError, match="a result is infinite"):
+        echo_json({"results": [], "valid": True, "error": {}, "notes": [], "volume": float("inf")})
+    assert capsys.readouterr().out == ""
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
@@ -192,6 +229,7 @@ def test_json():
             "pole_pressure",
             "max_pressure_angle_deg",
             "utilisation",
+            "utilisation_note",
             "valid",
             "notes",
             "deviation",
@@ -300,7 +338,7 @@ def test_figure(tmp_path, ending):
             "bonded-layer has no answer for ν = 0.5: the modulus is unbounded",
         ),
         (["evidence"], "either a question file is needed, or --check with a folder of evidence"),
-        (["evidence", "--check", "."], "holds no pack of evidence: checksums.txt is not there"),
+        (["evidence", "--check", "."], "holds no pack of evidence: checksums.txt is missing"),
         (["pres"], "No such command 'pres'"),
         (["cite", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
     ],

@@ -52,7 +52,7 @@ def test_what_is_told_has_a_value_and_a_band(folder):
 def test_areas_alone_are_answered_by_the_product(folder):
     done = run("identify", "area.toml", folder=folder)
     assert done.returncode == 0
-    assert "not told" in done.stdout
+    assert "not identifiable" in done.stdout
     assert "clearance · liner_young" in done.stdout
     assert "measure indentation or free play" in " ".join(done.stdout.split())
     said = json.loads(run("identify", "area.toml", "--json", folder=folder).stdout)

@@ -78,6 +78,17 @@ def test_a_file_says_where_the_load_points_and_the_words_win():
     assert over["edge_distance"] < 0 < inside["edge_distance"]
 
 
+def test_a_cup_that_is_said_to_open_straight_down_has_its_load_in_the_body(tmp_path):
+    """An explicit inclination of 0 is an orientation; without one nothing is known of the body."""
+    plain = (EXAMPLES / "hip.toml").read_text()
+    given, path = [], tmp_path / "hip.toml"
+    for cup in ("[cup]\ninclination = '0 deg'\n", "[cup]\narc_of_cover = '170 deg'\n"):
+        path.write_text(plain + cup)
+        given.append(answered(str(path), *COARSE, "--model", "sphere")["sphere"].get("force_vector_in_body"))
+    assert given[0] == pytest.approx([0.0, 0.0, 3000.0], abs=0.01)
+    assert given[1] is None
+
+
 def test_models_that_know_no_rim_are_not_trusted_near_it():
     results = answered("hip-36", *COARSE, "--force", "3kN", "--tilt", "60", "--model", "sphere", "--model", "refined")
     assert results["sphere"]["valid"]
@@ -117,9 +128,9 @@ def test_the_terminal_says_where_the_contact_lies():
         run("press", path, *COARSE, *words, columns=200).stdout
         for words in ((), ("--tilt", "75"), ("--tilt", "75", "--chamfer", "1 mm"))
     )
-    assert "sphere: load 36.5° from the cup's axis, contact 1.0 mm from the rim, largest pressure 37" in inside
+    assert "sphere: load 36.5° from the cup's axis, contact 0.7 mm from the rim, largest pressure 37" in inside
     assert "° from the axis; rings of 4°, " in inside
-    assert " s; error of the rings: d ±0.2 %, ε ±3 %, pmax ±0.2 %" in inside
+    assert " s; error of the rings: d ±0.2 %, ε ±0.9 %, pmax ±0.2 %" in inside
     assert "mm at the rim, largest pressure 8" in over
     assert "mm at the rim, pressure unbounded there; rings of 4°" in dug
 

@@ -2,6 +2,11 @@
 
 import asyncio
 import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import pytest
 
@@ -9,7 +14,9 @@ from ballsocket.cli.tools.call import words_of
 from ballsocket.cli.tools.run import run as run_tool
 from ballsocket.cli.tools.schema import schema
 from ballsocket.cli.tools.table import TOOLS
+from ballsocket.input_files import restricted
 
+from ..places import EXAMPLES
 from .command import run
 
 PRESS = {"joint": "hip-36", "force": "3 kN"}
@@ -46,7 +53,6 @@ def test_numbers_of_a_tool_have_their_units():
         ("study", {"file": "no.toml"}, "'no.toml' is no file in the folder"),
         ("study", {"content": "joint = 'hip-28'\nstore = 'x'"}, "store is not for this server"),
         ("study", {"content": "joint = 'hip-28'\n[engine]\nkind = 'dask'"}, "engine is not for this server"),
-        ("study", {"content": "[table]\npath = '/etc/passwd'"}, "'/etc/passwd' lies outside the folder of its file"),
         ("study", {"content": "joint = "}, "is not TOML"),
         ("identify", {"content": "x" * 100_001}, "the content is larger than 100000 bytes"),
     ],
@@ -75,6 +81,104 @@ def test_words_are_those_of_the_shell(tmp_path):
     assert question[1].endswith(".toml")
     assert question[2] == f"--out={question[1].removesuffix('.toml')}-pack"
     assert [path.name for path in tmp_path.iterdir()] == [question[1]]
+
+
+PADDING = "./" * 110
+OUTSIDE = {
+    "table": ("study", 'joint = "hip-28"\nmodel = "hertz"\n[table]\npath = "{}/points.csv"\n'),
+    "joint": ("study", 'joint = "{}/joint.toml"\n[axes]\nforce = 1000\n'),
+    "cycle": ("wear", 'joint = "hip-28"\n[cycle]\nfile = "{}/cycle.csv"\n[wear]\ncoefficient = 1e-6\n'),
+    "data": ("identify", 'joint = "hip-28"\n[free]\nclearance = "0.02..0.3 mm"\n[[data]]\nfile = "{}/points.csv"\n'),
+    "chain": ("study", 'joint = "hip-28"\n[table]\npath = "link/points.csv"\n# {}'),
+}
+
+
+@pytest.fixture
+def secret(tmp_path):
+    """Make a folder outside the server's folder, with readable files."""
+    folder = tmp_path / "secret"
+    folder.mkdir()
+    (folder / "points.csv").write_text("clearance_mm,force_N\n0.123,777\n", encoding="utf-8")
+    (folder / "joint.toml").write_text('[joint]\nball_radius = 12.3456\nclearance = "secret"\n', encoding="utf-8")
+    (folder / "cycle.csv").write_text("secret head, x\n" + "1,2\n" * 9, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture
+def room(tmp_path, secret, monkeypatch):
+    """Make the folder of a server, and restrict this process to it like the processes of calls."""
+    folder = tmp_path / "room"
+    folder.mkdir()
+    (folder / "link").symlink_to(secret)
+    for name, value in restricted((folder, Path(os.environ["BALLSOCKET_CACHE"]))).items():
+        monkeypatch.setenv(name, value)
+    return folder
+
+
+@pytest.mark.parametrize("kind", OUTSIDE)
+@pytest.mark.parametrize("form", ["padded", "absolute"])
+def test_files_named_by_files_stay_inside_the_folder(kind, form, room, secret):
+    name, content = OUTSIDE[kind]
+    path = f"{PADDING}../secret" if form == "padded" else f"/{PADDING}{str(secret)[1:]}"
+    done = run(*words_of(name, {"content": content.format(path)}, room), folder=room)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "lies outside the folder of this server" in done.stderr
+    assert not any(word in done.stderr for word in ("777", "0.123", "12.3456", "secret head"))
+
+
+def test_files_that_are_not_toml_name_no_file_outside(room):
+    (room / "x.txt").write_text(OUTSIDE["cycle"][1].format("../secret"), encoding="utf-8")
+    question = (EXAMPLES / "evidence.toml").read_text(encoding="utf-8").split("[wear]")[0]
+    content = f'{question}\n[wear]\nfile = "x.txt"\n'
+    done = run(*words_of("evidence", {"content": content}, room), folder=room)
+    assert "lies outside the folder of this server" in done.stderr
+
+
+def test_a_process_of_a_call_is_restricted(tmp_path, secret):
+    room = tmp_path / "room"
+    room.mkdir()
+    name, content = OUTSIDE["table"]
+    words = words_of(name, {"content": content.format(f"{PADDING}../secret")}, room)
+    told = asyncio.run(run_tool(words, room, 60.0))
+    assert told.answer is None
+    assert "lies outside the folder of this server" in told.refusal
+
+
+def test_a_file_named_as_an_option_is_a_file(tmp_path):
+    (tmp_path / "--help.toml").write_text('joint = "hip-28"\n[axes]\nforce = 1000\n', encoding="utf-8")
+    words = words_of("study", {"file": "--help.toml"}, tmp_path)
+    assert words[1] == "./--help.toml"
+
+
+def test_a_process_ends_with_its_parent_even_where_no_thread_runs(tmp_path):
+    """The child is inside one instruction of Python, which lets no thread run, for hours."""
+    busy = (
+        "import os, sys; from ballsocket.engines.local import leave_with_parent as leave; leave(); "
+        "print(os.getpid(), file=open('child', 'w'), flush=True); 9**9**9"
+    )
+    parent = (
+        "import asyncio, pathlib; from ballsocket.cli.tools import run; "
+        f"run._COMMAND = ('-c', {busy!r}); asyncio.run(run.run([], pathlib.Path(), 600.0))"
+    )
+    note = tmp_path / "child"
+    with subprocess.Popen([sys.executable, "-c", parent], cwd=tmp_path) as server:
+        while not (note.exists() and note.read_text(encoding="ascii").endswith("\n")):
+            assert server.poll() is None
+            time.sleep(0.05)
+        child = int(note.read_text(encoding="ascii"))
+        time.sleep(0.1)
+        assert is_running(child)
+        server.kill()
+    deadline = time.monotonic() + 10
+    while is_running(child) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not is_running(child)
+
+
+def is_running(process):
+    """Check if a process runs; a zombie does not count."""
+    status = Path(f"/proc/{process}/status")
+    return status.exists() and "State:\tZ" not in status.read_text(encoding="ascii")
 
 
 def test_a_call_is_bounded_and_ends(tmp_path):

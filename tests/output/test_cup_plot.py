@@ -69,6 +69,16 @@ def test_the_largest_pressure_stands_in_the_legend_where_it_is(contact):
     assert {text.get_text() for text in figure.axes[0].texts} >= {"up", "front", "30°", "60°"}
 
 
+def test_directions_of_the_body_need_an_orientation_of_which_zero_is_one():
+    upright, default = (replace(SPHERE, cup=cup) for cup in (bs.Cup(inclination=0.0), bs.Cup()))
+    texts = [
+        {text.get_text() for text in cup_figure(each.press(HIP, force=2000.0)).axes[0].texts}
+        for each in (upright, default)
+    ]
+    assert "front" in texts[0]
+    assert "front" not in texts[1]
+
+
 def test_pressure_is_drawn_inside_of_the_outline(contact):
     far = contact.outline - 0.3 * contact.force_vector / contact.force
     assert drawn(contact, far / np.linalg.norm(far, axis=1)[:, None]) == pytest.approx(0.0)

@@ -49,6 +49,16 @@ def test_imperial_holds_for_every_number(pages):
     assert not re.search(r"\d (mm|MPa|N)\b", text.split("<h2 id='origin'>")[0].split("<h2 id='inputs'>")[1])
 
 
+def test_a_joint_outside_its_tolerance_is_refused():
+    """Its pressure would stand beside a band that cannot hold it."""
+    with pytest.raises(
+        ValueError, match="clearance = 0.1 mm lies outside its tolerance of 0.15 to 0.25 mm: change one"
+    ):
+        around(HIP, FILE.cup, FILE.load, {"clearance": tolerance(0.2, 0.05)})
+    with pytest.raises(ValueError, match="force = 3000 N lies outside its tolerance of 900 to 1100 N"):
+        around(HIP, FILE.cup, FILE.load, {"force": tolerance(1000.0, 100.0)})
+
+
 def test_its_checksum_is_that_of_its_inputs_and_they_are_a_joint_file(pages):
     text = unescape(pages[0][Units.SI])
     told = re.search(r"<pre>(.*)</pre>", text, flags=re.DOTALL)[1]

@@ -131,7 +131,7 @@ def _hip(file: JointFile, use: Use) -> Tables:
 
 def _joint(file: JointFile) -> Tables:
     """The joint by its name where it is a preset in no cup of its own, else by its tables."""
-    if file.cup == Cup() and joints.get(file.joint.name) == file.joint:
+    if file.cup == Cup() and not file.cup.oriented and joints.get(file.joint.name) == file.joint:
         return {"joint": file.joint.name}
     return {name: table for name, table in tables_of(file).items() if name in PARTS}
 

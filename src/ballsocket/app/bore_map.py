@@ -141,8 +141,8 @@ def _rings(reach: float) -> Iterator[str]:
 
 
 def _body(cup: Cup) -> Iterator[str]:
-    """Beside the rim where the body's directions point, of a cup that does not open straight down."""
-    if cup.inclination == 0 and cup.anteversion == 0:
+    """Write the body's directions beside the rim of a cup with an orientation, an explicit 0° included."""
+    if not cup.oriented:
         return
     x, y, _ = cup.frame
     for name, axis in (("up", 2), ("front", 1)):

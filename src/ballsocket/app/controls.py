@@ -14,7 +14,7 @@ from ..io.joint_file import JointFile, joint_of, read_aim
 from ..io.joint_toml import Tables, tables_of
 from ..joint import Joint
 from ..presets import joints, materials
-from ..quantities import LOADS, STRENGTH
+from ..quantities import LOADS, STRESS_LIMITS
 from .fields import Field, choice, segments, tick, unknown
 from .numbers import ALLOWABLE, NUMBERS, THICKNESS, TILT, Number, load_of, number_of
 from .reading import Reading
@@ -108,7 +108,7 @@ def _ball(joint: Joint, named: Tables) -> str:
 
 def _chosen(table: Tables) -> str:
     """The material's name, unless a number differs from it."""
-    return str(table["material"]) if set(table) - set(STRENGTH) == {"material"} else _OWN
+    return str(table["material"]) if set(table) - set(STRESS_LIMITS) == {"material"} else _OWN
 
 
 def edited(screen: Screen, name: str, value: Any, load_alike: Callable[[str], dict[str, float]]) -> JointFile:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import io
 import tempfile
 import zipfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
 from typing import Any
 
-from ..evidence.folder import write
+from ..evidence.folder import SUMS, WORK, names_of, write
 from ..evidence.pack import gathered, plan
 from ..io.joint_file import JointFile
 from ..output.evidence_page import conclusions, evidence_page
@@ -21,7 +22,6 @@ from .running import Reached, Told
 LONGEST = 600.0
 """Seconds that a pack may take."""
 
-_DATA = "data"
 _LATER = 6  # pieces that are asked of the worst cases, about
 
 
@@ -64,17 +64,15 @@ def packed(asked: Asked, file: JointFile, use: Use, folder: str, told: Told) -> 
         done.append(name)
         told(Reached(share=min(0.95, len(done) / pieces), words=f"done: {name}"))
 
-    record = gathered(question, place / _DATA, heard)
-    write(question, record, evidence_page(record), place)
-    return Packed(conclusions=tuple(conclusions(record)), record=record, content=_zipped(place))
+    record = gathered(question, place / WORK, heard)
+    write(question, record, evidence_page, place)
+    return Packed(conclusions=tuple(conclusions(record)), record=record, content=_zipped(place, names_of(question)))
 
 
-def _zipped(folder: Path) -> bytes:
-    """What is handed in, without what was kept on the way."""
+def _zipped(folder: Path, names: Sequence[str]) -> bytes:
+    """Return the files of a pack as a ZIP file."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as pack:
-        for path in sorted(folder.rglob("*")):
-            inside = path.relative_to(folder)
-            if path.is_file() and inside.parts[0] != _DATA:
-                pack.write(path, inside.as_posix())
+        for name in sorted({*names, SUMS}):
+            pack.write(folder / name, name)
     return stream.getvalue()

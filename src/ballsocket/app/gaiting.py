@@ -10,6 +10,7 @@ from typing import Any
 import numpy
 
 from ..hip import Lubricant
+from ..hip.contact_checks import largest_utilisation, list_notes
 from ..hip.film import film
 from ..hip.in_vivo import IN_VIVO
 from ..hip.spots import spots_of
@@ -45,6 +46,10 @@ class Gaited:
         The instant in which the contact comes nearest to the rim, and where.
     regime : str
         Of the film.
+    utilisation : float, optional
+        Largest von Mises stress over yield stress in the cycle; None where no yield stress is known.
+    valid : bool
+        Whether the contact with the largest pressure is inside its model's validity.
     numbers : dict
         For JSON.
     notes : tuple of str
@@ -61,6 +66,8 @@ class Gaited:
     polar: numpy.ndarray
     worst: str
     regime: str
+    utilisation: float | None
+    valid: bool
     numbers: dict[str, Any]
     notes: tuple[str, ...]
 
@@ -73,7 +80,7 @@ class Gaited:
 def gait_of(file: JointFile, use: Use, own: Own | None) -> Hashable:
     """What the courses over a cycle depend on."""
     weight = use.body_weight if own is not None or use.cycle in IN_VIVO else None
-    return file.joint, file.cup, weight, use.contact, own or use.cycle
+    return file.joint, file.cup, file.cup.oriented, weight, use.contact, own or use.cycle
 
 
 def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
@@ -91,6 +98,8 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
     told(Reached(share=0.7, words="film and edge"))
     found, edge = film(hip, hip.bed, hip.sliding, rest, lubricant), hip.edge(rest)
     worst, first = edge.worst(hip), hip.first
+    checks = hip.unworn_checks
+    utilisation, valid = largest_utilisation(checks), all(check.valid for check in checks)
     polar = numpy.linspace(0.0, hip.reach, RINGS + 1)
     sizes = hip.cycle.sizes
 
@@ -111,8 +120,16 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
         polar=polar,
         worst="nothing is pressed" if worst is None else worst.where,
         regime=found.regime,
-        numbers={"slide_mm": first.slide, **found.summary(), "edge": None if worst is None else worst.summary()},
-        notes=hip.notes,
+        utilisation=utilisation,
+        valid=valid,
+        numbers={
+            "valid": valid,
+            "utilisation": utilisation,
+            "slide_mm": first.slide,
+            **found.summary(),
+            "edge": None if worst is None else worst.summary(),
+        },
+        notes=(*hip.notes, *list_notes([("in the first cycle", checks)])),
     )
 
 

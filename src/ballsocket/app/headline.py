@@ -40,9 +40,14 @@ def headline(
     rest = "".join(_cell(each, contact) for each in listed)
     return (
         f"<dl class='first'>{_cell(first, contact)}</dl>{_share(most, surely, contact, reading)}"
-        f"{_verdict(contact, most)}{trust(contact)}"
+        f"{_verdict(contact, most)}{trust(contact, _notes(contact))}"
         f"<dl class='numbers'>{rest}</dl><p class='quiet'>{escape(nearness(contact, exact))}</p>"
     )
+
+
+def _notes(contact: Contact) -> list[str]:
+    """List the notes; omit the utilisation note where the verdict already states it."""
+    return [note for note in contact.notes if contact.joint.liner.strengths or note != contact.utilisation_note]
 
 
 def _idle(each: Column, contact: Contact) -> bool:

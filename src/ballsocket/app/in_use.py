@@ -49,7 +49,7 @@ class Use:
     creep : str
         "no" or "yes".
     spread : float
-        The factor by which the coefficient scatters between patients, of one standard deviation; 1 is not at all.
+        Factor of one standard deviation of the coefficient; 1 is a coefficient that is known exactly.
     """
 
     cycle: str = "iso-14242-1"
@@ -89,12 +89,17 @@ WHOLE = Use()
 
 _NUMBERS: Mapping[str, Callable[[Any], Any]] = {
     "body_weight": lambda text: parse("body_weight", text, Kind.FORCE),
-    "instant": lambda text: int(parse("instant", text, Kind.NUMBER)),
+    "instant": lambda text: _instant(parse("instant", text, Kind.NUMBER)),
     "coefficient": lambda text: parse("coefficient", text, Kind.NUMBER),
     "circular": lambda text: parse("circular", text, Kind.NUMBER),
     "spread": lambda text: parse("spread", text, Kind.NUMBER),
     "millions": lambda text: parse("millions", text, Kind.NUMBER),
 }
+
+
+def _instant(number: float) -> int:
+    require("instant", number, number.is_integer(), "a whole number, counted from 0")
+    return int(number)
 
 
 def pairs_of(use: Use) -> list[tuple[str, str]]:
@@ -151,5 +156,5 @@ def hip_of(file: JointFile, use: Use, own: Own | None = None) -> InUse:
         cycle=own.cycle(use.body_weight) if own is not None else named_cycle(use.cycle, body_weight=weight),
         wear=given_law(wear | ({"circular": use.circular} if use.law == "cross-shear" else {})),
         surface=given_surface({"contact": use.contact}),
-        creep=given_creep({"creep": {}} if use.creep == "yes" else {}),
+        creep=given_creep({"creep": {}} if use.creep == "yes" else {}, float(file.joint.liner.poisson)),
     )

@@ -12,7 +12,7 @@ from typing import Any
 import panel as pn
 
 from ..checks import require, shown
-from .guard import forget_closed, guard
+from .guard import OpenPages, forget_closed, guard, hide_tracebacks
 from .page import Page
 from .pressing import pressed
 from .screen import START
@@ -20,7 +20,7 @@ from .template import template
 
 LOOPBACK, EVERYWHERE = "127.0.0.1", "0.0.0.0"
 MOST_SESSIONS = 200
-"""Pages that are open at once."""
+"""Largest number of connected pages. The same number may wait for their browsers."""
 
 _MESSAGE = 400_000
 """Bytes of one message from a browser: an upload is smaller."""
@@ -75,6 +75,8 @@ def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (
     )
     guard(served._tornado, (*own, *origins))
     forget_closed(served._tornado)
+    hide_tracebacks(served._tornado)
+    _pages.count_connections(served._tornado)
     return served
 
 
@@ -93,19 +95,20 @@ def _free_port(address: str) -> int:
         return int(found.getsockname()[1])
 
 
-_open: set[int] = set()
+_pages = OpenPages(max_waiting=MOST_SESSIONS)
 
 
 def _session() -> Any:
-    """A page for whoever asks, unless there are too many."""
-    if len(_open) >= MOST_SESSIONS:
+    """Make a page for a request, unless too many are open."""
+    if len(_pages) >= MOST_SESSIONS:
         return pn.pane.HTML(f"<p>{escape(f'{MOST_SESSIONS} pages are open here already: try again later')}</p>")
     location = pn.state.location
     page = Page((location.search if location is not None else "").lstrip("?"))
-    _open.add(id(page))
+    context = pn.state.curdoc.session_context
+    _pages.add(context.id, context)
 
     def left(context: Any) -> None:
-        _open.discard(id(page))
+        _pages.remove(context.id)
         page.leave()
 
     pn.state.on_session_destroyed(left)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..contact import Contact
-from ..contact.strength import share
+from ..contact.strength import share, unchecked_strength
 from ..contact.verdict import Share, shares_of
 
 _SPARE = 0.8
@@ -22,9 +22,9 @@ def most_used(contact: Contact, von_mises: float) -> Share | None:
 
 
 def sentence(contact: Contact, most: Share | None) -> tuple[bool | None, str]:
-    """Whether it holds, and that in words; None where no strength is known, or the answer is not to be trusted."""
-    if most is None:
-        return None, "No verdict: no strength of these materials is known. Give the liner's allowable pressure."
+    """Return a verdict and its sentence; the verdict is None for an unchecked strength or an invalid contact."""
+    if most is None or (most.ratio <= 1 and not contact.joint.liner.strengths):
+        return None, f"No verdict: {unchecked_strength(contact.joint)}. Enter the liner's allowable pressure."
     if most.ratio > 1:
         return False, f"The {most.part} does not bear it: {most}"
     if not bool(contact.valid):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from html import escape
+from math import nan
 
 import numpy
 
@@ -16,7 +17,7 @@ from .chart import Curve, chart, legend
 from .pressing import rounded_up
 from .reading import Reading
 from .wearing import Worn
-from .words import notes_list, number_text, percent
+from .words import doubt, notes_list, number_text, percent
 
 _DEPTH, _PRESSURE = CONTACT["indentation"], CONTACT["max_pressure"]
 """As what depths and pressures are read."""
@@ -32,6 +33,7 @@ def wear_numbers(found: Mapping[str, Worn], reading: Reading = SHOWN) -> str:
         beside = [_told(other, reading)[name] for other in others]
         rows.append([name, number_text(values), *(f"{number_text(each)} ({_apart(each, values)})" for each in beside)])
     notes = "".join(
+        f"{doubt(each.summary['contact']['valid'], name)}"
         f"<p class='quiet'>{escape(name)}: {escape(each.band)}</p>{notes_list(each.notes)}"
         for name, each in found.items()
     )
@@ -56,7 +58,12 @@ def _told(worn: Worn, reading: Reading) -> dict[str, float]:
     }
     units = {name: reading.unit(quantity) for name, (quantity, _) in found.items()}
     numbers = {f"{name}{units[name].bracketed}": value * units[name].factor for name, (_, value) in found.items()}
-    return {"worn volume [mm³]": float(worn.volume[-1]), **numbers}
+    new_and_worn = worn.summary["contact"]["unworn"], last["contact"]
+    used = [[check["utilisation"] for check in checks if check["utilisation"] is not None] for checks in new_and_worn]
+    shares = {
+        f"utilisation σv/σy, {state}": max(part, default=nan) for state, part in zip(("new", "worn"), used, strict=True)
+    }
+    return {"worn volume [mm³]": float(worn.volume[-1]), **numbers, **shares}
 
 
 def penetration_chart(found: Mapping[str, Worn], reading: Reading = SHOWN) -> str:

@@ -35,7 +35,7 @@ class Worn:
     cycles, penetration, deepest, volume : array (looks,)
         In millions, mm, mm, mm³.
     low, high : array (looks,)
-        Ends of the band of penetration in mm: of patients whose coefficient scatters, or of the run's own error.
+        Ends of the band of penetration in mm, from the uncertain coefficient or from the error of the run.
     band : str
         What it is of, in words.
     depth : array (rings, meridians)
@@ -74,7 +74,7 @@ def life_of(file: JointFile, use: Use) -> Hashable:
     weight = use.body_weight if use.cycle in IN_VIVO else 0.0
     circular = use.circular if use.law == "cross-shear" else 0.0
     plain = replace(use, instant=None)
-    return file.joint, file.cup, replace(plain, body_weight=weight or 1.0, circular=circular)
+    return file.joint, file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0, circular=circular)
 
 
 def worn(files: Sequence[JointFile], use: Use, told: Told) -> list[Worn]:
@@ -106,7 +106,7 @@ def _life(hip: InUse, use: Use, reached: Any) -> Worn:
     )
     bands = None
     if use.spread > 1 and use.coefficient > 0 and use.law == "archard":
-        reached(0.72, "the years of patients who differ")
+        reached(0.72, "the band of the wear coefficient")
         wear = {"coefficient": LogNormal(median=use.coefficient, factor=use.spread)}
         counts = [report.cycles for report in history.reports]
         _, bands = population(Scatter(use=hip, distributions=wear), counts, patients=_PATIENTS)
@@ -126,7 +126,8 @@ def _plain(hip: InUse, history: History, bands: Any) -> Worn:
         band = f"band: what the run may be off by, {100 * history.error.depth:.2g} %"
     else:
         low, high = (numpy.array([0.0, *ends]) for ends in bands.band("penetration"))
-        band = f"band: {100 * bands.level:g} % of {bands.patients} patients whose coefficient scatters"
+        share = f"{100 * bands.level:g} % of the predictions for {bands.patients} patients"
+        band = f"band: {share}, for a wear coefficient known within a factor"
     largest = hip.loads[hip.largest[0]]
     return Worn(
         cycles=numpy.array([0.0, *(report.cycles / 1e6 for report in reports)]),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from math import floor, isfinite, isnan, log10
 from typing import Any
@@ -50,11 +50,15 @@ def progress(words: str, share: float | None, stop: str = "", again: str = "") -
     return f"<p class='quiet'>{bar}{escape(words)}{buttons}</p>"
 
 
-def trust(contact: Contact) -> str:
-    """Whether the model trusts itself here, and if not why, in words and not by colour alone."""
-    if bool(contact.valid):
-        return notes_list(contact.notes) if contact.notes else ""
-    return f"<p class='trust no'>✗ outside the range in which this model can be trusted</p>{notes_list(contact.notes)}"
+def trust(contact: Contact, notes: Sequence[str]) -> str:
+    """Return validity and notes of a contact as HTML; words repeat what the colour shows."""
+    return f"{doubt(bool(contact.valid))}{notes_list(notes) if notes else ''}"
+
+
+def doubt(valid: bool, name: str = "") -> str:
+    """Return the warning for a contact outside its model's validity, with the design's name; empty if valid."""
+    head = f"{escape(name)}: " if name else ""
+    return "" if valid else f"<p class='trust no'>✗ {head}outside the range in which this model can be trusted</p>"
 
 
 def models_table(comparison: Comparison, reading: Reading) -> str:

@@ -47,10 +47,22 @@ class Written:
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class WrittenContact(Contact):
-    """A contact that was solved elsewhere, with the errors that its model estimated, and contacts that lead to it."""
+    """A contact that another process solved, with its estimated errors, notes and validity, and its curve."""
 
     error: dict[str, Any] = field(default_factory=dict)
     curve: Contact | None = None
+    solved_notes: tuple[str, ...] = ()
+    solved_valid: Array = True
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes of the process that solved the contact."""
+        return self.solved_notes
+
+    @property
+    def valid(self) -> Array:
+        """Validity by the process that solved the contact."""
+        return self.solved_valid
 
 
 def written(contact: Contact, curve: Contact | None = None) -> WrittenContact:
@@ -65,6 +77,8 @@ def written(contact: Contact, curve: Contact | None = None) -> WrittenContact:
         indentation=contact.indentation,
         error=dict(getattr(contact, "error", {})),
         curve=curve,
+        solved_notes=contact.notes,
+        solved_valid=contact.valid,
     )
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -15,13 +16,18 @@ import ballsocket as bs
 
 from ..checks import needs
 from ..engines.local import Engine, Processes
-from ..evidence.folder import differences, made_by, write
-from ..evidence.pack import Listener, gathered
-from ..evidence.question import read_question
+from ..evidence.comparison import Signed, compare, signature_of
+from ..evidence.folder import WORK, check_room, digest_of, sign_pack, write
+from ..evidence.pack import Listener, count_kept, gathered, remove_kept
+from ..evidence.question import Question, read_question
+from ..evidence.signature import PublicKey, SignatureError, public_key_of, read_private_key, read_public_key
 from ..fingerprint import fingerprint
 from ..output.evidence_page import conclusions, evidence_page
 from .root import FAILURE, app, echo_path
 from .words import AsJson, echo_json
+
+if TYPE_CHECKING:
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 
 @app.command()
@@ -31,58 +37,122 @@ def evidence(
     check: Annotated[
         Path | None, typer.Option(help="A folder of evidence: compute all of it again, and say what differs.")
     ] = None,
+    sign: Annotated[
+        Path | None, typer.Option(help="Ed25519 private key of OpenSSH that signs the checksums of the pack.")
+    ] = None,
+    verify: Annotated[
+        Path | None, typer.Option(help="With --check: public key that the signature of the pack must match.")
+    ] = None,
     as_json: AsJson = False,
     workers: Annotated[int | None, typer.Option(help="Processes at work; as many as there are cores.")] = None,
 ) -> None:
-    """Gather the evidence that a question asks for, verified, compared and with its uncertainty, as one page and JSON.
+    """Gather the evidence for a question, verified, compared and with its uncertainty, as one page and JSON.
 
-    What is finished is kept: a run that was stopped goes on where it was.
+    A stopped run is resumed. A signed pack is computed in one run.
 
-    Exit status: 0 done, 2 misuse, 3 a pack that does not say what is computed now.
+    Exit status: 0 done, 2 misuse, 3 a pack that differs from the computation or has an invalid signature.
     """
     needs("study", "xarray")
     if (question is None) == (check is None):
         raise ValueError("either a question file is needed, or --check with a folder of evidence")
+    if verify is not None and check is None:
+        raise ValueError("--verify needs --check with the folder that is signed")
+    if verify is not None and sign is not None:
+        raise ValueError("--verify and --sign exclude each other: one reads the signature, one replaces it")
+    key = None if sign is None else read_private_key(sign)
+    engine = Processes(workers=workers)
     if check is not None:
-        _again(check, Processes(workers=workers), as_json)
+        _check(check, engine, as_json, key, None if verify is None else read_public_key(verify))
+    elif question is not None:
+        _gather(read_question(question), out, engine, as_json, key)
+
+
+def _gather(question: Question, out: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None) -> None:
+    check_room(out, question)
+    resumed = 0 if key is not None else count_kept(question, out / WORK)
+    with _progress() as listen, tempfile.TemporaryDirectory() as temporary:
+        work = out / WORK if key is None else Path(temporary)
+        record = gathered(question, work, listen, engine)
+        path = write(question, record, evidence_page, out)
+    remove_kept(out / WORK)
+    signed = None if key is None else Signed(public_key_of(key), None)
+    if key is not None:
+        sign_pack(out, key)
+    notes = [*conclusions(record), *([_RESUMED.format(resumed)] if resumed else [])]
+    if as_json:
+        more = {"digest": digest_of(out), "signature": None if signed is None else signed.summary()}
+        echo_json({**record, "folder": str(out), **more, "valid": record["accurate"]["holds"], "notes": notes})
         return
-    assert question is not None
-    asked = read_question(question)
-    with _told() as listen:
-        record = gathered(asked, out / "data", listen, Processes(workers=workers))
-    path = write(asked, record, evidence_page(record), out)
-    if as_json:
-        echo_json({**record, "folder": str(out), "valid": record["accurate"]["holds"], "notes": conclusions(record)})
-    else:
-        echo_path(path)
+    echo_path(path)
+    typer.echo(f"digest of the pack {digest_of(out)}")
+    if signed is not None:
+        typer.echo(f"signed with {signed.key.fingerprint}")
+    if resumed:
+        typer.echo(_RESUMED.format(resumed))
 
 
-def _again(folder: Path, engine: Engine, as_json: bool) -> None:
-    with _told() as listen:
-        count, found = differences(folder, listen, engine, evidence_page)
+_RESUMED = "{} results were read from an earlier, stopped run and not computed: --check computes all of them again"
+
+
+def _check(
+    folder: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None, expected: PublicKey | None
+) -> None:
+    with _progress() as listen:
+        comparison = compare(folder, evidence_page, listen, engine)
+    signed, defect = (None, "") if key is not None else _signature(folder, expected, comparison.sums)
+    good = not comparison.differences and not defect
+    if key is not None and good:
+        sign_pack(folder, key, comparison.sums)
+        signed = Signed(public_key_of(key), None)
     if as_json:
-        told = [each.summary() for each in found]
         echo_json(
             {
                 "version": bs.__version__,
-                "valid": not found,
-                "made_by": made_by(folder),
-                "compared": count,
-                "differences": told,
+                "valid": good,
+                "made_by": comparison.made_by,
+                "compared": comparison.count,
+                "differences": [difference.summary() for difference in comparison.differences],
+                "digest": comparison.digest,
+                "signature": {"error": defect} if defect else None if signed is None else signed.summary(),
             }
         )
     else:
-        for each in found:
-            typer.echo(str(each))
-        typer.echo(f"{count - len(found)} of {count} numbers, words and files are as they were written")
-        typer.echo(f"written by ballsocket {made_by(folder)}, computed again by {fingerprint()}")
-    if found:
+        for difference in comparison.differences:
+            typer.echo(str(difference))
+        equal = max(0, comparison.count - len(comparison.differences))
+        typer.echo(f"{equal} of {comparison.count} numbers, words and files are unchanged")
+        typer.echo(f"written by ballsocket {comparison.made_by}, computed again by {fingerprint()}")
+        typer.echo(f"digest of the pack {comparison.digest}")
+        typer.echo(_describe_signature(signed, defect, key is not None))
+    if not good:
         raise typer.Exit(FAILURE)
 
 
+def _signature(folder: Path, expected: PublicKey | None, sums: bytes) -> tuple[Signed | None, str]:
+    """Return the signature of a pack and an error message, which is empty for a valid signature."""
+    try:
+        return signature_of(folder, expected, sums), ""
+    except SignatureError as error:
+        return None, str(error)
+
+
+def _describe_signature(signed: Signed | None, defect: str, signed_now: bool) -> str:
+    if defect:
+        return f"signature: {defect}"
+    if signed is None:
+        return (
+            "not signed: the pack differs" if signed_now else "not signed: author, question and date are not confirmed"
+        )
+    if signed_now:
+        return f"signed with {signed.key.fingerprint}"
+    if signed.expected:
+        return f"signature verified: by {signed.key.fingerprint}"
+    return f"signed with {signed.key.fingerprint}, a key that was not compared: compare it with --verify KEY.pub"
+
+
 @contextmanager
-def _told() -> Iterator[Listener]:
-    """A line that says what is at work, where somebody looks."""
+def _progress() -> Iterator[Listener]:
+    """Show a progress line on a terminal."""
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("gathering", total=None)

@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from ..atomic import check_folder
 from ..checks import known_name
 from .force_elements import ElementWords, identifier
 from .groups import grouped
@@ -26,7 +25,7 @@ def export(
     words: JointWords,
     element: ElementWords,
     out: Annotated[
-        Path, typer.Option(help="The folder to write into, which names the files; made if it is not there.")
+        Path, typer.Option(help="Output folder. Its name is also that of the files. Missing folders are created.")
     ],
 ) -> None:
     """Write a joint as a force element for another program, with what that needs around it."""
@@ -34,9 +33,9 @@ def export(
     from ..export.targets import TARGETS, Job
 
     chosen = TARGETS[known_name("target", target, TARGETS)]
-    check_folder(out)
-    if out.exists() and not out.is_dir():
-        raise ValueError(f"{str(out)!r} is a file; a folder is needed")
+    nearest = next(path for path in (out, *out.parents, Path()) if path.exists())
+    if not nearest.is_dir():
+        raise ValueError(f"{str(nearest)!r} is a file; a folder is needed")
     file = words.or_named(joint)
     made = element.element(file)
     job = Job(element=made, name=identifier(out), depth=depth_of(made, file.load))

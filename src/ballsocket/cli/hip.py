@@ -83,7 +83,8 @@ def _bands(given: HipFile, history: History, engine: Engine) -> Bands | None:
 
 
 def _echo(history: History, bands: Bands | None) -> None:
-    answer = {"version": bs.__version__, "valid": history.settled, **history.summary()}
+    valid = history.valid and (bands is None or bands.valid)
+    answer = {"version": bs.__version__, "valid": valid, **history.summary()}
     if bands is not None:
         answer |= bands.summary()
         answer["notes"] = [*answer["notes"], *bands.notes]
@@ -101,11 +102,11 @@ def _many(given: HipFile, patients: int, engine: Engine, store: Path | None, as_
             said.scatter, counts, patients=patients, seed=said.seed, engine=engine, store=where, listen=listen
         )
     if as_json:
-        told = [*said.scatter.use.notes, *bands.notes]
-        echo_json({"version": bs.__version__, **bands.summary(), "notes": told})
+        notes = [*bands.usual_notes, *bands.notes]
+        echo_json({"version": bs.__version__, "valid": bands.valid, **bands.summary(), "notes": notes})
     else:
         print_bands(bands)
-        print_notes(said.scatter.use.notes)
+        print_notes(bands.usual_notes)
     if store is not None:
         path = write_csv(store / "patients.csv", lives, bands.lived)
         if not as_json:

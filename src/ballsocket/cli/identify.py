@@ -34,7 +34,7 @@ def identify(
     experiment: Annotated[Path | None, typer.Option(help=f"Write what to measure next {_PICTURE}.")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Find clearance, modulus, ... of a joint from measurements, and tell what these cannot tell.
+    """Identify clearance, modulus, ... of a joint from measurements, with bands, and name the unidentifiable ones.
 
     Exit status: 0 done, 2 misuse, 3 the search did not converge.
     """

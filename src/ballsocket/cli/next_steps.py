@@ -9,7 +9,10 @@ from itertools import chain, pairwise
 from types import MappingProxyType
 from typing import Any
 
+import numpy
+
 from ..catalogue import judge, off_axis, reference
+from ..contact.closed_sphere import NOTED_CHANGE
 from ..joint.dimensions import DIAMETERS, LENGTHS
 from ..quantities import QUANTITIES
 
@@ -68,8 +71,18 @@ def _after_press(answer: Answer, words: Words) -> Iterator[Step]:
         others = [name for name in (reference.name, off_axis.name, judge.name) if name not in results]
         yield from (Step((*bare, "--model", name), "none of these is to be trusted here") for name in others)
     elif not {judge.name, off_axis.name} & set(results):
-        yield Step((*bare, "--model", judge.name), "finite elements judge it, with error bars of their own")
+        if any(map(_differs_on_hemisphere, answer["results"])):
+            why = "a hemisphere with a free rim differs from the closed sphere of this result: see the notes"
+            yield from (Step((*bare, "--model", name), why) for name in (judge.name, off_axis.name))
+        else:
+            yield Step((*bare, "--model", judge.name), "finite elements judge it, with error bars of their own")
     yield from (Step(("cite", name), "what it is made of") for name in trusted[:1] if name in asked)
+
+
+def _differs_on_hemisphere(result: Answer) -> bool:
+    """Check if a result, or one of its points, differs by more than 1 % from that of a hemisphere."""
+    changes = numpy.array(list(result.get("hemisphere", {}).values()), dtype=float)
+    return bool((abs(changes) > NOTED_CHANGE).any())
 
 
 _SHOWN = ("--units", "--figure", "--section", "--view", "--vtk", "--report", "--tolerance")
@@ -142,10 +155,10 @@ def _after_orient(answer: Answer, words: Words) -> Iterator[Step]:
 
 def _after_identify(answer: Answer, words: Words) -> Iterator[Step]:
     if not answer["valid"]:
-        why = answer["notes"][0] if answer["notes"] else "not every number is told"
+        why = answer["notes"][0] if answer["notes"] else "not every number is identifiable"
         yield Step((*words, "--experiment", "next.png"), why)
     elif answer["posterior"] is None:
-        yield Step((*words, "--samples", "4000"), "bands of the posterior as it is, not as if it were normal")
+        yield Step((*words, "--samples", "4000"), "samples of the posterior within the ranges")
 
 
 def _after_hip(answer: Answer, words: Words) -> Iterator[Step]:

@@ -7,12 +7,14 @@ import os
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import TextIOWrapper
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TextIO
 
+import numpy
 import typer
 
 import ballsocket as bs
@@ -79,8 +81,18 @@ def _write_in_any_encoding() -> None:
 def main() -> None:
     """The command `ballsocket`: one line on stderr for misuse, no tracebacks for what a user can mend."""
     _write_in_any_encoding()
-    with _cleaning_up_when_ended():
+    if os.environ.get("COLUMNS", "").strip() == "0":  # width 0 means an unknown width
+        del os.environ["COLUMNS"]
+    with _cleaning_up_when_ended(), _without_warnings():
         sys.exit(_status())
+
+
+@contextmanager
+def _without_warnings() -> Iterator[None]:
+    """Suppress floating-point warnings; results carry a status and notes."""
+    with numpy.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        yield
 
 
 def _status() -> int:
@@ -126,8 +138,11 @@ def _said(error: Any) -> str:
 
 
 def complain(message: str) -> None:
-    """One line on stderr."""
-    print(f"ballsocket: {_one_line(message)}", file=sys.stderr)
+    """Print one line on stderr, if anything can be written there."""
+    try:
+        print(f"ballsocket: {_one_line(message)}", file=sys.stderr, flush=True)
+    except OSError:
+        _write_no_more(sys.stderr)
 
 
 def _one_line(message: str) -> str:
@@ -154,9 +169,9 @@ def _flush() -> None:
             stream.flush()
 
 
-def _write_no_more() -> None:
+def _write_no_more(stream: TextIO | None = None) -> None:
     """Nobody reads what is written: not even at the end of the process is there anything to flush."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    os.dup2(os.open(os.devnull, os.O_WRONLY), (stream or sys.stdout).fileno())
 
 
 @contextmanager

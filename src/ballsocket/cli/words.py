@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from ..checks import nearest, plain_name
+from ..input_files import resolve_input
 from ..io.joint_file import JointFile, joint_of, read_joint, read_load, varied
 from ..joint.dimensions import LENGTHS
 from ..presets import joints
@@ -95,7 +96,7 @@ def named_joint(name: str) -> JointFile:
     """A joint by its file or preset."""
     if not name:
         raise ValueError("the joint's name is empty")
-    path = Path(name)
+    path = resolve_input(Path(name))
     if path.is_dir():
         raise ValueError(f"{name!r} is a folder; a joint file is needed")
     if path.exists():
@@ -109,4 +110,8 @@ def named_joint(name: str) -> JointFile:
 
 def echo_json(answer: dict[str, Any]) -> None:
     """Print one JSON object, with what every answer says; a number that is missing is null."""
-    typer.echo(json.dumps(whole(answer, sys.argv[1:]), indent=2, allow_nan=False))
+    try:
+        text = json.dumps(whole(answer, sys.argv[1:]), indent=2, allow_nan=False)
+    except ValueError as error:
+        raise ArithmeticError("a result is infinite") from error
+    typer.echo(text)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import signal
 import time
 from collections import Counter, deque
@@ -11,11 +12,16 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from threading import Thread
 from typing import Any, Protocol
 
 from ..checks import require
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
 
 MOST = 1000
 """Processes, or workers, that are started."""
@@ -160,8 +166,29 @@ def _begin(work: Work) -> None:
 
 
 def leave_with_parent() -> None:
-    """In a process that was started for another: it ends when that one does."""
+    """End this process when its parent ends, however that ends.
+
+    The parent holds the other end of a pipe, which closes with it. The system then sends a signal that ends this
+    process even where no Python thread can run. A thread does the same on systems without such signals.
+    """
     Thread(target=_leave_with, args=(os.getppid(),), daemon=True).start()
+    if fcntl is not None and hasattr(os, "O_ASYNC"):
+        parent = parent_process()
+        pipe = _STDIN if parent is None else parent.sentinel
+        signal.signal(signal.SIGIO, signal.SIG_DFL)
+        fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
+        if any(events & select.POLLHUP for _, events in _polled(pipe)):
+            os._exit(1)  # the parent has ended before the signal was set
+
+
+def _polled(descriptor: int) -> list[tuple[int, int]]:
+    poll = select.poll()
+    poll.register(descriptor, select.POLLHUP)
+    return poll.poll(0)
+
+
+_STDIN = 0
 
 
 def _leave_with(parent: int) -> None:

@@ -127,9 +127,9 @@ def _draw_places(axes: Axes, contact: OffAxisContact) -> None:
 
 
 def _draw_body(axes: Axes, contact: OffAxisContact, reach: float) -> None:
-    """Beside the rim where the body's directions point, of a cup that does not open straight down."""
+    """Write the body's directions beside the rim of a cup with an orientation, an explicit 0° included."""
     cup = contact.model.cup
-    if cup.inclination == 0 and cup.anteversion == 0:
+    if not cup.oriented:
         return
     x, y, _ = cup.frame
     outside = 2 * sin(reach / 2) * _BESIDE

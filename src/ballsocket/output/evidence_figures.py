@@ -215,7 +215,7 @@ def bands_figure(record: Record) -> Figure:
     right.set_yticks(range(len(names)), [QUANTITIES[name].title for name in names])
     right.set_xlim(0.0, 1.05)
     right.invert_yaxis()
-    right.legend(**LEGEND)
+    right.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, **LEGEND)
     finish(right, "share in the variance (total order)", "")
     return figure
 

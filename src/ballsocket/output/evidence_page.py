@@ -4,15 +4,26 @@ from __future__ import annotations
 
 from html import escape
 
+from ..evidence.terms import input_title, limit_text, number, title_of
+from ..fingerprint import fingerprint
 from . import html
 from .evidence_sections import (
     calculation_section,
+    credibility_section,
     matrix_section,
+    requirements_section,
     uncertainty_section,
     validation_section,
     wear_section,
 )
-from .evidence_words import Record, limit_text, listed, number, percent, words
+from .evidence_words import (
+    Record,
+    listed,
+    percent,
+    quantities_of_interest,
+    recentred_text,
+    words,
+)
 
 _SAID = {True: "passed", False: "FAILED", None: "not run"}
 _LIMITS = (
@@ -22,31 +33,56 @@ _LIMITS = (
     "off the axis and in finite elements.",
     "Loads do not change in time; what wear says is in its own section.",
 )
-_STYLE = """<style>@media print { .sign td { height: 2.5rem; } .call { break-before: avoid; } h3 { break-after: avoid; }
+_STYLE = """<style>
+@media print { table { break-inside: auto; } .sign { break-inside: avoid; } .sign td { height: 2.5rem; }
+.call { break-before: avoid; } h3 { break-after: avoid; }
 details::details-content { content-visibility: visible; display: block; } }
 .sign td { min-width: 14rem; }
 .words td, .words th { text-align: left; vertical-align: top; }
-.call { font-family: monospace; font-size: 0.8rem; color: #555; }</style>"""
+.call { font-family: monospace; font-size: 0.8rem; color: #555; }
+.digest { font-family: monospace; overflow-wrap: anywhere; }</style>"""
+_MARGINS = """<style>@page { margin: 22mm 15mm 20mm;
+@top-left { content: "Evidence, ballsocket %(version)s"; font: 8pt sans-serif; color: #555; }
+@top-right { content: "pack %(short)s"; font: 8pt monospace; color: #555; }
+@bottom-right { content: "page " counter(page) " of " counter(pages); font: 8pt sans-serif; color: #555; } }</style>"""
+_SHORT = 16
+"""Number of digest characters in the head of a printed page."""
 
 
-def evidence_page(record: Record) -> str:
-    """The page of a pack; see `evidence.pack.gathered`."""
-    sections = {
-        "question": ("Question and context of use", _question(record)),
-        "risk": ("Model risk and required accuracy", _risk(record)),
-        "inputs": ("Inputs", _inputs(record)),
-        "matrix": ("Worst-case matrix", matrix_section(record)),
-        "code": ("Code verification", _code(record)),
-        "calculation": ("Calculation verification", calculation_section(record)),
-        "validation": ("Validation", validation_section(record)),
-        "uncertainty": ("Sensitivity and uncertainty", uncertainty_section(record)),
-        "wear": ("Wear", wear_section(record)),
-        "limits": ("Limits and assumptions", listed(_LIMITS)),
-        "credibility": ("Credibility factors (ASME V&V 40)", _credibility(record)),
-        "signed": ("Signatures", _signed(record)),
-    }
-    lede = f"{html.PRINT}{_STYLE}<p>{escape(record['question'])}</p>{listed(conclusions(record))}"
+def evidence_page(record: Record, digest: str = "") -> str:
+    """Return the page of a pack as HTML.
+
+    Parameters
+    ----------
+    record : mapping
+        See `evidence.pack.gathered`.
+    digest : str
+        Digest of the pack, see `evidence.folder.digest`; omitted if empty.
+    """
+    with html.plain_style():
+        sections = {
+            "question": ("Question and context of use", _question(record)),
+            "risk": ("Model risk and required accuracy", _risk(record)),
+            "inputs": ("Inputs", _inputs(record)),
+            "matrix": ("Worst-case matrix", matrix_section(record)),
+            "code": ("Code verification", _code(record)),
+            "calculation": ("Calculation verification", calculation_section(record)),
+            "validation": ("Validation", validation_section(record)),
+            "uncertainty": ("Sensitivity and uncertainty", uncertainty_section(record)),
+            "wear": ("Wear", wear_section(record)),
+            "limits": ("Limits and assumptions", listed(_LIMITS)),
+            "credibility": ("Credibility factors (ASME V&V 40)", credibility_section(record)),
+            "requirements": ("Requirements and evidence", requirements_section(record)),
+            "signed": ("Signatures", _signed(record, digest)),
+        }
+    head = _margins(digest) if digest else ""
+    lede = f"{html.PRINT}{_STYLE}{head}<p>{escape(record['question'])}</p>{listed(conclusions(record))}"
     return html.page("Evidence", lede, sections)
+
+
+def _margins(digest: str) -> str:
+    """Return the style of head and foot of printed pages."""
+    return _MARGINS % {"version": fingerprint(), "short": f"{digest[:_SHORT]}…"}
 
 
 def conclusions(record: Record) -> list[str]:
@@ -56,7 +92,7 @@ def conclusions(record: Record) -> list[str]:
     largest = "unknown" if accurate["largest"] is None else percent(accurate["largest"])
     holds = "within" if accurate["holds"] else "NOT within"
     said = f"Error bars and other methods: {largest} at most, {holds} the required {percent(accurate['required'])}."
-    return [*limits, said]
+    return [*limits, said, f"{record['adequacy']['text']}.", *map(recentred_text, record["recentred"])]
 
 
 def _question(record: Record) -> str:
@@ -64,10 +100,13 @@ def _question(record: Record) -> str:
 
 
 def _risk(record: Record) -> str:
+    risk = record["risk"]
     rows = [
-        ("influence of the model on the decision", record["risk"]["influence"]),
-        ("consequence of a wrong decision", record["risk"]["consequence"]),
+        ("influence of the model on the decision", risk["influence"]),
+        ("consequence of a wrong decision", risk["consequence"]),
+        ("model risk", f"{risk['level']} ({risk['rank']} of 5): it sets the goals of the credibility factors"),
         ("required accuracy", percent(record["required"]["accuracy"])),
+        ("quantities of interest", ", ".join(map(title_of, quantities_of_interest(record)))),
         *(("limit", limit_text(each)) for each in record["limits"]),
     ]
     return words(("", ""), rows)
@@ -75,10 +114,11 @@ def _risk(record: Record) -> str:
 
 def _inputs(record: Record) -> str:
     rows = [
-        (each["name"], number(each["value"]), each["unit"], each["tolerance"], each["source"] or "none given")
+        (input_title(each["name"]), number(each["value"]), each["unit"], each["tolerance"], each["source"] or "none")
         for each in record["inputs"]
     ]
-    return words(("input", "value", "unit", "tolerance", "source"), rows)
+    table = words(("input", "value", "unit", "tolerance", "source"), rows)
+    return table + listed(map(recentred_text, record["recentred"]))
 
 
 def _code(record: Record) -> str:
@@ -99,16 +139,14 @@ def _why(check: Record) -> str:
     return f": {check['why']}" if check["why"] else ""
 
 
-def _credibility(record: Record) -> str:
-    rows = [(each["activity"], each["factor"], each["supported_by"], each["missing"]) for each in record["credibility"]]
-    return words(("activity", "factor", "supported by", "missing"), rows)
-
-
-def _signed(record: Record) -> str:
+def _signed(record: Record, digest: str) -> str:
     told = (
-        f"<p>Made on {escape(record['made_on'])} by ballsocket {escape(record['version'])}. The SHA-256 sums of this "
-        "page and of what lies beside it are in checksums.txt; <code>ballsocket evidence --check FOLDER</code> "
-        "computes it again.</p>"
+        f"<p>Made on {escape(record['made_on'])} by ballsocket {escape(record['version'])}. The digest below is the "
+        "SHA-256 sum of the checksums of all files of the pack except this page, which is made from them. "
+        "<code>ballsocket evidence --check FOLDER</code> computes all of it again, compares every byte of this page "
+        "and prints the digest; <code>--sign KEY</code> and <code>--verify KEY.pub</code> sign the pack and verify "
+        "its signature.</p>"
     )
+    shown = f"<p>Digest of the pack: <span class='digest'>{escape(digest)}</span></p>" if digest else ""
     rows = "".join(f"<tr><td>{name}</td><td></td><td></td></tr>" for name in ("prepared", "reviewed", "approved"))
-    return f"{told}<table class='sign'><tr><th></th><th>name, date</th><th>signature</th></tr>{rows}</table>"
+    return f"{told}{shown}<table class='sign'><tr><th></th><th>name, date</th><th>signature</th></tr>{rows}</table>"

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from itertools import starmap
 from typing import Any
 
+from ..evidence.folder import RECORD
 from ..evidence.matrix import NAMES
+from ..evidence.requirements import MET, NOT_MET, UNKNOWN
+from ..evidence.terms import KEYS, limit_text, number, title_of
 from . import evidence_figures as figures
 from . import html
 from .evidence_words import (
-    KEYS,
     Record,
     call,
     case_text,
     error_text,
     head,
-    limit_text,
     listed,
-    number,
     percent,
-    title_of,
     unloaded,
     value_text,
     words,
@@ -120,9 +119,18 @@ def _methods(piece: Record) -> str:
     apart = [percent(piece["deviation"][key]) if key in piece["deviation"] else "" for key in keys]
     rows.append(["largest deviation", *apart, ""])
     names = ", ".join(NAMES[name].title for name in piece["worst_of"])
-    notes = [f"{method['name']}: {note}" for method in piece["methods"] for note in method["notes"]]
     heads = ["method", *map(head, keys), "valid"]
+    notes = _grouped_notes(piece["methods"])
     return f"<h3>Where {escape(names)} is worst</h3>{html.table(heads, rows)}{listed(notes)}{call(piece['call'])}"
+
+
+def _grouped_notes(methods: Iterable[Record]) -> list[str]:
+    """List each note once, after the names of its methods."""
+    holders: dict[str, list[str]] = {}
+    for method in methods:
+        for note in method["notes"]:
+            holders.setdefault(note, []).append(method["name"])
+    return [f"{', '.join(names)}: {note}" for note, names in holders.items()]
 
 
 def _with_bar(method: Record, key: str) -> str:
@@ -179,7 +187,7 @@ def uncertainty_section(record: Record) -> str:
     heads = ("tolerance", *(f"share in the variance of the {KEYS[key].title}" for key in found["sobol"]))
     tables = html.table(("", "2.5 %", "median", "97.5 %"), bands) + html.table(heads, shares)
     drawn = html.vector(figures.bands_figure(record), "bands", "What the tolerances leave, and which of them matter.")
-    return f"<p>{told}{aligned}</p>{drawn}{tables}{call(found['call'])}"
+    return f"<p>{told}{aligned}</p>{listed(found['notes'])}{drawn}{tables}{call(found['call'])}"
 
 
 def wear_section(record: Record) -> str:
@@ -211,3 +219,41 @@ def _bands(found: Record) -> str:
 
 def _ends(band: Record) -> str:
     return f"{number(band['low'])} to {number(band['high'])}"
+
+
+def credibility_section(record: Record) -> str:
+    """Return the factors with required level, reached level and gradations."""
+    rows = [
+        (
+            each["activity"],
+            each["factor"],
+            each["goal"],
+            each["reached"],
+            "met" if each["adequate"] else "NOT met",
+            each["supported_by"],
+            each["missing"],
+        )
+        for each in record["credibility"]
+    ]
+    heads = ("activity", "factor", "goal", "reached", "", "supported by", "missing")
+    told = (
+        f"<p>{escape(record['adequacy']['text'])}. Goals follow from the model risk. The standard leaves gradations "
+        "and goals to the user; these are a proposal of the software.</p>"
+    )
+    levels = [
+        (each["factor"], letter, text) for each in record["credibility"] for letter, text in each["gradation"].items()
+    ]
+    gradations = words(("factor", "level", "activities"), levels)
+    return f"{told}{words(heads, rows)}<details><summary>the gradations</summary>{gradations}</details>"
+
+
+def requirements_section(record: Record) -> str:
+    """Return the matrix of requirements, with gaps first."""
+    rows = sorted(record["requirements"], key=lambda row: _ORDER.index(row["status"]))
+    table = [(row["id"], row["requirement"], row["status"], row["evidence"], row["gap"], row["where"]) for row in rows]
+    gaps = sum(row["status"] != _ORDER[-1] for row in rows)
+    told = f"<p>{gaps} of {len(rows)} requirements are not met or not known; they are listed first.</p>"
+    return told + words(("", "requirement", "status", "evidence", "gap", f"in {RECORD}"), table)
+
+
+_ORDER = (NOT_MET, UNKNOWN, MET)

@@ -7,19 +7,13 @@ from html import escape
 from typing import Any
 
 from ..evidence.matrix import NAMES
-from ..quantities import QUANTITIES, Quantity
-from ..studies.parameters import LOADS, PARAMETERS
+from ..evidence.terms import KEYS, LIMITED, number, title_of
+from ..studies.parameters import LOADS
 from . import html
 
 Record = Mapping[str, Any]
 
-LIMITED: Mapping[str, Quantity] = {**QUANTITIES, **PARAMETERS, **NAMES}
-"""By name."""
-
-KEYS: Mapping[str, Quantity] = {each.key: each for each in LIMITED.values()}
-"""By what JSON calls them."""
-
-_FINE, _HUGE = 1e-5, 1e9
+_FINE = 1e-5
 
 
 def case_text(case: Mapping[str, float]) -> str:
@@ -39,41 +33,30 @@ def value_text(name: str, row: Record) -> str:
     return f"{number(row['numbers'][each.key])} {each.written.text}".strip() + error_text(row["errors"].get(each.key))
 
 
-def limit_text(limit: Record) -> str:
-    """A limit with the title and the unit of what it holds."""
-    each = KEYS.get(limit["name"]) or LIMITED[limit["name"]]
-    ends = [f"{word} {number(limit[end])} {each.written.text}".strip() for end, word in _ENDS if limit[end] is not None]
-    return f"{title_of(limit['name'])} {' and '.join(ends)}"
-
-
-_ENDS = (("low", "at least"), ("high", "at most"))
-
-
 def head(key: str) -> str:
     """The head of a column."""
     each = KEYS[key]
     return f"{each.symbol or each.title}{each.written.bracketed}"
 
 
-def title_of(name: str) -> str:
-    """What a number is called, by its name."""
-    return _MORE.get(name) or LIMITED[name].title
+def recentred_text(change: Record) -> str:
+    """Describe an input whose tolerance states another nominal value than the joint's file."""
+    each = LIMITED[change["name"]]
+    unit = f" {each.written.text}".rstrip()
+    return (
+        f"{title_of(change['name'])}: the joint has {number(change['stated'])}{unit}, its tolerance states "
+        f"{number(change['used'])}{unit}; everything is computed with {number(change['used'])}{unit}."
+    )
 
 
-_MORE = {"utilisation": "utilisation (von Mises stress over yield stress)"}
+def quantities_of_interest(record: Record) -> list[str]:
+    """Return the names of the limited quantities, or of all quantities with a worst case."""
+    return list(dict.fromkeys(limit["name"] for limit in record["limits"])) or list(record["worst"])
 
 
 def error_text(error: float | None) -> str:
     """An error bar; what is below the digits that are shown is not."""
     return f" ± {percent(error)}" if error and error > _FINE else ""
-
-
-def number(value: Any) -> str:
-    """Five digits; none of a usual size has an exponent."""
-    if value is None or isinstance(value, str):
-        return value or "–"
-    text = f"{value:.5g}"
-    return f"{float(text):.0f}" if "e+" in text and abs(value) < _HUGE else text
 
 
 def percent(share: float) -> str:

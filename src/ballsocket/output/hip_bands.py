@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from html import escape
-from math import inf
+from math import inf, isnan
 from typing import TYPE_CHECKING
 
 import numpy
@@ -36,13 +37,16 @@ def print_bands(bands: Bands) -> None:
     terminal = console()
     print_folded(terminal, f"{_told(bands)} lie between", "bold")
     shown = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in _HEADS:
-        shown.add_column(head, justify="right", no_wrap=True)
-    shown.add_row(*_HEADS.values(), style="dim")
+    for head in _units(bands):
+        shown.add_column(head, justify="right", overflow="fold")
+    shown.add_row(*_units(bands).values(), style="dim")
     rest = (1 - bands.level) / 2
     for row in _rows(bands, (rest, 1 - rest)):
         shown.add_row(*row)
     terminal.print(shown)
+    for line in _rim(bands):
+        print_folded(terminal, line, "")
+    print_folded(terminal, _contact(bands), "")
     for line in _shares(bands):
         print_folded(terminal, line, "")
     print_notes(bands.notes)
@@ -59,12 +63,15 @@ def band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str]]:
     """Sections of a page: by their id a title and HTML."""
     rest = (1 - bands.level) / 2
     notes = "".join(f"<li>{escape(note)}</li>" for note in bands.notes)
-    told = f"<p>{escape(_told(bands))}: low to median to high.</p><ul class='quiet'>{notes}</ul>"
-    caption = f"The line is the usual patient's, the band holds {100 * bands.level:g} % of the patients."
+    told = f"<p>{escape(_told(bands))}: low to median to high.</p>"
+    told += "".join(f"<p>{escape(line)}.</p>" for line in (*_rim(bands), _contact(bands)))
+    told += f"<ul class='quiet'>{notes}</ul>"
+    caption = f"The line is the usual patient's, the band holds {100 * bands.level:g} % of the {bands.subject}"
+    caption += "." if bands.shared is None else ", the dark band that share of the patients at the median coefficient."
     curve = picture(drawn(penetration_curve(history, bands)), "Penetration", escape(caption))
     found = {
         "penetration": ("Penetration", curve),
-        "patients": ("Patients who differ", f"{told}{table(_heads(), _rows(bands, (rest, 0.5, 1 - rest)))}"),
+        "patients": ("Patients who differ", f"{told}{table(_heads(bands), _rows(bands, (rest, 0.5, 1 - rest)))}"),
     }
     if bands.indices is not None:
         shares = picture(drawn(share_figure(bands)), "What matters", "Sobol's indices with 95 % intervals.")
@@ -95,19 +102,67 @@ def share_figure(bands: Bands) -> Figure:
 
 
 def _told(bands: Bands) -> str:
-    return f"{100 * bands.level:g} % of {bands.patients - bands.without} patients"
+    share, patients = f"{100 * bands.level:g} %", bands.patients - bands.without
+    if bands.shared is None:
+        among = "" if bands.subject == "patients" else "predictions from "
+        return f"{share} of {among}{patients} patients"
+    return (
+        f"{share} of {patients} patients for a low, median and high wear coefficient, and {share} of the predictions "
+        f"for {_ANY} coefficient,"
+    )
 
 
-def _heads() -> list[str]:
-    return [f"{head} [{unit}]" if unit else head for head, unit in _HEADS.items()]
+def _units(bands: Bands) -> dict[str, str]:
+    """Return table heads with units; a shared coefficient has a column, and the rim has a separate line."""
+    if bands.shared is None:
+        return _HEADS
+    (cycles, million), (years, no_unit), *others, _ = _HEADS.items()
+    return {cycles: million, years: no_unit, "coefficient": "", **dict(others)}
+
+
+def _heads(bands: Bands) -> list[str]:
+    return [f"{head} [{unit}]" if unit else head for head, unit in _units(bands).items()]
+
+
+def _rim(bands: Bands) -> Iterator[str]:
+    """Describe the share of contacts at the rim at each report, where the table has no column for it."""
+    if bands.shared is None:
+        return
+    shares = [f"{100 * bands.edge_loading(look):.3g} %" for look in range(len(bands.counts))]
+    counts = [f"after {count / 1e6:g} million cycles" for count in bands.counts]
+    yield f"contact at the rim: {', '.join(map(' '.join, zip(shares, counts, strict=True)))}"
+
+
+def _contact(bands: Bands) -> str:
+    """Describe validity and utilisation of the contacts from the first cycle to the last report."""
+    rest = (1 - bands.level) / 2
+    low, high = (bands.utilisation_quantile(share)[-1] for share in (rest, 1 - rest))
+    reasons = [check.utilisation_note for check in bands.scatter.quick.unworn_checks] or ["nothing is pressed"]
+    peak = reasons[0] if isnan(low) else f"utilisation σv/σy {low:.3g} to {high:.3g}"
+    model = bands.scatter.quick.contact_model.name
+    return f"contact ({model}): valid in {100 * bands.valid_share(-1):.3g} % of the {bands.subject}; {peak}"
 
 
 def _rows(bands: Bands, shares: Sequence[float]) -> Iterator[tuple[str, ...]]:
     year = bands.scatter.cycles_per_year
     for look, count in enumerate(bands.counts):
-        found = (" to ".join(f"{bands.quantile(name, share)[look]:.3g}" for share in shares) for name in SHARED)
         years = "-" if year is None else f"{count / year:.3g}"
-        yield f"{count / 1e6:g}", years, *found, f"{100 * bands.edge_loading(look):.3g} %"
+        when = f"{count / 1e6:g}", years
+        found = [_ends(bands.quantile(name, share)[look] for share in shares) for name in SHARED]
+        if bands.shared is None:
+            yield (*when, *found, f"{100 * bands.edge_loading(look):.3g} %")
+            continue
+        for coefficient in bands.shared.values:
+            quantile = partial(bands.shared.quantile, coefficient)
+            yield (*when, coefficient, *(_ends(quantile(name, share)[look] for share in shares) for name in SHARED))
+        yield (*when, _ANY, *found)
+
+
+_ANY = "any"
+
+
+def _ends(numbers: Iterable[float]) -> str:
+    return " to ".join(f"{number:.3g}" for number in numbers)
 
 
 def _shares(bands: Bands) -> Iterator[str]:

@@ -101,8 +101,12 @@ def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
     whole = numpy.array([0.0, *(report.penetration for report in history.reports)])
     off = history.error.depth * whole
     low, high = (whole - off, whole + off) if bands is None else ([0.0, *ends] for ends in bands.band("penetration"))
-    label = None if bands is None else f"{100 * bands.level:g} % of the patients"
+    label = None if bands is None else f"{100 * bands.level:g} % of the {bands.subject}"
     axes.fill_between(count, low, high, color=_INK, alpha=0.2, linewidth=0, label=label)
+    if bands is not None and bands.shared is not None:
+        low, high = ([0.0, *ends] for ends in bands.population_band("penetration"))
+        label = f"{100 * bands.level:g} % of the patients, median coefficient"
+        axes.fill_between(count, low, high, color=_INK, alpha=0.3, linewidth=0, label=label)
     axes.plot(count, whole, "o-", color=_INK, ms=4, label="penetration")
     if any(report.creep_depth > 0 for report in history.reports):
         parts = {"worn_in": ("wear alone", _SECOND, "--"), "crept_in": ("creep alone", _THIRD, ":")}

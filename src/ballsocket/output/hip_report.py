@@ -14,7 +14,8 @@ from ..hip.history import History
 from ..hip.uncertainty import Bands
 from . import hip_plots
 from .hip_bands import band_sections
-from .html import drawn, page, picture, table
+from .hip_contact import HEADS, contact_line, contact_rows
+from .html import drawn, page, picture, table, words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -76,6 +77,8 @@ def write_hip_report(history: History, path: Path, bands: Bands | None = None) -
     """
     check_page(path)
     sections = {"numbers": ("Numbers", _numbers(history))}
+    if history.use.unworn_checks:
+        sections["contact"] = ("Validity of the contact", _contacts(history))
     if len(history.use.loaded):
         drawn_here = _FIGURES if history.use.ball_wear is None else _FIGURES | _OF_BALLS
         for name, (title, draw, caption) in drawn_here.items():
@@ -113,6 +116,12 @@ def _numbers(history: History) -> str:
         f"{100 * error.depth:.2g} %."
     )
     return f"<p>{escape(told)}</p><p>{escape(_rim(history))}</p>{table(_HEADS, rows)}"
+
+
+def _contacts(history: History) -> str:
+    """Lay out validity and utilisation of the worst contact of each activity."""
+    said = "The instant of the largest pressure of each activity, unworn and at each report."
+    return f"<p>{escape(contact_line(history))}. {said}</p>{words(HEADS, contact_rows(history))}"
 
 
 def _rim(history: History) -> str:

@@ -6,6 +6,7 @@ from rich.table import Table
 
 from ..hip.history import History
 from ..hip.mix import Mix
+from .hip_contact import HEADS, contact_line, contact_rows
 from .terminal import console, print_folded
 
 _HEADS = {
@@ -35,11 +36,26 @@ def print_hip(history: History) -> None:
         last = history.last
         worn = f"{last.ball_volume:.4g} mm³ and {last.ball_depth:.3g} mm"
         print_folded(terminal, f"the ball: {worn} after {last.cycles / 1e6:g} million cycles", "")
+    print_folded(terminal, contact_line(history), "")
+    if len(history.use.unworn_checks) > 1:
+        terminal.print(_contacts(history))
     print_folded(terminal, _film(history), "")
     off = f"volume within {100 * history.error.volume:.2g} % of the same model in the finest steps"
     print_folded(terminal, f"{off}, in {history.steps} blocks", "dim")
     for note in history.notes:
         print_folded(terminal, note, "dim")
+
+
+def _contacts(history: History) -> Table:
+    """Lay out the worst contact of each activity, unworn and at the end."""
+    shown = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for head in HEADS:
+        shown.add_column(head, justify="left" if head in HEADS[1:3] else "right", no_wrap=head != "at")
+    rows = list(contact_rows(history))
+    count = len(history.use.unworn_checks)
+    for row in (*rows[:count], *rows[-count:]):
+        shown.add_row(*row)
+    return shown
 
 
 def _table(history: History) -> Table:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from html import escape
 from io import BytesIO
 from typing import TYPE_CHECKING
@@ -22,7 +23,7 @@ img { max-width: 100%; } figure { margin: 1rem 0; } figcaption, .quiet { color: 
 table { border-collapse: collapse; font-size: 0.9rem; } td, th { padding: 0.25rem 0.7rem; text-align: right; }
 td:first-child, th:first-child, .text td, .text th { text-align: left; vertical-align: top; }
 .text td:first-child { min-width: 14rem; } .text td:last-child { min-width: 17rem; }
-.text td:nth-child(2) { white-space: nowrap; } small { color: #555; }
+.text td:nth-child(2) { min-width: 8rem; } small { color: #555; }
 code { overflow-wrap: anywhere; } .text { width: 100%; }
 tr { border-bottom: 1px solid #e5e5e5; } nav a { margin-right: 1rem; white-space: nowrap; }
 .holds { color: #00684f; font-weight: 600; } .nearly { color: #8a5a00; font-weight: 600; }
@@ -63,10 +64,24 @@ def vector(figure: Figure, title: str, caption: str = "") -> str:
 
 
 def drawn(figure: Figure, form: str = "png") -> bytes:
-    """A figure as the bytes of a PNG or SVG."""
+    """Return a figure as PNG or SVG bytes, reproducible with the same libraries."""
+    from matplotlib import rc_context
+
     stream = BytesIO()
-    figure.savefig(stream, format=form, dpi=140)
+    metadata = {"Date": None} if form == "svg" else None
+    with rc_context({"svg.hashsalt": "ballsocket"}):
+        figure.savefig(stream, format=form, dpi=140, metadata=metadata)
     return stream.getvalue()
+
+
+@contextmanager
+def plain_style() -> Iterator[None]:
+    """Draw with the default style of matplotlib, independent of user settings."""
+    from matplotlib import rc_context, rcdefaults
+
+    with rc_context():
+        rcdefaults()
+        yield
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -1,4 +1,4 @@
-"""What measurements tell of a joint, in a terminal."""
+"""Identification from measurements, in a terminal."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from rich.table import Table
 from ..identify.measured import MEASURED
 from ..identify.parameters import Identified
 from ..identify.posterior import CONVERGED, Posterior
+from ..identify.sensitivity import Sensitivity
 from ..kinds import Unit
 from .terminal import console, print_folded
 
@@ -14,7 +15,7 @@ _ROWS = 5
 
 
 def print_identified(found: Identified, drawn: Posterior | None) -> None:
-    """Unknowns with their bands, products where these are all that is told, how well it fits, and what to do next."""
+    """Print the unknowns with their bands, products, fit, sensitivity to machine errors, and the next measurement."""
     terminal, information = console(), found.information
     print_folded(terminal, f"{found.model.name} through {_counted(found)}", "bold")
     terminal.print(_table(found, drawn))
@@ -22,6 +23,8 @@ def print_identified(found: Identified, drawn: Posterior | None) -> None:
     print_folded(terminal, f"information of {rank}; {_scatter(found)}", "")
     if drawn is not None:
         print_folded(terminal, _chains(drawn), "")
+    if found.sensitivity:
+        terminal.print(_sensitivity(found))
     terminal.print(_next(found))
     for note in found.notes:
         print_folded(terminal, note, "dim")
@@ -34,7 +37,7 @@ def _counted(found: Identified) -> str:
 
 def _scatter(found: Identified) -> str:
     if found.freedom <= 0:
-        return "as many values as unknowns, so that nothing is left to tell how well they fit"
+        return "as many values as unknowns: the quality of the fit cannot be tested"
     return f"the data scatter {found.spread:.2f} times as far as their uncertainties say"
 
 
@@ -51,7 +54,7 @@ def _table(found: Identified, drawn: Posterior | None) -> Table:
     table = _plain_table("", "best", "95 %", "unit", *(("posterior",) if drawn else ()))
     for unknown, each in zip(found.scales.unknowns, found.estimates.values(), strict=True):
         unit = unknown.quantity.shown
-        best = _numbers(unit.factor, each.value) if each.told else "not told"
+        best = _numbers(unit.factor, each.value) if each.identifiable else "not identifiable"
         band = _band(unit.factor, each.low, each.high)
         table.add_row(each.name, best, band, unit.text, *_drawn(drawn, each.name, unit))
     for product in found.information.products:
@@ -76,6 +79,26 @@ def _band(factor: float, low: float, high: float) -> str:
 
 def _numbers(factor: float, number: float) -> str:
     return f"{factor * number:.4g}"
+
+
+def _sensitivity(found: Identified) -> Table:
+    """Make the table of shifts by machine errors, with ratios to half bands."""
+    unknowns = found.scales.unknowns
+    heads = [f"Δ{each.quantity.symbol}, {each.quantity.shown.text}".removesuffix(", ") for each in unknowns]
+    table = _plain_table("if the machine had", *heads)
+    for error in found.sensitivity:
+        shifts = [_shift(found, error, index) for index in range(len(unknowns))]
+        table.add_row(error.title, *shifts)
+    return table
+
+
+def _shift(found: Identified, error: Sensitivity, index: int) -> str:
+    """Format a shift and its ratio to half a band."""
+    unknown = found.scales.unknowns[index]
+    ratio = found.shift_ratio(error, unknown.name)
+    if not found.estimates[unknown.name].identifiable:
+        return "-"
+    return f"{unknown.quantity.shown.factor * error.shifts[unknown.name]:+.3g} ({ratio:.1f}x)" if ratio > 5e-3 else "0"
 
 
 def _next(found: Identified) -> Table:

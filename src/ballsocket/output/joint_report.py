@@ -15,7 +15,7 @@ from ..cup import Cup
 from ..io.joint_file import JointFile
 from ..io.joint_toml import tables_of
 from ..joint import Material
-from ..quantities import CUP, MATERIAL, STRENGTH
+from ..quantities import CUP, MATERIAL, STRESS_LIMITS
 from ..sphere.contact import OffAxisContact
 from ..studies.parameters import PARAMETERS
 from . import html
@@ -95,7 +95,7 @@ def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
 
 def _material(material: Material, units: Units) -> str:
     known = {MATERIAL[name]: getattr(material, name) for name in ("young", "poisson")}
-    known |= {STRENGTH[name]: strength for name, strength in material.strengths.items()}
+    known |= {STRESS_LIMITS[name]: limit for name, limit in material.stress_limits.items()}
     numbers = (f"{quantity.title} {units.told(quantity, float(number))}" for quantity, number in known.items())
     return f"{material.name or 'a material'}: {', '.join(numbers)}"
 

@@ -10,7 +10,7 @@ from rich.text import Text
 from ..joint import Joint, Material
 from ..model.theory import Theory
 from ..presets import joints, materials
-from ..quantities import JOINT, MATERIAL, QUANTITIES, STRENGTH, Quantity
+from ..quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS, Quantity
 from .terminal import console, print_folded
 
 _NARROW = 72  # columns: lists are paragraphs below
@@ -64,7 +64,7 @@ def _of(preset: Material | Joint) -> list[tuple[str, str]]:
     if isinstance(preset, Material):
         return [
             ("name", preset.name),
-            *_quantities(preset, {name: QUANTITIES[name] for name in (*MATERIAL, *preset.strengths)}),
+            *_quantities(preset, {name: QUANTITIES[name] for name in (*MATERIAL, *preset.stress_limits)}),
         ]
     ball = "rigid" if preset.ball is None else str(preset.ball)
     return [*_quantities(preset, JOINT), ("liner", str(preset.liner)), ("ball", ball)]
@@ -89,8 +89,8 @@ def _numbers(preset: Material | Joint) -> str:
     text = str(preset).removeprefix(preset.name)
     if isinstance(preset, Joint):
         return text.removeprefix(": ")
-    strengths = (f"{STRENGTH[name].title} {value:g} MPa" for name, value in preset.strengths.items())
-    return ", ".join([text.strip(" ()"), *strengths])
+    limits = (f"{STRESS_LIMITS[name].title} {value:g} MPa" for name, value in preset.stress_limits.items())
+    return ", ".join([text.strip(" ()"), *limits])
 
 
 def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], gap: int) -> None:

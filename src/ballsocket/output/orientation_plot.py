@@ -24,7 +24,8 @@ def orientation_figure(stood: Orientations) -> Figure:
     """The distance from the contact to the rim beside the largest pressure, over inclination and anteversion.
 
     A dotted line is where the contact reaches the rim. Hatched without a colour are cups that do not hold the ball, and
-    those whose rim digs in, where the pressure has no largest value. A circle is the cup as it was given.
+    those whose rim digs in, where the pressure has no largest value. A circle is the orientation of the
+    cup, if it is set.
 
     Parameters
     ----------
@@ -102,13 +103,13 @@ def _hatch(axes: Axes, x: Numbers, y: Numbers, where: Numbers, hatch: str, said:
 
 
 def _mark(axes: Axes, stood: Orientations) -> None:
-    """The cup as it was given, where it lies on the map."""
+    """Mark the orientation of the cup, if it is set and lies on the map."""
     cup = stood.model.cup
     inside = (
         stood.inclination[0] <= cup.inclination <= stood.inclination[-1]
         and stood.anteversion[0] <= cup.anteversion <= stood.anteversion[-1]
     )
-    if inside and cup.inclination > 0:
+    if inside and cup.oriented:
         place = degrees(cup.inclination), degrees(cup.anteversion)
         mark: Any = {
             "color": "white",

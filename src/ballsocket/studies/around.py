@@ -11,7 +11,8 @@ import numpy
 from ..cup import Cup
 from ..joint import Joint
 from .design import check_values, sample
-from .distributions import Distribution
+from .distributions import Distribution, check_nominal
+from .parameters import LOADS, PARAMETERS, nominal
 from .slopes import Slopes, elasticities, pressed
 from .usual import usual
 
@@ -62,8 +63,13 @@ def around(joint: Joint, cup: Cup, load: Mapping[str, float], tolerances: Mappin
     Raises
     ------
     ValueError
-        A name that is not known, a load of 0, or joints for which there is no answer.
+        A name that is not known, a load of 0, joints for which there is no answer, or a joint or load outside its
+        own tolerances.
     """
+    for name, spread in tolerances.items():
+        value = load.get(name) if name in LOADS else nominal(joint, name)
+        if value is not None:
+            check_nominal(name, value, spread, PARAMETERS[name].written)
     numbers = {name: float(getattr(joint, name)) for name in _VARIED[:3]}
     numbers |= {"liner_young": float(joint.liner.young), "liner_poisson": float(joint.liner.poisson)}
     at = {name: number for name, number in numbers.items() if 0 < number < numpy.inf}

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Iterator, Sequence
+from io import TextIOWrapper
 from pathlib import Path
-from typing import IO
+from typing import TextIO
 
 import numpy
 
 from ..arrays import Numbers
 from ..checks import needs, shown
+from ..input_files import open_input, resolve_input
 from .room import check_rows
 
 Check = Callable[[Sequence[str]], None]
@@ -32,7 +34,8 @@ def read_columns(path: Path, check: Check) -> dict[str, Numbers]:
     """
     if path.suffix.lower() not in _READERS:
         raise ValueError(f"{shown(str(path))} must end in {' or '.join(_READERS)}")
-    if path.exists() and not path.is_file():
+    resolved = resolve_input(path)
+    if resolved.exists() and not resolved.is_file():
         raise ValueError(f"{path.name} is no file")
     return _READERS[path.suffix.lower()](path, check)
 
@@ -40,8 +43,8 @@ def read_columns(path: Path, check: Check) -> dict[str, Numbers]:
 def _read_csv(path: Path, check: Check) -> dict[str, Numbers]:
     import csv
 
-    with path.open(encoding="utf-8-sig", newline="") as stream:
-        reader = csv.reader(_lines(stream), strict=True)
+    with TextIOWrapper(open_input(path), encoding="utf-8-sig", newline="") as stream:
+        reader = csv.reader(_lines(stream, path.name), strict=True)
         try:
             heads = next(reader, [])
             check(heads)
@@ -53,12 +56,12 @@ def _read_csv(path: Path, check: Check) -> dict[str, Numbers]:
     return dict(zip(heads, columns, strict=True))
 
 
-def _lines(stream: IO[str]) -> Iterator[str]:
+def _lines(stream: TextIO, title: str) -> Iterator[str]:
     """The lines of a text, one of which could be as long as the memory; remarks before the heads are passed over."""
     heads = False
     while line := stream.readline(_LONGEST_LINE):
         if len(line) == _LONGEST_LINE:
-            raise ValueError(f"{Path(stream.name).name} has a line of more than {_LONGEST_LINE} characters")
+            raise ValueError(f"{title} has a line of more than {_LONGEST_LINE} characters")
         heads = heads or not line.startswith("#")
         if heads:
             yield line
@@ -88,7 +91,7 @@ def _read_parquet(path: Path, check: Check) -> dict[str, Numbers]:
     from pyarrow import ArrowException, parquet
 
     try:
-        with parquet.ParquetFile(path) as file:
+        with open_input(path) as stream, parquet.ParquetFile(stream) as file:
             heads = file.schema_arrow.names
             check(heads)
             check_rows(path.name, file.metadata.num_rows, len(heads))

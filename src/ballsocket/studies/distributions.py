@@ -7,6 +7,7 @@ from math import inf, log
 from typing import Any
 
 from ..checks import require
+from ..kinds import Unit
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,6 +110,30 @@ class LogNormal:
 
 
 Distribution = Rectangular | Normal | LogNormal
+
+
+_ALMOST_NONE = 1e-3
+"""Tail probability at which an unbounded distribution is cut for the check of a nominal value."""
+
+
+def check_nominal(name: str, nominal: float, spread: Distribution, unit: Unit) -> None:
+    """Raise ValueError for a nominal value outside the distribution of the same quantity.
+
+    Its result would lie outside the band of the distribution.
+    """
+    bounded = all(abs(float(end)) < inf for end in spread.frozen.support())
+    shares = (0.0, 1.0) if bounded else (_ALMOST_NONE, 1 - _ALMOST_NONE)
+    low, high = (float(spread.frozen.ppf(share)) for share in shares)
+    slack = _ROUNDING * max(abs(low), abs(high))
+    if not low - slack <= nominal <= high + slack:
+        value, least, most = (f"{number * unit.factor:.6g}" for number in (nominal, low, high))
+        text = f" {unit.text}".rstrip()
+        raise ValueError(
+            f"{name} = {value}{text} lies outside its tolerance of {least} to {most}{text}: change one of them"
+        )
+
+
+_ROUNDING = 1e-9
 
 
 def tolerance(nominal: float, plus_minus: float) -> Normal:

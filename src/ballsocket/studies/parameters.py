@@ -11,7 +11,7 @@ from ..arrays import Array, where
 from ..joint import Joint, Material
 from ..joint.dimensions import DIAMETERS, OWN, check_once, resolved
 from ..model import Model
-from ..quantities import JOINT, MATERIAL, PARTS, STRENGTH, Quantity
+from ..quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
 
 AIMS: Mapping[str, Quantity] = MappingProxyType(
     {**quantities.AIM, **{name: quantities.CUP[name] for name in ("inclination", "anteversion")}}
@@ -67,6 +67,16 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
     return made, possible
 
 
+def nominal(joint: Joint, name: str) -> float | None:
+    """Return a joint parameter by its study name; None for a parameter of a rigid ball."""
+    if name in JOINT:
+        return float(getattr(joint, name))
+    part, _, number = name.partition("_")
+    material = getattr(joint, part)
+    value = None if material is None else getattr(material, number)
+    return None if value is None else float(value)
+
+
 def pressable(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, dict[str, Array], Array]:
     """The joint with other numbers, load and aim among them as keywords of a press, and where they make a joint."""
     load = {name: value for name, value in values.items() if name in (*LOADS, *AIMS)}
@@ -102,5 +112,5 @@ def _material(material: Material | None, values: Mapping[str, Array], part: str)
     given = {number: values[f"{part}_{number}"] for number in names if f"{part}_{number}" in values}
     if not given:
         return material
-    strengths = dict.fromkeys(STRENGTH) if all(number in given for number in MATERIAL) else {}
-    return Material(**given) if material is None else replace(material, **{**strengths, **given})
+    limits = dict.fromkeys(STRESS_LIMITS) if all(number in given for number in MATERIAL) else {}
+    return Material(**given) if material is None else replace(material, **{**limits, **given})

@@ -7,12 +7,14 @@ from typing import Any
 
 from ..checks import check_names, shown
 from ..io.joint_file import named_material
-from ..io.units import LONGEST, parse
+from ..io.units import parse
 from ..quantities import QUANTITIES
 from .distributions import Distribution, Rectangular, tolerance
 from .limits import NAMES as LIMITED
 from .limits import Limit
 from .parameters import PARAMETERS, PARTS_OF
+
+_MAX_CHARACTERS = 200
 
 
 def range_of(phrase: str) -> tuple[str, float, float]:
@@ -107,7 +109,7 @@ def limit_of(phrase: str) -> Limit:
 
 def _matched(form: str, phrase: str) -> re.Match[str] | None:
     """The parts of a phrase; none of one that is too long to be meant, in which a search could take seconds."""
-    return re.fullmatch(form, phrase) if len(phrase) <= LONGEST else None
+    return re.fullmatch(form, phrase) if len(phrase) <= _MAX_CHARACTERS else None
 
 
 def _with_unit(first: str, last: str) -> str:

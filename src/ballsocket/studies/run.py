@@ -112,6 +112,8 @@ def study(
     """
     needs("study", "xarray", "zarr")
     _check(model, joint, design)
+    if not callable(getattr(engine, "run", None)) or isinstance(engine, type):
+        raise TypeError(f"engine must be an Engine, such as Serial() or Processes(workers=2), got {shown(engine)}")
     task = _task(model, joint, design, axes, tuple(quantities))
     kept = None if store is None else Store(Path(store).absolute())
     if kept is None or not kept.path.exists():
@@ -140,7 +142,10 @@ def read(path: str | Path) -> xarray.Dataset:
 
     if Path(path).exists():
         Store(Path(path)).study()
-    found = xarray.open_dataset(path, engine="zarr", consolidated=False, chunks=None)
+    try:
+        found = xarray.open_dataset(path, engine="zarr", consolidated=False, chunks=None)
+    except UnicodeError as error:
+        raise ValueError(f"{path} is a damaged store: {error}; run its study again to mend it") from error
     return arranged(found[[name for name in DTYPES if name in found.data_vars]])
 
 

@@ -215,4 +215,6 @@ def _length(file: JointFile, name: str, screen: Screen) -> str:
 def _trusted(contact: Contact | None, file: JointFile, screen: Screen) -> str:
     if contact is None:
         return pressed(file, (screen.answered_by,)).missing.get(screen.answered_by, "–")
-    return "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
+    if not bool(contact.valid):
+        return f"no: {'; '.join(contact.notes)}"
+    return "; ".join(["yes", *contact.notes])

@@ -234,7 +234,8 @@ def _numbers(contact: OffAxisContact, screen: Screen) -> str:
         _cell(CONTACT["half_angle"], contact.half_angle, reading),
         _cell(CONTACT["force"], contact.force, reading),
     ]
-    return f"{_verdict(contact, reading)}<dl class='tiles'>{''.join(cells)}</dl>{trust(contact)}{_hint(contact)}"
+    told = f"{trust(contact, contact.notes)}{_hint(contact)}"
+    return f"{_verdict(contact, reading)}<dl class='tiles'>{''.join(cells)}</dl>{told}"
 
 
 def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> str:
@@ -252,8 +253,8 @@ def _verdict(contact: OffAxisContact, reading: Reading) -> str:
 
 
 def _hint(contact: OffAxisContact) -> str:
-    cup = contact.model.cup
-    if cup.inclination or cup.anteversion:
+    """Offer the usual orientation for a cup without one."""
+    if contact.model.cup.oriented:
         return ""
     words = escape(f"This cup opens straight down. Put it at {_USUAL['inclination']:g}° / {_USUAL['anteversion']:g}°")
     return f"<p><button type='button' class='plain' data-tell='cup.usual'>{words}</button></p>"

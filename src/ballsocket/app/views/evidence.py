@@ -10,10 +10,11 @@ from functools import partial
 from typing import Any
 
 from ...checks import check_names, shown
+from ...evidence.terms import title_of
 from ...io.joint_file import JointFile
 from ...output import evidence_words
 from ...output import html as page
-from ...output.evidence_words import case_text, listed, title_of, value_text
+from ...output.evidence_words import case_text, listed, value_text
 from ..asked import Asked
 from ..evidencing import LONGEST, Packed, cases_of, packed
 from ..fields import Field, segments, words
@@ -114,7 +115,7 @@ class Evidence:
 def _key(screen: Screen) -> Hashable:
     """What a pack depends on."""
     use = replace(screen.use, instant=None) if screen.asked.wear == "yes" else None
-    return screen.asked, screen.file.joint, screen.file.cup, use
+    return screen.asked, screen.file.joint, screen.file.cup, screen.file.cup.oriented, use
 
 
 def _fields(asked: Asked) -> dict[str, Field]:

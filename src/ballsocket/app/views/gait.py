@@ -6,6 +6,7 @@ from collections.abc import Hashable
 from dataclasses import replace
 from functools import partial
 from html import escape
+from math import nan
 from typing import Any
 
 import numpy
@@ -24,7 +25,7 @@ from ..reading import Reading
 from ..screen import Screen
 from ..use_fields import cycle_fields
 from ..view import Document, Host
-from ..words import notes_list, number_cell, progress, told
+from ..words import doubt, notes_list, number_cell, progress, told
 
 _FOUND: Kept = Kept(most=24)
 _LARGEST = 100_000  # characters of a table
@@ -155,6 +156,8 @@ def _numbers(found: Gaited, reading: Reading) -> str:
         ),
         number_cell("least film", float(film.min()) if len(film) else float("nan"), "nm", found.regime),
         number_cell("nearest to the rim", least * edge.factor, edge.text, found.worst),
+        number_cell("utilisation σv/σy", nan if found.utilisation is None else found.utilisation, ""),
         number_cell("sliding in a cycle", found.numbers["slide_mm"] * edge.factor, edge.text),
     ]
-    return f"<dl class='tiles'>{''.join(cells)}</dl>{notes_list(found.notes) if found.notes else ''}"
+    listed = notes_list(found.notes) if found.notes else ""
+    return f"{doubt(found.valid)}<dl class='tiles'>{''.join(cells)}</dl>{listed}"

@@ -12,7 +12,7 @@ from typer.models import ArgumentInfo
 
 from ...atomic import write_text
 from ...checks import check_names, known_name, shown
-from ...evidence.named_files import files_of
+from ...input_files import AllowedFolders, resolved_path
 from ...io.toml import MOST, read_toml
 from .schema import option, parameters
 from .table import TOOLS, Tool
@@ -53,7 +53,7 @@ def words_of(name: str, arguments: Mapping[str, Any], folder: Path) -> list[str]
             words += [f"--{each.replace('_', '-')}={text}" for text in _texts(each, arguments[each])]
     if tool.file:
         path = _file(tool, arguments, folder)
-        named.append(path.relative_to(folder).as_posix())
+        named.append(_operand(path.relative_to(folder).as_posix()))
         words += [f"{tool.writes}={path.stem}-pack"] if tool.writes else []
     return [tool.command, *named, *tool.fixed, *words, "--json"]
 
@@ -75,22 +75,26 @@ def _texts(name: str, value: Any) -> Iterator[str]:
 
 
 def _inside(name: str, folder: Path) -> str:
-    """A name, if no file outside the folder is called so."""
-    if Path(name).is_absolute() or not (folder / name).resolve().is_relative_to(folder.resolve()):
-        raise ValueError(f"{shown(name)} lies outside the folder of this server")
+    """Check that a name stays inside the folder, and return it as an operand."""
+    if Path(name).is_absolute():
+        raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
+    AllowedFolders((resolved_path(folder),)).resolve(folder / name, name)
+    return _operand(name)
+
+
+def _operand(name: str) -> str:
+    """Prefix a file name that begins like an option with the folder."""
     return f"./{name}" if name.startswith("-") else name
 
 
 def _file(tool: Tool, arguments: Mapping[str, Any], folder: Path) -> Path:
-    """The file of a call, by its name or from its content; what it names lies in the folder too."""
+    """Return the file of a call, by name or from its content. The called process checks further file names."""
     given = [arguments.get("file"), arguments.get("content")]
     if sum(each is not None for each in given) != 1:
         raise ValueError(f"either a file is needed, or content: TOML about {tool.file}")
     if not all(isinstance(each, str) for each in given if each is not None):
         raise ValueError("file and content must be text")
     path = _kept(arguments["content"], folder) if given[0] is None else _there(given[0], folder)
-    for each in files_of(path):
-        _inside(str(each.relative_to(folder)), folder)
     for key in tool.forbidden:
         if key in read_toml(path, tool.file, dict):
             raise ValueError(f"{key} is not for this server: leave it out of the file")

@@ -7,12 +7,14 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...input_files import restricted
+from ...sphere.kept import folder as cache_folder
 from ..root import DONE
 
 LARGEST = 2_000_000
@@ -38,25 +40,41 @@ async def run(words: Sequence[str], folder: Path, longest: float) -> Told:
     longest : float
         Seconds that it may take.
     """
-    process = await asyncio.create_subprocess_exec(
-        sys.executable,
-        "-m",
-        "ballsocket.cli.tools.limited",
-        *words,
-        cwd=folder,
-        stdin=asyncio.subprocess.DEVNULL,
-        stdout=asyncio.subprocess.PIPE,
-        stderr=asyncio.subprocess.PIPE,
-        start_new_session=True,
-    )
-    try:
-        out, err = await asyncio.wait_for(process.communicate(), longest)
-    except TimeoutError:
-        return Told(None, f"stopped after {longest:g} s, the longest that a call may take here{_KEPT}")
-    finally:
-        _kill(process)
-        await process.wait()
+    with _lifeline() as stdin:
+        process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            *_COMMAND,
+            *words,
+            cwd=folder,
+            env={**os.environ, **restricted((folder, cache_folder()))},
+            stdin=stdin,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.PIPE,
+            start_new_session=True,
+        )
+        try:
+            out, err = await asyncio.wait_for(process.communicate(), longest)
+        except TimeoutError:
+            return Told(None, f"stopped after {longest:g} s, the longest that a call may take here{_KEPT}")
+        finally:
+            _kill(process)
+            await process.wait()
     return _told(process.returncode, out, err.decode("utf-8", errors="replace"))
+
+
+_COMMAND = ("-P", "-m", "ballsocket.cli.tools.limited")
+"""Arguments of Python; -P: a file of the folder that is named as a module is not imported."""
+
+
+@contextmanager
+def _lifeline() -> Iterator[int]:
+    """Open a pipe whose reading end is for a child, and whose writing end closes when this process ends."""
+    reading, writing = os.pipe()
+    try:
+        yield reading
+    finally:
+        os.close(writing)
+        os.close(reading)
 
 
 _KEPT = "; what evidence has finished is kept: ask for it again to go on"

@@ -1,0 +1,98 @@
+"""Single entry points of the package: one module parses units, one opens input files."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import ballsocket as bs
+
+PACKAGE = Path(bs.__file__).parent
+MODULES = {path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_bytes()) for path in PACKAGE.rglob("*.py")}
+OPENING = {"open", "read_text", "read_bytes", "genfromtxt", "loadtxt", "fromfile", "read_csv", "read_parquet"}
+OWN_FILES = {
+    "app/style.py": "styles and scripts of the package",
+    "atomic.py": "locks a folder that is written",
+    "cli/root.py": "opens the null device",
+    "contact/closed_sphere.py": "a table of the package",
+    "contact/strength.py": "a table of the package",
+    "elastic/tabulated/build.py": "writes the tables of the package",
+    "elastic/tabulated/chebyshev.py": "tables of the package",
+    "evidence/code_checks.py": "a table of the package",
+    "evidence/comparison.py": "the files of a pack, named by its user on the command line",
+    "evidence/folder.py": "a pack, and inputs that were opened before",
+    "evidence/pack.py": "inputs that were opened before",
+    "export/c_element.py": "templates of the package",
+    "export/compiler.py": "a library that it has just compiled",
+    "export/fmu/fmu.py": "a library that it has just compiled",
+    "fem/export/calculix.py": "results in a folder of decks, named by its user in Python",
+    "fingerprint.py": "the source of the package",
+    "hip/lives.py": "labels of a store",
+    "models/refined_state.py": "a table of the package",
+    "models/table_3.py": "a table of the package",
+    "npz.py": "writes arrays",
+    "output/report.py": "a picture that it has just drawn",
+    "paper/claims/elsewhere.py": "a table of the package",
+    "paper/plan.py": "pieces of a run",
+    "sources.py": "the bibliography of the package",
+    "sphere/deck.py": "results in a folder of decks, named by its user in Python",
+    "studies/export.py": "writes the numbers of a study",
+    "studies/room.py": "memory of the machine",
+    "studies/store.py": "the label of a store",
+}
+"""Modules that open files without `input_files`, with these files; readers of input files are excluded."""
+
+
+def called(tree):
+    """Return the names of all functions and methods that a module calls."""
+    calls = (node.func for node in ast.walk(tree) if isinstance(node, ast.Call))
+    return {call.attr if isinstance(call, ast.Attribute) else getattr(call, "id", "") for call in calls}
+
+
+def imported(tree):
+    """Return the names of all modules that a module imports directly or by name."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (name.name.split(".")[0] for name in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            yield node.module.split(".")[0]
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value
+
+
+def test_only_the_module_of_units_calls_pint():
+    assert [name for name, tree in MODULES.items() if "pint" in imported(tree)] == ["io/units.py"]
+
+
+def test_pint_evaluates_no_text():
+    """Its parsers of expressions are called nowhere; `Unit` and `Quantity` of text would call them too."""
+    calls = called(MODULES["io/units.py"])
+    assert not calls & {"parse_expression", "parse_units_as_container"}
+    assert {"UnitsContainer", "get_name"} <= calls
+
+
+def test_files_that_users_name_are_opened_by_one_module():
+    opening = {name for name, tree in MODULES.items() if called(tree) & OPENING}
+    assert opening - {"input_files.py"} == set(OWN_FILES)
+
+
+@pytest.mark.parametrize(
+    "reader",
+    [
+        "io/toml.py",
+        "hip/tables.py",
+        "studies/columns.py",
+        "sphere/scans.py",
+        "npz.py",
+        "elastic/tabulated/chebyshev.py",
+        "evidence/signature.py",
+    ],
+)
+def test_every_reader_uses_that_module(reader):
+    assert "open_input" in called(MODULES[reader])
+
+
+def test_files_are_not_read_by_the_names_of_users_elsewhere():
+    """Readers of other packages that take a path get one that was checked."""
+    readers = {name for name, tree in MODULES.items() if called(tree) & {"ZipFile", "ParquetFile"}}
+    assert readers == {"app/evidencing.py", "export/fmu/fmu.py", "npz.py", "studies/columns.py"}  # the first two write

@@ -1,0 +1,131 @@
+"""Arguments of a wrong type: each is refused by name, and no part of it is ignored."""
+
+import io
+import struct
+import warnings
+
+import numpy
+import pytest
+
+import ballsocket as bs
+from ballsocket.engines.local import Serial
+from ballsocket.hip import InUse
+from ballsocket.hip.gait import iso_14242_1
+from ballsocket.hip.laws import Archard
+from ballsocket.npz import read_arrays, write_arrays
+from ballsocket.sphere import read_scan
+
+HIP = bs.joints["hip-28"]
+ELEMENT = bs.ForceElement(bs.HessForsbach(), HIP)
+
+
+class DataFrame:
+    """Stand-in for a pandas DataFrame: a shape without a dtype."""
+
+    shape = (2, 1)
+
+
+def matrix(*values):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PendingDeprecationWarning)
+        return numpy.matrix([values])
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (DataFrame(), "got a DataFrame: take one of its columns"),
+        (matrix(1.0, 2.0), "got a numpy.matrix: use numpy.asarray"),
+        (matrix(-1.0), "got a numpy.matrix: use numpy.asarray"),
+    ],
+)
+def test_arrays_of_another_kind_are_refused(value, message):
+    with pytest.raises(TypeError, match=f"force must be a number or an array .* {message}"):
+        bs.HessForsbach().press(HIP, force=value)
+    with pytest.raises(TypeError, match=f"ball_radius must be a number or an array .* {message}"):
+        bs.Joint(ball_radius=value, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+
+
+def test_a_matrix_is_no_position():
+    """A matrix as a position once ended the process inside NumPy."""
+    with pytest.raises(TypeError, match="position must be a number or an array .* got a numpy.matrix"):
+        ELEMENT(matrix(0.0, 0.0, 0.2))
+
+
+@pytest.mark.parametrize(
+    "position",
+    [
+        (0.0, 0.0, 0.2j),
+        [0, 0, 0.2 + 1e-9j],
+        (numpy.float64(0.0), numpy.complex128(0.1j), numpy.float64(0.2)),
+        (0, 0, 10**400),
+        (None, 0.0, 0.0),
+    ],
+)
+def test_three_components_are_real_numbers(position):
+    with pytest.raises(ValueError, match="a state has three components, x, y and z, all real numbers"):
+        ELEMENT(position)
+
+
+@pytest.mark.parametrize("which", ["position", "velocity", "spin"])
+def test_no_imaginary_part_is_dropped(which):
+    words = {"position": numpy.array([0.0, 0.0, 0.2]), which: numpy.array([0.0, 0.0, 0.2 + 1j])}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(TypeError, match=f"{which} must be a number or an array of real numbers"):
+            ELEMENT(**words)
+
+
+@pytest.mark.parametrize("engine", ["processes", 3, None, object(), Serial])
+def test_an_engine_of_another_kind_is_refused(engine):
+    pytest.importorskip("xarray")
+    with pytest.raises(TypeError, match=r"engine must be an Engine, such as Serial\(\)"):
+        bs.study(bs.HessForsbach(), HIP, force=[1.0, 2.0], engine=engine)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("cup", "steep"), ("cup", None), ("cycle", "iso-14242-1"), ("joint", "hip-28")]
+)
+def test_a_hip_of_other_parts_is_refused(name, value):
+    words = {"joint": HIP, "cycle": iso_14242_1(), "wear": Archard(coefficient=1e-6), name: value}
+    with pytest.raises(TypeError, match=f"{name} must be a {name.capitalize()}, got"):
+        InUse(**words)
+
+
+def test_a_scan_beyond_all_bounds_is_refused_by_its_points(tmp_path, capfd):
+    pytest.importorskip("meshio")
+    rows = [f"v {i % 20}e200 {i // 20} 1" for i in range(400)]
+    faces = [f"f {i + 1} {i + 2} {i + 3}" for i in range(300)]
+    (tmp_path / "bore.obj").write_text("\n".join([*rows, *faces]), encoding="ascii")
+    with pytest.raises(ValueError, match=r"points of bore.obj.* is not allowed: coordinates \(mm\) are at most 1e\+06"):
+        read_scan(tmp_path / "bore.obj")
+    (tmp_path / "bore.stl").write_bytes(b"solid \xff")
+    with pytest.raises(ValueError, match="bore.stl is no mesh that can be read"):
+        read_scan(tmp_path / "bore.stl")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_an_archive_that_lost_members_is_damaged(tmp_path):
+    """A damaged directory lists fewer members."""
+    path = tmp_path / "kept.npz"
+    write_arrays(path, rings=numpy.arange(12.0), count=3, identity="run")
+    assert set(read_arrays(path)) == {"rings", "count", "identity"}
+    raw = bytearray(path.read_bytes())
+    size, begin = struct.unpack("<LL", raw[-10:-2])
+    first = 46 + sum(struct.unpack("<HHH", raw[begin + 28 : begin + 34]))  # of the entry for one member
+    raw[-10:-2] = struct.pack("<LL", size - first, begin + first)
+    path.write_bytes(raw)
+    with numpy.load(io.BytesIO(raw)) as damaged:
+        assert len(damaged.files) == 2
+    with pytest.raises(ValueError, match="kept.npz is damaged"):
+        read_arrays(path)
+
+
+def test_a_damaged_label_of_a_store_names_the_store(tmp_path):
+    pytest.importorskip("zarr")
+    bs.study(bs.HessForsbach(), HIP, force=[1.0, 2.0], store=tmp_path / "store")
+    (tmp_path / "store" / "indentation" / "zarr.json").write_bytes(b"{\xb5}")
+    with pytest.raises(ValueError, match="store is a damaged store: .*; run its study again to mend it"):
+        bs.studies.read(tmp_path / "store")
+    again = bs.study(bs.HessForsbach(), HIP, force=[1.0, 2.0], store=tmp_path / "store")
+    assert numpy.isfinite(again.indentation).all()
