@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 import ballsocket as bs
 from ballsocket.hip import Archard, InUse, iso_14242_1, logarithmic
 
-JOINT = bs.Joint(head_diameter=28.0, clearance=0.1, liner_thickness=8.0, liner=bs.Material(young=1000.0, poisson=0.4))
+JOINT = bs.Joint(head_diameter=28.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
 FACTORS = {"conventional": (1.066e-6, "#D55E00"), "cross-linked": (2.1e-7, "#0072B2")}
 YEAR = 365.25 * 24 * 3600.0
 YEARS = np.array([0.02, 0.1, 0.25, 1.0, 2.0, 4.0, 7.0, 10.0])

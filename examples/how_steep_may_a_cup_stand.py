@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 import ballsocket as bs
 from ballsocket.hip import Archard, InUse, iso_14242_1
 
-JOINT = bs.Joint(head_diameter=36.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
+JOINT = bs.Joint(head_diameter=36.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
 INCLINATIONS = {35: "#009E73", 45: "#0072B2", 55: "#E69F00", 65: "#D55E00"}
 LEAN = np.array([[-sin(radians(15.0))], [0.0], [cos(radians(15.0))]])  # to the middle, to the front, upwards
 WALK = iso_14242_1(50)

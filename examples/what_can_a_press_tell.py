@@ -5,9 +5,9 @@ What can a press tell?
 A hip was pressed, and its contact areas were taken from a film. Which clearance and modulus has it, and can the areas
 tell?
 
-They cannot: areas and pressures depend on clearance times modulus alone. The identification says so, gives the product
-with its band, and names the measurement that would tell the two apart. The data are synthetic: drawn from a model for
-a joint with a clearance of 0.1 mm and a liner of 1000 MPa.
+They cannot: areas and pressures depend on clearance times modulus. The identification reports that neither is
+identifiable, gives the product with its band, and names the measurement that separates the two. The data are synthetic:
+drawn from a model for a joint with a clearance of 0.1 mm and a liner of 1000 MPa.
 """
 
 import numpy as np

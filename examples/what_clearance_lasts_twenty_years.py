@@ -31,9 +31,7 @@ panels = dict(
     zip(("worn volume [mm³]", "penetration [mm]", "largest pressure [MPa]"), figure.subplots(1, 3), strict=True)
 )
 for clearance, colour in CLEARANCES.items():
-    joint = bs.Joint(
-        head_diameter=36.0, clearance=clearance, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4)
-    )
+    joint = bs.Joint(head_diameter=36.0, clearance=clearance, liner_thickness=6.0, liner=bs.UHMWPE)
     use = InUse(
         joint=joint,
         cup=bs.Cup(inclination=radians(30.0)),

@@ -28,7 +28,7 @@ def worn(diameter: float) -> tuple[np.ndarray, np.ndarray]:
         head_diameter=diameter,
         clearance=0.1,
         outer_radius=OUTER_RADIUS,
-        liner=bs.Material(young=1000.0, poisson=0.4),
+        liner=bs.UHMWPE,
     )
     use = InUse(
         joint=joint,
