@@ -18,8 +18,8 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.elastic.exact import curve_of
-from ballsocket.elastic.exact_curve import fitted_of
+from ballsocket.elasticity.exact.exact_curve import fitted_of
+from ballsocket.elasticity.exact.model import curve_of
 
 from .calculix_rival import Calculix, Mesh, Steps
 from .report import Report, Rows

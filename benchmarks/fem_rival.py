@@ -11,9 +11,9 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.fem import bodies, solver
-from ballsocket.fem.export import calculix as ccx
-from ballsocket.fem.export.deck import deck_of
+from ballsocket.elasticity.finite_elements import bodies, solver
+from ballsocket.elasticity.finite_elements.decks import calculix as ccx
+from ballsocket.elasticity.finite_elements.decks.deck import deck_of
 
 from .calculix_rival import Calculix, Mesh
 from .report import Rows

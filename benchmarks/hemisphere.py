@@ -17,8 +17,8 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.elastic.hemisphere import CHANGES
-from ballsocket.elastic.subsurface import von_mises_change
+from ballsocket.elasticity.exact.hemisphere import CHANGES
+from ballsocket.elasticity.exact.subsurface import von_mises_change
 
 from .report import Report, Rows
 

@@ -19,7 +19,7 @@ from unittest import mock
 import numpy
 
 import ballsocket as bs
-from ballsocket.sphere.deck import TiltedDeck, run
+from ballsocket.elasticity.off_axis.deck import TiltedDeck, run
 
 from .report import Report, Rows
 from .timing import Spread, Work, interleaved, one_core

@@ -17,7 +17,7 @@ import numpy
 
 import ballsocket as bs
 from ballsocket.compiled import Compiled, compiled_law
-from ballsocket.elastic.tabulated.curves import Curves
+from ballsocket.elasticity.exact.tabulated.curves import Curves
 from ballsocket.models.kinematics import linear_force, linear_stiffness
 
 from . import opensim_rival

@@ -17,7 +17,7 @@ from unittest import mock
 import numpy
 
 import ballsocket as bs
-from ballsocket.sphere.grid import rim_grid
+from ballsocket.elasticity.off_axis.grid import rim_grid
 
 from .off_axis import INDENTATION, JOINT, displaced, forced, set_up
 from .report import Report, Rows

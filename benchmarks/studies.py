@@ -14,9 +14,9 @@ from tempfile import TemporaryDirectory
 import numpy
 
 import ballsocket as bs
-from ballsocket.engines import Distributed, Engine, Processes, Serial
-from ballsocket.engines.dask import local_cluster
-from ballsocket.model import Model
+from ballsocket.contact import Model
+from ballsocket.core.executors import Distributed, Engine, Processes, Serial
+from ballsocket.core.executors.dask import local_cluster
 from ballsocket.studies.blocks import Blocks
 from ballsocket.studies.design import Design, Span, grid
 from ballsocket.studies.task import DTYPES, USUAL

@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import ballsocket as bs
-from ballsocket.elastic.exact import curve_of
-from ballsocket.elastic.modes import socket_of
+from ballsocket.elasticity.exact.model import curve_of
+from ballsocket.elasticity.exact.modes import socket_of
 from ballsocket.output.style import LEGEND, finish, in_matplotlib, numbered
 
 ROOT = Path(__file__).parents[1]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.sources import bibliography
+from ballsocket.core.sources import bibliography
 
 from .cli.command import run
 from .places import ROOT

@@ -11,9 +11,9 @@ import pytest
 import ballsocket as bs
 from ballsocket.catalogue import judge, off_axis, theories
 from ballsocket.contact.describe import COLUMNS
+from ballsocket.core.sources import bibliography
 from ballsocket.dynamics import Bristles, Motion, Viscoelastic, relations
 from ballsocket.paper.claims import elsewhere
-from ballsocket.sources import bibliography
 
 from .joints import HIP
 from .places import ROOT

@@ -65,7 +65,7 @@ def test_bibtex_of_what_was_used():
 
 
 def test_every_source_is_in_the_bibliography():
-    from ballsocket.sources import bibliography
+    from ballsocket.core.sources import bibliography
 
     for model in (*bs.catalogue.values(), bs.PinInHole()):
         for source in model.sources:

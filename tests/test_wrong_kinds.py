@@ -8,12 +8,12 @@ import numpy
 import pytest
 
 import ballsocket as bs
-from ballsocket.engines.local import Serial
+from ballsocket.core.executors.local import Serial
+from ballsocket.core.storage.npz import read_arrays, write_arrays
+from ballsocket.elasticity.off_axis import read_scan
 from ballsocket.hip import InUse
 from ballsocket.hip.gait import iso_14242_1
 from ballsocket.hip.laws import Archard
-from ballsocket.npz import read_arrays, write_arrays
-from ballsocket.sphere import read_scan
 
 HIP = bs.joints["hip-28"]
 ELEMENT = bs.ForceElement(bs.HessForsbach(), HIP)

@@ -11,14 +11,14 @@ from pathlib import Path
 
 import ballsocket as bs
 from ballsocket.catalogue import theories
+from ballsocket.core.quantities import QUANTITIES
+from ballsocket.core.sources import Source, bibliography
 from ballsocket.evidence.comparator import between
 from ballsocket.evidence.comparators import PUBLISHED
 from ballsocket.evidence.validity import measure, promising
 from ballsocket.output.accuracy_table import markdown
 from ballsocket.output.report import write_report
 from ballsocket.paper.plan import quick_plan
-from ballsocket.quantities import QUANTITIES
-from ballsocket.sources import Source, bibliography
 
 _PROMISED = Path(__file__).parents[2] / "tests" / "data" / "promised.json"
 _COLUMNS = 88  # of the terminal whose help texts are shown

@@ -8,22 +8,38 @@
 Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 """
 
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
+
 from . import studies
 from .catalogue import catalogue
 from .compare import compare
-from .contact import Contact
-from .cup import Cup, Interface, Side
+from .contact import Contact, Model
+from .core.deprecation import keep_old_paths, new_path
+from .core.sources import cite
+from .core.validity import OutsideDomainError, Range, Status
 from .dynamics.element import ForceElement
-from .elastic.exact import Exact
-from .elastic.exact_curve import ExactCurve
-from .elastic.tabulated.model import Tabulated
-from .fem.model import FiniteElement
-from .fem.spacing import Adapted, Element, Uniform
-from .gaps import CircularGap, LinearGap
+from .elasticity.exact.exact_curve import ExactCurve
+from .elasticity.exact.model import Exact
+from .elasticity.exact.tabulated.model import Tabulated
+from .elasticity.finite_elements.model import FiniteElement
+from .elasticity.finite_elements.spacing import Adapted, Element, Uniform
+from .elasticity.off_axis import (
+    ClosedShell,
+    DepthTable,
+    Orientations,
+    Pinched,
+    Preload,
+    RealCup,
+    Sphere,
+    Springs,
+    Worn,
+    orient,
+    read_scan,
+)
 from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
 from .io.joint_file import read_joint
-from .joint import Joint, Layer, Material, Support
-from .model import Model
 from .models.adhesion import AdhesiveSocket
 from .models.closed_form import ClosedForm
 from .models.foundation import (
@@ -42,7 +58,10 @@ from .models.modulus import bonded_layer, constant, corrected_vessel, hess_forsb
 from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
-from .presets import (
+from .problem import Joint, Layer, Material, Support
+from .problem.cup import Cup, Interface, Side
+from .problem.gaps import CircularGap, LinearGap
+from .problem.presets import (
     ALUMINA,
     ALUMINA_COMPOSITE,
     BONE_CEMENT,
@@ -58,23 +77,10 @@ from .presets import (
     joints,
     materials,
 )
-from .sources import cite
-from .sphere import (
-    ClosedShell,
-    DepthTable,
-    Orientations,
-    Pinched,
-    Preload,
-    RealCup,
-    Sphere,
-    Springs,
-    Worn,
-    orient,
-    read_scan,
-)
 from .studies.run import study
-from .validity import OutsideDomainError, Range, Status
 from .version import __version__ as __version__
+
+keep_old_paths()
 
 __all__ = [  # noqa: RUF022, grouped as they are used
     # what is pressed
@@ -168,3 +174,11 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "TITANIUM",
     "UHMWPE",
 ]
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> ModuleType:
+        """Import a moved module that version 1.0 offered as an attribute of the package."""
+        if new_path(f"{__name__}.{name}") is None:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return import_module(f"{__name__}.{name}")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from .checks import Named
-from .elastic.exact import Exact
-from .elastic.tabulated.model import Tabulated
-from .fem.model import FiniteElement
-from .model import Model
-from .model.theory import Theory
+from .contact import Model
+from .contact.model_info import Theory
+from .core.checks import Named
+from .elasticity.exact.model import Exact
+from .elasticity.exact.tabulated.model import Tabulated
+from .elasticity.finite_elements.model import FiniteElement
+from .elasticity.off_axis.model import Sphere
 from .models.adhesion import AdhesiveSocket
 from .models.foundation import Bartel, BondedLayer, BondedLayerExact, CosineLimit, HessForsbach, Vessel
 from .models.half_space import Hertz, Steuermann
@@ -15,7 +16,6 @@ from .models.liu import LiuReconstruction
 from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
-from .sphere.model import Sphere
 
 reference: Model = Exact()
 """What every other model is measured by."""

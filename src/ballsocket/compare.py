@@ -11,17 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from .arrays import Array, to_list, where
 from .catalogue import catalogue, reference
-from .checks import nearest, needs, one_load, refuse_unnamed, shown
-from .contact import Contact
+from .contact import Contact, Model
 from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count, number_text
-from .cup import Cup
-from .joint import Joint
-from .model import Model
-from .quantities import HEADLINE
-from .sources import Source
-from .validity import OutsideDomainError
+from .core.arrays import Array, to_list, where
+from .core.checks import nearest, needs, one_load, refuse_unnamed, shown
+from .core.quantities import HEADLINE
+from .core.sources import Source
+from .core.validity import OutsideDomainError
+from .problem import Joint
+from .problem.cup import Cup
 from .version import __version__
 
 if TYPE_CHECKING:

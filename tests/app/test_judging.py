@@ -6,8 +6,8 @@ from functools import partial
 import pytest
 
 import ballsocket as bs
-from ballsocket.cup import Cup
 from ballsocket.io.joint_file import JointFile
+from ballsocket.problem.cup import Cup
 
 pytest.importorskip("skfem")
 pytest.importorskip("bokeh")

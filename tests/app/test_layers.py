@@ -6,7 +6,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.io.joint_file import JointFile
-from ballsocket.joint import Support
+from ballsocket.problem import Support
 
 from .asking import edits, trouble
 

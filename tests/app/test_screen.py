@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.cup import Cup, Interface, Side
 from ballsocket.io.joint_file import JointFile, parse_joint
 from ballsocket.io.joint_toml import toml_of
-from ballsocket.presets import materials
+from ballsocket.problem.cup import Cup, Interface, Side
+from ballsocket.problem.presets import materials
 
 pytest.importorskip("tomli_w")
 pytest.importorskip("xarray")

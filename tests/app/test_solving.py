@@ -22,7 +22,7 @@ from ballsocket.app.pressing import pressed
 from ballsocket.app.solving import heavy
 from ballsocket.app.views.press import Press
 from ballsocket.compare import THIN
-from ballsocket.elastic.exact import Exact
+from ballsocket.elasticity.exact.model import Exact
 from ballsocket.models.plane_layer import PlaneLayer
 
 

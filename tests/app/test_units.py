@@ -14,8 +14,8 @@ pytest.importorskip("tomli_w")
 from ballsocket.app.page import Page
 from ballsocket.app.reading import Reading, handy_step
 from ballsocket.app.screen import VIEWS
+from ballsocket.core.quantities import QUANTITIES
 from ballsocket.output.unit_systems import Units
-from ballsocket.quantities import QUANTITIES
 
 from .asking import does, edits, saved, trouble
 

@@ -125,7 +125,7 @@ def test_jax_arrays_stay_in_jax_and_bad_loads_become_a_status_under_jit():
 
 def test_jax_trees():
     jax = pytest.importorskip("jax")
-    import ballsocket.pytrees  # noqa: F401 - registers the words
+    import ballsocket.compiled.pytrees  # noqa: F401 - registers the words
 
     with jax.enable_x64(True):
         slopes = jax.grad(lambda joint: bs.HessForsbach().press(joint, force=3000.0).max_pressure)(HIP)
@@ -148,7 +148,7 @@ BACKED = replace(
 
 def test_a_backed_joint_is_a_jax_tree():
     jax = pytest.importorskip("jax")
-    import ballsocket.pytrees  # noqa: F401 - registers the words
+    import ballsocket.compiled.pytrees  # noqa: F401 - registers the words
 
     behind = (strength for layer in BACKED.backing for strength in layer.material.strengths.values())
     known = [*BACKED.numbers(), *BACKED.strengths(), *behind]

@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.arrays import gauss_legendre
+from ballsocket.core.arrays import gauss_legendre
 
 from ..extent import either
 from ..joints import CLOSED_FORMS, HIP, NUMERICAL, floats, joints

@@ -14,7 +14,7 @@ from ballsocket.cli.tools.call import words_of
 from ballsocket.cli.tools.run import run as run_tool
 from ballsocket.cli.tools.schema import schema
 from ballsocket.cli.tools.table import TOOLS
-from ballsocket.input_files import restricted
+from ballsocket.core.input_files import restricted
 
 from ..places import EXAMPLES
 from .command import run
@@ -153,7 +153,7 @@ def test_a_file_named_as_an_option_is_a_file(tmp_path):
 def test_a_process_ends_with_its_parent_even_where_no_thread_runs(tmp_path):
     """The child is inside one instruction of Python, which lets no thread run, for hours."""
     busy = (
-        "import os, sys; from ballsocket.engines.local import leave_with_parent as leave; leave(); "
+        "import os, sys; from ballsocket.core.executors.local import leave_with_parent as leave; leave(); "
         "print(os.getpid(), file=open('child', 'w'), flush=True); 9**9**9"
     )
     parent = (
@@ -208,6 +208,6 @@ def test_an_assistant_hears_what_the_shell_says(tmp_path):
 
 
 def test_without_the_extra_it_is_said_what_to_install(tmp_path, monkeypatch):
-    monkeypatch.setattr("ballsocket.checks.find_spec", lambda name: None)
+    monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
     done = run("serve-mcp", "--folder", str(tmp_path))
     assert (done.returncode, done.stderr) == (2, "ballsocket: mcp is not installed: pip install 'ballsocket[mcp]'\n")

@@ -8,7 +8,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.contact.strength import ELASTIC, share, share_of_ball
-from ballsocket.elastic import subsurface
+from ballsocket.elasticity.exact import subsurface
 
 HIP = bs.joints["hip-36"]
 WEAK = bs.Material(young=1000.0, poisson=0.4, yield_stress=8.0, fatigue_limit=5.0, allowable_pressure=10.0)
@@ -215,7 +215,7 @@ def test_validity_asks_for_no_stresses_where_it_can_be_told_without(monkeypatch)
     def never(*words):
         raise AssertionError("asked for the inside")
 
-    monkeypatch.setattr("ballsocket.elastic.contact.largest_von_mises", never)
+    monkeypatch.setattr("ballsocket.elasticity.exact.contact.largest_von_mises", never)
     contact = bs.Exact().press(HIP, force=np.array([0.0, 3000.0, 80e3]))
     assert contact.valid.tolist() == [True, True, False]
     assert bs.Exact().press(HIP, force=3000.0).notes == ()

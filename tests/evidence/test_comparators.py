@@ -5,8 +5,8 @@ import pytest
 from ballsocket import Exact
 from ballsocket.evidence.comparator import SIMILARITY, applicability, reach_of
 from ballsocket.evidence.comparators import CLAIMS, PUBLISHED, claim
-from ballsocket.joint import Joint, Material
-from ballsocket.presets import COCR, UHMWPE, joints
+from ballsocket.problem import Joint, Material
+from ballsocket.problem.presets import COCR, UHMWPE, joints
 
 HIP = joints["hip-36"]
 ASKED = reach_of([(HIP, 2000.0), (HIP.replace(clearance=0.05), 3000.0)])

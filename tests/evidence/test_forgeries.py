@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
-from ballsocket.engines import Serial
+from ballsocket.core.executors import Serial
 from ballsocket.evidence import comparison
 from ballsocket.evidence.comparison import compare, signature_of
 from ballsocket.evidence.folder import (

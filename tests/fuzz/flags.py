@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.quantities import CONTACT
+from ballsocket.core.quantities import CONTACT
 from ballsocket.studies.limits import NAMES as LIMITED
 from ballsocket.studies.parameters import PARAMETERS
 

@@ -13,16 +13,16 @@ from hypothesis import strategies as st
 
 from ballsocket.cli import root
 from ballsocket.cli.tools.call import words_of
+from ballsocket.core.input_files import restricted
+from ballsocket.core.kinds import Kind
+from ballsocket.core.storage.npz import read_arrays
+from ballsocket.elasticity.off_axis.scans import read_scan
 from ballsocket.evidence.question import read_question
 from ballsocket.hip.coefficients import share_of_slide, wear_factor, wear_per_energy
 from ballsocket.hip.cycle_file import Reading, read_cycle
 from ballsocket.hip.file import read_hip
 from ballsocket.identify.file import read_identify
-from ballsocket.input_files import restricted
 from ballsocket.io.units import parse
-from ballsocket.kinds import Kind
-from ballsocket.npz import read_arrays
-from ballsocket.sphere.scans import read_scan
 
 from ..cli.command import run
 from ..places import EXAMPLES

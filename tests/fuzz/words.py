@@ -5,7 +5,7 @@ import json
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.quantities import QUANTITIES
+from ballsocket.core.quantities import QUANTITIES
 
 ODD_NUMBERS = (
     "0", "-0", "-1", "1e-320", "1e-200", "1e-9", "1e9", "1e200", "1e308", "1e999", "-1e999", "nan", "inf", "-inf",

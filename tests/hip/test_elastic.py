@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.hip import iso_14242_1, logarithmic, rocking
 from ballsocket.hip.elastic_bed import elastic_bed
 from ballsocket.hip.levels import levels_of
 from ballsocket.hip.smoothing import Smoothing
-from ballsocket.sphere.grid import even_grid
 
 from .test_wear import TILTED, K, hip
 

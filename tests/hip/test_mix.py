@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.elasticity.off_axis.surfaces import ClosedShell
 from ballsocket.hip import (
     Activity,
     Cycle,
@@ -19,7 +20,6 @@ from ballsocket.hip import (
     iso_14242_4,
     logarithmic,
 )
-from ballsocket.sphere.surfaces import ClosedShell
 
 from .test_wear import K, hip
 

@@ -5,9 +5,9 @@ from math import pi, radians
 import numpy as np
 import pytest
 
+from ballsocket.elasticity.off_axis.directions import tangents
 from ballsocket.hip import flexion, iso_14242_1
 from ballsocket.hip.sliding import Sliding, cross_shear_of, tracks
-from ballsocket.sphere.directions import tangents
 
 POLE = np.array([[0.0], [0.0], [1.0]])
 

@@ -14,8 +14,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.cup import Side
-from ballsocket.engines import Distributed, Processes
+from ballsocket.core.executors import Distributed, Processes
 from ballsocket.hip import (
     Activity,
     CrossShear,
@@ -35,6 +34,7 @@ from ballsocket.hip.lives import kept
 from ballsocket.hip.patients import Patient
 from ballsocket.output.hip_bands import band_sections, print_bands
 from ballsocket.output.hip_plots import penetration_curve
+from ballsocket.problem.cup import Side
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from ..cli.command import run

@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ballsocket as bs
+from ballsocket.core.kinds import Kind
 from ballsocket.io.joint_file import JointFile, joint_of, parse_joint
 from ballsocket.io.joint_toml import tables_of, toml_of
 from ballsocket.io.units import parse
-from ballsocket.kinds import Kind
 from ballsocket.studies.file import read_study
 
 from ..places import EXAMPLES

@@ -153,7 +153,7 @@ def test_the_compliance_is_that_of_the_shell(poisson, thickness):
 
 
 def test_integer_modes_are_those_of_the_exact_model():
-    from ballsocket.elastic.modes import socket_of
+    from ballsocket.elasticity.exact.modes import socket_of
 
     n = np.arange(1, 40)
     k = np.sqrt(n * (n + 1.0))
@@ -212,7 +212,7 @@ def test_validity_is_the_box_of_the_fit():
 
 def test_a_solution_is_a_jax_tree():
     jax = pytest.importorskip("jax")
-    import ballsocket.pytrees  # noqa: F401 - registers the words
+    import ballsocket.compiled.pytrees  # noqa: F401 - registers the words
 
     with jax.enable_x64(True):
         pressed = jax.jit(lambda joint: MODEL.press(joint, force=3000.0))(HIP)

@@ -136,7 +136,7 @@ def test_a_contact_that_is_alone_draws_its_cup(contact):
 def test_bore_ball_and_edge_as_vtk(contact, tmp_path):
     import meshio
 
-    from ballsocket.sphere.vtk import BALL, BORE, write_vtk
+    from ballsocket.elasticity.off_axis.vtk import BALL, BORE, write_vtk
 
     write_vtk(contact, tmp_path / "cup.vtu")
     mesh = meshio.read(tmp_path / "cup.vtu")

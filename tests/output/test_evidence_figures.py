@@ -5,9 +5,10 @@ import json
 import numpy
 import pytest
 
-from ballsocket import presets, read_joint
+from ballsocket import read_joint
 from ballsocket.evidence.matrix import NAMES, WEAR
 from ballsocket.output import evidence_figures as figures
+from ballsocket.problem import presets
 
 from ..places import EXAMPLES
 

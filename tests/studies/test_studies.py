@@ -14,8 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.engines import Processes, Serial
-from ballsocket.engines.dask import Distributed
+from ballsocket.core.executors import Processes, Serial
+from ballsocket.core.executors.dask import Distributed
 from ballsocket.studies.blocks import Blocks
 from ballsocket.studies.design import Method, Span, grid, sample
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance

@@ -247,7 +247,7 @@ def test_what_a_killed_process_was_writing_goes_with_the_next(store):
 
 
 def test_what_is_being_written_stays(tmp_path):
-    from ballsocket.atomic import at_once, write_text
+    from ballsocket.core.storage.atomic import at_once, write_text
 
     with at_once(tmp_path / "a.txt") as draft:
         os.utime(draft.parent, (0, 0))
@@ -258,7 +258,7 @@ def test_what_is_being_written_stays(tmp_path):
 
 
 def test_a_full_disk_is_said_of_the_file_that_was_asked_for(tmp_path):
-    from ballsocket.atomic import at_once
+    from ballsocket.core.storage.atomic import at_once
 
     with pytest.raises(OSError, match="No space left on device: .*a.txt") as told, at_once(tmp_path / "a.txt"):
         raise OSError(28, "No space left on device")

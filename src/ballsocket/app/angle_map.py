@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy
 
-from ..cup import Cup
-from ..quantities import CUP, QUANTITIES
+from ..core.quantities import CUP, QUANTITIES
+from ..problem.cup import Cup
 from . import svg
 from .bore_map import SHOWN
 from .contours import Contours, levels_of, scale

@@ -7,16 +7,16 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from ..checks import check_names, check_text, shown
-from ..cup import Cup
+from ..core.checks import check_names, check_text, shown
+from ..core.kinds import Kind
 from ..evidence.question import LEVELS, Question, read_question
 from ..hip.in_vivo import IN_VIVO
 from ..io.joint_file import JointFile
 from ..io.joint_toml import Tables, tables_of
 from ..io.named_joint import PARTS
 from ..io.units import parse
-from ..kinds import Kind
-from ..presets import joints
+from ..problem.cup import Cup
+from ..problem.presets import joints
 from ..studies.parameters import PARAMETERS
 from ..studies.phrases import choice_of
 from .in_use import Use

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy
 
-from ..cup import Cup
+from ..core.quantities import DERIVED, FIELD
+from ..elasticity.off_axis.contact import OffAxisContact
+from ..elasticity.off_axis.grid import Grid
 from ..hip.spots import spots_of
 from ..output.cup_map import drawn, from_page, highest, on_page
-from ..quantities import DERIVED, FIELD
-from ..sphere.contact import OffAxisContact
-from ..sphere.grid import Grid
+from ..problem.cup import Cup
 from . import svg
 from .contours import Contours, levels_of, scale
 from .reading import Reading

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy
 
+from ..core.quantities import FIELD
+from ..elasticity.off_axis.contact import OffAxisContact
+from ..elasticity.off_axis.directions import unit_vectors
 from ..output.cup_map import drawn, highest
-from ..quantities import FIELD
-from ..sphere.contact import OffAxisContact
-from ..sphere.directions import unit_vectors
 
 _RINGS, _MERIDIANS = 40, 96
 _THICKEST = 0.8  # of the bore's radius: what is thicker is drawn so thick

@@ -8,13 +8,13 @@ from html import escape
 from math import degrees, inf, isinf
 from typing import Any
 
-from ..checks import check_names, shown
-from ..cup import UP
+from ..core.checks import check_names, shown
+from ..core.quantities import LOADS, STRESS_LIMITS
 from ..io.joint_file import JointFile, joint_of, read_aim
 from ..io.joint_toml import Tables, tables_of
-from ..joint import Joint
-from ..presets import joints, materials
-from ..quantities import LOADS, STRESS_LIMITS
+from ..problem import Joint
+from ..problem.cup import UP
+from ..problem.presets import joints, materials
 from .fields import Field, choice, segments, tick, unknown
 from .numbers import ALLOWABLE, NUMBERS, THICKNESS, TILT, Number, load_of, number_of
 from .reading import Reading

@@ -7,12 +7,12 @@ from dataclasses import replace
 from math import atan2, degrees, radians, tan
 from typing import Any
 
-from ..checks import check_names, require
-from ..cup import UP, Side
+from ..core.checks import check_names, require
+from ..core.kinds import Kind, Unit
+from ..core.quantities import CUP
 from ..io.joint_file import JointFile, read_aim, read_cup
 from ..io.joint_toml import cup_table
-from ..kinds import Kind, Unit
-from ..quantities import CUP
+from ..problem.cup import UP, Side
 from .fields import Field, number, segments, typed
 from .screen import Screen
 

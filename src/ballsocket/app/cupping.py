@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy
 
-from ..cup import Cup, Side
-from ..fem.progress import listening
+from ..elasticity.finite_elements.progress import listening
+from ..elasticity.off_axis import Orientations, Sphere, orient
+from ..elasticity.off_axis.contact import OffAxisContact
 from ..io.joint_file import JointFile
 from ..output.html import drawn
 from ..output.orientation_plot import orientation_figure
-from ..sphere import Orientations, Sphere, orient
-from ..sphere.contact import OffAxisContact
+from ..problem.cup import Cup, Side
 from .jobs import Kept
 from .running import Reached, Told
 

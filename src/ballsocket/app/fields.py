@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from math import degrees, isfinite
 from typing import Any
 
-from ..checks import shown
+from ..core.checks import shown
+from ..core.kinds import Kind, Unit
 from ..io.units import parse
-from ..kinds import Kind, Unit
 
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
 _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")

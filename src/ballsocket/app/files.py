@@ -9,7 +9,7 @@ from html import escape
 from io import StringIO
 from typing import Any
 
-from ..checks import check_names
+from ..core.checks import check_names
 from ..io.joint_file import JointFile
 from ..io.joint_toml import toml_of
 from ..output.html import picture

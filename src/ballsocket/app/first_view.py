@@ -7,10 +7,10 @@ from html import escape
 from math import atan2, cos, degrees, isinf, pi, radians, sin
 
 from ..contact import Contact
+from ..core.kinds import Unit
+from ..core.quantities import Quantity
 from ..io.joint_file import JointFile
-from ..kinds import Unit
 from ..output.section_scale import gap_factor, radii_of
-from ..quantities import Quantity
 from . import svg
 from .drawing import Frame, ball, heat, layers, painted
 from .fields import Field

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy
 
+from ..elasticity.off_axis.directions import unit_vectors
 from ..hip import Lubricant
 from ..hip.contact_checks import largest_utilisation, list_notes
 from ..hip.film import film
 from ..hip.in_vivo import IN_VIVO
 from ..hip.spots import spots_of
 from ..io.joint_file import JointFile
-from ..sphere.directions import unit_vectors
 from .in_use import Own, Use, hip_of
 from .running import Reached, Told
 

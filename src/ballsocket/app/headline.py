@@ -9,7 +9,7 @@ from ..compare import relative
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column
 from ..contact.verdict import Share
-from ..quantities import STRENGTH
+from ..core.quantities import STRENGTH
 from .reading import Reading, number_text
 from .verdict import most_used, sentence
 from .words import trust

@@ -8,7 +8,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from ..checks import check_names, require, shown
+from ..core.checks import check_names, require, shown
+from ..core.kinds import Kind
 from ..hip import Cycle, InUse, named_cycle
 from ..hip.coefficients import share_of_slide, wear_factor
 from ..hip.cycle_file import read_cycle
@@ -17,7 +18,6 @@ from ..hip.in_vivo import IN_VIVO, check_weight
 from ..hip.named_cycles import CYCLES
 from ..io.joint_file import JointFile
 from ..io.units import parse
-from ..kinds import Kind
 
 CONTACTS = ("springs", "shell", "cup")
 LAWS = ("archard", "cross-shear", "area")

@@ -9,11 +9,11 @@ from typing import Any
 from ..catalogue import judge, reference
 from ..contact import Contact
 from ..contact.describe import summary
-from ..fem.contact import MeshedContact
+from ..core.validity import OutsideDomainError
+from ..elasticity.finite_elements.contact import MeshedContact
 from ..io.joint_file import JointFile
 from ..output.html import drawn
 from ..output.section_plot import section_figure
-from ..validity import OutsideDomainError
 from .running import Reached, Told
 
 _SHARES = (0.25, 0.5, 0.75, 1.0)

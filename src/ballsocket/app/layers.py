@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from ..checks import check_names, shown
+from ..core.checks import check_names, shown
 from ..io.joint_file import JointFile
-from ..joint import Joint, Layer, Support
-from ..presets import materials
+from ..problem import Joint, Layer, Support
+from ..problem.presets import materials
 from .fields import Field, choice, segments
 
 _NONE, _AWAY, _OWN = "", "away", "own"

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy
 
-from ..joint.dimensions import DIAMETERS
-from ..quantities import QUANTITIES
+from ..core.quantities import QUANTITIES
+from ..problem.dimensions import DIAMETERS
 from ..studies.limits import Limit, margin_over
 from .contours import Contours
 from .mapping import limits_of

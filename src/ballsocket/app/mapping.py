@@ -12,17 +12,17 @@ import numpy
 
 from ..catalogue import catalogue
 from ..compare import THIN
+from ..contact import Model
+from ..core.kinds import Kind
+from ..core.quantities import PARTS, QUANTITIES, Quantity
+from ..core.validity import OutsideDomainError, inside
 from ..io.joint_file import JointFile
-from ..joint import Joint
-from ..kinds import Kind
-from ..model import Model
-from ..quantities import PARTS, QUANTITIES, Quantity
+from ..problem import Joint
 from ..studies.design import Span, grid
 from ..studies.limits import Limit, allowed, margin_over
 from ..studies.parameters import LOADS, PARAMETERS, pressable
 from ..studies.run import study
 from ..studies.usual import joints_of, usual
-from ..validity import OutsideDomainError, inside
 from .screen import MAP_MODELS, MAPPED, QUICK, START, Axis, Screen
 
 _POINTS = 61

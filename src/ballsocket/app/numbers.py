@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ..joint.dimensions import DIAMETERS
-from ..kinds import Unit
+from ..core.kinds import Unit
+from ..core.quantities import JOINT, MATERIAL, QUANTITIES, Quantity
 from ..output.unit_systems import Units
-from ..quantities import JOINT, MATERIAL, QUANTITIES, Quantity
+from ..problem.dimensions import DIAMETERS
 from .fields import Field, number, typed
 from .reading import Reading, handy_step
 

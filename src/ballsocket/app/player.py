@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy
 
-from ..kinds import Unit
+from ..core.kinds import Unit
+from ..core.quantities import CONTACT, DERIVED, Quantity
 from ..output.style import INK, Line
-from ..quantities import CONTACT, DERIVED, Quantity
 from .bowl import bowl
 from .chart import Curve, chart
 from .gaiting import MERIDIANS, Gaited

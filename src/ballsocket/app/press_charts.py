@@ -9,9 +9,9 @@ import numpy
 
 from ..contact import Contact
 from ..contact.describe import Column
+from ..core.quantities import FIELD
 from ..output.press_plot import force_axes
 from ..output.style import Line
-from ..quantities import FIELD
 from .chart import Curve, chart, legend
 from .pressing import curve, profile, rounded_up
 from .reading import Reading

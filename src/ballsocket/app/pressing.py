@@ -10,12 +10,11 @@ import numpy
 
 from ..catalogue import catalogue
 from ..compare import Comparison, compare, force_curves
-from ..contact import Contact
-from ..cup import Cup
+from ..contact import Contact, Model
+from ..core.validity import OutsideDomainError
 from ..io.joint_file import JointFile
-from ..joint import Joint
-from ..model import Model
-from ..validity import OutsideDomainError
+from ..problem import Joint
+from ..problem.cup import Cup
 from .solving import heavy, solved
 from .written import WrittenContact
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from math import floor, isfinite, isnan, log10
 
 from ..contact.describe import Column
-from ..kinds import Kind, Unit
+from ..core.kinds import Kind, Unit
+from ..core.quantities import CONTACT, JOINT, Quantity
 from ..output.unit_systems import Units
-from ..quantities import CONTACT, JOINT, Quantity
 
 _DIGITS = 4
 _INCH = Unit("in", 1 / 25.4)

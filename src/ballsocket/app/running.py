@@ -9,8 +9,8 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
-from ..engines.local import available_cores, leave_with_parent, one_thread_each
-from ..validity import OutsideDomainError
+from ..core.executors.local import available_cores, leave_with_parent, one_thread_each
+from ..core.validity import OutsideDomainError
 
 LONGEST = 60.0
 """Seconds that a run may take."""

@@ -9,13 +9,13 @@ from typing import Any
 from urllib.parse import urlencode
 
 from ..catalogue import catalogue, reference
-from ..checks import check_names, shown
+from ..core.checks import check_names, shown
+from ..core.kinds import Kind
+from ..core.quantities import QUANTITIES
 from ..io.joint_file import JointFile, joint_of
 from ..io.joint_toml import Tables, tables_of
-from ..kinds import Kind
 from ..output.unit_systems import Units
-from ..presets import joints
-from ..quantities import QUANTITIES
+from ..problem.presets import joints
 from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS
 from ..studies.phrases import limit_of, range_of

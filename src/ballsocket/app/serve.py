@@ -11,7 +11,7 @@ from typing import Any
 
 import panel as pn
 
-from ..checks import require, shown
+from ..core.checks import require, shown
 from .guard import OpenPages, forget_closed, guard, hide_tracebacks
 from .page import Page
 from .pressing import pressed

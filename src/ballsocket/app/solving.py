@@ -12,10 +12,10 @@ import panel as pn
 
 from ..catalogue import catalogue
 from ..compare import short_curve, takes_long
-from ..cup import Cup
+from ..core.validity import OutsideDomainError
 from ..io.joint_file import JointFile
-from ..joint import Joint
-from ..validity import OutsideDomainError
+from ..problem import Joint
+from ..problem.cup import Cup
 from .running import Done, Refused, Run, Told, looked_at
 from .written import WrittenContact, written
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ..core.kinds import Unit
 from ..hip.in_vivo import IN_VIVO
-from ..kinds import Unit
 from .fields import Field, choice, number, segments
 from .in_use import CHOICES, Use
 

@@ -9,9 +9,9 @@ from math import nan
 import numpy
 
 from ..compare import relative
+from ..core.quantities import CONTACT, DERIVED
 from ..output.html import table
 from ..output.style import BLUE, VERMILLION, Line
-from ..quantities import CONTACT, DERIVED
 from .bore_map import SHOWN, BoreField, cells_of, worn_bore
 from .chart import Curve, chart, legend
 from .pressing import rounded_up

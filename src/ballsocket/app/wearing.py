@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy
 
-from ..cup import Cup
+from ..elasticity.off_axis.grid import Grid
 from ..hip import History, InUse, Scatter, population
 from ..hip.in_vivo import IN_VIVO
 from ..io.joint_file import JointFile
 from ..output.hip_plots import penetration_curve
 from ..output.html import drawn
-from ..sphere.grid import Grid
+from ..problem.cup import Cup
 from ..studies.distributions import LogNormal
 from .in_use import Use, hip_of
 from .running import Reached, Told

@@ -11,10 +11,10 @@ from ..catalogue import reference
 from ..compare import Comparison
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column
-from ..kinds import Unit
+from ..core.kinds import Unit
+from ..core.quantities import HEADLINE, Quantity
 from ..output.style import line_of
 from ..output.unit_systems import Units
-from ..quantities import HEADLINE, Quantity
 from .chart import swatch
 from .reading import Reading, number_text
 

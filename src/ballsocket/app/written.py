@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array
 from ..contact import Contact
+from ..core import arrays
+from ..core.arrays import Array
 
 _NAMES = (
     "half_angle",

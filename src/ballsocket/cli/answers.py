@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from ..catalogue import theories
-from ..joint import Joint, Material
+from ..core.sources import Source, bibliography, named_in
 from ..output.list_summary import source_summary
-from ..presets import joints, materials
-from ..sources import Source, bibliography, named_in
+from ..problem import Joint, Material
+from ..problem.presets import joints, materials
 from .next_steps import asked_of, next_steps
 
 Answer = dict[str, Any]

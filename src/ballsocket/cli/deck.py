@@ -42,8 +42,8 @@ def deck(
     contact, _ = timed(mesh.model(cup.on(file.cup), meshes=1), file.joint, load.or_of(file))
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))
-    from ..fem.export.calculix import run as run_ccx
-    from ..fem.export.deck import deck_of
+    from ..elasticity.finite_elements.decks.calculix import run as run_ccx
+    from ..elasticity.finite_elements.decks.deck import deck_of
 
     made = deck_of(contact, steps=steps, scale=scale)
     echo_path(made.write(out), f": {contact.mesh.elements} elements, {steps} steps")
@@ -53,8 +53,8 @@ def deck(
 
 def _tilted(file: JointFile, load: dict[str, float], tilt: float, out: Path, mesh: MeshWords, run: bool) -> None:
     """A deck of a ball that is displaced at a tilt."""
-    from ..sphere.deck import TiltedDeck
-    from ..sphere.deck import run as run_ccx
+    from ..elasticity.off_axis.deck import TiltedDeck
+    from ..elasticity.off_axis.deck import run as run_ccx
 
     if "indentation" not in load:
         raise ValueError("a tilted deck displaces the ball: give an indentation")

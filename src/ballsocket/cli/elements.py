@@ -11,18 +11,18 @@ import typer
 from rich.console import Console
 
 from ..catalogue import judge
-from ..checks import known_name, require
 from ..contact.describe import COLUMNS
-from ..cup import Cup
-from ..fem.contact import MeshedContact
-from ..fem.model import FiniteElement
-from ..fem.progress import listening
-from ..fem.spacing import Adapted, Element, Spacing, Uniform
+from ..contact.per_joint import SolvedContact
+from ..core.checks import known_name, require
+from ..core.kinds import Kind
+from ..core.quantities import CONTACT, LOADS
+from ..elasticity.finite_elements.contact import MeshedContact
+from ..elasticity.finite_elements.model import FiniteElement
+from ..elasticity.finite_elements.progress import listening
+from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Uniform
 from ..io.joint_file import read_cup
 from ..io.units import parse
-from ..kinds import Kind
-from ..model.per_joint import SolvedContact
-from ..quantities import CONTACT, LOADS
+from ..problem.cup import Cup
 from .words import given
 
 

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from ..engines.dask import Distributed
-from ..engines.local import Engine, Processes
+from ..core.executors.dask import Distributed
+from ..core.executors.local import Engine, Processes
 
 Workers = Annotated[int | None, typer.Option(help="So many processes on this machine.")]
 Scheduler = Annotated[str | None, typer.Option(help="The address of a Dask scheduler, 'tcp://host:8786'.")]

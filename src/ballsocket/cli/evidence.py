@@ -14,14 +14,14 @@ from rich.progress import Progress
 
 import ballsocket as bs
 
-from ..checks import needs
-from ..engines.local import Engine, Processes
+from ..core.checks import needs
+from ..core.executors.local import Engine, Processes
+from ..core.storage.fingerprint import fingerprint
 from ..evidence.comparison import Signed, compare, signature_of
 from ..evidence.folder import WORK, check_room, digest_of, sign_pack, write
 from ..evidence.pack import Listener, count_kept, gathered, remove_kept
 from ..evidence.question import Question, read_question
 from ..evidence.signature import PublicKey, SignatureError, public_key_of, read_private_key, read_public_key
-from ..fingerprint import fingerprint
 from ..output.evidence_page import conclusions, evidence_page
 from .root import FAILURE, app, echo_path
 from .words import AsJson, echo_json

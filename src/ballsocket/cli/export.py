@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..checks import known_name
+from ..core.checks import known_name
 from .force_elements import ElementWords, identifier
 from .groups import grouped
 from .root import app, complain, echo_path

@@ -12,11 +12,11 @@ from rich.console import Console
 
 from ..catalogue import judge, off_axis, reference
 from ..compare import Comparison, answered
-from ..fem.contact import MeshedContact
+from ..elasticity.finite_elements.contact import MeshedContact
+from ..elasticity.off_axis.contact import OffAxisContact
 from ..output import quick_plot
 from ..output.save import check_format, save
 from ..output.section_plot import section_figure
-from ..sphere.contact import OffAxisContact
 
 _THREE_D = ".png"
 
@@ -42,7 +42,7 @@ class Files:
         if self.view is not None and self.view.suffix.lower() != _THREE_D:
             raise ValueError(f"view {str(self.view)!r} must end in {_THREE_D}")
         if self.vtk is not None:
-            from ..fem.export.vtk import check_suffix
+            from ..elasticity.finite_elements.decks.vtk import check_suffix
 
             check_suffix(self.vtk)
 
@@ -84,13 +84,13 @@ def _write(path: Path | None, contact: Any, write: Callable[[Any, Path], None]) 
 
 
 def _meshes(contact: MeshedContact, path: Path) -> None:
-    from ..fem.export.vtk import write_vtk
+    from ..elasticity.finite_elements.decks.vtk import write_vtk
 
     write_vtk(contact.section, path)
 
 
 def _surfaces(contact: OffAxisContact, path: Path) -> None:
-    from ..sphere.vtk import write_vtk
+    from ..elasticity.off_axis.vtk import write_vtk
 
     write_vtk(contact, path)
 

@@ -11,10 +11,10 @@ import typer
 
 import ballsocket as bs
 
-from ..checks import known_name
+from ..core.checks import known_name
+from ..core.kinds import Kind
 from ..identify.modulus import FORCES, Form
 from ..io.units import parse
-from ..kinds import Kind
 from ..output.reference_terminal import print_calibration, print_table_3
 from ..paper.table_3 import refit_table_3
 from .root import app, echo_path
@@ -68,7 +68,7 @@ def build_tables(
     check: Annotated[bool, typer.Option("--check", help="Check the tables that are there, and build none.")] = False,
 ) -> None:
     """Build the tables of `tabulated` from the exact answer (two minutes), and report how accurate they are."""
-    from ..elastic.tabulated import build as builder
+    from ..elasticity.exact.tabulated import build as builder
 
     path = builder.SHIPPED if out is None else out
     do = builder.check if check else builder.build

@@ -11,10 +11,10 @@ from typing import Annotated
 
 import typer
 
-from ..atomic import check_folder
-from ..cup import Cup
+from ..core.storage.atomic import check_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..io.joint_file import JointFile
+from ..problem.cup import Cup
 from ..studies.file import named_model
 from ..studies.usual import usual
 

@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 import ballsocket as bs
 
-from ..engines.local import Engine, Serial
+from ..core.executors.local import Engine, Serial
 from ..hip.file import HipFile, read_hip
 from ..hip.history import History
 from ..hip.lives import kept, write_csv

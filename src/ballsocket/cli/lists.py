@@ -10,11 +10,11 @@ import typer
 import ballsocket as bs
 
 from ..catalogue import theories
-from ..checks import known_name
-from ..joint import Joint, Material
+from ..core.checks import known_name
 from ..output.list_summary import model_summary, preset_summary
 from ..output.list_terminal import print_model, print_models, print_preset, print_presets
-from ..presets import joints, materials
+from ..problem import Joint, Material
+from ..problem.presets import joints, materials
 from .root import app
 from .words import AsJson, echo_json
 

@@ -13,8 +13,8 @@ import numpy
 
 from ..catalogue import judge, off_axis, reference
 from ..contact.closed_sphere import NOTED_CHANGE
-from ..joint.dimensions import DIAMETERS, LENGTHS
-from ..quantities import QUANTITIES
+from ..core.quantities import QUANTITIES
+from ..problem.dimensions import DIAMETERS, LENGTHS
 
 Answer = Mapping[str, Any]
 Words = Sequence[str]

@@ -12,14 +12,14 @@ import typer
 
 from ..catalogue import off_axis
 from ..contact import Contact
-from ..cup import Cup
+from ..core.kinds import Kind
+from ..elasticity.off_axis.contact import OffAxisContact
+from ..elasticity.off_axis.directions import polar_angle
+from ..elasticity.off_axis.model import Sphere
 from ..io.joint_file import JointFile, read_aim
 from ..io.units import parse
-from ..joint import Joint
-from ..kinds import Kind
-from ..sphere.contact import OffAxisContact
-from ..sphere.directions import polar_angle
-from ..sphere.model import Sphere
+from ..problem import Joint
+from ..problem.cup import Cup
 from .elements import error_bars
 from .words import given
 

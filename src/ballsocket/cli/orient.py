@@ -10,15 +10,15 @@ import numpy
 import typer
 from rich.console import Console
 
-from ..arrays import Numbers
-from ..fem.progress import listening
+from ..core.arrays import Numbers
+from ..core.quantities import CUP
+from ..elasticity.finite_elements.progress import listening
+from ..elasticity.off_axis.orientations import Orientations
+from ..elasticity.off_axis.orientations import orient as stand
 from ..io.joint_file import JointFile, read_aim
 from ..io.units import as_given
 from ..output.orientation_plot import orientation_figure
 from ..output.orientation_terminal import print_orientations
-from ..quantities import CUP
-from ..sphere.orientations import Orientations
-from ..sphere.orientations import orient as stand
 from ..studies.phrases import ends_of
 from .elements import CupWords
 from .groups import grouped

@@ -11,14 +11,14 @@ import typer
 import ballsocket as bs
 
 from ..catalogue import judge, off_axis, reference
-from ..checks import known_name
 from ..compare import Comparison, answered
-from ..cup import UP
+from ..contact import Model
+from ..core.checks import known_name
+from ..core.validity import Status
 from ..io.joint_file import JointFile
-from ..model import Model
 from ..output import terminal
 from ..output.unit_systems import Units
-from ..validity import Status
+from ..problem.cup import UP
 from . import elements
 from .files import Files
 from .groups import grouped

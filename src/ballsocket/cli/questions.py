@@ -12,13 +12,13 @@ import typer
 import ballsocket as bs
 
 from ..catalogue import reference
-from ..checks import require
-from ..cup import Cup
+from ..contact import Model
+from ..core.checks import require
 from ..io.joint_file import JointFile
-from ..joint import Joint
-from ..model import Model
 from ..output import study_plots, study_summary, study_terminal
 from ..output.save import check_format, save
+from ..problem import Joint
+from ..problem.cup import Cup
 from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.file import named_model

@@ -9,9 +9,9 @@ from typing import Annotated
 
 import typer
 
-from ..atomic import at_once, check_folder
 from ..catalogue import off_axis, reference
 from ..compare import Comparison
+from ..core.storage.atomic import at_once, check_folder
 from ..io.joint_file import JointFile
 from ..output.press_report import press_report
 from ..output.unit_systems import Units

@@ -10,8 +10,8 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from ..checks import needs
-from ..engines.local import Processes
+from ..core.checks import needs
+from ..core.executors.local import Processes
 from ..output.report import write_report
 from ..paper.plan import full_plan, quick_plan
 from .root import app, echo_path

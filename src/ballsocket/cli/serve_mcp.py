@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..checks import needs
+from ..core.checks import needs
 from .root import app
 
 

@@ -10,11 +10,11 @@ from typing import Annotated, Any
 
 import typer
 
-from ..checks import nearest, plain_name
-from ..input_files import resolve_input
+from ..core.checks import nearest, plain_name
+from ..core.input_files import resolve_input
 from ..io.joint_file import JointFile, joint_of, read_joint, read_load, varied
-from ..joint.dimensions import LENGTHS
-from ..presets import joints
+from ..problem.dimensions import LENGTHS
+from ..problem.presets import joints
 from .answers import whole
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object instead of the table.")]

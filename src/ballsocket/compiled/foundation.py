@@ -10,14 +10,14 @@ from typing import Any
 import numpy
 from numba.extending import overload
 
-from ..arrays import Numbers
-from ..joint import Joint
+from ..core.arrays import Numbers
+from ..core.validity import Status
 from ..models import kinematics
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import Kinematics
 from ..models.modulus import Formula
 from ..models.table_3 import eq_18
-from ..validity import Status
+from ..problem import Joint
 from .teaching import compilable, compiled, flat, pick
 
 

@@ -19,8 +19,8 @@ from numba.extending import (
     unbox,
 )
 
-from ..model import law as formulas
-from ..model.law import CurveLaw, Law
+from ..contact import law as formulas
+from ..contact.law import CurveLaw, Law
 from ..models.closed_form import ClosedLaw
 from ..models.foundation import Springs
 from ..models.kinematics import Kinematics

@@ -7,18 +7,17 @@ from typing import Any
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array
-from ..checks import refuse_unnamed, shown
-from ..contact import Contact
-from ..elastic.tabulated.model import Tabulated
-from ..joint import Joint
-from ..model import Wrapped
-from ..model.answer import Answer, check_joint, checked_load, prepared, spread
+from ..contact import Contact, Wrapped
+from ..contact.answer import Answer, check_joint, checked_load, prepared, spread
+from ..core import arrays
+from ..core.arrays import Array
+from ..core.checks import refuse_unnamed, shown
+from ..core.validity import Status, inside
+from ..elasticity.exact.tabulated.model import Tabulated
 from ..models.closed_form import Bound
 from ..models.foundation import RadialFoundation
 from ..models.refined import Refined
-from ..validity import Status, inside
+from ..problem import Joint
 from . import foundation, refined, tabulated
 from .law import CompiledLaw, compiled_law
 

@@ -10,13 +10,13 @@ from typing import Any
 import numpy
 from numba.extending import overload
 
-from ..arrays import Numbers
-from ..joint import Joint
-from ..model.answer import Answer
+from ..contact.answer import Answer
+from ..core.arrays import Numbers
 from ..models import liner_compliance, refined_state
 from ..models.liner_compliance import liner_of
 from ..models.refined import RefinedSolution, answer_of, scaled
 from ..models.refined_state import State, edge_of_force, edge_of_indentation, state
+from ..problem import Joint
 from .teaching import compiled, flat, pick, taught
 
 

@@ -9,13 +9,13 @@ from typing import Any
 import numpy
 from numba.extending import overload
 
-from ..arrays import Numbers
-from ..elastic.tabulated import chebyshev, formulas
-from ..elastic.tabulated.curves import Curves
-from ..elastic.tabulated.formulas import Curve, Scale, angle_of_force, angle_of_indentation, contact
-from ..elastic.tabulated.model import Tabulated
-from ..joint import Joint
-from ..model.answer import Answer
+from ..contact.answer import Answer
+from ..core.arrays import Numbers
+from ..elasticity.exact.tabulated import chebyshev, formulas
+from ..elasticity.exact.tabulated.curves import Curves
+from ..elasticity.exact.tabulated.formulas import Curve, Scale, angle_of_force, angle_of_indentation, contact
+from ..elasticity.exact.tabulated.model import Tabulated
+from ..problem import Joint
 from .teaching import compilable, compiled, flat, pick, taught
 
 

@@ -1,4 +1,4 @@
-"""What the functions of `ballsocket.arrays` mean for one number, for numba; and the words to teach it formulas."""
+"""What the functions of `ballsocket.core.arrays` mean for one number, for numba; and the words to teach it formulas."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy
 from numba.core import types
 from numba.extending import overload, register_jitable
 
-from .. import arrays
-from ..model import roots
+from ..contact import roots
+from ..core import arrays
 
 compilable = register_jitable(forceinline=True)
 """Lets compiled code call a formula as it stands, and puts it into the caller's loop."""

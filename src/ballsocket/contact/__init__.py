@@ -1,9 +1,14 @@
-"""What a press ends with: numbers, how they went, where they can be trusted, and how they are told.
+"""Models of contact and the results they return; no formula of a single model.
 
-`contact` itself; `outcome`, status, validity and notes; `strength`, how near the materials are to what they bear;
-`describe`, a contact in words and numbers.
+Results: `contact`, the result of a press; `outcome`, status, validity and notes; `strength`, stress relative to the
+strength of the materials; `describe`, a contact in text and numbers.
+
+Models: `model`, the base classes; `answer`, checked inputs and assembled results; `law`, a model bound to one joint;
+`per_joint`, models that solve joint by joint; `peak_pressure`, the position of the largest pressure; `model_info`,
+name, sources and validity; `roots`, the inversion.
 """
 
 from .contact import Contact, Laws, Pressed
+from .model import Covered, Model, Wrapped
 
-__all__ = ["Contact", "Laws", "Pressed"]
+__all__ = ["Contact", "Covered", "Laws", "Model", "Pressed", "Wrapped"]

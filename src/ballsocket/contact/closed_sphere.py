@@ -13,8 +13,8 @@ from importlib.resources import files
 from math import radians
 from typing import Any
 
-from ..arrays import Array, clip, exp, log
-from ..validity import Range, Remark
+from ..core.arrays import Array, clip, exp, log
+from ..core.validity import Range, Remark
 
 NOTED_CHANGE = 0.01
 """Relative difference above which a note reports it."""

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array
-from ..checks import in_radians, numeric, require, vectors
-from ..joint import Joint
-from ..kinds import Unit
-from ..quantities import QUANTITIES
-from ..validity import Range
+from ..core import arrays
+from ..core.arrays import Array
+from ..core.checks import in_radians, numeric, require, vectors
+from ..core.kinds import Unit
+from ..core.quantities import QUANTITIES
+from ..core.validity import Range
+from ..problem import Joint
 from . import describe, strength
 from .outcome import Answerer, Outcome
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array
-from ..checks import needs
-from ..kinds import Unit
-from ..quantities import BEARING, CONTACT, Quantity
+from ..core import arrays
+from ..core.arrays import Array
+from ..core.checks import needs
+from ..core.kinds import Unit
+from ..core.quantities import BEARING, CONTACT, Quantity
 
 if TYPE_CHECKING:
     import pandas

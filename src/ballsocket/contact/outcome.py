@@ -10,10 +10,10 @@ from typing import Protocol
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array
-from ..joint import Joint
-from ..validity import Range, Status, missing
+from ..core import arrays
+from ..core.arrays import Array
+from ..core.validity import Range, Status, missing
+from ..problem import Joint
 
 
 class Answerer(Protocol):

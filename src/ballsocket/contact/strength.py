@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Array, clip, false, isfinite, sin, to_numpy, truth, where
-from ..joint import Joint, Material, larger
-from ..quantities import LINEARITY, STRENGTH
-from ..validity import RIGID_BACKING, Range, missing
+from ..core.arrays import Array, clip, false, isfinite, sin, to_numpy, truth, where
+from ..core.quantities import LINEARITY, STRENGTH
+from ..core.validity import RIGID_BACKING, Range, missing
+from ..problem import Joint, Material, larger
 
 ELASTIC = 1.38
 """The utilisation up to which a linear answer holds.

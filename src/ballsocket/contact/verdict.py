@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..joint import Material
-from ..quantities import STRENGTH
+from ..core.quantities import STRENGTH
+from ..problem import Material
 from .strength import ball_share, unchecked_strength
 
 if TYPE_CHECKING:

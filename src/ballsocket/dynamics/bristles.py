@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..arrays import Array, divisor, sqrt, where
-from ..sources import Source
+from ..core.arrays import Array, divisor, sqrt, where
+from ..core.sources import Source
 from .friction import Coulomb, checked, coefficient_at, effective_slip, tilt_share
 from .reaction import Place, Sliding, versine
 

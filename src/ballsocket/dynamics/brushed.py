@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy
 
-from .. import arrays
-from ..arrays import sqrt
-from ..checks import shown
+from ..core import arrays
+from ..core.arrays import sqrt
+from ..core.checks import shown
 from .bristles import Bristles, Four, bent
 from .load import Load
 from .matrices import vector

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .element import ForceElement, three
 from .load import Load
 from .reaction import Three

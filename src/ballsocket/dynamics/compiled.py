@@ -12,14 +12,14 @@ from typing import Any
 import numpy
 from numba import njit
 
-from ..arrays import Numbers
 from ..compiled import foundation as _foundation  # noqa: F401 - teaches the formulas of the springs
 from ..compiled.law import CompiledLaw
 from ..compiled.teaching import compilable, taught
-from ..joint import Joint
-from ..model.law import Law
+from ..contact.law import Law
+from ..core.arrays import Numbers
 from ..models import kinematics
 from ..models.kinematics import Kinematics
+from ..problem import Joint
 from . import friction, potential, reaction, rim, smooth, stepping
 from .element import ForceElement
 from .load import Load

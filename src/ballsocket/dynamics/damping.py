@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..checks import one_number, require
-from ..sources import Source
+from ..core.checks import one_number, require
+from ..core.sources import Source
 from . import restitution as relations
 from .restitution import Relation, restitution_of
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import one_number, require
+from ..core.arrays import Numbers
+from ..core.checks import one_number, require
 from .damping import Damping
 from .restitution import restitution_of
 

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array, common, where
-from ..checks import one_number, require, shown, vectors
-from ..cup import Cup
-from ..joint import Joint
-from ..model import Model
-from ..model.answer import check_joint
-from ..model.law import CurveLaw
+from ..contact import Model
+from ..contact.answer import check_joint
+from ..contact.law import CurveLaw
+from ..core import arrays
+from ..core.arrays import Array, common, where
+from ..core.checks import one_number, require, shown, vectors
 from ..models.adhesion import AdhesiveSocket
+from ..problem import Joint
+from ..problem.cup import Cup
 from .bristles import Bristles
 from .brushed import brushed
 from .damping import Damping

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..arrays import Array, exp
-from ..checks import one_number, require
+from ..core.arrays import Array, exp
+from ..core.checks import one_number, require
 
 
 class Coulomb:

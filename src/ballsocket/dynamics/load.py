@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array, to_list
+from ..core import arrays
+from ..core.arrays import Array, to_list
 from . import reaction as formulas
 from .matrices import damping_matrix, matrix, vector
 from .reaction import Elastic, Place, Three

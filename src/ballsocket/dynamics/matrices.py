@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array, where
+from ..core import arrays
+from ..core.arrays import Array, where
 from . import friction
 from .reaction import ROUNDED, Constants, Elastic, Place, Sliding, Three, pressed, sliding, versine
 from .smooth import ramp

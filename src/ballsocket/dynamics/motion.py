@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import one_number, require, shown
-from ..sources import Source
+from ..core.arrays import Numbers
+from ..core.checks import one_number, require, shown
+from ..core.sources import Source
 from . import stepping
 from .carried import Carrier, pull_of
 from .element import ForceElement, three

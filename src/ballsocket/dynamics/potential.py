@@ -9,13 +9,13 @@ from typing import Protocol
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array, Numbers, clip, exp, log, where
-from ..joint import Joint
-from ..model import Model
-from ..model.law import CurveLaw, Law, Pieces, curve_law
+from ..contact import Model
+from ..contact.law import CurveLaw, Law, Pieces, curve_law
+from ..core import arrays
+from ..core.arrays import Array, Numbers, clip, exp, log, where
 from ..models.closed_form import ClosedForm, ClosedLaw
 from ..models.foundation import Springs
+from ..problem import Joint
 
 Slopes = tuple[Array, Array, Array]
 """U in N mm, F = dU/dd in N, k = dF/dd in N/mm."""

@@ -8,8 +8,8 @@ from math import inf
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
+from ..core.arrays import Numbers
+from ..core.checks import require
 
 
 @dataclass(frozen=True, kw_only=True)

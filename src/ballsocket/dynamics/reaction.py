@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import nan
 from typing import NamedTuple
 
-from ..arrays import Array, atan2, divisor, sqrt, where
+from ..core.arrays import Array, atan2, divisor, sqrt, where
 from . import friction
 from .rim import share
 from .smooth import positive, ramp

@@ -13,8 +13,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..checks import require
-from ..sources import Source
+from ..core.checks import require
+from ..core.sources import Source
 
 
 @dataclass(frozen=True, kw_only=True)

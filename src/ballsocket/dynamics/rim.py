@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..arrays import Array, atan2, clip, sqrt
+from ..core.arrays import Array, atan2, clip, sqrt
 
 
 def share(place: Array) -> tuple[Array, Array, Array]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ..arrays import Array, where
-from ..joint import Joint
-from ..model import Model
-from ..model.law import CurveLaw, curve_law
+from ..contact import Model
+from ..contact.law import CurveLaw, curve_law
+from ..core.arrays import Array, where
+from ..problem import Joint
 from .potential import slopes_of_array
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..arrays import Array, clip, where
+from ..core.arrays import Array, clip, where
 
 
 def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import NamedTuple
 
-from ..arrays import divisor, sqrt
+from ..core.arrays import divisor, sqrt
 from .reaction import (
     Constants,
     Elastic,

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from ..arrays import Array, clip
-from ..checks import require
-from ..joint import Joint
+from ..core.arrays import Array, clip
+from ..core.checks import require
 from ..models.adhesion import AdhesiveSocket
+from ..problem import Joint
 from .potential import Slopes
 from .reaction import Elastic
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array, Numbers, where
+from ..core import arrays
+from ..core.arrays import Array, Numbers, where
 
 if TYPE_CHECKING:
     from .load import Load

@@ -15,13 +15,13 @@ from typing import Any, ClassVar
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
-from ..joint import Joint
-from ..model import Model
+from ..contact import Model
+from ..core.arrays import Numbers
+from ..core.checks import require
+from ..core.sources import Source
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import linear_kinematics
-from ..sources import Source
+from ..problem import Joint
 from .potential import Potential, potential_of
 from .prony import Prony
 

@@ -9,11 +9,10 @@ from math import inf
 
 import numpy
 
-from ..arrays import Array, known
-from ..contact import Contact
-from ..joint import Joint
-from ..model import Model
-from ..validity import Range
+from ..contact import Contact, Model
+from ..core.arrays import Array, known
+from ..core.validity import Range
+from ..problem import Joint
 
 _log = logging.getLogger("ballsocket.dynamics")
 

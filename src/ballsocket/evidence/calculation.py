@@ -12,15 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from ..catalogue import reference
-from ..contact import Contact
-from ..elastic.tabulated.model import Tabulated
-from ..fem.model import FiniteElement
-from ..joint import Joint
-from ..model import Model
-from ..quantities import CONTACT
-from ..sphere.model import Sphere
+from ..contact import Contact, Model
+from ..core.quantities import CONTACT
+from ..core.validity import OutsideDomainError
+from ..elasticity.exact.tabulated.model import Tabulated
+from ..elasticity.finite_elements.model import FiniteElement
+from ..elasticity.off_axis.model import Sphere
+from ..problem import Joint
 from ..studies.parameters import AIMS, pressable
-from ..validity import OutsideDomainError
 from .matrix import Case, known_errors
 from .question import Question
 
@@ -127,8 +126,8 @@ def _method(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> M
 
 def _calculix(name: str, model: FiniteElement, joint: Joint, load: Mapping[str, Any]) -> Method:
     """Another program's elements, run here on our deck."""
-    from ..fem.export.calculix import run
-    from ..fem.export.deck import deck_of
+    from ..elasticity.finite_elements.decks.calculix import run
+    from ..elasticity.finite_elements.decks.deck import deck_of
 
     contact: Contact = model.press(joint, **load)
     if contact.status.failed:

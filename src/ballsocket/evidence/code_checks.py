@@ -14,19 +14,19 @@ from typing import Any
 
 import numpy
 
-from ..cup import Cup
-from ..elastic.exact import Exact
-from ..gaps import LinearGap
-from ..joint import Joint, Material
-from ..model import Model
+from ..contact import Model
+from ..elasticity.exact.model import Exact
+from ..elasticity.off_axis.model import Sphere
+from ..elasticity.off_axis.surfaces import ClosedShell
 from ..models.foundation import RadialFoundation
 from ..models.half_space import Hertz, Steuermann
 from ..models.kinematics import exact_kinematics
 from ..models.liu import LiuReconstruction
 from ..models.modulus import constant
-from ..presets import joints
-from ..sphere.model import Sphere
-from ..sphere.surfaces import ClosedShell
+from ..problem import Joint, Material
+from ..problem.cup import Cup
+from ..problem.gaps import LinearGap
+from ..problem.presets import joints
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Array, to_numpy, where
-from ..joint import Joint
+from ..core.arrays import Array, to_numpy, where
+from ..problem import Joint
 from ..studies.parameters import LOADS, pressable
 from .matrix import Row
 from .question import ALMOST_ALL, Question

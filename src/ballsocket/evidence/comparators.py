@@ -9,11 +9,11 @@ from types import MappingProxyType
 from typing import Any
 
 from ..catalogue import reference
-from ..joint import Joint, Layer, Material
 from ..models.half_space import Hertz
 from ..paper.claims import ELSEWHERE, judged
 from ..paper.claims.elsewhere import pressed
-from ..presets import ALUMINA, COCR, TITANIUM, UHMWPE
+from ..problem import Joint, Layer, Material
+from ..problem.presets import ALUMINA, COCR, TITANIUM, UHMWPE
 from .comparator import Comparator, reach_of
 
 _DUROM = (

@@ -15,9 +15,9 @@ from math import isclose
 from pathlib import Path
 from typing import Any
 
-from ..checks import shown
-from ..engines.local import Engine, Serial
-from ..fingerprint import fingerprint
+from ..core.checks import shown
+from ..core.executors.local import Engine, Serial
+from ..core.storage.fingerprint import fingerprint
 from .folder import PAGE, QUESTION, RECORD, SIGNATURE, SUMS, PageMaker, digest, names_of, page_bytes, sums_bytes
 from .folder import record_bytes as canonical
 from .inputs import DRAWING, STATED, made_with

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy
 
-from ..arrays import Numbers
-from ..fem.elasticity import Elastic
-from ..fem.mesh import Block, block
+from ..core.arrays import Numbers
+from ..elasticity.finite_elements.elasticity import Elastic
+from ..elasticity.finite_elements.mesh import Block, block
 
 INNER, OUTER = 1.0, 1.4
 """Radii of the sphere."""

@@ -8,8 +8,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..atomic import at_once, is_draft
-from ..checks import shown
+from ..core.checks import shown
+from ..core.storage.atomic import at_once, is_draft
 from .question import Question
 from .signature import sign
 

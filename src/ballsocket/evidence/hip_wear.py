@@ -8,8 +8,7 @@ from math import radians
 
 import numpy
 
-from ..arrays import Numbers
-from ..cup import Cup
+from ..core.arrays import Numbers
 from ..hip.creep import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.gait import iso_14242_1, iso_14242_4, rocking
@@ -18,7 +17,8 @@ from ..hip.named_cycles import named_cycle
 from ..hip.patients import ANSWERS, Scatter
 from ..hip.uncertainty import LEVEL, population
 from ..hip.use import InUse
-from ..joint import Joint, Material
+from ..problem import Joint, Material
+from ..problem.cup import Cup
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 
 CONVENTIONAL, LINKED = 1.066e-6, 2e-7

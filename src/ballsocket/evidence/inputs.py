@@ -8,9 +8,9 @@ from importlib.metadata import PackageNotFoundError, version
 from math import inf
 from typing import Any
 
-from ..joint import Material
-from ..joint.dimensions import DIAMETERS, OWN
-from ..quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
+from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
+from ..problem import Material
+from ..problem.dimensions import DIAMETERS, OWN
 from .question import Question
 
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat", "matplotlib", "pillow")

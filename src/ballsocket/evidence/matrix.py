@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers, to_numpy
 from ..contact import Contact
-from ..cup import UP
-from ..kinds import Kind
-from ..quantities import QUANTITIES, Quantity
+from ..core.arrays import Numbers, to_numpy
+from ..core.kinds import Kind
+from ..core.quantities import QUANTITIES, Quantity
+from ..core.validity import Status
+from ..problem.cup import UP
 from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS, pressable
-from ..validity import Status
 from .question import Question
 
 ANSWERED = ("max_pressure", "half_angle", "area", "von_mises", "utilisation", "indentation", "force")

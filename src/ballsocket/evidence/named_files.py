@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from ..checks import shown
+from ..core.checks import shown
 
 _MAX_FILES = 50
 

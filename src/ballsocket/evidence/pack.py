@@ -13,8 +13,8 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
-from ..engines.local import Engine, Serial
-from ..fingerprint import fingerprint
+from ..core.executors.local import Engine, Serial
+from ..core.storage.fingerprint import fingerprint
 from ..paper.plan import Piece, Plan, Results, Summary
 from ..studies.parameters import pressable
 from . import matrix

@@ -11,15 +11,15 @@ from typing import Any
 from unicodedata import category
 
 from ..catalogue import off_axis, reference
-from ..checks import check_text, nearest, require, shown
+from ..contact import Model
+from ..core.checks import check_text, nearest, require, shown
+from ..core.input_files import open_input, recorded_inputs, resolve_input
+from ..core.quantities import QUANTITIES
 from ..hip.file import read_hip
-from ..input_files import open_input, recorded_inputs, resolve_input
 from ..io.joint_file import KEYS, JointFile, check_keys
 from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of
 from ..io.units import parse
-from ..model import Model
-from ..quantities import QUANTITIES
 from ..studies.design import check_values, grid
 from ..studies.distributions import Distribution, Rectangular
 from ..studies.limits import Limit

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers, to_numpy
 from ..catalogue import reference
-from ..quantities import QUANTITIES
+from ..core.arrays import Numbers, to_numpy
+from ..core.quantities import QUANTITIES
 from ..studies.axes import Method
 from ..studies.design import sample
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, pressable

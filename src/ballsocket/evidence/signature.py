@@ -8,8 +8,8 @@ from hashlib import new, sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..checks import needs
-from ..input_files import open_input
+from ..core.checks import needs
+from ..core.input_files import open_input
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey

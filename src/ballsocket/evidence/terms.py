@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..quantities import QUANTITIES, Quantity
+from ..core.quantities import QUANTITIES, Quantity
 from ..studies.parameters import PARAMETERS
 from .matrix import NAMES
 

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy
 
-from ..arrays import to_list
 from ..catalogue import catalogue
-from ..elastic.tabulated.model import Tabulated
-from ..joint import Joint, Material
-from ..model import Model
-from ..validity import Promise
+from ..contact import Model
+from ..core.arrays import to_list
+from ..core.validity import Promise
+from ..elasticity.exact.tabulated.model import Tabulated
+from ..problem import Joint, Material
 
 SHARE, EXCESS = 0.99, 1.3
 """How many of the valid points keep the promise, and by how much the worst may exceed it."""

@@ -9,10 +9,10 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
-from ..arrays import Numbers
-from ..atomic import write_text
+from ..contact.law import CurveLaw
+from ..core.arrays import Numbers
+from ..core.storage.atomic import write_text
 from ..dynamics import ForceElement, Touch
-from ..model.law import CurveLaw
 from ..version import __version__
 from .c_text import c_number, c_statements
 from .recording import Recording

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy
 
-from ..arrays import Numbers
+from ..contact import Model
+from ..core.arrays import Numbers
 from ..dynamics import ForceElement
-from ..model import Model
 from .trusted import trusted_depth
 
 _POINTS, _DEGREE = 400, 18

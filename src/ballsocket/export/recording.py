@@ -7,12 +7,12 @@ from functools import cached_property
 from itertools import chain
 from typing import Any
 
-from ..arrays import isfinite, where
+from ..contact.law import CurveLaw
+from ..core.arrays import isfinite, where
 from ..dynamics import ForceElement, reaction
 from ..dynamics.potential import CurvePotential, energy_curve
 from ..dynamics.reaction import Constants, Elastic, Place, Three
 from ..dynamics.touch import status_of
-from ..model.law import CurveLaw
 from .recorder import Part, Recorded, Tape
 from .slopes import slopes_of
 from .tunable import TUNABLES

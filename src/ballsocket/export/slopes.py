@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from ..arrays import cos, sin, sqrt
+from ..core.arrays import cos, sin, sqrt
 from .recorder import BOOLEAN, Part, Recorded, where
 
 Slope = Part | None

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .chebyshev import Step, longest, stages_of, step
 from .creep import Ladder
 from .laws import Pass, steepest

@@ -14,7 +14,7 @@ from math import sqrt
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 
 Rate = Callable[[Numbers], Numbers]
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..npz import read_arrays, write_arrays
+from ..core.arrays import Numbers
+from ..core.storage.npz import read_arrays, write_arrays
 from .history import Report
 from .laws import OwnLaw
 from .set_up import SetUp

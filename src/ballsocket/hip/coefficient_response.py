@@ -8,8 +8,8 @@ from types import MappingProxyType
 
 import numpy
 
-from ..arrays import Numbers
-from ..engines.local import Engine
+from ..core.arrays import Numbers
+from ..core.executors.local import Engine
 from .lives import Lives
 from .patients import ANSWERS, Scatter
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from ..checks import require, shown
+from ..core.checks import require, shown
+from ..core.kinds import Kind
 from ..io.units import convert, parse, parse_units, split_quantity
-from ..kinds import Kind
 
 _WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")
 """A force times a length behind a stroke, which people write without brackets."""

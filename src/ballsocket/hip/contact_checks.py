@@ -14,13 +14,12 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Array, Numbers
-from ..contact import Contact, strength
-from ..elastic.exact import Exact
-from ..joint import Joint
-from ..model import Model
-from ..sphere.grid import Grid
-from ..validity import Status
+from ..contact import Contact, Model, strength
+from ..core.arrays import Array, Numbers
+from ..core.validity import Status
+from ..elasticity.exact.model import Exact
+from ..elasticity.off_axis.grid import Grid
+from ..problem import Joint
 
 COLUMNS = ("instant", "force", "indentation", "half_angle", "max_pressure")
 """Columns of a table of worst contacts: index of the instant, N, mm, rad, MPa."""

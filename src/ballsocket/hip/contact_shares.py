@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy
 
-from ..arrays import Numbers
-from ..sphere.grid import Grid
+from ..core.arrays import Numbers
+from ..elasticity.off_axis.grid import Grid
 
 
 def grid_neighbours(grid: Grid) -> Numbers:

@@ -7,8 +7,8 @@ from math import inf, log
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
+from ..core.arrays import Numbers
+from ..core.checks import require
 
 MINUTE = 60.0
 _EULER = 0.5772156649015329

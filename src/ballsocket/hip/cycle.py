@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require, shown
+from ..core.arrays import Numbers
+from ..core.checks import require, shown
 from .sliding import rotation_matrices, rotation_vectors
 
 INSTANTS = 100

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import known_name, require
-from ..cup import Side
+from ..core.arrays import Numbers
+from ..core.checks import known_name, require
+from ..problem.cup import Side
 from .cycle import INSTANTS, Course, Cycle, Frame
 from .measured import ANGLES, FORCES, Measured, measured, together
 from .resampled import CLOSED, check_closed, clock_of, course, cut, phases_of

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..sphere.grid import Grid
+from ..core.arrays import Numbers
+from ..elasticity.off_axis.grid import Grid
 from .placing import Placed
 
 

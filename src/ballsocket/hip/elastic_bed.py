@@ -7,19 +7,19 @@ from functools import cached_property, lru_cache
 
 import numpy
 
-from ..arrays import Numbers
-from ..cup import Cup
-from ..fem.shapes import socket_shape
-from ..gaps import LinearGap
-from ..joint import Joint
-from ..sphere.compliance import Compliance, compliance_on
-from ..sphere.directions import sized
-from ..sphere.edges import Edges
-from ..sphere.gap import Separation, sunk
-from ..sphere.grid import Grid, even_grid
-from ..sphere.search import Bed
-from ..sphere.search import Rest as BedRest
-from ..sphere.surfaces import ClosedShell, RealCup
+from ..core.arrays import Numbers
+from ..elasticity.finite_elements.shapes import socket_shape
+from ..elasticity.off_axis.compliance import Compliance, compliance_on
+from ..elasticity.off_axis.directions import sized
+from ..elasticity.off_axis.edges import Edges
+from ..elasticity.off_axis.gap import Separation, sunk
+from ..elasticity.off_axis.grid import Grid, even_grid
+from ..elasticity.off_axis.search import Bed
+from ..elasticity.off_axis.search import Rest as BedRest
+from ..elasticity.off_axis.surfaces import ClosedShell, RealCup
+from ..problem import Joint
+from ..problem.cup import Cup
+from ..problem.gaps import LinearGap
 from .contact_shares import contact_shares, grid_neighbours
 from .levels import Levels, each_of, levels_of
 from .smoothing import Smoothing

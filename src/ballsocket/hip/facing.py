@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .laws import Pass
 from .set_up import SetUp
 from .sliding import Sliding

@@ -8,13 +8,13 @@ from math import degrees, pi
 from pathlib import Path
 from typing import Any
 
-from ..checks import require, shown
-from ..cup import Cup
+from ..core.checks import require, shown
+from ..core.kinds import Kind
 from ..io.joint_file import KEYS, JointFile, check_keys, read_cup
 from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of
 from ..io.units import parse
-from ..kinds import Kind
+from ..problem.cup import Cup
 from .film import Lubricant
 from .given_cycle import KEYS as CYCLE_KEYS
 from .given_cycle import given_cycle

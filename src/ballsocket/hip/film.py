@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
-from ..joint import Joint, Material
+from ..core.arrays import Numbers
+from ..core.checks import require
+from ..problem import Joint, Material
 from .placing import Placed
 from .sliding import Sliding
 from .springs import CycleBed, Rest

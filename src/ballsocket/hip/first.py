@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .laws import Law, Pass
 
 

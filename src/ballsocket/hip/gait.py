@@ -7,8 +7,8 @@ from math import inf, pi, radians
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
+from ..core.arrays import Numbers
+from ..core.checks import require
 from .cycle import INSTANTS, Course, Cycle, Spring, order_of
 
 

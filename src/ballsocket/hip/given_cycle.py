@@ -7,11 +7,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..checks import check_names, check_text, known_name, require, shown
-from ..cup import Side
+from ..core.checks import check_names, check_text, known_name, require, shown
+from ..core.kinds import Kind
 from ..io.toml import table_of
 from ..io.units import parse
-from ..kinds import Kind
+from ..problem.cup import Side
 from .cycle import INSTANTS, Cycle, order_of
 from .cycle_file import Reading, read_cycle
 from .in_vivo import IN_VIVO, check_weight

@@ -7,12 +7,12 @@ from types import MappingProxyType
 from typing import Any
 
 from ..catalogue import catalogue
-from ..checks import known_name, shown
+from ..core.checks import known_name, shown
+from ..core.kinds import Kind
+from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..io.toml import table_of
 from ..io.units import parse
-from ..kinds import Kind
 from ..models.foundation import RadialFoundation
-from ..sphere.surfaces import ClosedShell, RealCup, Springs
 from .coefficients import share_of_slide, wear_factor, wear_per_energy
 from .creep import Ladder, constrained_share, logarithmic
 from .film import Lubricant

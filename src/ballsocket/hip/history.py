@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_notes
 from .edge import Edge, Worst
 from .film import Lubricant

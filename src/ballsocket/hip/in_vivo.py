@@ -9,8 +9,8 @@ from types import MappingProxyType
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import known_name, require
+from ..core.arrays import Numbers
+from ..core.checks import known_name, require
 from .cycle import INSTANTS, Cycle
 from .gait import iso_14242_1
 

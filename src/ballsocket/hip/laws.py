@@ -9,8 +9,8 @@ from typing import Any, Protocol
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
+from ..core.arrays import Numbers
+from ..core.checks import require
 from .sliding import Sliding
 
 _NUDGE = 1e-6  # of the largest pressure, for the slope of a law

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 
 _MOST = 12
 _ALONG = 1e-9

@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..atomic import write_text
-from ..checks import require
-from ..engines.local import Engine, Serial
-from ..fingerprint import fingerprint
-from ..npz import read_arrays, write_arrays
+from ..core.arrays import Numbers
+from ..core.checks import require
+from ..core.executors.local import Engine, Serial
+from ..core.storage.atomic import write_text
+from ..core.storage.fingerprint import fingerprint
+from ..core.storage.npz import read_arrays, write_arrays
 from ..studies.axes import SampleAxis
 from ..studies.distributions import Distribution
 from .checkpoint import checkpoint

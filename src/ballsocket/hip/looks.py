@@ -7,8 +7,8 @@ from math import inf
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
+from ..core.arrays import Numbers
+from ..core.checks import require
 from .blocks import Run
 from .checkpoint import Checkpoint
 from .facing import facing

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from math import pi
 from types import MappingProxyType
 
-from ..arrays import Numbers
-from ..checks import check_names, shown
-from ..cup import Side
+from ..core.arrays import Numbers
+from ..core.checks import check_names, shown
+from ..problem.cup import Side
 from .resampled import at_times
 from .tables import Table, parted_head
 

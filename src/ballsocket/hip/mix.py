@@ -9,8 +9,8 @@ from math import inf
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
+from ..core.arrays import Numbers
+from ..core.checks import require
 from .cycle import Cycle, Frame
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from ..checks import known_name
+from ..core.checks import known_name
 from .cycle import INSTANTS, Cycle
 from .gait import constant_load, flexion, iso_14242_1, iso_14242_1_key_points, iso_14242_4, rocking, two_axis
 from .in_vivo import IN_VIVO, in_vivo

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import check_names, require
-from ..sphere.surfaces import Springs
+from ..core.arrays import Numbers
+from ..core.checks import check_names, require
+from ..elasticity.off_axis.surfaces import Springs
 from ..studies.distributions import Distribution
 from .blocks import Run
 from .contact_checks import utilisation_and_validity

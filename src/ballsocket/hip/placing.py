@@ -8,9 +8,9 @@ from math import degrees
 
 import numpy
 
-from ..arrays import Numbers
-from ..cup import Cup, Side
-from ..joint import Joint
+from ..core.arrays import Numbers
+from ..problem import Joint
+from ..problem.cup import Cup, Side
 from .cycle import Cycle, Frame
 from .mix import Mix
 from .separation import Pulled, Separation

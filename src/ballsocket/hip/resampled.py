@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
+from ..core.arrays import Numbers
+from ..core.checks import require
 from .cycle import Course
 
 CLOSED = 0.01

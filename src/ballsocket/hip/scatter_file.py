@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from ..checks import shown
+from ..core.checks import shown
+from ..core.kinds import Kind
 from ..io.toml import table_of
 from ..io.units import parse
-from ..kinds import Kind
 from ..studies.distributions import check_nominal
 from ..studies.scatter import Read, distribution_of
 from .coefficients import share_of_slide, wear_factor, wear_per_energy

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .cycle import Cycle, Spring
 from .mix import Mix
 

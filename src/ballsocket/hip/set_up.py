@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers, is_plain
-from ..checks import require, shown
-from ..cup import Cup
-from ..fem.shapes import socket_shape
-from ..joint import Joint
-from ..model import Model
+from ..contact import Model
+from ..core.arrays import Numbers, is_plain
+from ..core.checks import require, shown
+from ..core.validity import inside
+from ..elasticity.finite_elements.shapes import socket_shape
+from ..elasticity.off_axis.grid import Grid, even_grid, grid
+from ..elasticity.off_axis.model import Sphere
+from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..models.foundation import RadialFoundation
-from ..sphere.grid import Grid, even_grid, grid
-from ..sphere.model import Sphere
-from ..sphere.surfaces import ClosedShell, RealCup, Springs
-from ..validity import inside
+from ..problem import Joint
+from ..problem.cup import Cup
 from .contact_checks import ContactCheck, check_contact, half_angles
 from .creep import Ladder, creep_note
 from .cycle import Cycle

@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy
 
-from ..arrays import Numbers
-from ..sphere.directions import tangents
+from ..core.arrays import Numbers
+from ..elasticity.off_axis.directions import tangents
 
 
 def rotation_matrices(angles: Numbers, order: str = "xyz") -> Numbers:

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy
 import scipy.fft
 
-from ..arrays import Numbers
-from ..sphere.grid import Grid
+from ..core.arrays import Numbers
+from ..elasticity.off_axis.grid import Grid
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

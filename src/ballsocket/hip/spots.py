@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy
 
-from ..arrays import Numbers
-from ..sphere.grid import Grid, even_grid
+from ..core.arrays import Numbers
+from ..elasticity.off_axis.grid import Grid, even_grid
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,10 +8,10 @@ from typing import Protocol
 
 import numpy
 
-from ..arrays import Numbers
-from ..sphere.directions import sized
-from ..sphere.gap import sunk
-from ..sphere.grid import Grid
+from ..core.arrays import Numbers
+from ..elasticity.off_axis.directions import sized
+from ..elasticity.off_axis.gap import sunk
+from ..elasticity.off_axis.grid import Grid
 from .contact_shares import contact_shares, grid_neighbours, subset_neighbours
 
 _ROUNDS = 60

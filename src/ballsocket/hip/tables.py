@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import shown
-from ..input_files import open_input
+from ..core.arrays import Numbers
+from ..core.checks import shown
+from ..core.input_files import open_input
 
 _LARGEST = 10_000_000
 _ROWS = 5, 100_000

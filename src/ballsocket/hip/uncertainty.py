@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
-from ..engines.local import Engine, Serial
-from ..sphere.surfaces import Springs
+from ..core.arrays import Numbers
+from ..core.checks import require
+from ..core.executors.local import Engine, Serial
+from ..elasticity.off_axis.surfaces import Springs
 from ..studies.room import check_samples
 from ..studies.sobol import sobol
 from .coefficient_response import COEFFICIENT, CONVERTED, SharedCoefficient, share_coefficient

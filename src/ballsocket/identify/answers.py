@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array
-from ..contact import Contact
-from ..joint import Joint
-from ..model import Model
-from ..quantities import PARTS
+from ..contact import Contact, Model
+from ..core import arrays
+from ..core.arrays import Array
+from ..core.quantities import PARTS
+from ..core.validity import OutsideDomainError
+from ..problem import Joint
 from ..studies.parameters import varied
-from ..validity import OutsideDomainError
 from .measured import Measured
 
 Columns = Mapping[str, Array]

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import shown
+from ..core.arrays import Numbers
+from ..core.checks import shown
+from ..core.kinds import Kind
+from ..core.quantities import FIELD, LOADS, Quantity
 from ..io.units import parse
-from ..kinds import Kind
-from ..quantities import FIELD, LOADS, Quantity
 from ..studies.columns import read_columns
 from .measured import MEASURED, PERFECT, Machine, Measured
 

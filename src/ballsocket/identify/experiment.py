@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .information import TOLD
 from .measured import OF_JOINT, PERFECT, Machine, Measured
 

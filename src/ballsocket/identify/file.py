@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy
 
-from ..checks import check_names, check_text, known_name, shown
+from ..contact import Model
+from ..core.checks import check_names, check_text, known_name, shown
+from ..core.kinds import Kind
+from ..core.quantities import LOADS
 from ..io.joint_file import KEYS, check_keys
 from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of
 from ..io.units import parse
-from ..joint import Joint
-from ..kinds import Kind
-from ..model import Model
-from ..quantities import LOADS
+from ..problem import Joint
 from ..studies.file import named_model
 from ..studies.parameters import PARAMETERS
 from ..studies.phrases import ends_of

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .profile import ProfileEnd
 from .unknowns import Scales, Unknown
 

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import known_name, one_load, require, shown
 from ..contact import Contact
-from ..joint import Joint
-from ..kinds import Kind, Unit
-from ..quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
+from ..core.arrays import Numbers
+from ..core.checks import known_name, one_load, require, shown
+from ..core.kinds import Kind, Unit
+from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
+from ..problem import Joint
 
 MEASURED: Mapping[str, Quantity] = MappingProxyType(
     {

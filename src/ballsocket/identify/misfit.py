@@ -8,7 +8,7 @@ from math import inf
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .answers import Answers
 from .scatter import Scatter
 from .unknowns import Scales, log_prior

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array
 from ..catalogue import reference as exact
-from ..joint import Joint
-from ..model import Model
+from ..contact import Model
+from ..core import arrays
+from ..core.arrays import Array
 from ..models.foundation import RadialFoundation
 from ..models.modulus import Modulus, constant, corrected_vessel, polynomial, spherical_vessel
+from ..problem import Joint
 
 Form = Callable[[Joint, numpy.ndarray], Modulus]
 """From a joint (of numbers or arrays) and the K wanted there, in MPa/mm, to a modulus."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from math import inf, pi
 
-from ..arrays import Array
-from ..checks import require
 from ..contact import Contact
-from ..kinds import Kind
-from ..quantities import Quantity
+from ..core.arrays import Array
+from ..core.checks import require
+from ..core.kinds import Kind
+from ..core.quantities import Quantity
 from .measured import Own
 
 FREQUENCY = Quantity(

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers, is_plain
-from ..checks import shown
-from ..joint import Joint
-from ..model import Model
-from ..model.answer import check_joint
+from ..contact import Model
+from ..contact.answer import check_joint
+from ..core.arrays import Numbers, is_plain
+from ..core.checks import shown
+from ..problem import Joint
 from ..studies.parameters import varied
 from .answers import Answers
 from .bands import banded

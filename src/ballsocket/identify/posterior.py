@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import needs, require
+from ..core.arrays import Numbers
+from ..core.checks import needs, require
 
 if TYPE_CHECKING:
     from .parameters import Identified

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .misfit import Misfit
 
 _MAX_ITERATIONS = 40

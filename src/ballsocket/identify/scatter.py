@@ -8,8 +8,8 @@ from typing import Protocol
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
+from ..core.arrays import Numbers
+from ..core.checks import require
 
 
 class Scatter(Protocol):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .misfit import Misfit
 
 _SEARCH = 3.0  # s that the search for a start may take

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .measured import MACHINE, Machine, Measured
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import needs
+from ..core.arrays import Numbers
+from ..core.checks import needs
 from .answers import Answers
 from .unknowns import Scales
 

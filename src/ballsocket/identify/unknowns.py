@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Array, Numbers
-from ..checks import check_names, require, shown
-from ..kinds import Kind
-from ..quantities import Quantity
+from ..core.arrays import Array, Numbers
+from ..core.checks import check_names, require, shown
+from ..core.kinds import Kind
+from ..core.quantities import Quantity
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 from ..studies.parameters import AIMS, LOADS, PARAMETERS
 from .measured import MACHINE, Measured

@@ -9,14 +9,14 @@ from math import degrees, hypot, inf, pi
 from pathlib import Path
 from typing import Any
 
-from ..checks import check_text, known_name, nearest, require, shown
-from ..cup import Cup, Interface, Side
-from ..joint import Joint, Layer, Material, Support
-from ..joint.dimensions import LENGTHS
-from ..kinds import Kind
-from ..model.answer import checked_load
-from ..presets import materials
-from ..quantities import CUP, LAYER, LOADS, MATERIAL, STRESS_LIMITS
+from ..contact.answer import checked_load
+from ..core.checks import check_text, known_name, nearest, require, shown
+from ..core.kinds import Kind
+from ..core.quantities import CUP, LAYER, LOADS, MATERIAL, STRESS_LIMITS
+from ..problem import Joint, Layer, Material, Support
+from ..problem.cup import Cup, Interface, Side
+from ..problem.dimensions import LENGTHS
+from ..problem.presets import materials
 from .toml import parse_toml, read_toml, table_of
 from .units import as_given, parse
 

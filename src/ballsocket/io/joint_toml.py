@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from math import degrees, inf, isinf, nextafter, radians
 from typing import Any
 
-from ..arrays import is_plain
-from ..checks import needs
-from ..cup import Cup, Side
-from ..joint import Layer, Material, Support
-from ..kinds import Kind
-from ..presets import materials
-from ..quantities import CUP, QUANTITIES
+from ..core.arrays import is_plain
+from ..core.checks import needs
+from ..core.kinds import Kind
+from ..core.quantities import CUP, QUANTITIES
+from ..problem import Layer, Material, Support
+from ..problem.cup import Cup, Side
+from ..problem.presets import materials
 from .joint_file import JointFile
 
 Tables = dict[str, Any]

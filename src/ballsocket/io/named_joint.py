@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..checks import check_text, nearest, plain_name, shown
-from ..input_files import resolve_input
-from ..presets import joints
+from ..core.checks import check_text, nearest, plain_name, shown
+from ..core.input_files import resolve_input
+from ..problem.presets import joints
 from .joint_file import JointFile, joint_of, read_joint
 
 PARTS = ("joint", "liner", "ball", "backing", "cup")

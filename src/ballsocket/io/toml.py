@@ -9,8 +9,8 @@ from math import isinf
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ..checks import shown
-from ..input_files import open_input
+from ..core.checks import shown
+from ..core.input_files import open_input
 
 Made = TypeVar("Made")
 

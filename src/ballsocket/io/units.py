@@ -13,8 +13,8 @@ from functools import cache
 from math import isinf, radians
 from typing import Any
 
-from ..checks import shown
-from ..kinds import Kind
+from ..core.checks import shown
+from ..core.kinds import Kind
 
 LONGEST = 100
 """Characters of a quantity."""
@@ -49,7 +49,7 @@ def parse(name: str, value: Any, kind: str) -> float:
     value : float, int or str
         A bare number, or text such as "16 mm", "3 kN", "1 GPa", "40 deg", "inf".
     kind : str
-        One of `ballsocket.kinds.Kind`: "length", "force", "modulus", "angle", "number", ...
+        One of `ballsocket.core.kinds.Kind`: "length", "force", "modulus", "angle", "number", ...
 
     Raises
     ------

@@ -7,12 +7,12 @@ from functools import partial
 from math import inf, pi
 from typing import Any, ClassVar
 
-from ..arrays import Array, broadcast, clip, divisor, sqrt, where
-from ..checks import numeric, require
-from ..joint import Joint
-from ..model.roots import increasing_root
-from ..sources import Source
-from ..validity import SMALL_STRAIN, Range
+from ..contact.roots import increasing_root
+from ..core.arrays import Array, broadcast, clip, divisor, sqrt, where
+from ..core.checks import numeric, require
+from ..core.sources import Source
+from ..core.validity import SMALL_STRAIN, Range
+from ..problem import Joint
 from .closed_form import ClosedForm
 from .kinematics import angle_of, linear_displacement, linear_indentation, versine_of
 from .modulus import Modulus, hess_forsbach

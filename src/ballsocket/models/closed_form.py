@@ -9,14 +9,14 @@ from typing import Any, ClassVar
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array, where
-from ..joint import Joint
-from ..model import Model
-from ..model.answer import Answer
-from ..model.law import Law, answered
-from ..model.roots import increasing_root
-from ..validity import Status
+from ..contact import Model
+from ..contact.answer import Answer
+from ..contact.law import Law, answered
+from ..contact.roots import increasing_root
+from ..core import arrays
+from ..core.arrays import Array, where
+from ..core.validity import Status
+from ..problem import Joint
 
 
 class ClosedForm(Model):

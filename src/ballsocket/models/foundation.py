@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import nan
 
-from ..arrays import Array, cos, where
-from ..joint import Joint
-from ..model.law import Law, answered
-from ..sources import Source
-from ..validity import SMALL_STRAIN, Promise, Range
+from ..contact.law import Law, answered
+from ..core.arrays import Array, cos, where
+from ..core.sources import Source
+from ..core.validity import SMALL_STRAIN, Promise, Range
+from ..problem import Joint
 from .closed_form import ClosedForm
 from .kinematics import Kinematics, angle_of, cosine_kinematics, exact_kinematics, linear_kinematics, versine_of
 from .modulus import Modulus, bonded_layer, hess_forsbach, spherical_vessel

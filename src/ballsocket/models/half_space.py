@@ -11,10 +11,10 @@ from typing import ClassVar
 
 from numpy.polynomial import Polynomial
 
-from ..arrays import Array, clip, power, sqrt, where
-from ..joint import Joint
-from ..sources import Source
-from ..validity import SMALL_STRAIN, Nowhere, Promise, Range
+from ..core.arrays import Array, clip, power, sqrt, where
+from ..core.sources import Source
+from ..core.validity import SMALL_STRAIN, Nowhere, Promise, Range
+from ..problem import Joint
 from .closed_form import ClosedForm
 
 

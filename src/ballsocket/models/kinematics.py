@@ -16,9 +16,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, nan, pi
 
-from ..arrays import Array, asin, clip, divisor, integral, sin, sqrt, where
-from ..sources import Source
-from ..validity import Range
+from ..core.arrays import Array, asin, clip, divisor, integral, sin, sqrt, where
+from ..core.sources import Source
+from ..core.validity import Range
 
 
 def versine_of(angle: Array) -> Array:

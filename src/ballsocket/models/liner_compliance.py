@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from .. import arrays
-from ..arrays import Array, exp, log, sqrt, where
+from ..core import arrays
+from ..core.arrays import Array, exp, log, sqrt, where
 
 Pair = tuple[Array, Array]
 """A value and its slope."""

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from math import inf, pi
 from typing import ClassVar
 
-from ..arrays import Array, clip, divisor, integral, log, sin, sqrt, where
-from ..checks import require
-from ..joint import Joint
-from ..sources import Source
-from ..validity import SMALL_STRAIN, Nowhere, Range
+from ..core.arrays import Array, clip, divisor, integral, log, sin, sqrt, where
+from ..core.checks import require
+from ..core.sources import Source
+from ..core.validity import SMALL_STRAIN, Nowhere, Range
+from ..problem import Joint
 from .closed_form import ClosedForm
 from .kinematics import angle_of, linear_indentation_of_versine, linear_versine, versine_of
 

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Array, clip
-from ..checks import numeric, require
-from ..joint import Joint
-from ..sources import Source
-from ..validity import RIGID_BACKING, RIGID_BALL, Promise, Range, inside
+from ..core.arrays import Array, clip
+from ..core.checks import numeric, require
+from ..core.sources import Source
+from ..core.validity import RIGID_BACKING, RIGID_BALL, Promise, Range, inside
+from ..problem import Joint
 from .table_3 import eq_18, table_formula
 
 Formula = Callable[..., Array]

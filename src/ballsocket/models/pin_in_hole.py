@@ -9,16 +9,16 @@ from typing import Any, ClassVar
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array, asinh, atan, broadcast, clip, divisor, log, sqrt, tan, where
-from ..checks import numeric, one_load, require
+from ..contact.answer import check_joint, prepared
+from ..contact.model_info import Theory
 from ..contact.outcome import Outcome
-from ..joint import Joint
-from ..model.answer import check_joint, prepared
-from ..model.roots import increasing_root
-from ..model.theory import Theory
-from ..sources import Source
-from ..validity import Range, Status
+from ..contact.roots import increasing_root
+from ..core import arrays
+from ..core.arrays import Array, asinh, atan, broadcast, clip, divisor, log, sqrt, tan, where
+from ..core.checks import numeric, one_load, require
+from ..core.sources import Source
+from ..core.validity import Range, Status
+from ..problem import Joint
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,14 +9,14 @@ from typing import ClassVar
 
 import numpy
 
-from .. import arrays
-from ..arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, integral, log, sin, sqrt, where
-from ..joint import Joint
-from ..model import Model
-from ..model.answer import Answer
-from ..model.roots import increasing_root
-from ..sources import Source
-from ..validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
+from ..contact import Model
+from ..contact.answer import Answer
+from ..contact.roots import increasing_root
+from ..core import arrays
+from ..core.arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, integral, log, sin, sqrt, where
+from ..core.sources import Source
+from ..core.validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
+from ..problem import Joint
 
 THINNEST = 100.0
 """R2/L up to which the quadrature is made."""

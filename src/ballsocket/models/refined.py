@@ -7,14 +7,14 @@ from functools import cached_property, lru_cache
 from math import inf, nan, pi, radians
 from typing import ClassVar
 
-from .. import arrays
-from ..arrays import Array, broadcast, clip, divisor, integral, sin, where
+from ..contact import Model
+from ..contact.answer import Answer
 from ..contact.closed_sphere import HEMISPHERE_NOTE
-from ..joint import Joint
-from ..model import Model
-from ..model.answer import Answer
-from ..sources import Source
-from ..validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
+from ..core import arrays
+from ..core.arrays import Array, broadcast, clip, divisor, integral, sin, where
+from ..core.sources import Source
+from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
+from ..problem import Joint
 from .liner_compliance import Liner, liner_of
 from .refined_state import WIDEST, State, edge_of_force, edge_of_indentation, state
 

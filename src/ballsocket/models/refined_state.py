@@ -9,9 +9,9 @@ from math import log as ln
 from math import nan, pi, radians
 from typing import NamedTuple
 
-from .. import arrays
-from ..arrays import Array, cos, exp, log, sin, where
-from ..model.roots import Increasing, increasing_root
+from ..contact.roots import Increasing, increasing_root
+from ..core import arrays
+from ..core.arrays import Array, cos, exp, log, sin, where
 from .liner_compliance import Liner, Pair, log_compliance, log_compliance_anywhere
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Array, Numbers, clip
+from ..core.arrays import Array, Numbers, clip
 
 
 def table_3() -> dict[str, Any]:

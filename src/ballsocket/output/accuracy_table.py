@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from io import StringIO
 from typing import Any
 
-from ..quantities import CONTACT, QUANTITIES
+from ..core.quantities import CONTACT, QUANTITIES
 
 _GIVEN = {"indentation": "force", "max_pressure": "force", "half_angle": "force", "force": "indentation"}
 HEADS = {name: f"{CONTACT[name].symbol} at given {CONTACT[load].symbol}" for name, load in _GIVEN.items()}

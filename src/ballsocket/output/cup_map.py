@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..quantities import FIELD
-from ..sphere.contact import OffAxisContact
-from ..sphere.directions import unit_vectors
+from ..core.arrays import Numbers
+from ..core.quantities import FIELD
+from ..elasticity.off_axis.contact import OffAxisContact
+from ..elasticity.off_axis.directions import unit_vectors
 from .style import INK, VERMILLION
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import degrees
 from typing import TYPE_CHECKING
 
-from ..quantities import FIELD
-from ..sphere.contact import OffAxisContact
+from ..core.quantities import FIELD
+from ..elasticity.off_axis.contact import OffAxisContact
 from .cup_map import draw_map
 from .cup_section import draw_section
 from .style import LEGEND

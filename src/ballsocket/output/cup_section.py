@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ..arrays import Numbers
-from ..joint import Support
-from ..sphere.contact import OffAxisContact
+from ..core.arrays import Numbers
+from ..elasticity.off_axis.contact import OffAxisContact
+from ..problem import Support
 from .cup_map import highest
 from .style import BLUE, INK, ORANGE, VERMILLION
 

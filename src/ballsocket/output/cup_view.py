@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..atomic import at_once
-from ..checks import needs
-from ..quantities import FIELD
-from ..sphere.contact import OffAxisContact
-from ..sphere.directions import unit_vectors
+from ..core.arrays import Numbers
+from ..core.checks import needs
+from ..core.quantities import FIELD
+from ..core.storage.atomic import at_once
+from ..elasticity.off_axis.contact import OffAxisContact
+from ..elasticity.off_axis.directions import unit_vectors
 from .cup_map import drawn, highest
 from .style import INK, VERMILLION
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..quantities import QUANTITIES
+from ..core.quantities import QUANTITIES
 from ..studies.limits import Limit, allowed, margin_over
 
 if TYPE_CHECKING:

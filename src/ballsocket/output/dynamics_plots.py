@@ -11,7 +11,7 @@ from ..dynamics.motion import Motion
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..arrays import Numbers
+    from ..core.arrays import Numbers
 
 _PARTS = {
     "kinetic": ("moving", "#0072B2"),

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..cup import Cup
+from ..core.arrays import Numbers
+from ..core.quantities import QUANTITIES, Quantity
 from ..evidence.matrix import NAMES
-from ..joint import Joint, Layer, Material, Support
-from ..quantities import QUANTITIES, Quantity
+from ..problem import Joint, Layer, Material, Support
+from ..problem.cup import Cup
 from ..studies.parameters import PARAMETERS
 from .joint_section import joint_section
 from .style import BLUE, GREY, INK, LEGEND, ORANGE, VERMILLION, finish, numbered

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from html import escape
 
+from ..core.storage.fingerprint import fingerprint
 from ..evidence.terms import input_title, limit_text, number, title_of
-from ..fingerprint import fingerprint
 from . import html
 from .evidence_sections import (
     calculation_section,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .style import BLUE
 
 if TYPE_CHECKING:

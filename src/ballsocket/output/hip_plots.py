@@ -17,7 +17,7 @@ from ..hip.uncertainty import Bands
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..arrays import Numbers
+    from ..core.arrays import Numbers
     from ..hip.set_up import SetUp
 
 _INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ..atomic import write_text
+from ..core.storage.atomic import write_text
 from ..hip.film import CONFORMING
 from ..hip.history import History
 from ..hip.uncertainty import Bands

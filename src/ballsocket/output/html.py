@@ -9,7 +9,7 @@ from html import escape
 from io import BytesIO
 from typing import TYPE_CHECKING
 
-from ..fingerprint import fingerprint
+from ..core.storage.fingerprint import fingerprint
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

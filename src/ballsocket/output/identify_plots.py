@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..core.quantities import FIELD, LOADS, Quantity
 from ..identify.experiment import Experiment
 from ..identify.measured import MEASURED, Measured
 from ..identify.parameters import Identified
 from ..identify.posterior import Posterior
-from ..quantities import FIELD, LOADS, Quantity
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..arrays import Numbers
+    from ..core.arrays import Numbers
 
 _MARKS = ("o", "s", "^", "D", "v", "P")
 _COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PINK, SKY)

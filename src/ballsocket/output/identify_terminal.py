@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from rich.table import Table
 
+from ..core.kinds import Unit
 from ..identify.measured import MEASURED
 from ..identify.parameters import Identified
 from ..identify.posterior import CONVERGED, Posterior
 from ..identify.sensitivity import Sensitivity
-from ..kinds import Unit
 from .terminal import console, print_folded
 
 _ROWS = 5

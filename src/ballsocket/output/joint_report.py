@@ -11,12 +11,12 @@ from math import inf
 from typing import Any
 
 from ..contact import Contact
-from ..cup import Cup
+from ..core.quantities import CUP, MATERIAL, STRESS_LIMITS
+from ..elasticity.off_axis.contact import OffAxisContact
 from ..io.joint_file import JointFile
 from ..io.joint_toml import tables_of
-from ..joint import Material
-from ..quantities import CUP, MATERIAL, STRESS_LIMITS
-from ..sphere.contact import OffAxisContact
+from ..problem import Material
+from ..problem.cup import Cup
 from ..studies.parameters import PARAMETERS
 from . import html
 from .joint_section import joint_section

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy
 
 from ..contact import Contact
-from ..cup import Cup
-from ..joint import Joint
-from ..quantities import CONTACT
+from ..core.quantities import CONTACT
+from ..problem import Joint
+from ..problem.cup import Cup
 from .section_scale import gap_factor, radii_of
 from .style import BLUE, GREEN, GREY, INK, ORANGE, PINK, SKY, VERMILLION
 from .unit_systems import Units

@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from ..joint import Joint, Material
-from ..model.theory import Theory
-from ..sources import Source
-from ..validity import Range
+from ..contact.model_info import Theory
+from ..core.sources import Source
+from ..core.validity import Range
+from ..problem import Joint, Material
 
 
 def model_summary(model: Theory) -> dict[str, Any]:

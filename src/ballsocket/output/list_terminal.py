@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from rich.table import Table
 from rich.text import Text
 
-from ..joint import Joint, Material
-from ..model.theory import Theory
-from ..presets import joints, materials
-from ..quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS, Quantity
+from ..contact.model_info import Theory
+from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS, Quantity
+from ..problem import Joint, Material
+from ..problem.presets import joints, materials
 from .terminal import console, print_folded
 
 _NARROW = 72  # columns: lists are paragraphs below

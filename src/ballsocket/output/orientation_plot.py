@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..quantities import CONTACT, CUP, DERIVED, Quantity
-from ..sphere.orientations import Orientations
+from ..core.arrays import Numbers
+from ..core.quantities import CONTACT, CUP, DERIVED, Quantity
+from ..elasticity.off_axis.orientations import Orientations
 from .style import LEGEND
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ import numpy
 from rich.table import Table
 from rich.text import Text
 
-from ..arrays import Numbers
-from ..quantities import CONTACT, DERIVED
-from ..sphere.orientations import Orientations
-from ..validity import Status
+from ..core.arrays import Numbers
+from ..core.quantities import CONTACT, DERIVED
+from ..core.validity import Status
+from ..elasticity.off_axis.orientations import Orientations
 from .orientation_plot import load_text
 from .terminal import console, print_folded
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from .. import arrays
 from ..contact import Contact
 from ..contact.describe import Column
-from ..kinds import Unit
-from ..quantities import CONTACT, FIELD
+from ..core import arrays
+from ..core.kinds import Unit
+from ..core.quantities import CONTACT, FIELD
 from .style import LEGEND, THICK, THIN, Line, finish, in_matplotlib, line_of
 from .unit_systems import Units
 

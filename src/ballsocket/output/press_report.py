@@ -9,10 +9,10 @@ from ..compare import Comparison, answered
 from ..contact import Contact
 from ..contact.describe import number_text
 from ..contact.verdict import verdict
+from ..core.quantities import CONTACT
+from ..core.sources import Source
+from ..elasticity.off_axis.contact import OffAxisContact
 from ..io.joint_file import JointFile
-from ..quantities import CONTACT
-from ..sources import Source
-from ..sphere.contact import OffAxisContact
 from ..studies.around import Around
 from ..studies.parameters import PARAMETERS
 from . import html, quick_plot

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..catalogue import reference
 from ..compare import answered, force_curves
 from ..contact import Contact
-from ..sphere.contact import OffAxisContact
+from ..elasticity.off_axis.contact import OffAxisContact
 from .cup_plot import cup_figure
 from .press_plot import press_figure
 

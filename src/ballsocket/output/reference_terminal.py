@@ -10,14 +10,14 @@ from rich.table import Table
 from rich.text import Text
 
 from ..contact.describe import number_text
+from ..core.quantities import CONTACT
 from ..identify.modulus import Calibration
 from ..paper.table_3 import RATIOS
 from ..paper.table_3 import Column as TableColumn
-from ..quantities import CONTACT
 from .terminal import console, print_folded
 
 if TYPE_CHECKING:
-    from ..fem.export.calculix import CcxAnswer
+    from ..elasticity.finite_elements.decks.calculix import CcxAnswer
 
 
 def print_calibration(fit: Calibration) -> None:

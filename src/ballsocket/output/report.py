@@ -11,8 +11,8 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..atomic import at_once, write_text
-from ..engines.local import Engine, Serial
+from ..core.executors.local import Engine, Serial
+from ..core.storage.atomic import at_once, write_text
 from ..paper.figure import Figure
 from . import accuracy_table, report_tables
 from . import html as html_page

@@ -7,10 +7,10 @@ from html import escape
 from itertools import groupby
 from typing import Any
 
-from ..kinds import Unit
+from ..core.kinds import Unit
+from ..core.quantities import JOINT
 from ..paper.accuracy import RANGES, THICKNESS
 from ..paper.table_3 import RATIOS
-from ..quantities import JOINT
 from .accuracy_table import HEADS, place, spread
 
 Row = Mapping[str, Any]

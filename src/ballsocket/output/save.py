@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..atomic import at_once, check_folder
+from ..core.storage.atomic import at_once, check_folder
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

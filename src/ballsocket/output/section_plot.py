@@ -8,15 +8,15 @@ import numpy
 
 from ..catalogue import judge, reference
 from ..contact import Contact
-from ..fem.contact import MeshedContact
-from ..quantities import FIELD
+from ..core.quantities import FIELD
+from ..elasticity.finite_elements.contact import MeshedContact
 from .style import BLUE, LEGEND, finish, in_matplotlib, line_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..fem.section import Part
+    from ..elasticity.finite_elements.section import Part
 
 _RIM = {4: (0, 1, 2, 3), 9: (0, 4, 1, 5, 2, 6, 3, 7)}
 """The nodes around an element, one after the other."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import accumulate
 from math import isinf
 
-from ..joint import Joint
+from ..problem import Joint
 
 _MASSIVE = 0.8  # of the socket's radius is drawn of what has no end
 _ROUND = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ..quantities import QUANTITIES
+from ..core.quantities import QUANTITIES
 from ..studies.limits import Limit, allowed
 from .design_map import SHOWN, design_map, read
 from .style import BLUE, INK, LEGEND, ORANGE, finish

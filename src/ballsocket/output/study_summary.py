@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy
 
-from ..arrays import to_list
+from ..core.arrays import to_list
+from ..core.validity import Status
 from ..studies.limits import Limit, allowed, refusal
 from ..studies.parameters import PARTS_OF
 from ..studies.pieces import dims_of, pieces
-from ..validity import Status
 
 if TYPE_CHECKING:
     import xarray

@@ -9,7 +9,7 @@ import numpy
 from rich.console import Console
 from rich.table import Table
 
-from ..quantities import QUANTITIES
+from ..core.quantities import QUANTITIES
 from ..studies.limits import Limit, allowed
 from .study_summary import Seen, answers, coordinates, map_summary, varying
 

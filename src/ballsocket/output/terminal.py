@@ -16,7 +16,7 @@ from ..catalogue import reference
 from ..compare import Comparison, relative
 from ..contact import Contact
 from ..contact.describe import COLUMNS, UTILISATION, Column, number_text
-from ..quantities import CONTACT, HEADLINE
+from ..core.quantities import CONTACT, HEADLINE
 from .unit_systems import Units
 
 _BARS = " ▁▂▃▄▅▆▇█"

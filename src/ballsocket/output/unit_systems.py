@@ -7,8 +7,8 @@ from math import inf, isinf
 from types import MappingProxyType
 
 from ..contact.describe import UTILISATION, Column
-from ..kinds import Kind, Unit
-from ..quantities import CONTACT, Quantity
+from ..core.kinds import Kind, Unit
+from ..core.quantities import CONTACT, Quantity
 
 _LARGE = 1e4
 """Numbers from here on are written out."""

@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
 from ..catalogue import catalogue, reference
-from ..contact import Contact
-from ..joint import Joint, Material
-from ..model import Model
-from ..presets import STEEL
-from ..validity import OutsideDomainError
+from ..contact import Contact, Model
+from ..core.arrays import Numbers
+from ..core.validity import OutsideDomainError
+from ..problem import Joint, Material
+from ..problem.presets import STEEL
 
 RANGES = {"ball_radius": (11.0, 23.0), "outer_radius": (16.0, 26.0), "clearance": (0.05, 0.2), "poisson": (0.3, 0.49)}
 """Table 1 of Heß & Forsbach 2021 in mm, and the Poisson's ratios of Table 3."""

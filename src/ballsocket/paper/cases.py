@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy
 
-from ..arrays import Numbers
-from ..joint import Joint, Material
-from ..presets import STEEL
-from ..quantities import JOINT
+from ..core.arrays import Numbers
+from ..core.quantities import JOINT
+from ..problem import Joint, Material
+from ..problem.presets import STEEL
 from .accuracy import RANGES, THICKNESS
 from .table_3 import paper_joint
 

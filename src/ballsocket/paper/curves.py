@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers, to_numpy
-from ..contact import Contact
-from ..joint import Joint
-from ..model import Model
+from ..contact import Contact, Model
+from ..core.arrays import Numbers, to_numpy
+from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT
 from ..models.foundation import HessForsbach
-from ..quantities import CONTACT, DERIVED, FIELD, JOINT
+from ..problem import Joint
 from . import cases
 from .figure import Figure, Line, Map, Panel
 

@@ -11,17 +11,18 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from ..atomic import write_text
 from ..catalogue import catalogue
-from ..elastic.exact import Exact
-from ..engines.local import Engine, Serial
-from ..fem.model import FiniteElement
-from ..fingerprint import fingerprint
-from ..model import Model
+from ..contact import Model
+from ..core.executors.local import Engine, Serial
+from ..core.storage.atomic import write_text
+from ..core.storage.fingerprint import fingerprint
+from ..elasticity.exact.model import Exact
+from ..elasticity.finite_elements.model import FiniteElement
 from . import cases, curves
 from .accuracy import accuracies
-from .claims import CLAIMS, ELSEWHERE, MESHED_CLAIMS, MESHED_ELSEWHERE, Claim, judged
+from .claims import CLAIMS, ELSEWHERE, MESHED_CLAIMS, MESHED_ELSEWHERE, judged
 from .claims.agreement import dense_elements
+from .claims.finding import Claim
 from .table_3 import refit_column
 
 Piece = Callable[[], Any]

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from ..checks import nearest
+from ..core.checks import nearest
 from .axes import Method, Span
 from .design import Design, grid, sample
 from .distributions import LogNormal, Normal, Rectangular, tolerance

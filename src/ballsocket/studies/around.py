@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy
 
-from ..cup import Cup
-from ..joint import Joint
+from ..problem import Joint
+from ..problem.cup import Cup
 from .design import check_values, sample
 from .distributions import Distribution, check_nominal
 from .parameters import LOADS, PARAMETERS, nominal

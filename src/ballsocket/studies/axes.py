@@ -12,10 +12,10 @@ from math import inf
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import require
-from ..joint import Material
-from ..quantities import MATERIAL, QUANTITIES
+from ..core.arrays import Numbers
+from ..core.checks import require
+from ..core.quantities import MATERIAL, QUANTITIES
+from ..problem import Material
 from .distributions import Distribution
 
 MOST = 10**15

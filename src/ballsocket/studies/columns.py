@@ -10,9 +10,9 @@ from typing import TextIO
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import needs, shown
-from ..input_files import open_input, resolve_input
+from ..core.arrays import Numbers
+from ..core.checks import needs, shown
+from ..core.input_files import open_input, resolve_input
 from .room import check_rows
 
 Check = Callable[[Sequence[str]], None]

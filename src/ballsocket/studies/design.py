@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import check_names, require, shown
-from ..joint import Material
+from ..core.arrays import Numbers
+from ..core.checks import check_names, require, shown
+from ..problem import Material
 from .axes import MOST, Axis, GridAxis, MaterialAxis, Method, SampleAxis, Span, SpanAxis, column
 from .distributions import Distribution
 from .parameters import PARAMETERS, PARTS_OF, contradiction

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from math import inf, log
 from typing import Any
 
-from ..checks import require
-from ..kinds import Unit
+from ..core.checks import require
+from ..core.kinds import Unit
 
 
 @dataclass(frozen=True, kw_only=True)

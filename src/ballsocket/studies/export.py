@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ..atomic import at_once, check_folder
-from ..checks import needs
-from ..quantities import QUANTITIES
+from ..core.checks import needs
+from ..core.quantities import QUANTITIES
+from ..core.storage.atomic import at_once, check_folder
 from .pieces import blocks_of, dims_of, pieces
 
 if TYPE_CHECKING:

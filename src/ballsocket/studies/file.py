@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from ..catalogue import catalogue, judge, off_axis
-from ..checks import check_names, check_text, known_name, nearest, shown
-from ..elastic.exact_curve import ExactCurve
-from ..engines.dask import Distributed
-from ..engines.local import Engine, Processes, Serial
+from ..contact import Model
+from ..core.checks import check_names, check_text, known_name, nearest, shown
+from ..core.executors.dask import Distributed
+from ..core.executors.local import Engine, Processes, Serial
+from ..elasticity.exact.exact_curve import ExactCurve
 from ..io.joint_file import KEYS, check_keys, named_material
 from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of
 from ..io.units import parse
-from ..joint import Joint
-from ..model import Model
+from ..problem import Joint
 from .axes import Method, Span
 from .design import Design, grid, sample
 from .parameters import PARAMETERS, PARTS_OF

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy
 
-from ..fingerprint import fingerprint
+from ..core.storage.fingerprint import fingerprint
 from .axes import Axis, SampleAxis
 from .design import Design
 from .task import Task

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..fingerprint import fingerprint
-from ..quantities import QUANTITIES
-from ..validity import Status
+from ..core.arrays import Numbers
+from ..core.quantities import QUANTITIES
+from ..core.storage.fingerprint import fingerprint
+from ..core.validity import Status
 from .design import Design
 from .identity import axes_of
 from .parameters import PARTS_OF

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..checks import check_names, in_radians, require
-from ..cup import UP, Cup, Direction
-from ..joint.dimensions import OWN, Dimensions, resolved
-from ..kinds import Kind
-from ..quantities import CONTACT, JOINT
-from ..validity import Status
+from ..core.checks import check_names, in_radians, require
+from ..core.kinds import Kind
+from ..core.quantities import CONTACT, JOINT
+from ..core.validity import Status
+from ..problem.cup import UP, Cup, Direction
+from ..problem.dimensions import OWN, Dimensions, resolved
 from .parameters import PARAMETERS
 from .task import EDGE_DISTANCE, QUANTITIES
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import check_names, needs, require
-from ..joint import Joint
-from ..model import Model
+from ..contact import Model
+from ..core.arrays import Numbers
+from ..core.checks import check_names, needs, require
+from ..problem import Joint
 from .design import Design, grid, sample
 from .distributions import Rectangular
 from .limits import EDGE_DISTANCE, Limit, allowed, refusal

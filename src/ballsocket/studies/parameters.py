@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from .. import quantities
-from ..arrays import Array, where
-from ..joint import Joint, Material
-from ..joint.dimensions import DIAMETERS, OWN, check_once, resolved
-from ..model import Model
-from ..quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
+from ..contact import Model
+from ..core import quantities
+from ..core.arrays import Array, where
+from ..core.quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
+from ..problem import Joint, Material
+from ..problem.dimensions import DIAMETERS, OWN, check_once, resolved
 
 AIMS: Mapping[str, Quantity] = MappingProxyType(
     {**quantities.AIM, **{name: quantities.CUP[name] for name in ("inclination", "anteversion")}}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ..checks import check_names
+from ..core.checks import check_names
 from .limits import Limit, allowed, refusal
 
 if TYPE_CHECKING:

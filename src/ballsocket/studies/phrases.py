@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from ..checks import check_names, shown
+from ..core.checks import check_names, shown
+from ..core.quantities import QUANTITIES
 from ..io.joint_file import named_material
 from ..io.units import parse
-from ..quantities import QUANTITIES
 from .distributions import Distribution, Rectangular, tolerance
 from .limits import NAMES as LIMITED
 from .limits import Limit

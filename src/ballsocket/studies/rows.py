@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..checks import check_names
+from ..core.checks import check_names
 from .axes import TableAxis, column
 from .columns import read_columns
 from .design import Design

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..catalogue import catalogue
-from ..checks import check_names, needs, shown
-from ..engines.local import Engine, Serial
-from ..joint import Joint
-from ..model import Model
-from ..model.answer import check_joint
+from ..contact import Model
+from ..contact.answer import check_joint
+from ..core.checks import check_names, needs, shown
+from ..core.executors.local import Engine, Serial
+from ..problem import Joint
 from .blocks import Blocks
 from .design import Design, check_values, grid, is_one
 from .labels import arranged, dataset

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ..checks import shown
+from ..core.checks import shown
+from ..core.kinds import Kind
 from ..io.units import as_given, parse
-from ..kinds import Kind
 from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 
 Read = Callable[[str, Any], float]

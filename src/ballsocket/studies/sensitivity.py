@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import check_names, needs, require
-from ..joint import Joint
-from ..model import Model
+from ..contact import Model
+from ..core.arrays import Numbers
+from ..core.checks import check_names, needs, require
+from ..problem import Joint
 from .distributions import Distribution
 from .labels import described
 from .parameters import PARAMETERS, contradiction

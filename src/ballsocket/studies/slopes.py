@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
-from ..checks import check_names, needs
-from ..joint import Joint
-from ..model import Model
+from ..contact import Model
+from ..core.arrays import Numbers
+from ..core.checks import check_names, needs
+from ..problem import Joint
 from .parameters import LOADS, PARAMETERS, check_aims, pressable
 from .task import QUANTITIES
 

@@ -8,7 +8,7 @@ from warnings import catch_warnings
 
 import numpy
 
-from ..arrays import Numbers
+from ..core.arrays import Numbers
 from .distributions import Distribution
 
 Answers = Callable[[Numbers], Numbers]

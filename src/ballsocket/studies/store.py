@@ -14,9 +14,9 @@ from zlib import crc32
 
 import numpy
 
-from ..arrays import Numbers
-from ..atomic import at_once, draft_folder
-from ..checks import needs
+from ..core.arrays import Numbers
+from ..core.checks import needs
+from ..core.storage.atomic import at_once, draft_folder
 from .identity import differences, identity
 from .labels import attributes, coordinates, described
 from .task import DTYPES, Task

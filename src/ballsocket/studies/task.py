@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy
 
-from ..arrays import Numbers
+from ..contact import Model
 from ..contact.describe import COLUMNS
-from ..fingerprint import fingerprint
-from ..joint import Joint
-from ..model import Model
-from ..quantities import BEARING
-from ..validity import OutsideDomainError, Status
+from ..core.arrays import Numbers
+from ..core.quantities import BEARING
+from ..core.storage.fingerprint import fingerprint
+from ..core.validity import OutsideDomainError, Status
+from ..problem import Joint
 from .blocks import Blocks
 from .design import Design
 from .parameters import pressable

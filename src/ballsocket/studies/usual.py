@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..catalogue import reference
-from ..elastic.exact_curve import ExactCurve
-from ..elastic.tabulated.model import Tabulated
-from ..joint import Joint
-from ..model import Model
-from ..validity import OutsideDomainError, inside
+from ..contact import Model
+from ..core.validity import OutsideDomainError, inside
+from ..elasticity.exact.exact_curve import ExactCurve
+from ..elasticity.exact.tabulated.model import Tabulated
+from ..problem import Joint
 from .design import check_values, grid
 from .parameters import LOADS, pressable
 

@@ -12,12 +12,12 @@ import panel as pn
 from ...catalogue import catalogue
 from ...compare import answered, relative
 from ...contact import Contact
+from ...core.quantities import JOINT
 from ...io.joint_file import JointFile
 from ...output.html import drawn, table
 from ...output.press_plot import press_figure
 from ...output.style import Line, numbered
-from ...presets import joints
-from ...quantities import JOINT
+from ...problem.presets import joints
 from ..drawing import extent_of, section
 from ..press_charts import press_charts
 from ..pressing import fine_curves, pressed

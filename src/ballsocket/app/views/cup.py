@@ -10,13 +10,13 @@ from html import escape
 from math import degrees, radians
 from typing import Any
 
-from ...checks import shown
+from ...core.checks import shown
+from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
+from ...core.validity import OutsideDomainError
+from ...elasticity.off_axis.contact import OffAxisContact
 from ...io.joint_file import JointFile
 from ...output import html as page
 from ...output.cup_plot import cup_figure
-from ...quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
-from ...sphere.contact import OffAxisContact
-from ...validity import OutsideDomainError
 from ..angle_map import angle_map
 from ..beside import beside
 from ..bore_map import pressed_bore

@@ -11,13 +11,13 @@ from typing import Any
 
 import panel as pn
 
+from ...core.kinds import Unit
+from ...core.quantities import QUANTITIES
 from ...io.joint_file import JointFile
-from ...kinds import Unit
 from ...output.html import drawn, table
 from ...output.study_plots import design_map
 from ...output.study_terminal import map_rows
 from ...output.unit_systems import Units
-from ...quantities import QUANTITIES
 from ...studies.parameters import PARAMETERS
 from ...studies.phrases import limit_of, range_of
 from ..beside import beside

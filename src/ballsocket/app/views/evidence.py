@@ -9,7 +9,7 @@ from dataclasses import fields, replace
 from functools import partial
 from typing import Any
 
-from ...checks import check_names, shown
+from ...core.checks import check_names, shown
 from ...evidence.terms import title_of
 from ...io.joint_file import JointFile
 from ...output import evidence_words

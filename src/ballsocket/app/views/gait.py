@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy
 
-from ...checks import check_names
+from ...core.checks import check_names
+from ...core.kinds import Kind, Unit
 from ...io.joint_file import JointFile
-from ...kinds import Kind, Unit
 from ...output import html as page
 from ...output.gait_plot import course_figure
 from ..fields import typed

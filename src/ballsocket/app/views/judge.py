@@ -11,11 +11,11 @@ from typing import Any
 import panel as pn
 
 from ...compare import relative
-from ...cup import Interface
+from ...core.quantities import CONTACT, CUP
 from ...io.joint_file import JointFile, read_cup
 from ...io.joint_toml import cup_table
 from ...output.html import picture, table
-from ...quantities import CONTACT, CUP
+from ...problem.cup import Interface
 from ..judging import Judged, judged
 from ..reading import number_text
 from ..running import LONGEST, Done, Reached, Refused, Run, looked_at

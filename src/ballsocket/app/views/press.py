@@ -13,12 +13,12 @@ import panel as pn
 from ...catalogue import catalogue, reference
 from ...compare import Comparison, answered
 from ...contact import Contact
+from ...core.quantities import BEARING, FIELD
 from ...io.joint_file import JointFile
 from ...output import html as page
 from ...output.press_plot import press_figure
 from ...output.press_report import press_lede, press_sections
 from ...output.style import line_of
-from ...quantities import BEARING, FIELD
 from ...studies.around import Around, around
 from ..beside import beside
 from ..chart import swatch

@@ -7,13 +7,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from ...checks import check_names, shown
+from ...core.checks import check_names, shown
+from ...core.kinds import Kind, Unit
+from ...core.quantities import CONTACT
 from ...hip.coefficients import share_of_slide, wear_factor
 from ...io.joint_file import JointFile
-from ...kinds import Kind, Unit
 from ...output import html as page
-from ...presets import joints
-from ...quantities import CONTACT
+from ...problem.presets import joints
 from ..fields import Field, choice, number, segments, typed
 from ..in_use import CHOICES, Use
 from ..jobs import Kept, ViewJob

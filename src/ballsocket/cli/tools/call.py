@@ -10,9 +10,9 @@ from typing import Any
 
 from typer.models import ArgumentInfo
 
-from ...atomic import write_text
-from ...checks import check_names, known_name, shown
-from ...input_files import AllowedFolders, resolved_path
+from ...core.checks import check_names, known_name, shown
+from ...core.input_files import AllowedFolders, resolved_path
+from ...core.storage.atomic import write_text
 from ...io.toml import MOST, read_toml
 from .schema import option, parameters
 from .table import TOOLS, Tool

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...app.running import limit_memory
-from ...engines.local import leave_with_parent
+from ...core.executors.local import leave_with_parent
 from ..root import main
 
 if __name__ == "__main__":

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...input_files import restricted
-from ...sphere.kept import folder as cache_folder
+from ...core.input_files import restricted
+from ...elasticity.off_axis.kept import folder as cache_folder
 from ..root import DONE
 
 LARGEST = 2_000_000

@@ -9,8 +9,8 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, get_args, get_origin
 
-from ...joint.dimensions import DIAMETERS
-from ...quantities import QUANTITIES
+from ...core.quantities import QUANTITIES
+from ...problem.dimensions import DIAMETERS
 from ..root import app
 from .table import Tool
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy
 
-from ...arrays import Numbers
-from ...atomic import write_text
+from ...core.arrays import Numbers
+from ...core.storage.atomic import write_text
 from ...dynamics import ForceElement
 from .description import STEP, STOP
 from .variables import Variable, variables

@@ -11,8 +11,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from uuid import UUID
 
-from ...atomic import at_once
-from ...checks import require
+from ...core.checks import require
+from ...core.storage.atomic import at_once
 from ...dynamics import ForceElement
 from ...version import __version__
 from ..c_element import CElement, filled

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from ...model import Model
+from ...contact import Model
 from . import agreement, design, elsewhere, modulus
 from .finding import Claim, Finding, Verdict
 

@@ -6,12 +6,11 @@ from dataclasses import replace
 
 import numpy
 
-from ...contact import Contact
-from ...fem.contact import MeshedContact
-from ...fem.model import FiniteElement
-from ...fem.spacing import Element, Uniform
+from ...contact import Contact, Model
+from ...elasticity.finite_elements.contact import MeshedContact
+from ...elasticity.finite_elements.model import FiniteElement
+from ...elasticity.finite_elements.spacing import Element, Uniform
 from ...identify.modulus import worst_error
-from ...model import Model
 from ...models.foundation import Bartel, BondedLayer, HessForsbach
 from ...models.half_space import Hertz
 from .. import cases

@@ -6,9 +6,8 @@ from functools import cache
 
 import numpy
 
-from ...arrays import Numbers
-from ...contact import Contact
-from ...model import Model
+from ...contact import Contact, Model
+from ...core.arrays import Numbers
 from .. import cases
 from .finding import Finding, named, true
 

@@ -8,15 +8,15 @@ from io import StringIO
 
 import numpy
 
-from ...arrays import Numbers
-from ...elastic.contact import ElasticContact
-from ...elastic.exact import Exact
-from ...fem.model import FiniteElement
+from ...contact import Model
+from ...core.arrays import Numbers
+from ...core.sources import Source
+from ...elasticity.exact.contact import ElasticContact
+from ...elasticity.exact.model import Exact
+from ...elasticity.finite_elements.model import FiniteElement
 from ...identify.modulus import worst_error
-from ...joint import Joint, Material
-from ...model import Model
-from ...presets import COCR, CROSSLINKED_PE, STEEL, UHMWPE
-from ...sources import Source
+from ...problem import Joint, Material
+from ...problem.presets import COCR, CROSSLINKED_PE, STEEL, UHMWPE
 from .finding import SHOWN, Finding, graded, percent, true
 
 SOURCES = (Source("jin1999"), Source("plank2007"))

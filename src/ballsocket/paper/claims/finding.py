@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-from ...model import Model
+from ...contact import Model
 
 
 class Verdict(Enum):

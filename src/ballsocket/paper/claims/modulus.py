@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import numpy
 
-from ...arrays import Numbers
+from ...contact import Model
+from ...core.arrays import Numbers
 from ...identify.modulus import worst_error
-from ...model import Model
 from ...models.foundation import Bartel, Vessel
 from ...models.modulus import bonded_layer, spherical_vessel
 from .. import cases

@@ -1,0 +1,133 @@
+"""Names of version 1.0 that have changed since: modules, functions and classes, attributes, and keyword arguments.
+
+The old name still works and raises a DeprecationWarning that states the new one.
+"""
+
+from __future__ import annotations
+
+import functools
+import sys
+import warnings
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any, ParamSpec, TypeVar
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+MOVED = {
+    **{f"ballsocket.{name}": f"ballsocket.core.{name}" for name in ("arrays", "checks", "kinds", "quantities")},
+    **{f"ballsocket.{name}": f"ballsocket.core.{name}" for name in ("sources", "stress", "validity", "input_files")},
+    **{f"ballsocket.{name}": f"ballsocket.core.storage.{name}" for name in ("atomic", "fingerprint", "npz")},
+    "ballsocket.engines": "ballsocket.core.executors",
+    "ballsocket.joint": "ballsocket.problem",
+    "ballsocket.cup": "ballsocket.problem.cup",
+    "ballsocket.gaps": "ballsocket.problem.gaps",
+    "ballsocket.presets": "ballsocket.problem.presets",
+    "ballsocket.model": "ballsocket.contact",
+    "ballsocket.model.largest": "ballsocket.contact.peak_pressure",
+    "ballsocket.model.theory": "ballsocket.contact.model_info",
+    "ballsocket.pytrees": "ballsocket.compiled.pytrees",
+    "ballsocket.elastic": "ballsocket.elasticity.exact",
+    "ballsocket.elastic.exact": "ballsocket.elasticity.exact.model",
+    "ballsocket.fem": "ballsocket.elasticity.finite_elements",
+    "ballsocket.fem.export": "ballsocket.elasticity.finite_elements.decks",
+    "ballsocket.sphere": "ballsocket.elasticity.off_axis",
+}
+"""New path of each package or module that moved; the modules of a package move with it."""
+
+
+def new_path(name: str) -> str | None:
+    """Return the present path of a module by its path in version 1.0, or None if it has not moved."""
+    parent = name
+    while "." in parent:
+        if parent in MOVED:
+            return MOVED[parent] + name[len(parent) :]
+        parent = parent.rpartition(".")[0]
+    return None
+
+
+class _MovedModule(Loader):
+    def __init__(self, path: str) -> None:
+        self._path = path
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        module = import_module(self._path)
+        self._spec = module.__spec__
+        return module
+
+    def exec_module(self, module: ModuleType) -> None:
+        module.__spec__ = self._spec  # the import system has just replaced it by that of the old path
+
+
+class _MovedModules(MetaPathFinder):
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        moved = new_path(name)
+        if moved is None:
+            return None
+        warnings.warn(f"{name} is deprecated: import {moved}; removed in 2.0", DeprecationWarning, stacklevel=2)
+        return ModuleSpec(name, _MovedModule(moved), is_package=True)
+
+
+def keep_old_paths() -> None:
+    """Let the import system find moved modules by their old paths, with a DeprecationWarning."""
+    if not any(isinstance(finder, _MovedModules) for finder in sys.meta_path):
+        sys.meta_path.insert(0, _MovedModules())
+
+
+def _warn(old: str, new: str) -> None:
+    warnings.warn(f"{old} is deprecated: use {new}; removed in 2.0", DeprecationWarning, stacklevel=3)
+
+
+def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
+    """Return a module's `__getattr__` that gives renamed functions and classes by their old names.
+
+    `names` maps each old name to the present one, in the same module or with the path of another.
+    """
+
+    def find(name: str) -> Any:
+        if name not in names:
+            raise AttributeError(f"module {module!r} has no attribute {name!r}")
+        _warn(f"{module}.{name}", names[name])
+        path, _, attribute = names[name].rpartition(".")
+        return getattr(import_module(path or module), attribute)
+
+    return find
+
+
+class RenamedAttribute:
+    """Old name of a method or attribute: `told = RenamedAttribute("identifiable")` in the body of a class."""
+
+    def __init__(self, new: str) -> None:
+        self._new = new
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._old = name
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        _warn(f"{owner.__name__}.{self._old}", self._new)
+        return getattr(owner if instance is None else instance, self._new)
+
+
+def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Return a decorator that accepts keyword arguments by their old names: `@renamed_arguments(listen="progress")`."""
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        @functools.wraps(function)
+        def accepting(*args: P.args, **kwargs: P.kwargs) -> T:
+            for old in names.keys() & kwargs.keys():
+                new = names[old]
+                if new in kwargs:
+                    raise TypeError(f"{function.__name__}() got both {new!r} and its old name {old!r}")
+                _warn(f"argument {old!r} of {function.__name__}()", repr(new))
+                kwargs[new] = kwargs.pop(old)
+            return function(*args, **kwargs)
+
+        return accepting
+
+    return decorate

@@ -1,0 +1,53 @@
+"""Closed forms of Σ (n + ½)^-j cos((n + ½) x), j = 1..6: what the kernel's expansion in 1/(n + ½) sums up to.
+
+Σ_j a_j Σ_n (n + ½)^-j cos((n + ½) x) = g(x²) ln|x| + h(x²) |x| + s(x²), polynomials g and h and a power series s.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from math import ceil, log, pi
+
+import numpy
+
+from ...core.arrays import Numbers
+
+ORDER = 6
+_TERMS = 30  # of the power series, which converge like (x/2π)²
+
+
+def logarithmic(a: Numbers) -> Numbers:
+    """g as a polynomial in x²."""
+    return numpy.array([-a[0], a[2] / 2, -a[4] / 24])
+
+
+def modular(a: Numbers) -> Numbers:
+    """h as a polynomial in x²."""
+    return -pi / 2 * numpy.array([a[1], -a[3] / 6, a[5] / 120])
+
+
+def smooth(a: Numbers, reach: float) -> Numbers:
+    """s as a polynomial in x², up to x = reach."""
+    terms = min(_TERMS, 4 + ceil(log(1e-17) / log(max((reach / (2 * pi)) ** 2, 1e-9))))
+    return _series()[:terms] @ a
+
+
+@cache
+def _series() -> Numbers:
+    """From a_1 .. a_6 to the coefficients of s."""
+    from scipy.special import zeta  # would double the time that importing the package takes
+
+    k = numpy.arange(1, _TERMS - 2)
+    series = (1 - 2.0 ** (1 - 2 * k)) * zeta(2 * k) / k * (2 * pi) ** (-2.0 * k)
+    twice = series / ((2 * k + 1) * (2 * k + 2))
+    s = numpy.zeros((_TERMS, ORDER))
+    s[:3, 0] = log(4), 0, 0
+    s[:3, 1] = pi**2 / 2, 0, 0
+    s[:3, 2] = 7 * zeta(3), -3 / 4 - log(4) / 2, 0
+    s[:3, 3] = pi**4 / 6, -(pi**2) / 4, 0
+    s[:3, 4] = 31 * zeta(5), -7 / 2 * zeta(3), 1 / 16 + log(4) / 24 + 7 / 288
+    s[:3, 5] = pi**6 / 15, -(pi**4) / 12, pi**2 / 48
+    s[k, 0] -= series
+    s[k + 1, 2] += twice
+    s[k + 2, 4] -= twice / ((2 * k + 3) * (2 * k + 4))
+    return s

@@ -1,0 +1,207 @@
+"""Displacements of a hemispherical socket whose equator carries the tractions of the closed sphere, reversed.
+
+At its equator the closed socket carries tractions t. A hemisphere has none. Its additional displacement u1 is caused
+by the tractions -t in the hemisphere, which is fixed outside. Ritz' method finds u1 in polynomials of
+ln r (1/r in an infinite layer) in each layer and of cos φ. The pressures of a contact fade towards the equator, so a
+few modes suffice, and u1 is smooth along the bore.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from math import inf, log
+from typing import Any
+
+import numpy
+from numpy.polynomial import legendre
+
+from ...core.arrays import Numbers, gauss_legendre
+from ...core.stress import Stress
+from ...problem import Support
+from .modes import Socket
+
+MODES = 40
+"""Number of modes of pressure whose tractions on the equator are released."""
+
+POLAR_TERMS = 12
+"""Number of polynomials along the meridian."""
+
+_RADIAL = 5
+"""Degree of the polynomials through each layer."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FreeFace:
+    """Displacements of a hemispherical socket from which the equator's tractions of the closed sphere are released."""
+
+    socket: Socket
+
+    @cached_property
+    def _radial(self) -> tuple[Numbers, Numbers, Numbers, Numbers, Numbers]:
+        """Points r, weights, shape functions and their derivatives (points, functions), and the layer of each point.
+
+        The first functions, one for each layer, are 1 at its inner surface. The others vanish at the layer surfaces.
+        """
+        shells, bounds = (
+            self.socket.shells,
+            numpy.cumsum([self.socket.radius, *(s.thickness for s in self.socket.shells)]),
+        )
+        nodes, weights = (numpy.array(part) for part in gauss_legendre(_RADIAL + 4))
+        count, bubbles = len(shells), _RADIAL - 1
+        r, w, f, slope, layer = [], [], [], [], []
+        shapes, rates = _shifted(nodes, _RADIAL + 1)
+        for number, shell in enumerate(shells):
+            functions = numpy.zeros((2, len(nodes), count * _RADIAL))
+            span = slice(count + number * bubbles, count + (number + 1) * bubbles)
+            a = bounds[number]
+            if shell.thickness == inf:  # functions of s = a/r that vanish at infinity
+                radii, steps, rate = a / nodes, a / nodes**2, -(nodes**2) / a
+                functions[0, :, number], functions[1, :, number] = nodes, rate
+                hump = nodes * (1 - nodes)
+                functions[0, :, span] = hump[:, None] * shapes[:, :bubbles]
+                functions[1, :, span] = (((1 - 2 * nodes)[:, None] * shapes + hump[:, None] * rates) * rate[:, None])[
+                    :, :bubbles
+                ]
+            else:
+                log_ratio = log(bounds[number + 1] / a)
+                radii = a * numpy.exp(log_ratio * nodes)
+                steps, rate = log_ratio * radii, 1 / (log_ratio * radii)
+                functions[0, :, number], functions[1, :, number] = 1 - nodes, -rate
+                if number + 1 < count:
+                    functions[0, :, number + 1], functions[1, :, number + 1] = nodes, rate
+                scale = numpy.sqrt(2 * numpy.arange(1, _RADIAL) + 1)
+                functions[0, :, span] = (shapes[:, 2:] - shapes[:, :-2]) / (2 * scale)
+                functions[1, :, span] = scale * shapes[:, 1:-1] * rate[:, None]
+            r.append(radii)
+            w.append(weights * steps)
+            f.append(functions[0])
+            slope.append(functions[1])
+            layer.append(numpy.full(len(nodes), number))
+        parts = (numpy.concatenate(part) for part in (r, w, f, slope, layer))
+        return tuple(parts)  # type: ignore[return-value]
+
+    @cached_property
+    def _stiffness(self) -> Numbers:
+        """Stiffness matrix over 2π: u_r = f(r) P(cos φ), then u_φ = f(r) sin φ P(cos φ)."""
+        r, w, f, slope, layer = self._radial
+        young, nu = (
+            numpy.array([getattr(s, name) for s in self.socket.shells])[layer] for name in ("young", "poisson")
+        )
+        lame, shear = _moduli(young, nu)
+        x, weight = (numpy.array(part) for part in gauss_legendre(POLAR_TERMS + 3))
+        P, P_rate, Q, Q_rate, Q_cot = _polar_functions(x)
+        hoop, g = Q_rate + Q_cot, slope * r[:, None]
+
+        def polar(a: Numbers, b: Numbers) -> Numbers:
+            return a.T @ (weight[:, None] * b)
+
+        def radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:
+            return a.T @ ((w * factor)[:, None] * b)
+
+        both = radial(g, f, lame)
+        rr = numpy.kron(
+            radial(g, g, lame + 2 * shear) + 2 * (both + both.T) + radial(f, f, 4 * (lame + shear)), polar(P, P)
+        ) + numpy.kron(radial(f, f, shear), polar(P_rate, P_rate))
+        rp = numpy.kron(both + radial(f, f, 2 * (lame + shear)), polar(P, hoop)) + numpy.kron(
+            radial(f, g - f, shear), polar(P_rate, Q)
+        )
+        pp = (
+            numpy.kron(radial(f, f, lame), polar(hoop, hoop))
+            + numpy.kron(radial(f, f, 2 * shear), polar(Q_rate, Q_rate) + polar(Q_cot, Q_cot))
+            + numpy.kron(radial(g - f, g - f, shear), polar(Q, Q))
+        )
+        return numpy.block([[rr, rp], [rp.T, pp]])
+
+    @cached_property
+    def _loads(self) -> Numbers:
+        """Work of -t on each function over 2π, per unit of p_n: (functions, modes)."""
+        r, w, f, _, _ = self._radial
+        n = numpy.arange(MODES)
+        P, slope = _at_equator(MODES)
+        fields = self.socket.fields(n, r)
+        factor = w * r
+        corner = _shifted(numpy.zeros(1), POLAR_TERMS)[0][0]
+        sideways = (slope[:, None] * fields.sigma_rphi * factor) @ f  # dP_n/dφ = -slope
+        upward = -(P[:, None] * fields.sigma_phiphi * factor) @ f
+        return numpy.concatenate([numpy.kron(part, corner) for part in (sideways, upward)], axis=1).T
+
+    @cached_property
+    def solution(self) -> Numbers:
+        """Coefficients of u_r and u_φ (2, radial functions, polar functions, modes) per unit of p_n."""
+        return numpy.linalg.solve(self._stiffness, self._loads).reshape(2, -1, POLAR_TERMS, MODES)
+
+    def liner_stress(self, pressure: Numbers, angle: Numbers) -> Stress:
+        """Compute the additional stresses in the liner for modes of pressure: (angles, `liner_radii`)."""
+        shell, count = self.socket.shells[0], len(self.liner_radii)
+        r, _, f, slope, _ = (part[:count] for part in self._radial)
+        radial, sideways = self.solution @ pressure
+        P, P_rate, Q, Q_rate, Q_cot = _polar_functions(numpy.cos(angle))
+        outward = P @ (f @ radial).T
+        strain_r = P @ (slope @ radial).T
+        strain_phi, strain_theta = (outward + Q_rate @ (f @ sideways).T) / r, (outward + Q_cot @ (f @ sideways).T) / r
+        shear = P_rate @ (f @ radial / r[:, None]).T + Q @ ((slope - f / r[:, None]) @ sideways).T
+        lame, rigidity = _moduli(shell.young, shell.poisson)
+        spread = lame * (strain_r + strain_phi + strain_theta)
+        return Stress(
+            radial=spread + 2 * rigidity * strain_r,
+            meridional=spread + 2 * rigidity * strain_phi,
+            hoop=spread + 2 * rigidity * strain_theta,
+            shear=rigidity * shear,
+        )
+
+    @property
+    def liner_radii(self) -> Numbers:
+        """Radii in the liner at which stresses are computed, in mm."""
+        return self._radial[0][: _RADIAL + 4]
+
+    @cached_property
+    def bore(self) -> Numbers:
+        """Coefficients of P_0, P_1, ... in the radial displacement of the bore, per unit of p_n: (terms, modes)."""
+        return _to_full_range() @ self.solution[0, 0]
+
+
+def _shifted(x: Numbers, count: int) -> tuple[Numbers, Numbers]:
+    """Compute Legendre polynomials of 2x - 1 and their derivatives by x: (points, count)."""
+    values = legendre.legvander(2 * x - 1, count - 1)
+    rates = numpy.zeros_like(values)
+    for k in range(1, count):  # P_k' = P_k-2' + (2k - 1) P_k-1
+        rates[:, k] = 2 * (2 * k - 1) * values[:, k - 1] + (rates[:, k - 2] if k > 1 else 0.0)
+    return values, rates
+
+
+def _polar_functions(x: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers, Numbers]:
+    """Compute shapes of u_r and their φ-derivatives, then those of u_φ, their φ-derivatives and products with cot φ."""
+    P, rates = _shifted(x, POLAR_TERMS)
+    sine, cosine = numpy.sqrt(1 - x * x)[:, None], x[:, None]
+    return P, -sine * rates, sine * P, cosine * P - sine**2 * rates, cosine * P
+
+
+def _moduli(young: Any, poisson: Any) -> tuple[Any, Any]:
+    """Compute Lamé's constant and the shear modulus."""
+    return young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
+
+
+def _to_full_range() -> Numbers:
+    """Compute the coefficients of P_n(x) in each polynomial P_k(2x - 1)."""
+    x, weight = legendre.leggauss(POLAR_TERMS)
+    waves = legendre.legvander(x, POLAR_TERMS - 1)
+    return ((numpy.arange(POLAR_TERMS) + 0.5)[:, None] * waves.T * weight) @ legendre.legvander(
+        2 * x - 1, POLAR_TERMS - 1
+    )
+
+
+def _at_equator(count: int) -> tuple[Numbers, Numbers]:
+    """Compute P_n(0) and P_n'(0)."""
+    P, n = numpy.zeros(count), numpy.arange(count)
+    P[0] = 1.0
+    for k in range(2, count, 2):
+        P[k] = -(k - 1) / k * P[k - 2]
+    return P, n * numpy.concatenate([[0.0], P[:-1]])
+
+
+@lru_cache(maxsize=8)
+def face_of(socket: Socket) -> FreeFace | None:
+    """Return the free face of a socket; None for a socket that stands on its rim."""
+    loose = socket.support is Support.FREE and socket.shells[-1].thickness < inf
+    return None if loose else FreeFace(socket=socket)

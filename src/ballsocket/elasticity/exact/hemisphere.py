@@ -1,0 +1,306 @@
+"""Difference between the closed sphere of the exact solution and a hemisphere with a free rim and half a ball.
+
+The equator of the socket is released by `free_face`.
+
+Half a ball whose equator stays plane is half of a ball pressed symmetrically from both sides, p(φ) + p(π - φ): mode n
+moves its surface by c_n (1 + (-1)^n) p_n P_n in place of c_n p_n P_n.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property, lru_cache
+from math import nan, pi
+from typing import ClassVar
+
+import numpy
+from numpy.polynomial import legendre
+
+from ...core.arrays import Numbers, gauss_legendre
+from ...problem.gaps import LinearGap
+from .abel import State
+from .curve import Curve, window_of
+from .free_face import MODES, POLAR_TERMS, face_of
+from .kernel import Kernel
+from .modes import Ball, Socket
+
+_ITERATIONS = 3
+"""Fixed-point iterations before the extrapolation."""
+
+_POINTS = 48
+"""Points of integration over a contact."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HemisphereGap(LinearGap):
+    """`LinearGap` less an additional displacement of the surfaces, Σ extra_n P_n(cos φ) for each contact."""
+
+    extra: Numbers
+    conservative: ClassVar[bool] = False
+
+    def transform(self, t: Numbers, d: Numbers) -> Numbers:
+        """Compute A[u](t)."""
+        return super().transform(t, d) - self._sum(numpy.cos, t, numpy.ones(self.extra.shape[1]))
+
+    def slope(self, t: Numbers, d: Numbers) -> Numbers:
+        """Compute d A[u]/dt."""
+        return super().slope(t, d) + self._sum(numpy.sin, t, self._orders)
+
+    @property
+    def _orders(self) -> Numbers:
+        return numpy.arange(self.extra.shape[1]) + 0.5
+
+    def _sum(self, wave: numpy.ufunc, t: Numbers, factor: Numbers) -> Numbers:
+        total: Numbers = numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._orders))
+        return total
+
+
+def response(socket: Socket, ball: Ball | None) -> Numbers:
+    """Compute the modes of the additional displacement of both surfaces per mode of pressure: (MODES, MODES).
+
+    A socket that is free outside stands on its rim, which stays plane: it is half of a sphere that is pressed from both
+    sides, as the ball is.
+    """
+    n = numpy.arange(MODES)
+    signs = numpy.where(n % 2, -1.0, 1.0)
+    total = numpy.zeros((MODES, MODES))
+    face = face_of(socket)
+    if face is None:
+        total += numpy.diag(signs * socket.compliance(n))
+    else:
+        total[:POLAR_TERMS] += face.bore
+    if ball is not None:
+        total += numpy.diag(signs * ball.compliance(n))
+    return total
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HemisphereState(State):
+    """Contacts on the hemisphere with the half angles of the contacts `closed` on the closed sphere."""
+
+    closed: State
+
+    @property
+    def _operators(self) -> tuple[Numbers, Numbers]:
+        return self.closed._operators
+
+    @property
+    def _inverse(self) -> Numbers:
+        return self.closed._inverse
+
+    @property
+    def _edge_weights(self) -> Numbers:
+        return self.closed._edge_weights
+
+
+def on_hemisphere(closed: State, more: Numbers) -> State:
+    """Solve contacts of the same half angles on the hemisphere, with its `response`.
+
+    The additional displacements and the pressures depend linearly on each other. A few fixed-point iterations with
+    reduced-rank extrapolation solve this system.
+    """
+    iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_modes(closed) @ more.T]
+    for _ in range(_ITERATIONS):
+        iterates.append(low_modes(_pressed(closed, iterates[-1])) @ more.T)
+    return _pressed(closed, _extrapolated(numpy.stack(iterates, axis=-1)))
+
+
+def low_modes(state: State) -> Numbers:
+    """Compute p_n in MPa for n below MODES: (contacts, modes)."""
+    waves, sines = _waves(tuple(state.half_angle.tolist()))
+    size = state.grid.points
+    series = state.expansion @ _even_legendre(size)
+    modes: Numbers = numpy.einsum("cy,cyn->cn", series * sines, waves) / state.kernel.compliance
+    return modes
+
+
+@lru_cache(maxsize=16)
+def _waves(angles: tuple[float, ...]) -> tuple[Numbers, Numbers]:
+    """Compute sin((n + ½) s) at the points s of each contact, and their weights times sin s."""
+    y, weight = (numpy.array(part) for part in gauss_legendre(_POINTS))
+    angle = numpy.array(angles)[:, None]
+    s = angle * numpy.sin(pi / 2 * y)
+    return numpy.sin(s[..., None] * (numpy.arange(MODES) + 0.5)), angle * weight * pi / 2 * numpy.cos(
+        pi / 2 * y
+    ) * numpy.sin(s)
+
+
+@cache
+def _even_legendre(count: int) -> Numbers:
+    """Compute P_0, P_2, ... at the points y: (count, points)."""
+    even: Numbers = legendre.legvander(numpy.array(gauss_legendre(_POINTS)[0]), 2 * count - 1)[:, ::2].T
+    return even
+
+
+def _pressed(closed: State, extra: Numbers) -> State:
+    gap = closed.gap
+    return HemisphereState(
+        kernel=closed.kernel,
+        gap=HemisphereGap(clearance=gap.clearance, socket_radius=gap.socket_radius, extra=extra),
+        intervals=closed.intervals,
+        closed=closed,
+    )
+
+
+def _extrapolated(iterates: Numbers) -> Numbers:
+    """Extrapolate iterates (contacts, terms, iterations) of linear maps by least squares of their differences."""
+    steps = numpy.diff(iterates, axis=-1)
+    scale = numpy.linalg.norm(steps, axis=(1, 2), keepdims=True) + 1e-300
+    steps = steps / scale
+    bends = numpy.diff(steps, axis=-1)
+    share = numpy.linalg.pinv(bends, rcond=1e-10) @ steps[..., :1]
+    limit: Numbers = iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ share)[..., 0]
+    return limit
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactSeries:
+    """Quantities of the contacts of one body as functions of x = ln ε, interpolated between a few contacts.
+
+    With X = c + d, the logarithms of d/X/(1 - cos ε), F/X/ε³ and p/X/ε vary little; they are cubics between `x`.
+    """
+
+    clearance: float
+    x: Numbers
+    logs: dict[str, Numbers]
+
+    @classmethod
+    def of(cls, clearance: float, angle: Numbers, quantities: dict[str, Numbers]) -> ContactSeries:
+        reach = clearance + quantities["indentation"]
+        scales = {"indentation": 2 * numpy.sin(angle / 2) ** 2, "force": angle**3, "max_pressure": angle}
+        logs = {name: numpy.log(values / reach / scales[name]) for name, values in quantities.items()}
+        return cls(clearance=clearance, x=numpy.log(angle), logs=logs)
+
+    @cached_property
+    def _slopes(self) -> dict[str, Numbers]:
+        """Slopes of parabolas through three points."""
+        return {name: numpy.gradient(y, self.x, edge_order=2) for name, y in self.logs.items()}
+
+    def values(self, x: Numbers) -> dict[str, Numbers]:
+        """Compute the logarithms of indentation, force, largest pressure and stiffness, and the slope of the force."""
+        angle = numpy.exp(x)
+        (depth, deepening), (force, rise), (pressure, _) = (
+            _cubic(x, self.x, self.logs[name], self._slopes[name]) for name in ("indentation", "force", "max_pressure")
+        )
+        depth, deepening = depth + numpy.log(2 * numpy.sin(angle / 2) ** 2), deepening + angle / numpy.tan(angle / 2)
+        share = numpy.minimum(numpy.exp(depth), _MAX_SHARE)  # d/X
+        reach, growth = numpy.log(self.clearance / (1 - share)), share / (1 - share) * deepening
+        depth, force, pressure = depth + reach, force + 3 * x + reach, pressure + x + reach
+        rise, deepening = rise + 3 + growth, deepening + growth
+        stiffness = force - depth + numpy.log(rise / deepening)
+        return {"indentation": depth, "force": force, "max_pressure": pressure, "stiffness": stiffness, "slope": rise}
+
+
+def _cubic(at: Numbers, x: Numbers, y: Numbers, slope: Numbers) -> tuple[Numbers, Numbers]:
+    """Interpolate by cubic Hermite polynomials with slopes at the points `x`; return also the slope."""
+    i = numpy.clip(numpy.searchsorted(x, at) - 1, 0, len(x) - 2)
+    width, t = x[i + 1] - x[i], (at - x[i]) / (x[i + 1] - x[i])
+    rise, first, second = y[i + 1] - y[i], width * slope[i], width * slope[i + 1]
+    values = y[i] + t * (first + t * (3 * rise - 2 * first - second + t * (first + second - 2 * rise)))
+    slopes = (first + t * (2 * (3 * rise - 2 * first - second) + 3 * t * (first + second - 2 * rise))) / width
+    return values, slopes
+
+
+Bodies = tuple[ContactSeries, ContactSeries]
+"""Contacts of the closed sphere and of the hemisphere."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Hemisphere:
+    """Contacts of a hemisphere and of the closed sphere, for all half angles of one joint.
+
+    Under the linear gap everything is proportional to the clearance, so their ratios do not depend on it.
+    """
+
+    kernel: Kernel
+
+    @cached_property
+    def _curve(self) -> Curve:
+        gap = LinearGap(clearance=1.0, socket_radius=self.kernel.socket.radius)
+        return Curve(kernel=self.kernel, gap=gap, tolerance=_TOLERANCE)
+
+    @cached_property
+    def _response(self) -> Numbers:
+        return response(self.kernel.socket, self.kernel.ball)
+
+    @cached_property
+    def _all(self) -> Bodies | None:
+        return self._solved(self._curve.knots)
+
+    @cached_property
+    def _windows(self) -> dict[int, Bodies | None]:
+        return {}
+
+    def _bodies(self, half_angle: Numbers) -> Bodies | None:
+        """Contacts of the closed sphere and of the hemisphere: a few near the half angles if these are close together.
+
+        None where the hemisphere has too few contacts, or the numbers of the joint overflow.
+        """
+        window = window_of(half_angle)
+        try:
+            if window is None:
+                return self._all
+            if window.start not in self._windows:
+                closed = self._curve.knots_in(window)
+                self._windows[window.start] = self._all if closed is None else self._solved(closed)
+            return self._windows[window.start]
+        except numpy.linalg.LinAlgError:
+            return None
+
+    def _solved(self, closed: State) -> Bodies | None:
+        """Solve the contacts of the hemisphere with the half angles of those of the closed sphere."""
+        free = on_hemisphere(closed, self._response)
+        clearance, angle = closed.gap.clearance, closed.half_angle
+        both = [{name: getattr(state, name) for name in ("indentation", "force")} for state in (closed, free)]
+        for quantities, state in zip(both, (closed, free), strict=True):
+            quantities["max_pressure"] = _largest(state)
+        sound = numpy.min([value > 0 for value in both[1].values()], axis=0)
+        sound[1:] &= numpy.diff(both[1]["force"]) > 0  # rounding can break this close to the perfect fit
+        last = int(numpy.argmin(numpy.append(sound, False)))
+        if last < _MIN_CONTACTS:
+            return None
+        first, second = (
+            ContactSeries.of(clearance, angle[:last], {name: value[:last] for name, value in quantities.items()})
+            for quantities in both
+        )
+        return first, second
+
+    def changes(self, half_angle: Numbers) -> dict[str, Numbers]:
+        """Compute the relative change of each quantity at the same force; NaN beyond the rim."""
+        if half_angle.size == 0:
+            return dict.fromkeys(CHANGES, half_angle)
+        with numpy.errstate(all="ignore"):
+            bodies = self._bodies(half_angle)
+            if bodies is None:
+                return dict.fromkeys(CHANGES, numpy.full(half_angle.shape, nan))
+            closed, free = bodies
+            x = numpy.log(numpy.maximum(half_angle, numpy.exp(closed.x[0])))
+            before = closed.values(x)
+            knots = free.values(free.x)["force"]
+            free_x = numpy.interp(before["force"], knots, free.x)
+            for _ in range(_NEWTON_STEPS):
+                after = free.values(free_x)
+                free_x = numpy.clip(free_x + (before["force"] - after["force"]) / after["slope"], free.x[0], free.x[-1])
+            after = {**free.values(free_x), "half_angle": free_x}
+            before["half_angle"] = x  # compared as logarithms, as all others
+            inside = (abs(after["force"] - before["force"]) < _RELATIVE_TOLERANCE) & (x <= closed.x[-1])
+            return {name: numpy.where(inside, numpy.expm1(after[name] - before[name]), nan) for name in CHANGES}
+
+
+CHANGES = ("indentation", "half_angle", "max_pressure", "stiffness")
+"""Quantities of a contact whose change is computed."""
+
+_MIN_CONTACTS, _MAX_SHARE, _NEWTON_STEPS, _RELATIVE_TOLERANCE, _TOLERANCE = 4, 1 - 1e-9, 4, 1e-3, 1e-3
+
+
+def _largest(state: State) -> Numbers:
+    """Estimate the largest pressure: at the pole, or the largest at a few angles."""
+    if state.falls.all():
+        return state.pole_pressure
+    return state.pressure(state.half_angle * numpy.linspace(0.0, 0.95, 20)[:, None]).max(axis=0)
+
+
+@lru_cache(maxsize=256)
+def hemisphere_of(kernel: Kernel) -> Hemisphere:
+    """Return the hemisphere of a joint, cached for further loads."""
+    return Hemisphere(kernel=kernel)

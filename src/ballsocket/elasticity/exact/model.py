@@ -1,0 +1,131 @@
+"""The exact answer: an elastic ball in a layered elastic socket, loaded along an axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import inf
+from typing import Any, ClassVar
+
+from ...contact import Contact, Model
+from ...contact.answer import Answer
+from ...contact.per_joint import PiecedSolution, taken_apart
+from ...core import arrays
+from ...core.arrays import Array
+from ...core.checks import numeric, require, shown
+from ...core.sources import Source
+from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
+from ...problem import Joint, Support
+from ...problem.gaps import CircularGap, LinearGap, check_gap
+from .contact import ElasticContact, NearHemisphere
+from .curve import Curve
+from .kernel import Kernel
+from .modes import ball_of, socket_of
+
+
+def _locking(contact: Any) -> Array:
+    """Poisson's ratio of a liner between the ball and a rigid wall; less than that of one that can go elsewhere."""
+    joint = contact.joint
+    nu = joint.liner.poisson
+    if joint.backing or joint.support is Support.FREE:
+        return arrays.clip(nu, -1.0, 0.4999)
+    return arrays.where(joint.liner_thickness < inf, nu, arrays.clip(nu, -1.0, 0.4999))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exact(Model):
+    """Linear elasticity without friction: liner and backing are closed concentric shells bonded to each other.
+
+    The integral equation of the contact is solved in Abel space (see the docs, theory) to a requested tolerance.
+    Half angles up to 85 degrees; a solid elastic ball or a rigid one; NumPy inside, whatever arrays come in.
+
+    Parameters
+    ----------
+    tolerance : float
+        Relative, 1e-10 to 1e-2. `contact.error` estimates what was reached; where that is more, the status is
+        NOT_CONVERGED.
+    gap : type
+        `LinearGap` (Eq. 6 of Heß & Forsbach 2021, default) or `CircularGap` (Eq. 5).
+
+    Raises
+    ------
+    ValueError
+        A tolerance that double precision cannot keep.
+    TypeError
+        A press inside `jax.jit` or `jax.grad`.
+
+    References
+    ----------
+    The equation is derived in the docs (theory). The problem of two bodies of one size is Goodman & Keer's (1965).
+    """
+
+    tolerance: float = 1e-6
+    gap: type[LinearGap] | type[CircularGap] = LinearGap
+
+    def __post_init__(self) -> None:
+        tolerance = numeric("tolerance", self.tolerance)
+        if not arrays.is_plain(tolerance):
+            raise TypeError(f"tolerance must be one number, got {shown(self.tolerance)}")
+        good = 1e-10 <= tolerance <= 1e-2
+        require("tolerance", self.tolerance, good, "double precision keeps a relative tolerance of 1e-10 to 1e-2")
+        check_gap(self.gap)
+
+    contact_type: ClassVar[type[Contact]] = ElasticContact
+    differentiable: ClassVar[bool] = False
+    smooth_step: ClassVar[float] = 2e-3
+    seconds_a_press: ClassVar[float] = 3e-3
+    name: ClassVar[str] = "exact"
+
+    @property
+    def title(self) -> str:
+        shape = "" if self.gap is LinearGap else ", circular gap"
+        return f"elastic ball and layered shell, integral equation{shape}"
+
+    sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(6)"), Source("goodman1965"))
+
+    domain: ClassVar[tuple[Range, ...]] = (
+        Range(
+            quantity="joint.clearance",
+            low=0.0,
+            why="without clearance every load gives the same half angle, beyond 85°: ask cosine-limit",
+        ),
+        Range(
+            quantity=_locking,
+            symbol="ν",
+            low=-1.0,
+            high=0.49991,
+            why="between fixed walls a liner of ν = 0.5 does not give way to a uniform pressure: 0.4999 is solved",
+        ),
+        Range(quantity="joint.thickness_ratio", high=200.0, why="so thin a liner is not solved"),
+    )
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        return (CLOSE_FIT, SMALL_STRAIN, _BODY) if self.gap is LinearGap else (SMALL_STRAIN, _BODY)
+
+    reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
+
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        solution = taken_apart(self, joint, load, lambda one, loads: curve_of(self, one).press(kind, loads))
+        return answer_of(solution, self.tolerance, load)
+
+
+_BODY = NearHemisphere()
+
+
+def answer_of(solution: PiecedSolution, tolerance: float, load: Array) -> Answer:
+    """The answer that a solution is, not converged where its own errors are more than the tolerance."""
+    return Answer(
+        laws=solution,
+        force=solution.force,
+        indentation=solution.indentation,
+        failures={Status.NOT_CONVERGED: ~(solution.worst <= max(tolerance, 10 * arrays.rounding(load)))},
+    )
+
+
+@lru_cache(maxsize=256)
+def curve_of(model: Exact, joint: Joint) -> Curve:
+    """The curve of a joint of plain numbers; kept, since more loads on it are likely."""
+    kernel = Kernel(socket=socket_of(joint), ball=ball_of(joint), tolerance=max(1e-3 * model.tolerance, 1e-14))
+    gap = model.gap(clearance=float(joint.clearance), socket_radius=float(joint.socket_radius))
+    return Curve(kernel=kernel, gap=gap, tolerance=model.tolerance)

@@ -1,0 +1,300 @@
+"""How far the surfaces of a layered spherical socket and of a solid ball give way to each mode of pressure.
+
+A frictionless pressure p_n P_n(cos φ) moves the loaded surface by c_n p_n P_n(cos φ) along the radius, away from the
+pressure: c_n is the modal compliance, in mm/MPa. For balls and infinite sockets it is rational in n; layers are
+passed one by one, see `waves`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, inf, isinf, log, log1p
+
+import numpy
+from numpy.typing import ArrayLike
+
+from ...core.arrays import Array
+from ...core.checks import require
+from ...core.quantities import MATERIAL
+from ...problem import Joint, Material, Support
+from .massive import asymptote_of, massive_excess, series
+from .waves import UNIT, GroundedLayer, fixed, free
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shell:
+    """One layer of a socket.
+
+    Parameters
+    ----------
+    thickness : float
+        In mm, positive; `inf` for the last layer of a massive socket.
+    young : float
+        Young's modulus E in MPa, positive.
+    poisson : float
+        Poisson's ratio, above -1 and at most 0.5.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+    """
+
+    thickness: float
+    young: float
+    poisson: float
+
+    def __post_init__(self) -> None:
+        require("thickness", self.thickness, self.thickness > 0, "the thickness of a layer (mm) is above 0")
+        _check_material(self.young, self.poisson)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fields:
+    """What each mode does inside a socket, per unit of p_n: rows are degrees, columns are radii.
+
+    With P = P_n(cos φ) and P' = dP/dφ, the sums over n of p_n times
+
+        u_r P,   u_phi P',   sigma_rr P,   sigma_rphi P',
+        sigma_phiphi P - sigma_cot cot φ P',   sigma_thetatheta P + sigma_cot cot φ P'
+
+    are u_r, u_φ in mm and σ_rr, σ_rφ, σ_φφ, σ_θθ in MPa, tension positive. At φ = 0, cot φ P' is -n (n + 1)/2.
+    """
+
+    u_r: numpy.ndarray
+    u_phi: numpy.ndarray
+    sigma_rr: numpy.ndarray
+    sigma_rphi: numpy.ndarray
+    sigma_phiphi: numpy.ndarray
+    sigma_thetatheta: numpy.ndarray
+    sigma_cot: numpy.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Socket:
+    """A spherical bore in layers that are bonded to each other.
+
+    Parameters
+    ----------
+    radius : float
+        R2 of the bore in mm.
+    shells : tuple of Shell
+        From the bore outwards; only the last may be infinite.
+    support : Support
+        The outermost surface: FIXED (default) or FREE of traction. An infinite last layer is at rest at infinity.
+
+        The mode n = 1 has a net force, which a free surface does not balance. It is then carried by a traction on the
+        outermost surface that has the same size and direction everywhere, and displacements are counted from the
+        mean translation of that surface.
+
+    Raises
+    ------
+    ValueError
+        No layer, an infinite one inside, or a radius that is not positive.
+
+    Examples
+    --------
+    >>> liner = Shell(thickness=6.75, young=1000.0, poisson=0.4)
+    >>> Socket(radius=18.0, shells=(liner,)).compliance([0, 1, 2]).round(8)
+    array([0.00330432, 0.0034047 , 0.00351705])
+    """
+
+    radius: float
+    shells: tuple[Shell, ...]
+    support: Support = Support.FIXED
+
+    def __post_init__(self) -> None:
+        _check_radius(self.radius)
+        require("number of shells", len(self.shells), len(self.shells) > 0, "a socket has at least one layer")
+        inside = max((shell.thickness for shell in self.shells[:-1]), default=0.0)
+        require("thickness", inside, inside < inf, "only the outermost layer may be infinite")
+
+    @property
+    def asymptote(self) -> float:
+        """C, the limit of c_n (n + ½): 2 (1 - ν²) R2/E of the innermost layer."""
+        return asymptote_of(self.radius, self.shells[0].young, self.shells[0].poisson)
+
+    def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
+        """c_n in mm/MPa: the pressure p_n P_n widens the bore by c_n p_n P_n."""
+        n, nu = _checked(degrees), self.shells[0].poisson
+        P = 2 * (1 - nu) * n * n + (4 - 5 * nu) * n + (1 - nu)
+        Q = (n + 2) * (n * n + n + 1 - nu * (2 * n + 1))
+        c = numpy.asarray(self.asymptote / (2 * (1 - nu)) * P / Q)
+        near = n < self.reach(_NOTHING)
+        if near.any():
+            c[near] = -self.radius * self._layers(n[near])[0].compliance[0, 0]
+        return c
+
+    def excess(self, degrees: ArrayLike) -> numpy.ndarray:
+        """ρ_n = c_n (n + ½)/C - 1."""
+        n = _checked(degrees)
+        rho = massive_excess(n + 0.5, self.shells[0].poisson)
+        near = n < self.reach(_NOTHING)
+        if near.any():
+            share = self._layers(n[near])[0].share[0, 0]
+            rho[near] -= self.radius * share * (n[near] + 0.5) / self.asymptote
+        return rho
+
+    def expansion(self, order: int) -> numpy.ndarray:
+        """a_1, ..., a_order of ρ_n ~ Σ a_j (n + ½)^-j: the series of the infinite socket of the innermost material.
+
+        That series converges for n >= 2; what the layers add to it is exponentially small, see `reach`.
+        """
+        return series(self.shells[0].poisson, order)
+
+    def reach(self, tolerance: float = 1e-12) -> int:
+        """The degree from which ρ_n is, within `tolerance`, that of the infinite socket of the innermost material."""
+        require("tolerance", tolerance, 0 < tolerance < 1, "a tolerance lies between 0 and 1")
+        shell = self.shells[0]
+        if isinf(shell.thickness):
+            return 0
+        # What lies behind the layer is between rigid and absent. A plane layer then departs by up to
+        # [(1 + 2x)² + k0²] exp(-2x), x = n ln(1 + L/R2), k0 = 3 - 4ν; curvature takes less than one degree more.
+        k0 = 3 - 4 * shell.poisson
+        x = 1.0
+        for _ in range(20):
+            x = max(1.0, log(((1 + 2 * x) ** 2 + k0 * k0) / tolerance) / 2)
+        return ceil(x / log1p(shell.thickness / self.radius)) + 2
+
+    def fields(self, degrees: ArrayLike, radii: ArrayLike) -> Fields:
+        """Displacements and stresses of each mode at radii >= R2, per unit of p_n.
+
+        Where two layers meet, the hoop stresses are those of the inner one.
+
+        Raises
+        ------
+        ValueError
+            A radius in the bore or beyond the outermost surface.
+        """
+        n, r = numpy.atleast_1d(_checked(degrees)), numpy.atleast_1d(numpy.asarray(radii, dtype=float))
+        bounds = self._bounds
+        good = (r >= bounds[0] * (1 - _ROUNDING)) & (r <= bounds[-1] * (1 + _ROUNDING))
+        require("radii", r, good, f"the socket reaches from r = {bounds[0]:g} to {bounds[-1]:g} mm")
+        r = numpy.clip(r, bounds[0], bounds[-1])
+        layer_of = numpy.maximum(numpy.searchsorted(bounds, r) - 1, 0)
+        load = numpy.stack([-self.radius + 0 * n, 0 * n])[:, None]
+        whole = numpy.empty((7, len(n), len(r)))
+        for number, layer in enumerate(self._layers(n)):
+            here = layer_of == number
+            whole[:, :, here] = layer.fields(load, r[here])
+            load = layer.passed_on(load)
+        return Fields(**dict(zip(Fields.__dataclass_fields__, whole, strict=True)))
+
+    @property
+    def _bounds(self) -> numpy.ndarray:
+        """The radii of the bore, of the interfaces and of the outermost surface."""
+        return numpy.cumsum([self.radius, *(shell.thickness for shell in self.shells)])
+
+    def _layers(self, n: numpy.ndarray) -> list[GroundedLayer]:
+        """From the bore outwards, each on what is behind it."""
+        loose = self.support is Support.FREE and not isinf(self.shells[-1].thickness)
+        ground = free(n) if loose else fixed()
+        layers: list[GroundedLayer] = []
+        for shell, inner in zip(self.shells[::-1], self._bounds[-2::-1], strict=True):
+            layers.insert(0, GroundedLayer(**vars(shell), inner=float(inner), n=n, ground=ground))
+            ground = UNIT, -layers[0].compliance
+        return layers
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ball:
+    """A solid elastic ball.
+
+    The mode n = 1 has a net force. Whatever balances it, as long as it is of the mode n = 1 too (a uniform body force,
+    say), moves the surface along the radius by a multiple of cos φ, as a translation does. So c_1 = 0 by definition,
+    and the position of the ball is that of the sphere that fits its deformed surface best.
+
+    Parameters
+    ----------
+    radius : float
+        R1 in mm.
+    young, poisson : float
+        E in MPa and ν.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+
+    Examples
+    --------
+    >>> Ball(radius=17.9, young=1000.0, poisson=0.4).compliance([0, 1, 2]).round(8)
+    array([0.00358 , 0.      , 0.015036])
+    """
+
+    radius: float
+    young: float
+    poisson: float
+
+    def __post_init__(self) -> None:
+        _check_radius(self.radius)
+        _check_material(self.young, self.poisson)
+
+    @property
+    def asymptote(self) -> float:
+        """C, the limit of c_n (n + ½): 2 (1 - ν²) R1/E."""
+        return asymptote_of(self.radius, self.young, self.poisson)
+
+    def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
+        """c_n in mm/MPa: the pressure p_n P_n makes the surface retreat by c_n p_n P_n."""
+        n, nu = _checked(degrees), self.poisson
+        rigid = n == 1
+        P = 2 * (1 - nu) * n * n + nu * n - (1 - 2 * nu)
+        Q = (n - 1 + rigid) * (n * n + n + 1 + nu * (2 * n + 1))
+        return numpy.where(rigid, 0.0, self.asymptote / (2 * (1 - nu)) * P / Q)
+
+    def excess(self, degrees: ArrayLike) -> numpy.ndarray:
+        """ρ_n = c_n (n + ½)/C - 1."""
+        n = _checked(degrees)
+        rigid = n == 1
+        return numpy.where(rigid, -1.0, massive_excess(-(n + rigid + 0.5), self.poisson))
+
+    def expansion(self, order: int) -> numpy.ndarray:
+        """a_1, ..., a_order of ρ_n = Σ a_j (n + ½)^-j, which converges for n >= 2."""
+        return series(self.poisson, order) * (-1.0) ** numpy.arange(1, order + 1)
+
+
+def socket_of(joint: Joint) -> Socket:
+    """The socket of a joint of plain numbers: its liner, its backing and its support.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> socket_of(bs.joints["hip-28"]).shells
+    (Shell(thickness=5.0, young=1000.0, poisson=0.4),)
+    """
+    liner = _shell(joint.liner_thickness, joint.liner)
+    backing = (_shell(layer.thickness, layer.material) for layer in joint.backing)
+    return Socket(radius=float(joint.socket_radius), shells=(liner, *backing), support=joint.support)
+
+
+def ball_of(joint: Joint) -> Ball | None:
+    """The ball of a joint of plain numbers; None if it is rigid."""
+    if joint.ball is None:
+        return None
+    return Ball(radius=float(joint.ball_radius), young=float(joint.ball.young), poisson=float(joint.ball.poisson))
+
+
+def _shell(thickness: Array, material: Material) -> Shell:
+    return Shell(thickness=float(thickness), young=float(material.young), poisson=float(material.poisson))
+
+
+_NOTHING = 1e-17  # of the layers' share in ρ_n
+_ROUNDING = 1e-12  # of a radius
+
+
+def _check_radius(radius: float) -> None:
+    require("radius", radius, 0 < radius < inf, "a radius (mm) is above 0 and finite")
+
+
+def _check_material(young: float, poisson: float) -> None:
+    MATERIAL["young"].checked(young)
+    MATERIAL["poisson"].checked(poisson)
+
+
+def _checked(degrees: ArrayLike) -> numpy.ndarray:
+    n = numpy.asarray(degrees)
+    if n.dtype.kind not in "iu":
+        raise TypeError(f"degrees must be integers, got an array of {n.dtype}")
+    require("degrees", n, n >= 0, "a degree is 0 or more")
+    return n.astype(float)

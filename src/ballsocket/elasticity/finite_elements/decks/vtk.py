@@ -1,0 +1,71 @@
+"""The inside of ball and socket as a VTK file, for ParaView and its like."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy
+
+from ....core.checks import needs
+from ....core.storage.atomic import at_once, check_folder
+from ..section import Section
+
+_CELLS = {4: "quad", 9: "quad9"}
+SUFFIXES = (".vtu", ".vtk")
+
+
+def check_suffix(path: Path) -> None:
+    """Raise ValueError unless `path` ends like a format that is written, in a folder that is there."""
+    if path.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"{str(path)!r} must end in {', '.join(SUFFIXES)}")
+    check_folder(path)
+
+
+def write_vtk(section: Section, path: Path) -> None:
+    """Write meshes, displacements (mm) and stresses (MPa) of a section.
+
+    x is the distance from the load axis, y the height above the centre of the socket, in mm. Point data are
+    `displacement`, `von_mises`, and `radial`, `meridional`, `hoop` and `shear`, stresses in spherical directions. Cell
+    data are `part`, 0 for the first. The file appears at once: an interrupted write leaves none.
+
+    Parameters
+    ----------
+    section : Section
+        Of a `MeshedContact`.
+    path : Path
+        Ends in .vtu or .vtk.
+
+    Raises
+    ------
+    ValueError
+        A path that ends like no known format.
+    ImportError
+        meshio is not installed.
+    """
+    check_suffix(path)
+    needs("fem", "meshio")
+    import meshio
+
+    places = numpy.concatenate([part.place for part in section.parts], axis=1)
+    first = numpy.cumsum([0, *(part.place.shape[1] for part in section.parts)])
+    moved = numpy.concatenate([part.displacement for part in section.parts], axis=1)
+    names = ("von_mises", "radial", "meridional", "hoop", "shear")
+    stresses = {
+        name: numpy.concatenate([getattr(part.stress, name) for part in section.parts]).ravel() for name in names
+    }
+    cells = [
+        (_CELLS[len(part.elements)], (part.elements + start).T)
+        for part, start in zip(section.parts, first[:-1], strict=True)
+    ]
+    mesh = meshio.Mesh(
+        _in_space(places),
+        cells,
+        point_data={"displacement": _in_space(moved), **stresses},
+        cell_data={"part": [numpy.full(part.elements.shape[1], i) for i, part in enumerate(section.parts)]},
+    )
+    with at_once(path) as draft:
+        mesh.write(draft)
+
+
+def _in_space(plane: numpy.ndarray) -> numpy.ndarray:
+    return numpy.column_stack([*plane, numpy.zeros(plane.shape[1])])

@@ -1,0 +1,155 @@
+"""The contact by finite elements: what the paper did with Abaqus, as one more model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+from ...contact import Contact, Model
+from ...contact.answer import Answer
+from ...contact.law import Law
+from ...contact.per_joint import taken_apart
+from ...core import arrays
+from ...core.arrays import Array
+from ...core.checks import needs, require
+from ...core.sources import Source
+from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, bodies
+from ...problem import Joint
+from ...problem.cup import Cup
+from ...problem.gaps import CircularGap, LinearGap, check_gap
+from .contact import MeshedContact
+from .spacing import SPACINGS, Adapted, Element, Spacing
+
+
+def largest_poisson(contact: Any) -> Array:
+    """Poisson's ratio of the least compressible body."""
+    joint = contact.joint
+    others = [layer.material.poisson for layer in joint.backing]
+    if joint.ball is not None:
+        others.append(joint.ball.poisson)
+    largest = joint.liner.poisson
+    for poisson in others:
+        largest = arrays.where(poisson > largest, poisson, largest)
+    return largest
+
+
+@dataclass(frozen=True, kw_only=True)
+class FiniteElement(Model):
+    """Axisymmetric finite elements: what the exact solution leaves out, a rim, a liner that slides, a shell that gives.
+
+    Linear elasticity and small displacements, as in `Exact`; contact without friction and without penalty. The ball is
+    the half that faces the socket, pushed by its equator, which stays plane. Each body is condensed once onto its
+    contact surface, after which every load takes milliseconds. NumPy inside, whatever arrays come in.
+
+    Parameters
+    ----------
+    cup : Cup
+        Arc of cover, chamfer, and whether the liner is bonded to its backing. A hemisphere by default. The load is
+        along the cup's own axis, wherever that faces: inclination, anteversion and side change nothing.
+    spacing, ball_spacing : Adapted or Uniform
+        How fine the meshes of socket and ball are; they need not match. By default as fine as the contact asks for, and
+        the ball's (None) as the socket's.
+    element : Element
+        BIQUADRATIC (default) or BILINEAR.
+    meshes : int
+        2 (default) solves on a coarser mesh too and gives `contact.error`; 1 leaves that unknown, NaN.
+    gap : type
+        `LinearGap` (Eq. 6 of Heß & Forsbach 2021, default) or `CircularGap` (Eq. 5).
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed; at a press, a joint that cannot be meshed, or a mesh larger than the memory.
+    TypeError
+        A cup, spacing, element or gap of another type; a press inside `jax.jit` or `jax.grad`.
+    ImportError
+        At a press: the finite elements' extra is not installed.
+
+    References
+    ----------
+    The analysis is that of Heß & Forsbach (2021), doi 10.3390/app112311170. See the docs (finite elements).
+    """
+
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
+    spacing: Spacing = Adapted()  # noqa: RUF009 (frozen)
+    ball_spacing: Spacing | None = None
+    element: Element = Element.BIQUADRATIC
+    meshes: int = 2
+    gap: type[LinearGap] | type[CircularGap] = LinearGap
+
+    def __post_init__(self) -> None:
+        kinds = {"cup": (Cup,), "spacing": SPACINGS, "ball_spacing": (*SPACINGS, type(None)), "element": (Element,)}
+        for name, kind in kinds.items():
+            if not isinstance(getattr(self, name), kind):
+                known = " or ".join(one.__name__.replace("NoneType", "None") for one in kind)
+                raise TypeError(f"{name} must be {known}, got {getattr(self, name)!r}")
+        require("meshes", self.meshes, self.meshes in (1, 2), "meshes are 1 (no error bars) or 2")
+        check_gap(self.gap)
+
+    contact_type: ClassVar[type[Contact]] = MeshedContact
+    differentiable: ClassVar[bool] = False
+    smooth_step: ClassVar[float] = 3e-2
+    seconds_a_press: ClassVar[float] = 0.2
+    name: ClassVar[str] = "fem"
+
+    @property
+    def title(self) -> str:
+        return f"axisymmetric finite elements, {self.element.name.lower()}"
+
+    sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "section 2.3"),)
+
+    domain: ClassVar[tuple[Range, ...]] = (
+        Range(
+            quantity="joint.clearance",
+            low=0.0,
+            why="without clearance every load has the same half angle: take a millionth of the radius",
+        ),
+        Range(
+            quantity=largest_poisson,
+            symbol="ν",
+            low=-1.0,
+            high=0.49995,
+            why="an incompressible body has no bulk modulus: 0.4999 is solved",
+        ),
+        Range(quantity="joint.thickness_ratio", high=200.0, why="so thin a liner is not meshed"),
+    )
+    remarks: ClassVar[tuple[Remark, ...]] = bodies(
+        "cut off at the plane of the socket's rim", "half a one on its equator"
+    )
+    reach: ClassVar[str] = (
+        "half angles up to half the arc of cover, at most 88°, less where the ball fills its socket before or "
+        "leaves the pole, and not narrower than a few elements"
+    )
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
+
+    def _law(self, joint: Joint) -> Law:
+        raise TypeError("finite elements are too noisy for a law, each load having a mesh of its own: ask exact")
+
+    def in_cup(self, cup: Cup) -> FiniteElement:
+        return replace(self, cup=cup)
+
+    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+        needs("fem", "skfem", "psutil")
+        from .solver import Settings, curve  # takes its time to import
+
+        settings = Settings(
+            cup=self.cup,
+            spacing=self.spacing,
+            ball_spacing=self.ball_spacing or self.spacing,
+            order=self.element.value,
+            meshes=self.meshes,
+            gap=self.gap,
+        )
+        solution = taken_apart(self, joint, load, lambda one, loads: curve(settings, one).press(kind, loads))
+        return Answer(
+            laws=solution,
+            force=solution.force,
+            indentation=solution.indentation,
+            failures={
+                Status.AT_RIM: solution.spread(lambda piece: piece.state.at_rim) == 1,
+                Status.NOT_ROUND: solution.spread(lambda piece: piece.state.unsound) == 1,
+            },
+        )

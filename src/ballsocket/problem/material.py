@@ -1,0 +1,134 @@
+"""Materials, and layers of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ..core.arrays import Array, to_list
+from ..core.checks import shown
+from ..core.quantities import LAYER, MATERIAL, STRENGTH, STRESS_LIMITS
+from .values import set_fields, short_text, unchecked
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """A linear elastic, isotropic material.
+
+    Parameters
+    ----------
+    young : float or array
+        Young's modulus E in MPa, positive.
+    poisson : float or array
+        Poisson's ratio, above -1 and at most 0.5.
+    name, source : str
+        What it is called, and where the numbers come from.
+    proportional_limit : float or array, optional
+        Stress in MPa above which the secant modulus is lower than `young`. None (default) is an unknown limit.
+    yield_stress, fatigue_limit, allowable_pressure : float or array, optional
+        Strengths in MPa. None (default) is an unknown limit.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, named with its value.
+    TypeError
+        What is neither a number nor an array.
+
+    Examples
+    --------
+    >>> Material(young=1000.0, poisson=0.4).poisson
+    0.4
+    """
+
+    young: Array
+    poisson: Array
+    name: str = ""
+    source: str = ""
+    proportional_limit: Array | None = None
+    yield_stress: Array | None = None
+    fatigue_limit: Array | None = None
+    allowable_pressure: Array | None = None
+
+    def __post_init__(self) -> None:
+        elastic = {name: quantity.checked(getattr(self, name)) for name, quantity in MATERIAL.items()}
+        limits = {name: STRESS_LIMITS[name].checked(limit) for name, limit in self.stress_limits.items()}
+        set_fields(self, **elastic, **limits)
+
+    @property
+    def strengths(self) -> dict[str, Array]:
+        """Known strengths by name."""
+        return {name: limit for name, limit in self.stress_limits.items() if name in STRENGTH}
+
+    @property
+    def stress_limits(self) -> dict[str, Array]:
+        """Known strengths and the proportional limit by name."""
+        listed = {name: getattr(self, name) for name in STRESS_LIMITS}
+        return {name: limit for name, limit in listed.items() if limit is not None}
+
+    def without_strengths(self) -> Material:
+        """Return this material without strengths and proportional limit."""
+        return unchecked(Material, **{**vars(self), **dict.fromkeys(STRESS_LIMITS)})
+
+    def with_numbers(self, young: Array, poisson: Array) -> Material:
+        """A material like this one with other elastic numbers. Nothing is checked."""
+        return unchecked(Material, **{**vars(self), "young": young, "poisson": poisson})
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON."""
+        numbers = {"young": self.young, "poisson": self.poisson, **self.stress_limits}
+        return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
+
+    def __str__(self) -> str:
+        numbers = f"E {short_text(self.young)} MPa, nu {short_text(self.poisson)}"
+        return f"{self.name} ({numbers})" if self.name else numbers
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layer:
+    """A layer behind the liner: a metal shell, cement, bone.
+
+    Parameters
+    ----------
+    thickness : float or array
+        In mm, positive; `inf` is a massive body.
+    material : Material
+
+    Raises
+    ------
+    ValueError
+        A thickness that is not allowed, named with its value.
+    TypeError
+        A material that is none.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> print(Layer(thickness=3.0, material=bs.TITANIUM))
+    3 mm of titanium (E 110000 MPa, nu 0.3)
+    """
+
+    thickness: Array
+    material: Material
+
+    def __post_init__(self) -> None:
+        thickness = LAYER["thickness"].checked(self.thickness)
+        if not isinstance(self.material, Material):
+            raise TypeError(f"material must be a Material, got {shown(self.material)}")
+        set_fields(self, thickness=thickness)
+
+    def without_strengths(self) -> Layer:
+        """This layer of a material whose strengths are not known."""
+        return unchecked(Layer, thickness=self.thickness, material=self.material.without_strengths())
+
+    def with_numbers(self, thickness: Array, young: Array, poisson: Array) -> Layer:
+        """A layer like this one with other numbers. Nothing is checked."""
+        return unchecked(Layer, thickness=thickness, material=self.material.with_numbers(young, poisson))
+
+    def summary(self) -> dict[str, Any]:
+        """One dictionary for JSON."""
+        return {"thickness": to_list(self.thickness), **self.material.summary()}
+
+    def __str__(self) -> str:
+        text = short_text(self.thickness)
+        return f"a massive body of {self.material}" if text == "inf" else f"{text} mm of {self.material}"

@@ -1,0 +1,148 @@
+"""Materials and joints to start from, each with the source of its numbers.
+
+`representative` marks a typical engineering figure that no source was found to print.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+from ..core.checks import Named
+from .joint import Joint
+from .material import Material
+
+_PAPER = "Heß & Forsbach 2021, Table 2, doi 10.3390/app112311170"
+_REVIEW = "Di Puccio & Mattei 2015, Table 2, doi 10.5312/wjo.v6.i1.77"
+_PLANK = "thickness: Plank et al. 2007, J. Biomed. Mater. Res. B 80B, 1-10; clearance: representative"
+_GLENOSPHERE = "representative; insert thickness 3-9 mm in Giles et al. 2015, doi 10.1007/s11999-015-4526-0"
+
+UHMWPE = Material(
+    young=1000.0,
+    poisson=0.4,
+    name="UHMWPE",
+    source=f"{_PAPER} (which also uses nu 0.45); yield: least of ASTM F648 type 1 (unverified); "
+    "proportional limit: three-network model of Bergström & Bischoff 2010, Int. J. Struct. Changes Solids 2, 31, in "
+    "compression at 300 K and 0.007/s",
+    proportional_limit=7.5,
+    yield_stress=21.0,
+)
+CROSSLINKED_PE = Material(
+    young=750.0,
+    poisson=0.4,
+    name="cross-linked PE",
+    source="representative: middle of 0.5-1 GPa, Heß & Forsbach 2021 after Kurtz et al. 2002, Biomaterials 23, 3681; "
+    "yield: that of UHMWPE, which irradiation hardly changes (Oral et al. 2006, Biomaterials 27, 917); "
+    "proportional limit: that of UHMWPE (unverified)",
+    proportional_limit=7.5,
+    yield_stress=21.0,
+)
+POM = Material(
+    young=2850.0,
+    poisson=0.35,
+    name="POM",
+    source="E: Ticona 2008, Hostaform C 9021 data sheet (ISO 527; 1300 MPa after 1000 h); nu: representative; "
+    "yield: data sheet of Hostaform C 9021 XAP (ISO 527, 50 mm/min)",
+    yield_stress=64.0,
+)
+STEEL = Material(young=230000.0, poisson=0.3, name="steel head", source=f"{_PAPER}; high for a stainless steel")
+STRUCTURAL_STEEL = Material(
+    young=210000.0,
+    poisson=0.3,
+    name="structural steel",
+    source="CEN 2005, EN 1993-1-1, 3.2.6; yield: S235, the least grade, to 16 mm thick, EN 10025-2:2004, Table 7",
+    yield_stress=235.0,
+)
+COCR = Material(
+    young=230000.0,
+    poisson=0.3,
+    name="CoCr",
+    source=f"{_REVIEW}; yield: least of annealed bar, ASTM F1537 (unverified)",
+    yield_stress=517.0,
+)
+ALUMINA = Material(
+    young=380000.0,
+    poisson=0.23,
+    name="alumina",
+    source="E: Kutz 2009, Biomed. Eng. and Design Handbook 1, Table 15.1; nu: NIST SRD 150, doi 10.18434/T42G62",
+)
+ALUMINA_COMPOSITE = Material(
+    young=350000.0, poisson=0.26, name="zirconia-toughened alumina", source=f"BIOLOX delta: {_REVIEW}"
+)
+TITANIUM = Material(
+    young=110000.0,
+    poisson=0.3,
+    name="titanium",
+    source="representative of Ti-6Al-4V; yield: least of annealed ELI bar below 44 mm, ASTM F136",
+    yield_stress=795.0,
+)
+BONE_CEMENT = Material(young=2300.0, poisson=0.33, name="bone cement", source="representative of PMMA, 2-2.5 GPa")
+CORTICAL_BONE = Material(
+    young=17000.0, poisson=0.3, name="cortical bone", source="representative; anisotropic, and varies from site to site"
+)
+CANCELLOUS_BONE = Material(
+    young=500.0, poisson=0.2, name="cancellous bone", source="representative; varies widely with its density"
+)
+
+materials: dict[str, Material] = Named(
+    "material",
+    {
+        "uhmwpe": UHMWPE,
+        "crosslinked-pe": CROSSLINKED_PE,
+        "pom": POM,
+        "steel": STEEL,
+        "structural-steel": STRUCTURAL_STEEL,
+        "cocr": COCR,
+        "alumina": ALUMINA,
+        "alumina-composite": ALUMINA_COMPOSITE,
+        "titanium": TITANIUM,
+        "bone-cement": BONE_CEMENT,
+        "cortical-bone": CORTICAL_BONE,
+        "cancellous-bone": CANCELLOUS_BONE,
+    },
+)
+"""Materials by the name that files and the command line use: that of their constant, in small letters with hyphens."""
+
+
+def _joint(
+    name: str, radius: float, clearance: float, thickness: float, pair: tuple[Material, Material], source: str
+) -> Joint:
+    ball, liner = pair
+    return Joint(
+        ball_radius=radius,
+        clearance=clearance,
+        liner_thickness=thickness,
+        liner=liner,
+        ball=ball,
+        name=name,
+        source=source,
+    )
+
+
+_ALL_JOINTS = (
+    _joint("hess-forsbach", 17.9, 0.1, 6.75, (STEEL, UHMWPE), "Heß & Forsbach 2021, Figs. 3 and 4"),
+    _joint("hip-22", 11.0, 0.1, 5.0, (COCR, UHMWPE), _PLANK),
+    _joint("hip-28", 14.0, 0.1, 5.0, (COCR, UHMWPE), _PLANK),
+    _joint("hip-32", 16.0, 0.1, 6.0, (ALUMINA, CROSSLINKED_PE), "representative, within Heß & Forsbach 2021, Table 1"),
+    _joint("hip-36", 18.0, 0.1, 5.0, (ALUMINA, CROSSLINKED_PE), "representative, within Heß & Forsbach 2021, Table 1"),
+    _joint("reverse-shoulder-36", 18.0, 0.1, 6.0, (COCR, UHMWPE), _GLENOSPHERE),
+    _joint("reverse-shoulder-42", 21.0, 0.1, 6.0, (COCR, UHMWPE), _GLENOSPHERE),
+    _joint(
+        "suspension-ball-joint",
+        13.5,
+        0.02,
+        2.5,
+        (STRUCTURAL_STEEL, POM),
+        "representative (construction: Wozniak et al. 2021, doi 10.3390/en14113238); run in, its preload lost",
+    ),
+    _joint(
+        "tilting-pad-pivot",
+        12.5,
+        0.05,
+        inf,
+        (STRUCTURAL_STEEL, STRUCTURAL_STEEL),
+        "representative (pivot type: Kirk & Reedy 1988, J. Vib. Acoust. 110, 165)",
+    ),
+)
+
+joints: dict[str, Joint] = Named("joint", {joint.name: joint for joint in _ALL_JOINTS})
+"""Joints by name: common hips, reverse shoulder, suspension ball joint, tilting-pad pivot."""

@@ -1,0 +1,91 @@
+"""A new model costs what CONTRIBUTING says: its file and a line of the catalogue, tried in a copy of the package."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import pytest
+
+import ballsocket as bs
+from ballsocket.output import accuracy_table
+from ballsocket.paper.accuracy import accuracies, paper_joints
+
+from ..places import ROOT
+
+FILE = re.search(r"^```python\n(.*?)^```$", (ROOT / "CONTRIBUTING.md").read_text("utf-8"), re.MULTILINE | re.DOTALL)[1]
+CONTRACT = ("catalogue", "evidence", "models/test_limits.py", "contact/test_models.py")
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """A folder with the package and one model more."""
+    folder = tmp_path_factory.mktemp("added")
+    added = folder / "ballsocket"
+    shutil.copytree(Path(bs.__file__).parent, added, ignore=shutil.ignore_patterns("__pycache__"))
+    (added / "models" / "mattress.py").write_text(FILE, encoding="utf-8")
+    catalogue = (added / "catalogue.py").read_text("utf-8")
+    lines = {"from .models.pin": "from .models.mattress import Mattress\n", "    Hertz(),": "    Mattress(),\n"}
+    for before, line in lines.items():
+        assert before in catalogue
+        catalogue = catalogue.replace(before, line + before, 1)
+    (added / "catalogue.py").write_text(catalogue, encoding="utf-8")
+    shutil.copy(ROOT / "pyproject.toml", folder)
+    return folder
+
+
+def run(package, folder, *words):
+    told = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    return subprocess.run(
+        [sys.executable, *words],
+        cwd=folder,
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+        env={**told, "PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"},
+    )
+
+
+@pytest.mark.long
+def test_a_new_file_and_a_line_of_the_catalogue_pass_the_contract(package):
+    assert FILE.count("\n") <= 80
+    places = [str(ROOT / "tests" / name) for name in CONTRACT]
+    done = run(package, ROOT, "-m", "pytest", "-v", "-n", "0", "-p", "no:cacheprovider", "-k", "mattress", *places)
+    assert done.returncode == 0, done.stdout
+    assert int(re.search(r"(\d+) passed", done.stdout)[1]) >= 30
+
+
+def test_it_has_a_row_of_the_accuracy_table(package, monkeypatch):
+    place = spec_from_file_location("ballsocket.models.mattress", package / "ballsocket" / "models" / "mattress.py")
+    monkeypatch.setitem(sys.modules, place.name, module := module_from_spec(place))
+    place.loader.exec_module(module)
+    joints = paper_joints(16)
+    rows = accuracies({"mattress": module.Mattress(), "hertz": bs.Hertz()}, joints, joints)
+    assert "| `mattress` | " in accuracy_table.markdown([row.summary() for row in rows])
+
+
+STRAYS = {
+    "models": "elasticity.finite_elements.model",
+    "elasticity/exact": "models.half_space",
+    "elasticity/finite_elements": "elasticity.exact.model",
+}
+
+
+def test_a_new_file_that_knows_another_room_of_mechanics_is_found(package):
+    pytest.importorskip("importlinter")
+    lint = ("-c", "from importlinter.cli import lint_imports_command; lint_imports_command()", "--no-cache")
+    kept = run(package, package, *lint)
+    assert kept.returncode == 0, kept.stdout
+    for room, other in STRAYS.items():
+        top = "." * (room.count("/") + 2)
+        parent, _, name = other.rpartition(".")
+        (package / "ballsocket" / room / "stray.py").write_text(f"from {top}{parent} import {name}\n", "utf-8")
+        (package / "ballsocket" / room / "stray_by_name.py").write_text(f"from {top}{other} import __doc__\n", "utf-8")
+    broken = run(package, package, *lint)
+    assert broken.returncode == 1
+    for room, other in STRAYS.items():
+        for file in ("stray", "stray_by_name"):
+            assert f"ballsocket.{room.replace('/', '.')}.{file} -> ballsocket.{other}" in broken.stdout

@@ -1,0 +1,84 @@
+"""Names of version 1.0: each one still works, with a warning that states the new name."""
+
+import subprocess
+import sys
+import warnings
+from importlib import import_module
+
+import pytest
+
+from ballsocket.core.deprecation import MOVED, RenamedAttribute, new_path, renamed_arguments, renamed_names
+
+SUBMODULES = {
+    "ballsocket.elastic.exact_curve": "ballsocket.elasticity.exact.exact_curve",
+    "ballsocket.elastic.tabulated.model": "ballsocket.elasticity.exact.tabulated.model",
+    "ballsocket.fem.export.deck": "ballsocket.elasticity.finite_elements.decks.deck",
+    "ballsocket.joint.material": "ballsocket.problem.material",
+    "ballsocket.model.law": "ballsocket.contact.law",
+    "ballsocket.sphere.model": "ballsocket.elasticity.off_axis.model",
+}
+
+
+@pytest.mark.parametrize(("old", "new"), [*MOVED.items(), *SUBMODULES.items()])
+def test_an_old_path_gives_the_module_and_warns(old, new, monkeypatch):
+    for name in [name for name in sys.modules if name == old or name.startswith(old + ".")]:
+        monkeypatch.delitem(sys.modules, name)
+    module = import_module(new)
+    spec = module.__spec__
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        assert import_module(old) is module
+    assert f"{old} is deprecated: import {new}; removed in 2.0" in [str(warning.message) for warning in caught]
+    assert module.__spec__ is spec
+    assert module.__name__ == new
+
+
+def test_old_lines_still_run():
+    lines = (
+        "import ballsocket as bs",
+        "from ballsocket.elastic.exact import Exact",
+        "from ballsocket.sphere import Sphere",
+        "from ballsocket.model import Model",
+        "import ballsocket.quantities, ballsocket.joint.joint",
+        "assert Exact is bs.Exact and Sphere is bs.Sphere and Model is bs.Model",
+        "assert bs.quantities.QUANTITIES and bs.fem.model.FiniteElement is bs.FiniteElement",
+        "assert bs.joint.joint.Joint is bs.Joint",
+    )
+    subprocess.run([sys.executable, "-W", "ignore", "-c", "\n".join(lines)], check=True)
+
+
+def test_other_names_are_not_found():
+    assert new_path("ballsocket") is None
+    assert new_path("ballsocket.models.liu") is None
+    with pytest.raises(ModuleNotFoundError):
+        import_module("ballsocket.elastics")
+    with pytest.raises(AttributeError, match="no attribute 'elastics'"):
+        import_module("ballsocket").elastics  # noqa: B018
+
+
+class Cup:
+    new = 3.0
+    old = RenamedAttribute("new")
+
+
+@renamed_arguments(listen="progress")
+def work(*, progress):
+    """Return the argument."""
+    return progress
+
+
+def test_renamed_names_attributes_and_arguments_warn():
+    find = renamed_names(__name__, {"Socket": "Cup", "Old": "ballsocket.problem.cup.Cup"})
+    with pytest.warns(DeprecationWarning, match=r"test_deprecation.Socket is deprecated: use Cup; removed in 2.0"):
+        assert find("Socket") is Cup
+    with pytest.warns(DeprecationWarning, match="use ballsocket.problem.cup.Cup"):
+        assert find("Old") is import_module("ballsocket").Cup
+    with pytest.raises(AttributeError, match="has no attribute 'Shell'"):
+        find("Shell")
+    with pytest.warns(DeprecationWarning, match=r"^Cup.old is deprecated: use new; removed in 2.0$"):
+        assert Cup().old == 3.0
+    with pytest.warns(DeprecationWarning, match=r"^argument 'listen' of work\(\) is deprecated: use 'progress'"):
+        assert work(listen=1) == 1
+    assert work(progress=2) == 2
+    with pytest.raises(TypeError, match="got both 'progress' and its old name 'listen'"):
+        work(progress=2, listen=1)

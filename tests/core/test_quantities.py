@@ -1,0 +1,240 @@
+"""Every quantity is described once, and whoever speaks of it reads that."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from importlib import import_module
+from math import inf, nan, pi
+from operator import attrgetter
+from pathlib import Path
+
+import numpy as np
+import pint
+import pytest
+
+import ballsocket as bs
+from ballsocket.compare import HEADS
+from ballsocket.contact.describe import COLUMNS
+from ballsocket.core import quantities
+from ballsocket.core.kinds import Unit
+from ballsocket.core.quantities import (
+    AIM,
+    BEARING,
+    CONTACT,
+    CUP,
+    DERIVED,
+    FIELD,
+    FIT,
+    JOINT,
+    LAYER,
+    LOADS,
+    MATERIAL,
+    PARTS,
+    QUANTITIES,
+    STRESS_LIMITS,
+)
+from ballsocket.io.joint_file import JointFile
+from ballsocket.io.joint_toml import tables_of
+from ballsocket.io.units import parse
+from ballsocket.studies.design import check_values, grid
+from ballsocket.studies.labels import described
+from ballsocket.studies.limits import NAMES as LIMITED
+from ballsocket.studies.parameters import PARAMETERS
+from ballsocket.studies.task import QUANTITIES as ANSWERS
+
+from ..joints import HIP
+from ..places import ROOT
+
+EVERY = pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=attrgetter("name"))
+CHECKED = [each for each in QUANTITIES.values() if each.allowed]
+
+
+def _numbers(thing):
+    """The names of a thing's numbers."""
+    public = (name for name in dir(thing) if not name.startswith("_"))
+    return {name for name in public if isinstance(getattr(thing, name), float)}
+
+
+def test_every_quantity_of_contact_joint_and_cup_is_an_attribute_and_no_other_number_is_one():
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
+    assert _numbers(contact) | _numbers(HIP) == {*CONTACT, *BEARING, *DERIVED, *JOINT, *FIT, "shell"} - {
+        "edge_distance"
+    }
+    assert _numbers(replace(HIP.liner, **dict.fromkeys(STRESS_LIMITS, 1.0))) == {*MATERIAL, *STRESS_LIMITS}
+    assert _numbers(bs.Layer(thickness=3.0, material=bs.TITANIUM)) == set(LAYER)
+    assert _numbers(bs.Cup()) - {"rim"} == set(CUP)
+
+
+@EVERY
+def test_units_are_known_to_the_door(quantity):
+    """A number as files give it is the number inside, and the factors are those of the units' names."""
+    for unit in (Unit(quantity.unit), quantity.written, quantity.shown):
+        text = unit.text.replace("°", "deg") if unit.text not in ("", "1") else ""
+        assert parse(quantity.name, f"{unit.factor!r} {text}".strip(), quantity.kind) == pytest.approx(1.0, rel=1e-15)
+    registry = pint.UnitRegistry()
+    inside = registry.Quantity(quantity.unit.replace("mm2", "mm**2"))
+    for unit in (quantity.written, quantity.shown):
+        there = inside.to((unit.text or "1").replace("°", "deg").replace("²", "**2"))
+        assert there.magnitude == pytest.approx(unit.factor, rel=1e-15)
+
+
+@EVERY
+def test_angles_say_in_their_names_that_files_have_degrees(quantity):
+    assert (quantity.written.text == "°") == (quantity.unit == "rad") == quantity.key.endswith("_deg")
+
+
+def test_tables_studies_and_json_speak_of_the_same_objects():
+    assert [column.quantity for column in COLUMNS] == list(CONTACT.values())
+    assert all(column.quantity is QUANTITIES[column.attribute] for column in COLUMNS)
+    assert all(parameter is QUANTITIES[name] for name, parameter in PARAMETERS.items())
+    assert all(load is PARAMETERS[name] is CONTACT[name] for name, load in LOADS.items())
+    assert set(ANSWERS) == {*CONTACT, *BEARING}
+    assert set(LIMITED) <= set(QUANTITIES)
+    assert all(any(head.startswith(QUANTITIES[name].symbol) for head in HEADS) for name in quantities.HEADLINE)
+
+
+def test_nothing_is_named_or_written_twice():
+    assert len(QUANTITIES) == sum(
+        map(len, (CONTACT, BEARING, JOINT, FIT, MATERIAL, STRESS_LIMITS, PARTS, LAYER, CUP, AIM, FIELD, DERIVED))
+    )
+    shared = {each.symbol for each in (*MATERIAL.values(), *PARTS.values())}
+    symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]
+    assert sorted(symbols) == sorted(set(symbols))
+    assert len({each.title.casefold() for each in QUANTITIES.values()}) == len(QUANTITIES)
+    for each in QUANTITIES.values():
+        assert each.title
+        assert each.meaning.endswith(".")
+
+
+def test_a_study_is_labelled_as_the_table_says():
+    found = bs.study(bs.HessForsbach(), HIP, grid(clearance=[0.1, 0.2], force=3000.0), quantities=list(ANSWERS))
+    for name in (*ANSWERS, "clearance"):
+        quantity = QUANTITIES[name]
+        words = {"long_name": quantity.title, "symbol": quantity.symbol, "units": quantity.unit}
+        assert found[name].attrs == described(name) == words
+
+
+_WRONG = {
+    "force": -1.0,
+    "indentation": inf,
+    "half_angle": pi / 2,
+    "clearance": -0.1,
+    "arc_of_cover": 0.5,
+    "anteversion": 2.0,
+    "angle": 4.0,
+}
+
+
+@pytest.mark.parametrize("quantity", CHECKED, ids=attrgetter("name"))
+def test_a_number_that_is_not_allowed_is_refused_in_the_words_of_its_quantity(quantity):
+    for wrong in (_WRONG.get(quantity.name, -1.0), nan, np.array([nan])):
+        with pytest.raises(ValueError, match=re.escape(quantity.allowed)) as refused:
+            quantity.checked(wrong)
+        assert str(refused.value).startswith(quantity.name)
+    with pytest.raises(TypeError, match=f"{quantity.name} must be a number"):
+        quantity.checked("1")
+    assert not quantity.allows(nan)
+
+
+@pytest.mark.parametrize(
+    ("name", "ends"), [("poisson", (-1.0, 0.5)), ("half_angle", (0.0, pi / 2)), ("force", (0, inf))]
+)
+def test_what_is_allowed_ends_where_the_sentence_says(name, ends):
+    low, high = ends
+    allows = QUANTITIES[name].allows
+    assert allows(low) == (name != "poisson")
+    assert allows(high) == (name == "poisson")
+    assert allows(np.nextafter(low, 1.0))
+    assert allows(np.nextafter(high, 0.0))
+    assert not allows(np.nextafter(low, -2.0))
+
+
+@pytest.mark.parametrize("name", ["ball_radius", "clearance", "liner_thickness"])
+def test_joint_press_and_study_refuse_the_same_numbers(name):
+    wrong = _WRONG.get(name, -1.0)
+    with pytest.raises(ValueError, match=re.escape(JOINT[name].allowed)):
+        replace(HIP, **{name: wrong})
+    with pytest.raises(ValueError, match=f"is not allowed for a {JOINT[name].title}"):
+        check_values(grid(**{name: [wrong]}))
+
+
+@pytest.mark.parametrize("name", LOADS)
+def test_a_load_is_refused_in_the_words_of_its_quantity(name):
+    with pytest.raises(ValueError, match=re.escape(LOADS[name].allowed)):
+        bs.Hertz().press(HIP, **{name: _WRONG[name]})
+
+
+def test_only_the_thickness_of_a_liner_may_be_infinite():
+    assert {name for name, parameter in PARAMETERS.items() if parameter.allows(inf)} == {"liner_thickness"}
+
+
+def test_what_a_file_holds_is_what_the_table_names():
+    tables = tables_of(JointFile(HIP, {"force": 3000.0}))
+    assert set(tables["joint"]) | set(tables["load"]) <= set(QUANTITIES)
+
+
+_ADDED = """
+import json, ballsocket as bs
+from ballsocket.output import terminal
+from ballsocket.core.quantities import QUANTITIES
+from ballsocket.studies.design import grid
+hip = bs.joints["hip-28"]
+contact = bs.HessForsbach().press(hip, force=3000.0)
+found = bs.study(bs.HessForsbach(), hip, grid(force=[1000.0, 3000.0]), quantities=["conformity"])
+print(json.dumps({
+    "summary": contact.summary(),
+    "repr": repr(contact),
+    "html": contact._repr_html_(),
+    "study": found.conformity.attrs,
+    "same": float(found.conformity[1]) == contact.conformity,
+    "label": QUANTITIES["conformity"].label(),
+}))
+terminal.print_press(bs.compare(hip, force=3000.0, models={"hertz": bs.Hertz()}))
+"""
+
+
+def test_a_quantity_is_added_by_one_entry(tmp_path):
+    """Once `conformity`, an attribute of every contact, is among what is printed, everything that prints knows it."""
+    shutil.copytree(Path(bs.__file__).parent, tmp_path / "ballsocket", ignore=shutil.ignore_patterns("__pycache__"))
+    table = tmp_path / "ballsocket" / "core" / "quantities.py"
+    before = table.read_text(encoding="utf-8")
+    entry = re.search(r'    Quantity\("conformity".*?\),\n', before, flags=re.DOTALL)[0]
+    table.write_text(before.replace(entry, "").replace("CONTACT = _table(\n", f"CONTACT = _table(\n{entry}"), "utf-8")
+    env = {**os.environ, "PYTHONPATH": str(tmp_path), "COLUMNS": "200", "PYTHONIOENCODING": "utf-8"}
+    done = subprocess.run([sys.executable, "-c", _ADDED], capture_output=True, encoding="utf-8", env=env, check=True)
+    first, *rest = done.stdout.splitlines()
+    told = json.loads(first)
+    assert list(told["summary"])[1] == "conformity"
+    assert ["conformity", f"{told['summary']['conformity']:.6g}"] in map(str.split, told["repr"].splitlines())
+    assert "<td>conformity" in told["html"].replace(" style='text-align:left'", "")
+    assert told["study"] == described("conformity")
+    assert told["same"]
+    assert told["label"] == "conformity c/d"
+    assert any(line.split()[:2] == ["model", "c/d"] for line in rest)
+
+
+def test_a_range_is_written_with_the_symbol_and_the_unit_of_its_quantity():
+    assert str(bs.Range(quantity="half_angle", high=pi / 18)) == "ε ≤ 10°"
+    assert str(bs.Range(quantity="joint.thickness_ratio", low=2.0)) == "R2/L ≥ 2"
+    assert str(bs.Range(quantity="joint.liner.poisson", low=0.3, high=0.4)) == "ν 0.3 to 0.4"
+    assert str(bs.Range(quantity="joint.roughness", high=0.1)) == "roughness ≤ 0.1"
+    assert str(bs.Range(quantity="joint.clearance", symbol="gap", high=0.1)) == "gap ≤ 0.1"
+
+
+def test_the_glossary_of_the_site_has_every_quantity(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "docs" / "_ext")
+    written = import_module("generated")._glossary(QUANTITIES.values())
+    for each in QUANTITIES.values():
+        entry = re.search(rf"^{re.escape(each.title)}\n  (.*)$", written, flags=re.MULTILINE)[1]
+        assert entry.startswith(f"`{each.name}`")
+        assert each.meaning in entry
+        assert each.allowed[1:] in entry
+
+
+def test_the_package_offers_the_table_and_nothing_hides_it():
+    assert bs.quantities is quantities
+    assert "quantities" not in bs.__all__

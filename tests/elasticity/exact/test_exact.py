@@ -1,0 +1,362 @@
+"""The exact answer: published tables, limits, an independent finite-element code, and its own error estimate."""
+
+import json
+
+import numpy as np
+import pytest
+from numpy.polynomial import polynomial
+
+import ballsocket as bs
+from ballsocket.elasticity.exact.kernel import Kernel
+from ballsocket.elasticity.exact.modes import Ball, Shell, Socket
+
+from ...joints import HIP
+from ...places import DATA
+
+EXACT = json.loads((DATA / "exact.json").read_text())["cases"]
+CALCULIX = json.loads((DATA / "calculix.json").read_text())["cases"]
+RIGID = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE)
+
+
+def joint(case: dict, **more: object) -> bs.Joint:
+    lengths = {name: case[name] for name in ("ball_radius", "clearance", "liner_thickness")}
+    return bs.Joint(**lengths, liner=bs.Material(young=case.get("young", 1000.0), poisson=case["poisson"]), **more)
+
+
+@pytest.mark.parametrize("case", EXACT, ids=lambda case: f"nu{case['poisson']}L{case['liner_thickness']}")
+def test_an_independent_solution(case):
+    """Two other methods agree with these to 1e-7."""
+    force, d, p0, angle = (
+        np.array([step[name] for step in case["steps"]], dtype=float)
+        for name in ("force", "indentation", "max_pressure", "half_angle_deg")
+    )
+    contact = bs.Exact(tolerance=1e-8).press(joint(case), force=force)
+    np.testing.assert_allclose(contact.indentation, d, rtol=1e-6)
+    np.testing.assert_allclose(contact.max_pressure, p0, rtol=1e-6)
+    np.testing.assert_allclose(np.degrees(contact.half_angle), angle, rtol=1e-6)
+
+
+def test_goodman_and_keers_problem():
+    """Identical materials: an elastic sphere in an infinite cavity of nearly its size, ν 0.3."""
+    angle = np.radians([10.0, 20.0, 40.0, 60.0])
+    R, c, E = 100.0, 1e-4, 1000.0
+    same = bs.Material(young=E, poisson=0.3)
+    cavity = bs.Joint(ball_radius=R, clearance=c, liner_thickness=np.inf, liner=same, ball=same)
+    contact = bs.Exact().press(cavity, half_angle=angle)
+    modulus = E / (2 * (1 - 0.3**2))
+    np.testing.assert_allclose(
+        contact.force / (modulus * R * c), [0.00720792, 0.0603636, 0.5780481, 2.829880], rtol=5e-6
+    )
+    pressure = contact.max_pressure * R / (modulus * c)
+    np.testing.assert_allclose(pressure, [0.1141703, 0.2466258, 0.6678850, 1.778788], rtol=5e-6)
+
+
+def test_rigid_ball_in_an_infinite_cavity():
+    angle = np.radians([20.0, 40.0, 60.0])
+    R, c, E = 100.0, 1e-4, 1000.0
+    cavity = bs.Joint(ball_radius=R, clearance=c, liner_thickness=np.inf, liner=bs.Material(young=E, poisson=0.3))
+    contact = bs.Exact().press(cavity, half_angle=angle)
+    modulus = E / (1 - 0.3**2)
+    np.testing.assert_allclose(contact.indentation / c, [0.1132483, 0.5192965, 1.803921], rtol=5e-6)
+    np.testing.assert_allclose(contact.force / (modulus * R * c), [0.0620483, 0.6224408, 3.307897], rtol=5e-6)
+    pressure = contact.max_pressure * R / (modulus * c)
+    np.testing.assert_allclose(pressure, [0.2545104, 0.7271863, 2.116084], rtol=5e-6)
+
+
+@pytest.mark.parametrize("case", CALCULIX, ids=lambda case: case["name"])
+def test_an_independent_finite_element_code(case):
+    """CalculiX with a steel ball: at equal force p0 within 0.2 % and ε within 0.15° for ν up to 0.46.
+
+    Its liner has a free rim, which thick incompressible liners feel: at ν 0.49 they come apart as the contact widens.
+    """
+    ball = bs.Material(young=case["ball_young"], poisson=case["ball_poisson"])
+    steps = [step for step in case["linearised"] if step["force"] > 400.0]
+    contact = bs.Exact().press(joint(case, ball=ball), force=np.array([step["force"] for step in steps]))
+    pressure = contact.max_pressure / np.array([step["max_pressure"] for step in steps]) - 1
+    angle = np.degrees(contact.half_angle) - np.array([step["half_angle_deg"] for step in steps])
+    if case["poisson"] <= 0.46:
+        assert np.max(np.abs(pressure)) < 0.002
+        assert np.max(np.abs(angle)) < 0.15
+    else:
+        assert np.max(np.abs(pressure)) < 0.012
+        assert np.max(np.abs(angle)) < 0.4
+
+
+def test_small_contacts_are_hertz():
+    close = bs.Joint(ball_radius=18.0, clearance=0.002, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
+    contact = bs.Exact().press(close, half_angle=np.radians([0.05, 0.1]))
+    hertz = bs.Hertz().press(close, half_angle=contact.half_angle)
+    for name, rel in (("force", 8e-3), ("indentation", 8e-3), ("max_pressure", 8e-3), ("stiffness", 8e-3)):
+        np.testing.assert_allclose(getattr(contact, name), getattr(hertz, name), rtol=rel, err_msg=name)
+
+
+def test_a_thin_compressible_liner_is_a_row_of_columns():
+    thin = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=0.3, liner=bs.Material(young=1000.0, poisson=0.2))
+    contact = bs.Exact().press(thin, half_angle=np.radians(50.0))
+    columns = bs.BondedLayer().press(thin, half_angle=np.radians(50.0))
+    assert contact.indentation == pytest.approx(columns.indentation, rel=0.02)
+    assert contact.max_pressure == pytest.approx(columns.max_pressure, rel=0.02)
+    assert contact.force == pytest.approx(columns.force, rel=0.03)
+
+
+def test_a_thin_incompressible_liner_is_squeezed_like_a_film():
+    """u = -(L³/3G) ∇²p: d -> a²/(4 R*) and F -> π G a⁶/(32 R* L³) for L << a, with corrections in L/a."""
+    nearly = bs.Material(young=1000.0, poisson=0.4999)
+    angle, R, G = np.radians(10.0), 17.9 * 18.0 / 0.1, 1000.0 / (2 * 1.4999)
+    a = 18.0 * np.sin(angle)
+    depths, forces = [], []
+    for thickness in (0.4, 0.2, 0.1):
+        liner = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=thickness, liner=nearly)
+        contact = bs.Exact().press(liner, half_angle=angle)
+        depths.append(contact.indentation * 4 * R / a**2)
+        forces.append(contact.force * 32 * R * thickness**3 / (np.pi * G * a**6))
+    for shares in (depths, forces):  # of L² that vanishes, extrapolated twice
+        coarse, fine = (2 * shares[i + 1] - shares[i] for i in (0, 1))
+        assert (4 * fine - coarse) / 3 == pytest.approx(1.0, abs=0.08)
+
+
+def test_uniform_pressure_finds_the_vessel():
+    socket = Socket(radius=18.0, shells=(Shell(thickness=6.75, young=1000.0, poisson=0.4),))
+    assert 1 / socket.compliance(0) == pytest.approx(bs.spherical_vessel(RIGID), rel=1e-12)
+
+
+@pytest.mark.parametrize("gap", [bs.LinearGap, bs.CircularGap])
+def test_inside_the_contact_the_surface_follows_the_ball(gap):
+    contact = bs.Exact(gap=gap).press(RIGID, force=3000.0)
+    angle = np.linspace(0.0, 0.98 * contact.half_angle, 9)
+    asked = gap(clearance=0.1, socket_radius=18.0).displacement(angle, contact.indentation)
+    np.testing.assert_allclose(contact.displacement(angle), asked, atol=2e-7 * contact.indentation)
+    beyond = np.linspace(1.02 * contact.half_angle, 1.5, 9)
+    room = contact.displacement(beyond) - gap(clearance=0.1, socket_radius=18.0).displacement(
+        beyond, contact.indentation
+    )
+    assert np.all(room > 0)  # the surfaces do not touch outside
+
+
+def test_the_circular_gap_matters_little():
+    """Exact kinematics (5) against (6): p0 +0.4 %."""
+    linear, circular = (bs.Exact(gap=gap).press(RIGID, force=3000.0) for gap in (bs.LinearGap, bs.CircularGap))
+    assert circular.max_pressure / linear.max_pressure == pytest.approx(1.004, abs=1e-3)
+
+
+def test_pressure_ends_like_a_square_root():
+    contact = bs.Exact().press(RIGID, force=3000.0)
+    near = np.array([1e-6, 1e-4])
+    p = contact.pressure(contact.half_angle * (1 - near))
+    assert p[1] / p[0] == pytest.approx(10.0, rel=2e-3)
+    assert contact.pressure(contact.half_angle * 1.0001) == 0.0
+    assert contact.pressure(np.pi) == 0.0
+
+
+def test_an_elastic_ball_softens():
+    """Steel instead of rigid at ν 0.4: F at given d -1 %, p0 at given F -0.5 %, half angle +0.1°."""
+    steel, rigid = bs.Exact().press(HIP, force=3000.0), bs.Exact().press(RIGID, force=3000.0)
+    assert rigid.max_pressure / steel.max_pressure == pytest.approx(1.005, abs=2e-3)
+    assert np.degrees(steel.half_angle - rigid.half_angle) == pytest.approx(0.1, abs=0.05)
+    d = rigid.indentation
+    at_depth = [bs.Exact().press(which, indentation=d).force for which in (RIGID, HIP)]
+    assert at_depth[0] / at_depth[1] == pytest.approx(1.010, abs=2e-3)
+
+
+def test_a_backing_of_the_liners_material_is_a_thicker_liner():
+    split = bs.Joint(
+        ball_radius=17.9,
+        clearance=0.1,
+        liner_thickness=4.0,
+        liner=bs.UHMWPE,
+        backing=(bs.Layer(thickness=2.75, material=bs.UHMWPE),),
+    )
+    one, other = (bs.Exact().press(which, force=3000.0) for which in (RIGID, split))
+    assert one.indentation == pytest.approx(other.indentation, rel=1e-9)
+    soft = bs.Exact().press(
+        bs.Joint(
+            ball_radius=17.9,
+            clearance=0.1,
+            liner_thickness=6.75,
+            liner=bs.UHMWPE,
+            backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),),
+            support=bs.Support.FREE,
+        ),
+        force=3000.0,
+    )
+    assert soft.indentation > one.indentation
+    assert soft.max_pressure < one.max_pressure
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+def test_the_error_estimate_holds(tolerance):
+    """On random joints the true error (against a much finer solution) is below the estimate, or below rounding."""
+    rng = np.random.default_rng(11)
+    for _ in range(12):
+        one = bs.Joint(
+            ball_radius=18.0,
+            clearance=0.1,
+            liner_thickness=18.0 / 10 ** rng.uniform(-1, 1.2),
+            liner=bs.Material(young=1000.0, poisson=rng.uniform(-0.3, 0.4999)),
+            ball=bs.STEEL if rng.random() < 0.5 else None,
+        )
+        angle = np.radians(rng.uniform(1.0, 84.0))
+        contact = bs.Exact(tolerance=tolerance).press(one, half_angle=angle)
+        finer = bs.Exact(tolerance=1e-10).press(one, half_angle=angle)
+        for name, estimate in contact.error.items():
+            true = abs(getattr(contact, name) / getattr(finer, name) - 1)
+            assert true <= max(2 * estimate, 1e-2 * tolerance, 2e-10), (name, true, estimate)
+            assert estimate <= tolerance
+
+
+def test_half_angles_beyond_85_degrees_are_not_reached():
+    contact = bs.Exact().press(RIGID, half_angle=np.radians([84.9, 85.1]))
+    np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.NOT_REACHED])
+    assert bs.Exact().press(RIGID, force=1e9).status is bs.Status.NOT_REACHED
+    assert np.isnan(bs.Exact().press(RIGID, force=1e9).max_pressure)
+
+
+def test_what_cannot_be_solved_is_refused():
+    with pytest.raises(ValueError, match=r"exact has no answer for ν = 0\.5: between fixed walls a liner of ν = 0\.5"):
+        bs.Exact().press(
+            bs.Joint(
+                ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.5)
+            ),
+            force=1.0,
+        )
+    with pytest.raises(ValueError, match="exact has no answer for c = 0: without clearance"):
+        bs.Exact().press(bs.Joint(ball_radius=16.0, clearance=0.0, liner_thickness=6.0, liner=bs.UHMWPE), force=1.0)
+    with pytest.raises(ValueError, match="tolerance = 1e-15 is not allowed: double precision keeps"):
+        bs.Exact(tolerance=1e-15)
+    with pytest.raises(TypeError, match="gap must be LinearGap or CircularGap"):
+        bs.Exact(gap="linear")
+    with pytest.raises(ValueError, match="displacements and stresses are for one contact"):
+        bs.Exact().press(RIGID, force=np.array([1.0, 2.0])).displacement(0.1)
+    with pytest.raises(ValueError, match="need a contact under load"):
+        bs.Exact().press(RIGID, force=0.0).stress(0.0, 1.0)
+    with pytest.raises(ValueError, match="depth = -1 is not allowed"):
+        bs.Exact().press(RIGID, force=1.0).stress(0.0, -1.0)
+    with pytest.raises(ValueError, match="depth = 7 is not allowed: a depth .mm. lies between 0 and 6.75"):
+        bs.Exact().press(RIGID, force=1.0).stress(0.0, 7.0)
+    with pytest.raises(ValueError, match="half_angle = .* inside a contact of less than 1 degree ask hertz"):
+        bs.Exact().press(RIGID, force=1e-6).displacement(0.0)
+    with pytest.raises(TypeError, match="tolerance must be a number"):
+        bs.Exact(tolerance="a")
+
+
+def test_stress_at_the_surface_is_the_pressure():
+    contact = bs.Exact().press(RIGID, force=3000.0)
+    angle = np.array([0.0, 0.2, 0.5, 0.65, 1.0])
+    stress = contact.stress(angle, 0.0)
+    np.testing.assert_allclose(-stress.radial, contact.pressure(angle), atol=1e-4 * contact.max_pressure)
+    np.testing.assert_allclose(stress.shear, 0.0, atol=1e-9)
+    inside = contact.stress(angle, 2.0)
+    first, second, third = inside.principal
+    assert np.all(first >= second)
+    assert np.all(second >= third)
+    np.testing.assert_allclose(first + second + third, inside.radial + inside.meridional + inside.hoop, rtol=1e-12)
+    spread = ((first - second) ** 2 + (second - third) ** 2 + (third - first) ** 2) / 2
+    np.testing.assert_allclose(inside.von_mises, np.sqrt(spread), rtol=1e-12)
+
+
+def test_stress_at_one_place_is_plain_numbers():
+    stress = bs.Exact().press(HIP, force=3000.0).stress(angle=0.1, depth=1.0)
+    assert {type(part) for part in vars(stress).values()} == {float}
+
+
+def test_stress_below_a_small_contact_is_hertz():
+    """Below a Hertz contact the von Mises stress is highest at 0.48 a, 0.62 p0 (ν 0.3)."""
+    deep = bs.Joint(
+        ball_radius=18.0, clearance=1.0, liner_thickness=np.inf, liner=bs.Material(young=1000.0, poisson=0.3)
+    )
+    contact = bs.Exact().press(deep, half_angle=np.radians(2.0))
+    peak = contact.peak_stress
+    a = contact.joint.socket_radius * np.sin(contact.half_angle)
+    assert peak.von_mises / contact.max_pressure == pytest.approx(0.62, abs=0.01)
+    assert peak.depth / a == pytest.approx(0.48, abs=0.03)
+    assert peak.angle == pytest.approx(0.0, abs=1e-3)
+
+
+def test_stresses_balance_the_load_at_any_depth():
+    contact = bs.Exact().press(RIGID, force=3000.0)
+    x, w = np.polynomial.legendre.leggauss(400)
+    angle = np.arccos(x)
+    for depth in (1.0, 3.0, 6.75):
+        stress = contact.stress(angle, depth)
+        pull = stress.radial * np.cos(angle) - stress.shear * np.sin(angle)
+        total = -2 * np.pi * (18.0 + depth) ** 2 * np.sum(w * pull)
+        assert total == pytest.approx(3000.0, rel=1e-7)
+
+
+def test_kernel_is_the_sum_of_its_modes():
+    """The split into closed forms and a rest against the plain sum, smoothed to converge."""
+    from ballsocket.elasticity.exact import closed_forms
+
+    socket = Socket(radius=18.0, shells=(Shell(thickness=6.75, young=1000.0, poisson=0.4),))
+    k = Kernel(socket=socket, ball=Ball(radius=17.9, young=3000.0, poisson=0.2))
+    n = np.arange(200_000)
+    smooth = (1 - (n / len(n)) ** 2) ** 2
+    for x in (0.3, 1.0, 2.9):
+        plain = np.sum(k.excess(n) * smooth * np.cos((n + 0.5) * x))
+        a = k.expansion[: closed_forms.ORDER]
+        g, h, s = closed_forms.logarithmic(a), closed_forms.modular(a), closed_forms.smooth(a, reach=x)
+        split = polynomial.polyval(x * x, g) * np.log(x) + polynomial.polyval(x * x, h) * x
+        split += polynomial.polyval(x * x, s) + np.sum(k.rest * np.cos((np.arange(len(k.rest)) + 0.5) * x))
+        assert split == pytest.approx(plain, rel=1e-7, abs=1e-9)
+
+
+def test_a_first_look_that_is_kept_is_that_of_fresh_half_angles():
+    """What is kept for all joints gives the operators that are made anew, for few modes and for more than are kept."""
+    from ballsocket.elasticity.exact.grid import grid
+    from ballsocket.elasticity.exact.intervals import Intervals, KeptIntervals
+
+    angle = np.radians([1.0, 20.0, 60.0, 85.0])
+    kept, fresh = (kind(half_angle=angle, grid=grid(10)) for kind in (KeptIntervals, Intervals))
+    for thickness in (20.0, 6.75, 0.5):
+        k = Kernel(socket=Socket(radius=18.0, shells=(Shell(thickness=thickness, young=1000.0, poisson=0.4),)))
+        for _ in range(2):  # made, and kept
+            for one, other in zip(k.operators(kept), k.operators(fresh), strict=True):
+                np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-13)
+
+
+def test_the_perfect_fit_ends_it():
+    """In a massive socket the ball fills its socket at 83.55°: larger loads approach it, larger angles are none."""
+    massive = bs.Joint(
+        ball_radius=18.0, clearance=0.1, liner_thickness=np.inf, liner=bs.Material(young=1000.0, poisson=0.3)
+    )
+    contact = bs.Exact().press(massive, half_angle=np.radians([82.75, 83.5, 84.0]))
+    np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OK, bs.Status.NOT_REACHED])
+    assert np.isnan(contact.max_pressure[2])
+    assert "less where the ball fills its socket before" in contact.notes[0]
+    for name in ("force", "indentation"):
+        back = bs.Exact().press(massive, **{name: getattr(contact, name)[:2]})
+        np.testing.assert_allclose(back.half_angle, contact.half_angle[:2], rtol=1e-9)
+
+
+def test_an_incompressible_liner_that_can_go_elsewhere_has_an_answer():
+    soft = bs.Material(young=1000.0, poisson=0.5)
+    backed = bs.Joint(
+        ball_radius=17.9,
+        clearance=0.1,
+        liner_thickness=6.75,
+        liner=soft,
+        backing=(bs.Layer(thickness=np.inf, material=bs.UHMWPE),),
+    )
+    massive = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=np.inf, liner=soft)
+    for joint_here in (backed, massive):
+        contact = bs.Exact().press(joint_here, force=1000.0)
+        assert contact.status is bs.Status.OK
+        assert contact.error["max_pressure"] < 1e-6
+
+
+def test_a_loose_ball_is_told_to_ask_for_the_circle():
+    loose = bs.Joint(ball_radius=17.0, clearance=1.0, liner_thickness=6.75, liner=bs.UHMWPE)
+    assert not bs.Exact().press(loose, force=3000.0).valid
+    assert bs.Exact(gap=bs.CircularGap).press(loose, force=3000.0).valid
+    wide = bs.Exact(gap=bs.CircularGap).press(loose, half_angle=np.radians([60.0, 80.0]))
+    np.testing.assert_array_equal(wide.status, [bs.Status.OK, bs.Status.NOT_REACHED])
+    assert np.isnan(wide.max_pressure[1])
+
+
+@pytest.mark.parametrize("gap", [bs.LinearGap, bs.CircularGap])
+def test_energy_is_the_work_and_stiffness_the_slope(gap):
+    d = np.array([0.005, 0.02, 0.04])
+    step = 1e-4 * d
+    above, here, below = (bs.Exact(gap=gap, tolerance=1e-9).press(HIP, indentation=x) for x in (d + step, d, d - step))
+    np.testing.assert_allclose((above.energy - below.energy) / (2 * step), here.force, rtol=1e-6)
+    np.testing.assert_allclose((above.force - below.force) / (2 * step), here.stiffness, rtol=1e-6)

@@ -1,0 +1,435 @@
+"""Modal compliance of sockets and balls: textbook limits, equilibrium, and 50-digit references."""
+
+from dataclasses import replace
+from itertools import pairwise
+from math import inf
+
+import mpmath
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket import Support
+from ballsocket.elasticity.exact.modes import Ball, Shell, Socket, ball_of, socket_of
+
+POISSON = [-0.5, 0.0, 0.3, 0.4, 0.49, 0.4999]
+RATIOS = [0.05, 0.5, 18 / 6.75, 10.0, 50.0]
+DEGREES = [0, 1, 2, 3, 6, 12, 30, 90, 300, 2000, 20_000]
+LINER = Shell(thickness=6.75, young=1000.0, poisson=0.4)
+LINED = Socket(radius=18.0, shells=(LINER,))
+METAL = Shell(thickness=3.0, young=110e3, poisson=0.3)
+CEMENT = Shell(thickness=2.0, young=2500.0, poisson=0.35)
+BONE = Shell(thickness=inf, young=17e3, poisson=0.28)
+CUP = Socket(radius=18.0, shells=(LINER, METAL, CEMENT, BONE))
+
+
+def liner(ratio: float, poisson: float) -> Shell:
+    return Shell(thickness=18.0 / ratio if ratio else inf, young=1000.0, poisson=poisson)
+
+
+def single(ratio: float, poisson: float, support: Support = Support.FIXED) -> Socket:
+    """R2/L = 0 is an infinite socket."""
+    return Socket(radius=18.0, shells=(liner(ratio, poisson),), support=support)
+
+
+def massive(shell: Shell) -> Socket:
+    return Socket(radius=18.0, shells=(Shell(thickness=inf, young=shell.young, poisson=shell.poisson),))
+
+
+def powers(n: int, nu: mpmath.mpf, shear: mpmath.mpf, r: mpmath.mpf, inner: mpmath.mpf, outer: mpmath.mpf) -> list:
+    """u_r, u_φ, r σ_rr, r σ_rφ of the four powers of r, those that grow relative to `outer`, the others to `inner`."""
+    if n == 0:  # the two powers without u_φ stand in for it, uncoupled
+        two = [[r, r**-2], [2 * shear * (1 + nu) / (1 - 2 * nu) * r, -4 * shear * r**-2]]
+        return [[*two[0], 0, 0], [0, 0, r, r**-2], [*two[1], 0, 0], [0, 0, r, -(r**-2)]]
+    A = ((n + 1) * (n - 2 + 4 * nu), n + 5 - 4 * nu, (n + 1) * (n * n - n - 2 - 2 * nu), n * n + 2 * n - 1 + 2 * nu)
+    B = (n, 1, n * (n - 1), n - 1)
+    C = (n * (n + 3 - 4 * nu), 4 - 4 * nu - n, -n * (n * n + 3 * n - 2 * nu), n * n - 2 + 2 * nu)
+    D = (-(n + 1), 1, (n + 1) * (n + 2), -(n + 2))
+    size = ((r / outer) ** (n + 1), (r / outer) ** (n - 1), (inner / r) ** n, (inner / r) ** (n + 2))
+    unit = (1, 1, 2 * shear, 2 * shear)
+    return [[part[row] * unit[row] * scale for part, scale in zip((A, B, C, D), size, strict=True)] for row in range(4)]
+
+
+def reference(socket: Socket, n: int) -> float:
+    """c_n from one linear system for the constants of all layers, with 50 digits."""
+    with mpmath.workdps(50):
+        radii = [mpmath.mpf(socket.radius)]
+        for shell in socket.shells:
+            radii.append(radii[-1] + mpmath.mpf(min(shell.thickness, 1e20 * socket.radius)))
+
+        def layer(number: int, r: mpmath.mpf) -> list:
+            young, nu = (mpmath.mpf(value) for value in (socket.shells[number].young, socket.shells[number].poisson))
+            return powers(n, nu, young / (2 * (1 + nu)), r, radii[number], radii[number + 1])
+
+        count = len(socket.shells)
+        rows = [row + [0] * (4 * count - 4) for row in layer(0, radii[0])[2:]]
+        for number in range(count - 1):
+            here, there = layer(number, radii[number + 1]), layer(number + 1, radii[number + 1])
+            pad = [0] * (4 * number), [0] * (4 * (count - number - 2))
+            rows += [[*pad[0], *a, *(-x for x in b), *pad[1]] for a, b in zip(here, there, strict=True)]
+        last = layer(count - 1, radii[-1])
+        if socket.support is Support.FIXED or socket.shells[-1].thickness == inf:
+            ends = last[:2]
+        elif n == 1:
+            ends = [
+                [a + 2 * b for a, b in zip(*last[:2], strict=True)],
+                [a - b for a, b in zip(*last[2:], strict=True)],
+            ]
+        else:
+            ends = last[2:]
+        rows += [[0] * (4 * count - 4) + row for row in ends]
+        load = [-radii[0]] + [0] * (4 * count - 1)
+        scales = [max(abs(x) for x in row) for row in rows]
+        matrix = mpmath.matrix([[x / scale for x in row] for row, scale in zip(rows, scales, strict=True)])
+        sides = mpmath.matrix([x / scale for x, scale in zip(load, scales, strict=True)])
+        constants = mpmath.lu_solve(matrix, sides)
+        return float(sum(a * b for a, b in zip(layer(0, radii[0])[0], constants[:4], strict=True)))
+
+
+# sockets
+
+
+@pytest.mark.parametrize("poisson", POISSON)
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_uniform_pressure_is_the_spherical_vessel(ratio, poisson):
+    material = bs.Material(young=1000.0, poisson=poisson)
+    joint = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=18.0 / ratio, liner=material)
+    assert single(ratio, poisson).compliance([0])[0] == pytest.approx(1 / bs.spherical_vessel(joint), rel=1e-13)
+
+
+def test_check_values():
+    expected = [0.00330432, 0.0034047, 0.00351705, 0.0035872, 0.00359966, 0.00355158, 0.003447, 0.00329688]
+    np.testing.assert_allclose(LINED.compliance(range(8)), expected, rtol=2e-6)
+
+
+@pytest.mark.parametrize("support", Support)
+@pytest.mark.parametrize("poisson", POISSON)
+@pytest.mark.parametrize("ratio", [0.0, *RATIOS])
+def test_single_layer_against_50_digits(ratio, poisson, support):
+    socket = single(ratio, poisson, support)
+    expected = np.array([reference(socket, n) for n in DEGREES[::2]])
+    c = socket.compliance(DEGREES[::2])
+    np.testing.assert_allclose(c, expected, rtol=5e-13)
+    q = np.array(DEGREES[::2]) + 0.5
+    np.testing.assert_allclose(socket.excess(DEGREES[::2]), expected * q / socket.asymptote - 1, rtol=5e-13, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "shells",
+    [
+        CUP.shells,
+        (METAL, LINER, CEMENT),
+        (LINER, METAL, Shell(thickness=8.0, young=500.0, poisson=0.4)),
+        (Shell(thickness=0.2, young=1000.0, poisson=0.4999), CEMENT, BONE),
+        (METAL, Shell(thickness=0.1, young=1.0, poisson=0.4999), METAL),
+    ],
+)
+@pytest.mark.parametrize("support", Support)
+def test_layers_against_50_digits(shells, support):
+    socket = Socket(radius=18.0, shells=shells, support=support)
+    expected = [reference(socket, n) for n in DEGREES]
+    np.testing.assert_allclose(socket.compliance(DEGREES), expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("poisson", POISSON)
+@pytest.mark.parametrize("ratio", [0.0, *RATIOS])
+def test_every_degree_has_a_positive_compliance_that_tends_to_the_asymptote(ratio, poisson):
+    socket = single(ratio, poisson)
+    c = socket.compliance(np.arange(20_001))
+    assert (c > 0).all()
+    far = 20_000.5 * c[-1] / (2 * (1 - poisson**2) * 18.0 / 1000.0)
+    assert far - 1 == pytest.approx(socket.expansion(1)[0] / 20_000.5, abs=1e-8)
+    assert socket.asymptote == pytest.approx(2 * (1 - poisson**2) * 18.0 / 1000.0)
+
+
+def test_excess_is_what_it_says():
+    n = np.arange(300)
+    np.testing.assert_allclose(CUP.excess(n), CUP.compliance(n) * (n + 0.5) / CUP.asymptote - 1, atol=3e-15)
+
+
+@pytest.mark.parametrize("support", Support)
+def test_a_shell_departs_from_the_infinite_socket_like_the_square_of_its_ratio_of_radii(support):
+    """κ^2n times a prefactor n²."""
+    socket = Socket(radius=18.0, shells=(LINER,), support=support)
+    n = np.array([20, 30, 40])
+    departure = abs(socket.excess(n) - massive(LINER).excess(n)) / n**2
+    decay = (departure[1:] / departure[:-1]) ** 0.05
+    np.testing.assert_allclose(decay, 18.0 / 24.75, rtol=0.01)
+
+
+@pytest.mark.parametrize("back", [Support.FIXED, Support.FREE, BONE, Shell(thickness=inf, young=1.0, poisson=0.2)])
+@pytest.mark.parametrize("ratio", [0.05, 1.0, 10.0])
+def test_reach(ratio, back):
+    """Beyond it nothing is left of the layers, whatever they are."""
+    shell = liner(ratio, 0.4)
+    if isinstance(back, Shell):
+        socket = Socket(radius=18.0, shells=(shell, back))
+    else:
+        socket = Socket(radius=18.0, shells=(shell,), support=back)
+    for tolerance in (1e-3, 1e-6, 1e-12):
+        n = np.arange(socket.reach(tolerance), socket.reach(1e-17) + 5)
+        assert abs(socket.excess(n) - massive(shell).excess(n)).max() <= tolerance
+    n = np.arange(socket.reach(1e-17), 3000)
+    np.testing.assert_array_equal(socket.compliance(n), massive(shell).compliance(n))
+    assert massive(shell).reach() == 0
+
+
+@pytest.mark.parametrize("support", Support)
+def test_a_layer_cut_in_two_is_the_same_layer(support):
+    n = np.arange(200)
+    whole = Socket(radius=18.0, shells=(LINER,), support=support).compliance(n)
+    for cut in (0.01, 1.0, 6.0):
+        parts = tuple(Shell(thickness=t, young=1000.0, poisson=0.4) for t in (cut, 6.75 - cut))
+        np.testing.assert_allclose(Socket(radius=18.0, shells=parts, support=support).compliance(n), whole, rtol=1e-12)
+
+
+def test_an_infinite_layer_of_the_same_material_behind():
+    n = np.arange(200)
+    for thickness in (0.1, 6.75, 100.0):
+        first = Shell(thickness=thickness, young=1000.0, poisson=0.4)
+        socket = Socket(radius=18.0, shells=(first, *massive(LINER).shells))
+        np.testing.assert_allclose(socket.compliance(n), massive(LINER).compliance(n), rtol=1e-13)
+    thick = Socket(radius=18.0, shells=(Shell(thickness=1e9, young=1000.0, poisson=0.4),))
+    np.testing.assert_allclose(thick.compliance(n), massive(LINER).compliance(n), rtol=1e-7)
+
+
+def test_stiff_and_soft_backings_are_the_fixed_and_the_free_surface():
+    n = np.array([0, 2, 3, 4, 8, 20, 50])  # n = 1 moves the whole layer in its soft surroundings
+    for support, young in ((Support.FIXED, 1e12), (Support.FREE, 1e-6)):
+        backed = Socket(radius=18.0, shells=(LINER, Shell(thickness=inf, young=young, poisson=0.3)))
+        alone = Socket(radius=18.0, shells=(LINER,), support=support)
+        np.testing.assert_allclose(backed.compliance(n), alone.compliance(n), rtol=1e-7)
+
+
+def test_a_softer_backing_gives_way_more():
+    n = np.arange(2, 30)
+    stiff_to_soft = [Socket(radius=18.0, shells=(LINER,)), CUP, massive(LINER)]
+    stiff_to_soft.append(Socket(radius=18.0, shells=(LINER, Shell(thickness=5.0, young=10.0, poisson=0.3))))
+    stiff_to_soft.append(Socket(radius=18.0, shells=(LINER,), support=Support.FREE))
+    for one, other in pairwise(socket.compliance(n) for socket in stiff_to_soft):
+        assert (one < other).all()
+
+
+def test_thin_layers():
+    """Columns that cannot widen if compressible, c_n = L³ n (n + 1)/(3 G R2²) from viscous-like flow if not."""
+    n = np.array([1, 2, 5])
+    columns = Socket(radius=18.0, shells=(Shell(thickness=1e-3, young=1000.0, poisson=0.3),))
+    np.testing.assert_allclose(columns.compliance(n), 1.3 * 0.4 / 0.7 * 1e-3 / 1000.0, rtol=1e-3)
+    flow = Socket(radius=18.0, shells=(Shell(thickness=0.018, young=3.0, poisson=0.5),))
+    np.testing.assert_allclose(flow.compliance(n), 0.018**3 * n * (n + 1) / (3 * 18.0**2), rtol=5e-3)
+
+
+def test_incompressible_layers():
+    nearly = [single(2.0, nu, support) for nu in (0.5, 0.5 - 1e-10) for support in Support]
+    for exact, close in ((nearly[0], nearly[2]), (nearly[1], nearly[3])):
+        np.testing.assert_allclose(exact.compliance(range(50)), close.compliance(range(50)), rtol=1e-8, atol=1e-11)
+    assert nearly[0].compliance(0) == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("body", [massive(LINER), LINED, Ball(radius=18.0, young=1000.0, poisson=0.4)], ids=repr)
+def test_expansion(body):
+    """What is left of a series of order m falls like q^-(m + 1)."""
+    n = np.array([100, 200]) if body is LINED else np.array([40, 80])
+    for order in (1, 2, 3, 4):
+        series = ((n[:, None] + 0.5) ** -np.arange(1.0, order + 1)) @ body.expansion(order)
+        left = abs(body.excess(n) - series)
+        assert np.log(left[0] / left[1]) / np.log((n[1] + 0.5) / (n[0] + 0.5)) == pytest.approx(order + 1, abs=0.1)
+    full = ((n[:, None] + 0.5) ** -np.arange(1.0, 31)) @ body.expansion(30)
+    np.testing.assert_allclose(body.excess(n), full, rtol=1e-13)
+
+
+# fields
+
+
+LAYERED = [
+    Socket(radius=18.0, shells=(LINER, METAL, CEMENT)),
+    Socket(radius=18.0, shells=(LINER, CEMENT), support=Support.FREE),
+    CUP,
+]
+SOME = np.array([0, 2, 5, 40, 300, 1])
+
+
+@pytest.mark.parametrize("socket", LAYERED, ids=["fixed", "free", "infinite"])
+def test_fields_meet_the_load_in_the_bore(socket):
+    bore = socket.fields(SOME, 18.0)
+    np.testing.assert_allclose(bore.u_r[:, 0], socket.compliance(SOME), rtol=1e-11)
+    np.testing.assert_allclose(bore.sigma_rr, -1.0, rtol=1e-12)
+    np.testing.assert_allclose(bore.sigma_rphi, 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("socket", LAYERED, ids=["fixed", "free", "infinite"])
+def test_fields_pass_through_the_interfaces(socket):
+    interfaces = np.cumsum([18.0, *(shell.thickness for shell in socket.shells)])[1:-1]
+    before, behind = socket.fields(SOME, interfaces), socket.fields(SOME, interfaces * (1 + 1e-11))
+    for name in ("u_r", "u_phi", "sigma_rr", "sigma_rphi"):
+        one, other = getattr(before, name), getattr(behind, name)
+        np.testing.assert_allclose(one, other, rtol=1e-7, atol=1e-9 * abs(one).max(), err_msg=name)
+    assert (abs(before.sigma_phiphi / behind.sigma_phiphi - 1) > 0.1).all()
+
+
+def test_fields_meet_the_support():
+    fixed, free, infinite = (socket.fields(SOME, r) for socket, r in zip(LAYERED, (29.75, 26.75, 1e9), strict=True))
+    for displacement in (fixed.u_r, fixed.u_phi, infinite.u_r, infinite.u_phi):
+        np.testing.assert_allclose(displacement, 0.0, atol=1e-10)
+    for stress in (free.sigma_rr, free.sigma_rphi):
+        np.testing.assert_allclose(stress[:-1], 0.0, atol=1e-13)  # all but n = 1
+    for name in ("sigma_rr", "sigma_rphi", "sigma_phiphi", "sigma_thetatheta", "sigma_cot"):
+        np.testing.assert_allclose(getattr(infinite, name), 0.0, atol=1e-13)
+
+
+@pytest.mark.parametrize("poisson", [-0.3, 0.3, 0.4999])
+@pytest.mark.parametrize("support", Support)
+def test_fields_are_in_equilibrium_and_obey_hookes_law(support, poisson):
+    socket = Socket(radius=18.0, shells=(liner(2.0, poisson),), support=support)
+    n = np.array([0, 1, 2, 7, 30])
+    r, step = np.linspace(18.5, 26.5, 9), 1e-3
+
+    def slope(name: str) -> np.ndarray:
+        near, far = (
+            (getattr(socket.fields(n, r + h), name) - getattr(socket.fields(n, r - h), name)) / (2 * h)
+            for h in (step, 2 * step)
+        )
+        return (4 * near - far) / 3
+
+    f, N = socket.fields(n, r), (n * (n + 1))[:, None]
+    hoop = f.sigma_phiphi + f.sigma_thetatheta
+    tight = {"rtol": 1e-8, "atol": 1e-8}
+    np.testing.assert_allclose(slope("sigma_rr"), (hoop - 2 * f.sigma_rr + N * f.sigma_rphi) / r, **tight)
+    np.testing.assert_allclose(slope("u_r"), (f.sigma_rr - poisson * hoop) / 1000.0, rtol=1e-8, atol=1e-11)
+    # the rest has no meaning at n = 0
+    shear = -(3 * f.sigma_rphi + f.sigma_phiphi + f.sigma_cot) / r
+    np.testing.assert_allclose(slope("sigma_rphi")[1:], shear[1:], **tight)
+    twist = 2 * (1 + poisson) / 1000.0 * f.sigma_rphi + (f.u_phi - f.u_r) / r
+    np.testing.assert_allclose(slope("u_phi")[1:], twist[1:], rtol=1e-8, atol=1e-11)
+    strain = (f.sigma_thetatheta - poisson * (f.sigma_rr + f.sigma_phiphi)) / 1000.0  # times P; the cotangents apart
+    np.testing.assert_allclose(strain, f.u_r / r, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(f.sigma_cot, 1000.0 / (1 + poisson) * f.u_phi / r, rtol=1e-12)
+
+
+def test_uniform_pressure_leaves_no_shear():
+    f = CUP.fields([0], [18.0, 20.0, 26.0, 40.0])
+    for name in ("u_phi", "sigma_rphi", "sigma_cot"):
+        np.testing.assert_array_equal(getattr(f, name), 0.0)
+    np.testing.assert_array_equal(f.sigma_phiphi, f.sigma_thetatheta)
+
+
+def test_a_free_socket_is_held_by_a_uniform_traction_at_degree_one():
+    """(4π/3) R2² of net force on 4π b² of surface, which as a whole does not move."""
+    end = Socket(radius=18.0, shells=(LINER, METAL), support=Support.FREE).fields([1], 27.75)
+    traction = -(18.0**2) / (3 * 27.75**2)
+    assert end.sigma_rr == pytest.approx(traction, rel=1e-12)
+    assert end.sigma_rphi == pytest.approx(traction, rel=1e-12)
+    assert end.u_r + 2 * end.u_phi == pytest.approx(0.0, abs=1e-15)
+
+
+def test_fields_of_high_degrees_stay_at_the_bore():
+    f = CUP.fields(np.array([1000, 20_000]), np.array([18.0, 18.1, 20.0, 30.0, 1000.0]))
+    for name in f.__dataclass_fields__:
+        values = getattr(f, name)
+        assert np.isfinite(values).all()
+        assert (abs(values[:, 2:]) < 1e-30).all(), name
+
+
+# balls
+
+
+@pytest.mark.parametrize("poisson", [*POISSON, 0.5])
+def test_ball(poisson):
+    ball = Ball(radius=17.9, young=1000.0, poisson=poisson)
+    c = ball.compliance(np.arange(20_001))
+    assert c[0] == pytest.approx((1 - 2 * poisson) * 17.9 / 1000.0, rel=1e-14)
+    assert c[1] == 0.0
+    assert (c[2:] > 0).all()
+    assert ball.asymptote == pytest.approx(2 * (1 - poisson**2) * 17.9 / 1000.0)
+    n = np.array([0, 1, 2, 50])
+    np.testing.assert_allclose(ball.excess(n), c[n] * (n + 0.5) / ball.asymptote - 1, rtol=1e-11, atol=1e-15)
+    for n in (2, 3, 10, 400):
+        nu = mpmath.mpf(poisson)
+        one = mpmath.mpf(1)
+        u_r, _, s_rr, s_rphi = powers(n, nu, 1000 / (2 * (1 + nu)), one, one, one)
+        share = -s_rphi[0] / s_rphi[1]
+        expected = 17.9 * (u_r[0] + u_r[1] * share) / (s_rr[0] + s_rr[1] * share)
+        assert c[n] == pytest.approx(float(expected), rel=1e-12)
+
+
+def test_a_ball_is_a_cavity_turned_inside_out():
+    """n -> -(n + 1) swaps the powers that grow for those that decay."""
+    a, b = Ball(radius=1.0, young=1.0, poisson=0.3), massive(Shell(thickness=1.0, young=1.0, poisson=0.3))
+    np.testing.assert_allclose(a.expansion(8)[::2], -b.expansion(8)[::2])
+    np.testing.assert_allclose(a.expansion(8)[1::2], b.expansion(8)[1::2])
+
+
+def test_first_coefficient():
+    """a_1 = ±(1 - 2ν)²/(2(1 - ν)): two bodies of the same material have none together."""
+    expected = 0.2**2 / 1.2
+    assert LINED.expansion(1) == pytest.approx(-expected)
+    assert Ball(radius=17.9, young=1.0, poisson=0.4).expansion(1) == pytest.approx(expected)
+
+
+# of a joint
+
+
+LINED_HIP = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
+
+
+@pytest.mark.parametrize("support", Support)
+def test_the_socket_of_a_joint(support):
+    backing = [
+        bs.Layer(thickness=shell.thickness, material=bs.Material(young=shell.young, poisson=shell.poisson))
+        for shell in CUP.shells[1:]
+    ]
+    joint = replace(LINED_HIP, backing=backing, support=support)
+    assert socket_of(joint) == replace(CUP, support=support)
+    assert socket_of(LINED_HIP) == LINED
+
+
+@pytest.mark.parametrize("support", Support)
+def test_a_backing_of_the_liners_own_material_is_a_thicker_liner(support):
+    more = bs.Layer(thickness=3.25, material=bs.UHMWPE)
+    backed = replace(LINED_HIP, backing=(more,), support=support)
+    thicker = replace(LINED_HIP, liner_thickness=10.0, support=support)
+    n = np.arange(100)
+    np.testing.assert_allclose(socket_of(backed).compliance(n), socket_of(thicker).compliance(n), rtol=1e-12)
+    endless = replace(LINED_HIP, backing=(bs.Layer(thickness=inf, material=bs.UHMWPE),), support=support)
+    np.testing.assert_allclose(socket_of(endless).compliance(n), massive(LINER).compliance(n), rtol=1e-12)
+
+
+def test_the_ball_of_a_joint():
+    assert ball_of(LINED_HIP) == Ball(radius=17.9, young=230000.0, poisson=0.3)
+    assert ball_of(replace(LINED_HIP, ball=None)) is None
+
+
+def test_bodies_are_made_of_plain_floats():
+    joint = LINED_HIP.with_numbers(np.float64(number) for number in LINED_HIP.numbers())
+    for body in (*socket_of(joint).shells, ball_of(joint)):
+        assert all(type(value) is float for value in vars(body).values())
+
+
+# misuse
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Shell(thickness=0.0, young=1.0, poisson=0.3), "thickness = 0 is not allowed"),
+        (lambda: Shell(thickness=1.0, young=inf, poisson=0.3), "young = inf is not allowed"),
+        (lambda: Ball(radius=1.0, young=1.0, poisson=0.51), "poisson = 0.51 is not allowed"),
+        (lambda: Ball(radius=0.0, young=1.0, poisson=0.3), "radius = 0 is not allowed"),
+        (lambda: Socket(radius=18.0, shells=()), "at least one layer"),
+        (lambda: Socket(radius=18.0, shells=(BONE, LINER)), "only the outermost layer may be infinite"),
+        (lambda: LINED.compliance([2, -1]), r"degrees\[1\] = -1 is not allowed"),
+        (lambda: LINED.fields([2], [17.9, 18.0]), r"radii\[0\] = 17.9 is not allowed: .* r = 18 to 24.75 mm"),
+        (lambda: LINED.fields([2], 25.0), "is not allowed"),
+        (lambda: LINED.reach(0.0), "tolerance = 0 is not allowed"),
+    ],
+)
+def test_misuse_says_what_is_allowed(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+def test_degrees_are_integers():
+    with pytest.raises(TypeError, match="degrees must be integers, got an array of float64"):
+        LINED.compliance([0.5])
+    assert LINED.compliance(3) == LINED.compliance([3])[0]
+    assert LINED.compliance(np.arange(6).reshape(2, 3)).shape == (2, 3)
