@@ -1,6 +1,7 @@
 """Names of version 1.0 that have changed since: modules, functions and classes, attributes, and keyword arguments.
 
-The old name still works and raises a DeprecationWarning that states the new one.
+The old name of a function, class, attribute or argument still works, with a DeprecationWarning that states the new one.
+The old path of a module works without a warning.
 """
 
 from __future__ import annotations
@@ -70,12 +71,11 @@ class _MovedModules(MetaPathFinder):
         moved = new_path(name)
         if moved is None:
             return None
-        warnings.warn(f"{name} is deprecated: import {moved}; removed in 2.0", DeprecationWarning, stacklevel=2)
         return ModuleSpec(name, _MovedModule(moved), is_package=True)
 
 
 def keep_old_paths() -> None:
-    """Let the import system find moved modules by their old paths, with a DeprecationWarning."""
+    """Let the import system find moved modules by their old paths."""
     if not any(isinstance(finder, _MovedModules) for finder in sys.meta_path):
         sys.meta_path.insert(0, _MovedModules())
 
