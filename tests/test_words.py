@@ -1,4 +1,4 @@
-"""The words of the front door: angles, names and sentences, sources, docstrings."""
+"""Words of the front door and of the source: angles, names, messages, sources; plain English by measure."""
 
 import ast
 import re
@@ -9,8 +9,10 @@ import pytest
 
 import ballsocket as bs
 
+from . import plain_words
 from .joints import HIP
 from .places import ROOT
+from .rooms import files_of, rooms
 
 NEEDS_STUDIES = pytest.mark.skipif(find_spec("xarray") is None, reason="the extra for studies is not installed")
 PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
@@ -116,3 +118,71 @@ def test_the_first_line_of_a_docstring_names_its_noun():
                 said = ast.get_docstring(node) or ""
                 leaning += [f"{path.name}: {said.splitlines()[0]}"] if LEANING.match(said) else []
     assert leaning == []
+
+
+NOT_YET = (
+    *("app", "cli", "evidence", "io", "output", "paper", "studies"),
+    *("compiled", "contact", "dynamics", "elastic", "engines", "export", "fem", "hip", "identify", "joint", "model"),
+    *("models", "sphere"),
+    *("__init__.py", "arrays.py", "atomic.py", "catalogue.py", "checks.py", "compare.py", "cup.py", "fingerprint.py"),
+    *("gaps.py", "kinds.py", "npz.py", "quantities.py", "sources.py", "validity.py"),
+)
+"""Rooms that do not meet the goals of plain English yet; every other room of the package must."""
+
+NOT_YET_IMPERATIVE = (*NOT_YET,)
+"""Rooms whose functions are not yet described by an imperative verb and its object."""
+
+
+@pytest.mark.parametrize("rule", ["clause", "dialect", "vague name"])
+@pytest.mark.parametrize("room", [room for room in rooms() if room not in NOT_YET])
+def test_rooms_are_written_in_plain_english(room, rule):
+    """See `plain_words` for the rules; `python -m tests.plain_words ROOM` prints all figures of a room."""
+    found = plain_words.measure(files_of(room))[rule]
+    assert found.met, "\n".join([str(found), *map(str, found.findings)])
+
+
+@pytest.mark.parametrize("room", [room for room in rooms() if room not in NOT_YET_IMPERATIVE])
+def test_functions_are_described_by_an_imperative_verb(room):
+    found = plain_words.measure(files_of(room))["no verb"]
+    assert found.met, "\n".join([str(found), *map(str, found.findings)])
+
+
+def test_class_names_are_unique_in_the_package():
+    """Among the rooms that are written in plain English; the others follow."""
+    files = [path for room in rooms() if room not in NOT_YET for path in files_of(room)]
+    twice = plain_words.defined_twice(files)
+    lines = [f"class {name}: {', '.join(places)}" for name, places in twice.items()]
+    assert len(lines) <= plain_words.MAX_TWICE, "\n".join(lines)
+
+
+@pytest.mark.parametrize(
+    ("source", "findings"),
+    [
+        ('"""What is pressed."""', ["2: clause: What is pressed."]),
+        ('"""Joint under load.\n\nIt is told here."""', ["4: dialect: told"]),
+        ('"""Joint under load."""  # there is no load, but is no joint', ["2: dialect: is no joint"]),
+        (
+            '"""Joint under load."""\ndef found(force, _given): share = force',
+            ["3: vague name: _given", "3: vague name: found"],
+        ),
+        ('def area():\n    """Return the area of a contact."""', []),
+        ('def area():\n    """Returns the area of a contact."""', ["3: no verb: Returns the area of a contact."]),
+        ('def area():\n    """The area of a contact."""', ["3: no verb: The area of a contact."]),
+        ('def area():\n    """p(φ) = K d cos φ."""', []),
+        ('def press():\n    """Press a joint, and assess it."""', []),
+        ('class Area:\n    """A contact."""\n    @property\n    def edge(self):\n        """The edge."""', []),
+    ],
+)
+def test_each_rule_of_plain_english_is_measured(source, findings, tmp_path):
+    path = tmp_path / "module.py"
+    path.write_text("\n" + source, encoding="utf-8")
+    measured = plain_words.measure([path]).values()
+    found = [str(finding).removeprefix(f"{path}:") for one in measured for finding in one.findings]
+    assert sorted(found) == findings
+
+
+def test_a_private_class_of_the_same_name_counts_as_a_second_one(tmp_path):
+    (tmp_path / "one.py").write_text("class Law: ...\n")
+    (tmp_path / "two.py").write_text("class Area: ...\nclass _Law: ...\n")
+    twice = plain_words.defined_twice(sorted(tmp_path.glob("*.py")))
+    assert twice == {"Law": [f"{tmp_path}/one.py:1", f"{tmp_path}/two.py:2"]}
