@@ -1,4 +1,4 @@
-"""Rooms of the package: its directories, and each module that stands directly in it."""
+"""Rooms of the package: its directories, and each module directly in it."""
 
 import ast
 from functools import cache
@@ -9,20 +9,26 @@ from .places import ROOT
 PACKAGE = ROOT / "src" / "ballsocket"
 
 
-def directories():
-    """Return the names of all directories of the package that hold modules."""
-    return sorted(path.name for path in PACKAGE.iterdir() if path.is_dir() and any(path.rglob("*.py")))
+COLLECTIONS = ("elasticity",)
+"""Directories whose own directories are rooms: `elasticity/exact`."""
+
+
+def room_of(path, package=PACKAGE):
+    """Return the name of the room that a file of the package is in: `hip`, `elasticity/exact` or `cup.py`."""
+    parts = path.relative_to(package).parts
+    return "/".join(parts[:2]) if parts[0] in COLLECTIONS and len(parts) > 2 else parts[0]
 
 
 def rooms():
-    """Return the names of all rooms: `hip`, or `cup.py`."""
-    return [*directories(), *sorted(path.name for path in PACKAGE.glob("*.py"))]
+    """Return the names of all rooms, directories first."""
+    names = {room_of(path) for path in PACKAGE.rglob("*.py")}
+    return sorted(names, key=lambda name: (name.endswith(".py"), name))
 
 
 def files_of(room):
     """Return the Python files of a room in the order of their paths."""
     path = PACKAGE / room
-    return sorted(path.rglob("*.py")) if path.is_dir() else [path]
+    return sorted(file for file in path.rglob("*.py") if room_of(file) == room) if path.is_dir() else [path]
 
 
 def shown(path):
