@@ -17,12 +17,12 @@ MAX_SINGLE_IMPORTERS, MAX_FLOORS = 0.12, 12
 """Goals: share of a room's modules that only one module imports; floors of a room, and of the package."""
 
 NOT_YET = {
-    "circles": ("dynamics", "elastic", "identify", "sphere"),
+    "circles": ("dynamics", "elasticity/exact", "elasticity/off_axis", "identify"),
     "single importers": (
-        *("app", "cli", "compiled", "dynamics", "elastic", "evidence", "export", "fem", "hip", "identify", "output"),
-        *("paper", "sphere", "studies"),
+        *("app", "cli", "compiled", "dynamics", "elasticity/exact", "elasticity/finite_elements"),
+        *("elasticity/off_axis", "evidence", "export", "hip", "identify", "output", "paper", "studies"),
     ),
-    "floors": ("elastic", "hip", "sphere"),
+    "floors": ("elasticity/exact", "elasticity/off_axis", "hip"),
 }
 """Rooms that do not meet a goal yet; every other room of the package must."""
 
@@ -33,17 +33,22 @@ UPWARD = {
 }
 """Imports by a string from a room to one above it, which close circles of rooms: no more may be added."""
 
-PACKAGE_FLOORS = 24
+PACKAGE_FLOORS = 13
 """Floors of the layers contract today; it may only fall, to `MAX_FLOORS`."""
 
-LOADED_BY_NAME = ()
+LOADED_BY_NAME = ("", "__init__", "core.deprecation")
 """Modules that load what a folder holds, so that `import_module` takes a name that the source does not state."""
+
+
+OLD_PATHS = "core.deprecation"
+"""Module with the new paths of moved modules as text; it imports one only where a user gives its old path."""
 
 
 @cache
 def whole_graph():
     """Read the graph once for all tests of a process."""
-    return graph_of()
+    graph = graph_of()
+    return graph.without({(OLD_PATHS, target) for target in graph.edges[OLD_PATHS]})
 
 
 def held_to(goal, names=None):
