@@ -58,6 +58,7 @@ from .models.modulus import bonded_layer, constant, corrected_vessel, hess_forsb
 from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
+from .output.registration import register_plots
 from .problem import Joint, Layer, Material, Support
 from .problem.cup import Cup, Interface, Side
 from .problem.gaps import CircularGap, LinearGap
@@ -81,9 +82,10 @@ from .studies.run import study
 from .version import __version__ as __version__
 
 keep_old_paths()
+register_plots()
 
-__all__ = [  # noqa: RUF022, grouped as they are used
-    # what is pressed
+__all__ = [  # noqa: RUF022, grouped by subject
+    # problem
     "CircularGap",
     "Cup",
     "Interface",
@@ -101,7 +103,7 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     # presets
     "joints",
     "materials",
-    # questions and answers
+    # functions and results
     "Contact",
     "OutsideDomainError",
     "Range",
@@ -140,7 +142,7 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "Vessel",
     # the plane relative
     "PinInHole",
-    # what a model of one's own is made of
+    # parts of custom models
     "ClosedForm",
     "Model",
     "RadialFoundation",

@@ -1,4 +1,4 @@
-"""The command `ballsocket` as `python -m ballsocket`."""
+"""Entry point of `python -m ballsocket`."""
 
 from .cli import main
 

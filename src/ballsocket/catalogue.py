@@ -1,10 +1,11 @@
-"""The catalogue: every model that answers to `press`, by name."""
+"""Catalogue of the models by name."""
 
 from __future__ import annotations
 
 from .contact import Model
-from .contact.model_info import Theory
-from .core.checks import Named
+from .contact.model_info import ModelInfo
+from .core.checks import NamedItems
+from .core.deprecation import renamed_names
 from .elasticity.exact.model import Exact
 from .elasticity.exact.tabulated.model import Tabulated
 from .elasticity.finite_elements.model import FiniteElement
@@ -18,13 +19,13 @@ from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
 
 reference: Model = Exact()
-"""What every other model is measured by."""
+"""Exact elastic solution, the reference of every accuracy."""
 
 judge: Model = FiniteElement()
-"""The finite elements: asked by name, not along with the others."""
+"""Finite-element model; slow, therefore not in the catalogue."""
 
 off_axis: Sphere = Sphere()
-"""Full elasticity for loads in any direction: asked by name, or where a load is tilted."""
+"""Elastic solution for loads in any direction; slow, therefore not in the catalogue."""
 
 _MODELS: tuple[Model, ...] = (
     reference,
@@ -43,8 +44,10 @@ _MODELS: tuple[Model, ...] = (
     AdhesiveSocket(),
 )
 
-catalogue: dict[str, Model] = Named("model", {model.name: model for model in _MODELS})
-"""Name -> model: what `--model` and files call them, all of them answering in milliseconds or less."""
+catalogue: dict[str, Model] = NamedItems("model", {model.name: model for model in _MODELS})
+"""Models that press in milliseconds or less, by the name that files and the option `--model` use."""
 
-theories: dict[str, Theory] = {theory.name: theory for theory in (*_MODELS, judge, off_axis, PinInHole())}
-"""Name -> all that is listed and cited: the catalogue, the judge, and the plane relative, which knows no force."""
+listed_models: dict[str, ModelInfo] = {model.name: model for model in (*_MODELS, judge, off_axis, PinInHole())}
+"""Models that are listed and cited: the catalogue, the slow models, and the plane model of a pin in a hole."""
+
+__getattr__ = renamed_names(__name__, {"theories": "listed_models"})

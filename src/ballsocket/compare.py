@@ -1,11 +1,10 @@
-"""One joint, one load, every model."""
+"""Comparison of models: one joint and one load, pressed by each of them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
-from importlib import import_module
 from math import inf, radians
 from typing import TYPE_CHECKING, Any
 
@@ -13,9 +12,10 @@ import numpy
 
 from .catalogue import catalogue, reference
 from .contact import Contact, Model
-from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count, number_text
+from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count_text, number_text
 from .core.arrays import Array, to_list, where
-from .core.checks import nearest, needs, one_load, refuse_unnamed, shown
+from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
+from .core.plotting import load_plot
 from .core.quantities import HEADLINE
 from .core.sources import Source
 from .core.validity import OutsideDomainError
@@ -30,9 +30,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Mapping[str, Contact]):
-    """Contacts by the name of the model, and for the models that have no answer the reason.
+    """Contacts by the name of their model.
 
-    Prints as a table of one row a model, with the reasons why models are not valid here.
+    Prints as a table of one row per model, with the reasons why models are invalid for this contact.
+
+    Attributes
+    ----------
+    joint : Joint
+    contacts : dict of str to Contact
+    missing : dict of str to str
+        Reason for each model whose domain excludes the joint.
     """
 
     joint: Joint
@@ -43,7 +50,7 @@ class Comparison(Mapping[str, Contact]):
         if name in self.missing:
             raise KeyError(self.missing[name])
         if name not in self.contacts:
-            raise KeyError(f"model {shown(name)} was not asked{nearest(name, self.contacts)}")
+            raise KeyError(f"model {shown(name)} is not in this comparison{nearest(name, self.contacts)}")
         return self.contacts[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -54,12 +61,12 @@ class Comparison(Mapping[str, Contact]):
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """Where the formulas of all models that answered come from."""
+        """Publications of the formulas of all models in `contacts`, each once."""
         listed = [source for contact in self.contacts.values() for source in getattr(contact.model, "sources", ())]
         return tuple(dict.fromkeys(listed))
 
     def notes(self) -> list[str]:
-        """Why models are outside their validity or have no answer: each reason once, with its models."""
+        """List the notes of all contacts and the reasons of missing models, each once with its models."""
         holders: dict[str, list[str]] = {}
         for name, contact in self.contacts.items():
             for note in contact.notes:
@@ -67,35 +74,39 @@ class Comparison(Mapping[str, Contact]):
         return [f"{', '.join(names)}: {note}" for note, names in holders.items()] + list(self.missing.values())
 
     def deviation(self, name: str) -> dict[str, Array] | None:
-        """How far a model is from the exact answer, relative, by column and of the contact's shape.
+        """Compute the relative deviation of a model from the exact solution.
 
-        None without an exact answer.
+        Returns
+        -------
+        dict of str to array, or None
+            Deviation of each column of `COLUMNS`, of the shape of the contact. None for the exact model itself, for
+            a missing model, and in a comparison without the exact model.
         """
         exact = self.contacts.get(reference.name)
         if exact is None or name == reference.name or name not in self.contacts:
             return None
         contact = self.contacts[name]
-        return {column.name: relative(column.of(contact), column.of(exact)) for column in COLUMNS}
+        return {column.name: relative_deviation(column.of(contact), column.of(exact)) for column in COLUMNS}
 
     def rows(self) -> list[tuple[str, ...]]:
-        """Text for a table: model, force, indentation, half angle, max pressure, area, stiffness, valid."""
+        """Return the rows of a table as text, with the columns of `COLUMN_HEADS`."""
         return [
-            (name, *(number_text(column.of(contact), 5, "-") for column in _SHOWN), count(contact.valid))
+            (name, *(number_text(column.of(contact), 5, "-") for column in _SHOWN), count_text(contact.valid))
             for name, contact in self.contacts.items()
         ]
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON: version, joint and results, in mm, N, MPa, degrees."""
-        answers = [{**self[name].summary(), "deviation": _listed(self.deviation(name))} for name in self]
+        """Return a dictionary for JSON of version, joint and results, in mm, N, MPa and degrees."""
+        results = [{**self[name].summary(), "deviation": _as_lists(self.deviation(name))} for name in self]
         gaps = dict.fromkeys([*(column.name for column in (*COLUMNS, UTILISATION)), UTILISATION_NOTE])
         missing = [
             {"model": name, **gaps, "valid": False, "notes": [why], "deviation": None}
             for name, why in self.missing.items()
         ]
-        return {"version": __version__, "joint": self.joint.summary(), "results": [*answers, *missing]}
+        return {"version": __version__, "joint": self.joint.summary(), "results": [*results, *missing]}
 
     def to_frame(self) -> pandas.DataFrame:
-        """A row a model and point, by the name of the model; columns end in their units, the last has the notes.
+        """Return a data frame of one row per model and point; column names end in units, the last has the notes.
 
         Raises
         ------
@@ -105,26 +116,25 @@ class Comparison(Mapping[str, Contact]):
         needs("study", "pandas")
         import pandas
 
-        told = {name: contact.to_frame().assign(notes="; ".join(contact.notes)) for name, contact in self.items()}
-        told |= {name: pandas.DataFrame({"valid": [False], "notes": [why]}) for name, why in self.missing.items()}
-        whole = pandas.concat(told, names=["model"])
-        return whole.droplevel(1) if all(len(each) == 1 for each in told.values()) else whole
+        frames = {name: contact.to_frame().assign(notes="; ".join(contact.notes)) for name, contact in self.items()}
+        frames |= {name: pandas.DataFrame({"valid": [False], "notes": [why]}) for name, why in self.missing.items()}
+        table = pandas.concat(frames, names=["model"])
+        return table.droplevel(1) if all(len(frame) == 1 for frame in frames.values()) else table
 
     def plot(self) -> Figure:
-        """The pressure over the angle beside the force over the indentation, of all models that have an answer.
+        """Plot pressure over angle and force over indentation of all models that have a result.
 
         Raises
         ------
         ValueError
-            More than one contact a model, or none that has an answer.
+            More than one contact per model, or no model with a result.
         """
-        # as in `Contact.plot`
-        made: Figure = import_module("ballsocket.output.quick_plot").plot(self.contacts)
-        return made
+        figure: Figure = load_plot("contacts")(self.contacts)
+        return figure
 
     def __repr__(self) -> str:
-        table = [HEADS, *self.rows()]
-        widths = [max(len(row[i]) for row in table) for i in range(len(HEADS))]
+        table = [COLUMN_HEADS, *self.rows()]
+        widths = [max(len(row[i]) for row in table) for i in range(len(COLUMN_HEADS))]
         lines = [
             "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(pairs))
             for pairs in (list(zip(row, widths, strict=True)) for row in table)
@@ -132,25 +142,25 @@ class Comparison(Mapping[str, Contact]):
         return "\n".join([str(self.joint), *lines, *self.notes()])
 
     def _repr_html_(self) -> str:
-        cells = "".join(f"<th>{escape(text)}</th>" for text in HEADS)
+        cells = "".join(f"<th>{escape(text)}</th>" for text in COLUMN_HEADS)
         rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in self.rows())
         notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.notes())
         return f"<div>{escape(str(self.joint))}</div><table><tr>{cells}</tr>{rows}</table>{notes}"
 
 
-def relative(value: Array, truth: Array) -> Array:
-    """value/truth - 1: 0 where they are equal, NaN where the truth is 0, infinite or not known."""
+def relative_deviation(value: Array, truth: Array) -> Array:
+    """Compute value/truth - 1: 0 where they are equal, NaN where the truth is 0, infinite or NaN."""
     known = (truth > -inf) & (truth < inf) & (truth != 0)
     return where(truth == value, 0.0, where(known, value / where(known, truth, 1.0) - 1, float("nan")))
 
 
-def _listed(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
+def _as_lists(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
     return None if deviation is None else {name: to_list(value) for name, value in deviation.items()}
 
 
 _SHOWN = tuple(column for column in COLUMNS if column.attribute in HEADLINE)
-HEADS = ("model", *(column.head for column in _SHOWN), "valid")
-"""Heads of the columns of `Comparison.rows`."""
+COLUMN_HEADS = ("model", *(column.head for column in _SHOWN), "valid")
+"""Heads of the columns of `Comparison.rows`: model, the quantities of `HEADLINE` with units, and valid."""
 
 
 def compare(
@@ -162,29 +172,29 @@ def compare(
     models: Mapping[str, Model] | None = None,
     cup: Cup | None = None,
 ) -> Comparison:
-    """Press one joint by every model.
+    """Press one joint by each model with the same load.
 
     Parameters
     ----------
     joint : Joint
     force, indentation, half_angle : float or array
-        Exactly one, in N, mm or rad.
+        Exactly one of them, in N, mm or rad.
     models : mapping of str to Model, optional
-        By default the whole catalogue.
+        Models by name; all models of the catalogue by default.
     cup : Cup, optional
-        What the socket ends as; models that know no cups are then not trusted near its rim.
+        Rim of the socket. Models without a rim are then invalid near it.
 
     Returns
     -------
     Comparison
-        A mapping from name to `Contact`; a model without any answer for the joint is in `missing`, with the reason.
+        A mapping from name to `Contact`. Models whose domain excludes the joint are in `missing`, with the reason.
 
     Raises
     ------
     ValueError
         A load that is not allowed.
     TypeError
-        A load without its name; models that are no mapping.
+        A load without its name; `models` that is not a mapping of models.
 
     Examples
     --------
@@ -193,13 +203,13 @@ def compare(
     >>> round(answers["bartel"].max_pressure, 3)
     11.717
     """
-    refuse_unnamed(unnamed)
+    reject_unnamed_loads(unnamed)
     if not (models is None or isinstance(models, Mapping)):
         raise TypeError(f"models must be a mapping such as {{'exact': bs.Exact()}}, got {shown(models)}")
     for name, model in ({} if models is None else models).items():
         if isinstance(model, type) or not hasattr(model, "press"):
             raise TypeError(f"models[{name!r}] must be a model, such as bs.Exact(), got {shown(model)}")
-    kind, load = one_load(force=force, indentation=indentation, half_angle=half_angle)
+    kind, load = select_load(force=force, indentation=indentation, half_angle=half_angle)
     keyword: dict[str, Any] = {kind: load}
     contacts, missing = {}, {}
     for name, model in (catalogue if models is None else models).items():
@@ -210,53 +220,66 @@ def compare(
     return Comparison(joint, contacts, missing)
 
 
-def answered(comparison: Mapping[str, Contact]) -> dict[str, Contact]:
-    """The contacts of models that have an answer."""
+def successful_contacts(comparison: Mapping[str, Contact]) -> dict[str, Contact]:
+    """Return the contacts that have a result; each holds one point."""
     return {name: contact for name, contact in comparison.items() if not contact.status.failed}
 
 
-THIN = 12.0
-"""R2/L from which a model that solves for its answer takes seconds over a curve."""
+THIN_LINER_RATIO = 12.0
+"""R2/L above which a curve of a numerical model takes seconds."""
 
-_SOLVES, _MESHES = 1e-3, 0.1  # s a press, from which a model solves or makes a mesh for its answer
-_MANY = numpy.linspace(0.0, 1.0, 121) ** 2
-_FEW = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)  # each class of contacts takes a mesh
-_DOZEN, _WIDEST = numpy.linspace(0.0, 1.0, 12), radians(84.9)
+_NUMERICAL_SECONDS = 1e-3
+"""Time of one press in s above which a model counts as numerical."""
+
+_MESH_SECONDS = 0.1
+"""Time of one press in s above which a model counts as one that makes meshes."""
+
+_FINE_STEPS = numpy.linspace(0.0, 1.0, 121) ** 2
+"""Indentations of a curve of a fast model, relative to the largest."""
+
+_MESH_STEPS = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)
+"""Indentations of a curve of a model that makes meshes, relative to the largest; few, since each range needs a mesh."""
+
+_SHORT_STEPS = numpy.linspace(0.0, 1.0, 12)
+"""Half angles of a short curve, relative to the largest."""
+
+_MAX_HALF_ANGLE = radians(84.9)
+"""Largest half angle of a short curve in rad."""
 
 
-def takes_long(model: Model, joint: Joint) -> bool:
-    """Whether many presses of a joint of plain numbers take seconds: the thinner a liner, the more is to be summed."""
-    return model.seconds_a_press > _SOLVES and float(joint.thickness_ratio) > THIN
+def is_slow(model: Model, joint: Joint) -> bool:
+    """Return True if a curve of this model takes seconds, since thin liners need many terms; for one joint."""
+    return model.seconds_a_press > _NUMERICAL_SECONDS and float(joint.thickness_ratio) > THIN_LINER_RATIO
 
 
 def short_curve(contact: Contact, model: Model) -> Contact:
-    """A dozen contacts from first touch to a little beyond one, by half angles: no load has to be searched for."""
-    widest = min(1.15 * float(contact.half_angle), _WIDEST)
-    return model.press(contact.joint, half_angle=widest * _DOZEN)
+    """Press 12 half angles up to 1.15 times that of a contact, for which no load must be searched."""
+    max_half_angle = min(1.15 * float(contact.half_angle), _MAX_HALF_ANGLE)
+    return model.press(contact.joint, half_angle=max_half_angle * _SHORT_STEPS)
 
 
 def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -> dict[str, Contact]:
-    """From first touch to a little beyond the deepest of some contacts: each pressed on by its own model.
+    """Press each model from first touch to 1.15 times the deepest indentation of some contacts.
 
     Parameters
     ----------
     contacts : mapping of str to Contact
-        One contact of plain numbers each.
+        Contacts of one point each, by the name of the model.
     models : mapping of str to Model
-        By the same names.
+        Models by the same names.
 
     Returns
     -------
     dict of str to Contact
-        Contacts of a 1-D array of indentations; those that take long are a dozen, and end beyond their own contact.
+        Contacts of a 1-D array of indentations. Slow models have 12, up to 1.15 times their own half angle.
     """
-    deepest = 1.15 * max(contact.indentation for contact in contacts.values())
+    max_indentation = 1.15 * max(contact.indentation for contact in contacts.values())
 
     def curve(contact: Contact, model: Model) -> Contact:
-        if model.seconds_a_press > _MESHES:
-            return model.press(contact.joint, indentation=deepest * _FEW)
-        if takes_long(model, contact.joint):
+        if model.seconds_a_press > _MESH_SECONDS:
+            return model.press(contact.joint, indentation=max_indentation * _MESH_STEPS)
+        if is_slow(model, contact.joint):
             return short_curve(contact, model)
-        return model.press(contact.joint, indentation=deepest * _MANY)
+        return model.press(contact.joint, indentation=max_indentation * _FINE_STEPS)
 
     return {name: curve(contact, models[name]) for name, contact in contacts.items()}

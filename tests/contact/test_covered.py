@@ -18,7 +18,7 @@ def test_a_model_that_knows_no_cups_is_not_trusted_where_its_contact_passes_the_
     contact = model.in_cup(NARROW).press(HIP, force=3000.0)
     whole = model.press(HIP, force=3000.0)
     assert not contact.valid
-    assert any("ask fem" in note for note in contact.notes)
+    assert any("use fem" in note for note in contact.notes)
     assert contact.max_pressure == pytest.approx(whole.max_pressure, rel=1e-12)  # its answer is the same
     assert contact.model.name == model.name
     assert model.in_cup(bs.Cup()) is model

@@ -93,7 +93,10 @@ def test_a_length_that_is_given_twice_is_refused_though_it_agrees(lengths, messa
     [
         ({"ball_radius": 16.0, "clearance": 0.1}, "liner_thickness is missing, or outer_radius"),
         ({"head_diameter": 32.0, "liner_thickness": 6.0}, "two of .* are needed, got head_diameter"),
-        ({"ball_radius": 16.0, "clearance": 0.1, "outer_radius": 16.1}, "outer_radius = 16.1 is not .* no liner"),
+        (
+            {"ball_radius": 16.0, "clearance": 0.1, "outer_radius": 16.1},
+            "outer_radius = 16.1 is not .* leave a liner",
+        ),
         ({"ball_radius": 16.0, "socket_radius": 15.0, "liner_thickness": 6.0}, "clearance = -1 is not allowed"),
     ],
 )

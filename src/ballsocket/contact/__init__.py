@@ -1,14 +1,18 @@
-"""Models of contact and the results they return; no formula of a single model.
+"""Base classes of contact models and the results that models return; no formula of a single model.
 
 Results: `contact`, the result of a press; `outcome`, status, validity and notes; `strength`, stress relative to the
-strength of the materials; `describe`, a contact in text and numbers.
+strength of the materials; `verdict`, the same in one sentence; `describe`, a contact in text and numbers.
 
-Models: `model`, the base classes; `answer`, checked inputs and assembled results; `law`, a model bound to one joint;
-`per_joint`, models that solve joint by joint; `peak_pressure`, the position of the largest pressure; `model_info`,
-name, sources and validity; `roots`, the inversion.
+Models: `model_info`, name, sources and validity; `model`, the base classes; `assembly`, checked inputs and assembled
+results; `law`, the force law of one joint; `per_joint`, models that solve joint by joint; `peak_pressure`, the position
+of the largest pressure; `roots`, the inversion; `closed_sphere`, the difference between a closed sphere and a
+hemisphere.
 """
 
-from .contact import Contact, Laws, Pressed
-from .model import Covered, Model, Wrapped
+from .contact import Contact, Laws
+from .model import Model, ModelWrapper, RimLimited
+from .model_info import ModelInfo
 
-__all__ = ["Contact", "Covered", "Laws", "Model", "Pressed", "Wrapped"]
+Covered, Pressed, Wrapped = RimLimited, ModelInfo, ModelWrapper  # names of version 1.0
+
+__all__ = ["Contact", "Covered", "Laws", "Model", "ModelInfo", "ModelWrapper", "Pressed", "RimLimited", "Wrapped"]

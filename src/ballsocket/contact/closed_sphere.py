@@ -42,7 +42,7 @@ def variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tupl
 
 
 def powers(degree: int) -> tuple[tuple[int, int, int], ...]:
-    """Return the exponents of the variables in a polynomial of the given total degree."""
+    """Return the exponents of the variables in a polynomial of a total degree."""
     orders = range(degree + 1)
     return tuple((i, j, k) for i in orders for j in orders for k in orders if i + j + k <= degree)
 
@@ -74,7 +74,7 @@ LIKE_HEMISPHERE = Range(
     quantity=indentation_change,
     symbol="change of d on a hemisphere",
     high=MAX_CHANGE,
-    why="the model is that of a closed sphere, a socket with a free rim is softer: use fem or sphere",
+    why="the model is a closed sphere, and a socket with a free rim is softer: use fem or sphere",
 )
 
 HEMISPHERE_NOTE = Remark(

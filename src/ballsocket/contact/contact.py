@@ -1,11 +1,10 @@
-"""The answer: what a load does to a joint, with its status and validity."""
+"""Result of a press: force, indentation and every other quantity of a contact, with status and validity."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import import_module
 from math import cos, inf, pi, sin
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Protocol
@@ -14,28 +13,21 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array
-from ..core.checks import in_radians, numeric, require, vectors
+from ..core.checks import check_numeric, check_vectors, degrees_hint, require
+from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.kinds import Unit
+from ..core.plotting import load_plot
 from ..core.quantities import QUANTITIES
 from ..core.validity import Range
-from ..problem import Joint
 from . import describe, strength
-from .outcome import Answerer, Outcome
+from .outcome import Outcome
 
 if TYPE_CHECKING:
     import pandas
 
 
-class Pressed(Answerer, Protocol):
-    """What a contact knows of the model that made it."""
-
-    @property
-    def planar(self) -> bool: ...
-    def careful_laws(self, joint: Joint, indentation: float) -> Laws: ...
-
-
 class Laws(Protocol):
-    """Where a contact's further quantities come from: a closed form bound to its joint, or what a solver found."""
+    """Quantities of a contact beyond force and indentation: closed forms bound to the joint, or a solution."""
 
     @property
     def half_angle(self) -> Array: ...
@@ -57,39 +49,40 @@ class Laws(Protocol):
 
 
 def _law(name: str) -> Any:
-    """A quantity of the contact, computed by the law of that name when it is first asked for."""
+    """Return a property that computes the quantity of that name by the laws of the contact, once."""
 
-    def quantity(self: Contact) -> Array:
-        return self._asked(law)
+    def compute(self: Contact) -> Array:
+        return self._evaluate(law)
 
     law = attrgetter(name)
 
-    said = QUANTITIES[name]
-    quantity.__doc__ = f"{said.capital(Unit(''))} in {said.unit}. {said.meaning}"
-    quantity.__name__ = name
-    return cached_property(quantity)
+    quantity = QUANTITIES[name]
+    compute.__doc__ = f"{quantity.capital(Unit(''))} in {quantity.unit}. {quantity.meaning}"
+    compute.__name__ = name
+    return cached_property(compute)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class Contact(Outcome):
-    """What `model.press(joint, ...)` answers. Every quantity has the shape that joint and load broadcast to.
+    """Result of `model.press(joint, ...)`. Every quantity has the shape that joint and load broadcast to.
 
-    Points without an answer are NaN and have a `status` other than `Status.OK`; points whose joint or answer lies
-    outside the model's `validity` keep their numbers and have `valid` false. `notes` says both in words.
+    Points without a result are NaN and have a `status` other than `Status.OK`. Points outside the model's `validity`
+    have numbers, and `valid` is false there. `notes` describes both.
 
     Attributes
     ----------
     force, indentation : float or array
         Axial load F in N; approach d of the centres from first touch in mm.
     status : Status or array of int
-        How the press ended, point by point.
-    model, joint
-        What answered, and what was pressed.
-    laws
-        Where the further quantities come from: a closed form bound to its joint and indentation, or a solution.
+        Success, or the reason of the failure, of each point.
+    model : ModelInfo
+        The model that computed the contact.
+    joint : Joint
+        The joint that was pressed.
+    laws : Laws
+        Closed forms bound to joint and indentation, or a solution, which give the other quantities.
     """
 
-    model: Pressed
     laws: Laws
     force: Array
     indentation: Array
@@ -111,42 +104,48 @@ class Contact(Outcome):
     def von_mises(self) -> Array:
         """Largest von Mises stress in the liner in MPa.
 
-        A share of the largest pressure that is fitted to the exact answer for liners on a rigid backing, typically 6 %
-        off (`strength.share`); models that know the inside of the socket say what is there.
+        A fraction of the largest pressure, fitted to the exact solution for liners on a rigid backing; the typical
+        error is 6 % (`strength.von_mises_ratio`). Models that solve for the stresses compute it.
         """
-        return self._answer(self._largest_von_mises)
+        return self._mask_failed(self._compute_von_mises)
 
     @cached_property
     def utilisation(self) -> Array:
-        """Largest von Mises stress over yield stress, of liner or ball, whichever is more; NaN where none is known.
+        """Largest von Mises stress over yield stress, the larger of liner and ball; NaN if neither has a yield stress.
 
-        From 1 on the material yields somewhere; a linear answer is not valid beyond 1.38 (`strength.ELASTIC`).
+        From 1 on the material yields somewhere. A linear result is invalid above 1.38
+        (`strength.MAX_ELASTIC_UTILISATION`).
         """
-        known = any(part is not None and part.yield_stress is not None for part in (self.joint.liner, self.joint.ball))
-        return self._utilisation_of(self.von_mises if known else self.max_pressure)
+        materials = (self.joint.liner, self.joint.ball)
+        has_limit = any(material is not None and material.yield_stress is not None for material in materials)
+        return self._compute_utilisation(self.von_mises if has_limit else self.max_pressure)
 
-    def utilisation_where(self, asked: Array) -> Array:
-        """`utilisation`, at the least where it is asked for (a mask): for models that take long to know it."""
+    def utilisation_at(self, mask: Array) -> Array:
+        """Compute the utilisation at the points of a mask; slow models leave NaN at the other points."""
         return self.utilisation
 
-    def _utilisation_of(self, von_mises: Array) -> Array:
-        return self._plain(strength.utilisation(self.joint, von_mises, self.max_pressure))
+    def _compute_utilisation(self, von_mises: Array) -> Array:
+        return self._match_load(strength.utilisation(self.joint, von_mises, self.max_pressure))
 
     @property
-    def von_mises_between(self) -> tuple[Array, Array]:
-        """What `von_mises` lies between, as far as that is known at once."""
+    def von_mises_bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bound of `von_mises` in MPa that need no solution for the stresses."""
         return self.von_mises, self.von_mises
 
     @property
-    def utilisation_between(self) -> tuple[Array, Array]:
-        """What `utilisation` lies between, as far as that is known at once."""
-        least, most = self.von_mises_between
+    def utilisation_bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bound of `utilisation` that need no solution for the stresses."""
+        low, high = self.von_mises_bounds
         pressure = self.max_pressure
-        return strength.utilisation(self.joint, least, pressure), strength.utilisation(self.joint, most, pressure)
+        return strength.utilisation(self.joint, low, pressure), strength.utilisation(self.joint, high, pressure)
 
-    def _largest_von_mises(self) -> Array:
+    von_mises_between = RenamedAttribute("von_mises_bounds")
+    utilisation_between = RenamedAttribute("utilisation_bounds")
+    utilisation_where = RenamedAttribute("utilisation_at")
+
+    def _compute_von_mises(self) -> Array:
         liner = self.joint.liner
-        return strength.share(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
+        return strength.von_mises_ratio(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
 
     @property
     def _limits(self) -> tuple[Range, ...]:
@@ -154,22 +153,24 @@ class Contact(Outcome):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What has no answer, what lies outside the model's validity, and what a material does not bear, in words."""
-        unchecked = [self.utilisation_note] if self.utilisation_note and arrays.truth(self._failed) is not True else []
-        compared = (note for good, said in strength.remarks(self) for note in self._note(good | self._failed, said))
+        """Messages about points without a result, outside the model's validity, or above a limit of a material."""
+        unchecked = (
+            [self.utilisation_note] if self.utilisation_note and arrays.all_true(self._failed) is not True else []
+        )
+        compared = (note for good, text in strength.remarks(self) for note in self._note(good | self._failed, text))
         return (*super().notes, *unchecked, *compared)
 
     @property
     def utilisation_note(self) -> str:
         """Reason why `utilisation` does not cover the liner; empty where the liner has a yield stress."""
-        return strength.unchecked_strength(self.joint)
+        return strength.unchecked_strength_reason(self.joint)
 
     @cached_property
     def area(self) -> Array:
         """Contact area on the ball, A = 2π R1² (1 - cos ε) in mm², Eq. (19)."""
         half_sine = arrays.sin(arrays.clip(self.half_angle, 0.0, pi) / 2)
         with numpy.errstate(all="ignore"):
-            return self._plain(4 * pi * self.joint.ball_radius * self.joint.ball_radius * half_sine * half_sine)
+            return self._match_load(4 * pi * self.joint.ball_radius * self.joint.ball_radius * half_sine * half_sine)
 
     @property
     def indentation_ratio(self) -> Array:
@@ -178,7 +179,7 @@ class Contact(Outcome):
 
     @property
     def depth_ratio(self) -> Array:
-        """Indentation over liner thickness or socket radius, whichever is less, which is how large strains are."""
+        """Indentation over the smaller of liner thickness and socket radius, a measure of the strains."""
         R2, L = self.joint.socket_radius, self.joint.liner_thickness
         return self.indentation / arrays.where(L < R2, L, R2)
 
@@ -190,11 +191,11 @@ class Contact(Outcome):
     @property
     def conformity(self) -> Array:
         """Clearance over indentation, c/d; 0 is a ball of the socket's own radius."""
-        quotient = self.joint.clearance / arrays.divisor(self.indentation)
-        return self._plain(arrays.where(self.indentation == 0, numpy.inf, quotient))
+        quotient = self.joint.clearance / arrays.safe_divisor(self.indentation)
+        return self._match_load(arrays.where(self.indentation == 0, numpy.inf, quotient))
 
     def pressure(self, angle: Array) -> Array:
-        """Contact pressure in MPa at polar angles from the load axis; 0 outside the contact.
+        """Compute the contact pressure in MPa at polar angles from the load axis; 0 outside the contact.
 
         Parameters
         ----------
@@ -210,27 +211,26 @@ class Contact(Outcome):
         Raises
         ------
         ValueError
-            An angle of more than half a turn: degrees are no radians.
+            An angle beyond ±π, probably in degrees.
         TypeError
-            What is neither a number nor an array.
+            An angle that is not numeric.
         """
-        angle = numeric("angle", angle)
-        QUANTITIES["angle"].checked(
-            arrays.where(angle == angle, angle, 0.0)
-        )  # where there is no edge angles are missing
+        angle = check_numeric("angle", angle)
+        # the angle at the edge is NaN where there is no contact
+        QUANTITIES["angle"].checked(arrays.where(angle == angle, angle, 0.0))
         if self._is_plain and arrays.is_plain(angle):
-            return self._asked(lambda laws: laws.pressure(float(angle)))
-        _, angle = arrays.common(self.indentation, angle)
-        return self._asked(lambda laws: laws.pressure(angle))
+            return self._evaluate(lambda laws: laws.pressure(float(angle)))
+        _, angle = arrays.to_common_arrays(self.indentation, angle)
+        return self._evaluate(lambda laws: laws.pressure(angle))
 
     def pressure_at(self, direction: Array) -> Array:
-        """Contact pressure in MPa where a ray from the centre of the socket meets its surface; 0 outside the contact.
+        """Compute the contact pressure in MPa in directions from the centre of the socket; 0 outside the contact.
 
         Parameters
         ----------
         direction : array (..., 3)
             Unit vectors x, y, z; z is the axis of the load and points to the pole. Their leading axes broadcast
-            against the contact's shape as those of the angles of `pressure` do.
+            against the contact's shape as the angles of `pressure` do.
 
         Returns
         -------
@@ -242,11 +242,13 @@ class Contact(Outcome):
         ValueError
             A direction whose last axis is not of length 3, or that is not of length 1.
         """
-        direction = vectors("direction", direction, "x, y, z of a unit vector")
+        direction = check_vectors("direction", direction, "x, y, z of a unit vector")
         x, y, z = (direction[..., i] for i in range(3))
         across = arrays.sqrt(x * x + y * y)
         length = across * across + z * z
-        require("direction", length, (length - 1) ** 2 < _UNIT, "a direction is a unit vector, x² + y² + z² = 1")
+        require(
+            "direction", length, (length - 1) ** 2 < _UNIT_TOLERANCE, "a direction is a unit vector, x² + y² + z² = 1"
+        )
         return self.pressure(arrays.atan2(across, z))
 
     def friction_torque(self, coefficient: Array, axis_angle: float = pi / 2) -> Array:
@@ -269,47 +271,46 @@ class Contact(Outcome):
         Raises
         ------
         ValueError
-            A coefficient that is negative or not finite; an angle of more than a turn.
+            A coefficient that is negative or not finite; an angle beyond ±2π.
         TypeError
-            What is neither a number nor an array.
+            A coefficient that is not numeric.
         """
-        coefficient = numeric("coefficient", coefficient)
+        coefficient = check_numeric("coefficient", coefficient)
         allowed = "a coefficient of friction is 0 or more and finite"
         require("coefficient", coefficient, (coefficient >= 0) & (coefficient < inf), allowed)
-
-        require("axis_angle", axis_angle, abs(axis_angle) <= 2 * pi, f"it is in radians; {in_radians(axis_angle)}")
+        require("axis_angle", axis_angle, abs(axis_angle) <= 2 * pi, f"it is in radians; {degrees_hint(axis_angle)}")
 
         def ring(x: float) -> Array:
-            angle = self.half_angle * sin(pi / 2 * x)  # tames a square root at the edge
+            angle = self.half_angle * sin(pi / 2 * x)  # removes the square root singularity at the edge
             width = self.half_angle * (pi / 2 * cos(pi / 2 * x))
             arc = angle if self.model.planar else arrays.sin(angle)
             return self.pressure(angle) * _mean_lever(angle, axis_angle) * arc * width
 
         R2 = self.joint.socket_radius
         lever = coefficient * self.joint.ball_radius
-        return self._plain(lever * 2 * pi * R2 * R2 * arrays.integral(ring, 24))
+        return self._match_load(lever * 2 * pi * R2 * R2 * arrays.integral(ring, 24))
 
-    def _asked(self, law: Callable[[Laws], Array]) -> Array:
-        """What a law says, in NumPy's numbers where Python's raise."""
+    def _evaluate(self, law: Callable[[Laws], Array]) -> Array:
+        """Evaluate a law, with NumPy numbers if Python floats raise; set failed points to NaN."""
 
         def value() -> Array:
             try:
                 return law(self.laws)
             except ArithmeticError:
-                return law(self.model.careful_laws(self.joint, self.indentation))
+                return law(self.model.numpy_laws(self.joint, self.indentation))
 
-        return self._answer(value)
+        return self._mask_failed(value)
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON in N, mm, MPa and degrees; arrays become (nested) lists, a missing number None."""
+        """Return a dictionary for JSON in N, mm, MPa and degrees; arrays become lists, missing numbers None."""
         return describe.summary(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """The contact as a dictionary, which is its `summary()`."""
+        """Return `summary()`."""
         return self.summary()
 
     def to_frame(self) -> pandas.DataFrame:
-        """A row a point; the names of the columns end in their units, "max_pressure_MPa", "half_angle_deg".
+        """Return a data frame of one row per point; column names end in units, such as "half_angle_deg".
 
         Raises
         ------
@@ -319,7 +320,7 @@ class Contact(Outcome):
         return describe.frame(self)
 
     def plot(self) -> Any:
-        """The pressure over the angle beside the force over the indentation, of a single contact.
+        """Plot pressure over angle and force over indentation of a single contact.
 
         Returns
         -------
@@ -328,10 +329,9 @@ class Contact(Outcome):
         Raises
         ------
         ValueError
-            More than one contact, or one that has no answer.
+            More than one contact, or a contact without a result.
         """
-        # pictures are made floors above, where contacts are known: looked up when they are asked for, never imported
-        return import_module("ballsocket.output.quick_plot").plot({self.model.name: self})
+        return load_plot("contacts")({self.model.name: self})
 
     def __repr__(self) -> str:
         return describe.text(self)
@@ -340,14 +340,21 @@ class Contact(Outcome):
         return describe.html(self)
 
 
-_ELASTIC = strength.Elastic()
+_ELASTIC = strength.ElasticLimit()
 
-_UNIT = 1e-10  # square of how far the square of a unit vector may miss 1
+_UNIT_TOLERANCE = 1e-10
+"""Tolerance of the square of (x² + y² + z² - 1) of a unit vector."""
 
 
 def _mean_lever(angle: Array, axis_angle: float) -> Array:
-    """Mean over the circle at polar `angle` of the sine between the radius and an axis at `axis_angle`."""
-    turns = [pi * (k + 0.5) / 64 for k in range(64)]
+    """Average the sine of the angle between radius and axis of rotation over the circle at a polar angle."""
+    azimuths = [pi * (k + 0.5) / 64 for k in range(64)]
     polar, across = arrays.cos(angle) * float(numpy.cos(axis_angle)), arrays.sin(angle) * float(numpy.sin(axis_angle))
-    sines = [arrays.sqrt(arrays.clip(1 - (polar + across * float(numpy.cos(turn))) ** 2, 0.0, 1.0)) for turn in turns]
+    sines = [
+        arrays.sqrt(arrays.clip(1 - (polar + across * float(numpy.cos(azimuth))) ** 2, 0.0, 1.0))
+        for azimuth in azimuths
+    ]
     return arrays.weighted_sum(sines, [1 / 64] * 64)
+
+
+__getattr__ = renamed_names(__name__, {"Pressed": "ballsocket.contact.model_info.ModelInfo"})

@@ -1,4 +1,4 @@
-"""A contact in words and numbers: for a terminal, a notebook and JSON."""
+"""Contacts as text, HTML tables, data frames and dictionaries for JSON."""
 
 from __future__ import annotations
 
@@ -20,77 +20,92 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Column:
-    """A quantity of a contact in a unit: the head of a column, and its numbers."""
+    """Quantity of a contact in a unit: head and numbers of a column.
+
+    Attributes
+    ----------
+    quantity : Quantity
+    reading : Unit
+        Unit of the column.
+    """
 
     quantity: Quantity
     reading: Unit
 
     @property
     def name(self) -> str:
-        """What JSON calls it."""
+        """Key in JSON."""
         return self.quantity.key
 
     @property
     def attribute(self) -> str:
-        """What a contact calls it."""
+        """Name of the attribute of a contact."""
         return self.quantity.name
 
     @property
     def symbol(self) -> str:
+        """Symbol of the quantity."""
         return self.quantity.symbol
 
     @property
     def title(self) -> str:
+        """Title of the quantity."""
         return self.quantity.title
 
     @property
     def unit(self) -> str:
+        """Text of the unit."""
         return self.reading.text
 
     @property
     def factor(self) -> float:
-        """From the unit inside to `unit`."""
+        """Factor from the internal unit to `unit`."""
         return self.reading.factor
 
     @property
     def head(self) -> str:
-        """Symbol and unit."""
+        """Symbol and unit, the head of a column."""
         return self.quantity.head(self.reading)
 
     @property
     def label(self) -> str:
-        """Title, symbol and unit."""
+        """Title, symbol and unit, the label of an axis."""
         return self.quantity.label(self.reading)
 
     def of(self, contact: Any) -> Array:
-        """The contact's values in `unit`; -0 is 0."""
+        """Return the values of a contact in `unit`; -0 becomes 0."""
         return getattr(contact, self.attribute) * self.factor + 0.0
 
 
-COLUMNS = tuple(Column(each, each.written) for each in CONTACT.values())
-"""Every quantity that is printed, in the order in which it is printed and in the units of JSON."""
-
+COLUMNS = tuple(Column(quantity, quantity.written) for quantity in CONTACT.values())
+"""Printed quantities of a contact, in their order and in the units of JSON."""
 
 UTILISATION = Column(BEARING["utilisation"], BEARING["utilisation"].written)
-"""What is shown beside them where a strength is known."""
+"""Column of the utilisation, printed if a strength is known."""
 
 UTILISATION_NOTE = "utilisation_note"
-"""Key of JSON: the reason where the utilisation does not cover the liner."""
+"""Key in JSON of the reason why the utilisation does not cover the liner."""
 
 
 def summary(contact: Any) -> dict[str, Any]:
-    """One dictionary for JSON."""
+    """Return a dictionary for JSON of a contact."""
     numbers = {column.name: arrays.to_list(column.of(contact)) for column in COLUMNS}
-    borne = {
+    strength = {
         UTILISATION.name: arrays.to_list(UTILISATION.of(contact)),
         UTILISATION_NOTE: contact.utilisation_note or None,
     }
     valid = arrays.to_list(contact.valid)
-    return {"model": contact.model.name, **numbers, **borne, "valid": valid, "notes": list(contact.notes)}
+    return {"model": contact.model.name, **numbers, **strength, "valid": valid, "notes": list(contact.notes)}
 
 
 def frame(contact: Any) -> pandas.DataFrame:
-    """A row a point."""
+    """Return a data frame of one row per point.
+
+    Raises
+    ------
+    ImportError
+        pandas is not installed.
+    """
     needs("study", "pandas")
     import pandas
 
@@ -99,8 +114,8 @@ def frame(contact: Any) -> pandas.DataFrame:
 
 
 def text(contact: Any) -> str:
-    """A few aligned lines."""
-    if arrays.truth(contact.indentation == contact.indentation) is None:
+    """Format a contact as aligned lines: model, joint, quantities and notes."""
+    if arrays.all_true(contact.indentation == contact.indentation) is None:
         return f"<Contact of {contact.model.name}, traced>"
     rows = _rows(contact)
     width = max(len(number) for _, number, _ in rows)
@@ -110,40 +125,41 @@ def text(contact: Any) -> str:
 
 
 def html(contact: Any) -> str:
-    """A contact as a table for a notebook."""
-    left = "style='text-align:left'"
+    """Format a contact as an HTML table for a notebook."""
+    align = "style='text-align:left'"
     rows = "".join(
-        f"<tr><td {left}>{name.replace('_', ' ')}</td><td>{escape(number)}</td><td {left}>{unit}</td></tr>"
+        f"<tr><td {align}>{name.replace('_', ' ')}</td><td>{escape(number)}</td><td {align}>{unit}</td></tr>"
         for name, number, unit in _rows(contact)
     )
     notes = "".join(f"<div>{escape(note)}</div>" for note in contact.notes)
     return f"<b>{escape(contact.model.name)}</b><div>{escape(str(contact.joint))}</div><table>{rows}</table>{notes}"
 
 
-def count(valid: Array) -> str:
-    """yes or no; how many of how many for more than one."""
-    listed = arrays.to_numpy(valid)
-    return ("yes" if listed.item() else "no") if listed.size == 1 else f"{int(listed.sum())} of {listed.size}"
+def count_text(valid: Array) -> str:
+    """Format a mask: "yes" or "no" for one point, else "3 of 5"."""
+    mask = arrays.to_numpy(valid)
+    return ("yes" if mask.item() else "no") if mask.size == 1 else f"{int(mask.sum())} of {mask.size}"
 
 
 def number_text(value: Array, digits: int, gap: str) -> str:
-    """One number, or the range of many; `gap` where there is no number at all."""
-    listed = arrays.to_numpy(value)
-    known = listed[~numpy.isnan(listed)]
-    if not known.size:
+    """Format one number, or the range of many; return `gap` if all of them are NaN."""
+    values = arrays.to_numpy(value)
+    numbers = values[~numpy.isnan(values)]
+    if not numbers.size:
         return gap
-    low, high = f"{known.min():.{digits}g}", f"{known.max():.{digits}g}"
+    low, high = f"{numbers.min():.{digits}g}", f"{numbers.max():.{digits}g}"
     return low if low == high else f"{low} to {high}"
 
 
 def _rows(contact: Any) -> list[tuple[str, str, str]]:
+    """Return name, number and unit of each printed quantity."""
     digits = 6 if arrays.to_numpy(contact.indentation).size == 1 else 5
     rows = [(column.attribute, number_text(column.of(contact), digits, "no answer"), column.unit) for column in COLUMNS]
-    return [*rows, *_borne(contact), ("valid", count(contact.valid), "")]
+    return [*rows, *_utilisation_row(contact), ("valid", count_text(contact.valid), "")]
 
 
-def _borne(contact: Any) -> list[tuple[str, str, str]]:
-    """The utilisation of a single contact where it is known."""
+def _utilisation_row(contact: Any) -> list[tuple[str, str, str]]:
+    """Return the row of the utilisation of a single contact, if it is known."""
     if arrays.to_numpy(contact.indentation).size != 1 or not contact.joint.strengths():
         return []
     value = UTILISATION.of(contact)

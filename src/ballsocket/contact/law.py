@@ -1,4 +1,4 @@
-"""A model bound once to a joint: force and tangent at one indentation after the other, as a program in time asks."""
+"""Force and tangent stiffness of one joint as a function of the indentation, for time integration."""
 
 from __future__ import annotations
 
@@ -11,22 +11,24 @@ from typing import Protocol
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.deprecation import renamed_names
 
-Pieces = Sequence[Sequence[float]]
+PolynomialPieces = Sequence[Sequence[float]]
+"""Coefficients of each piece of a curve, the highest power first."""
 
 
-class Law(Protocol):
-    """What `model.law(joint)` returns: a function of one indentation.
+class ForceLaw(Protocol):
+    """Function that `model.law(joint)` returns.
 
     Parameters
     ----------
     indentation : float
-        Approach of the centres from first touch in mm; below 0 nothing touches.
+        Approach of the centres from first touch in mm; below 0 there is no contact.
 
     Returns
     -------
     float, float
-        Axial load in N and tangent stiffness in N/mm; both NaN where the model has no answer.
+        Axial load in N and tangent stiffness in N/mm; both NaN where the model has no result.
     """
 
     def __call__(self, indentation: float) -> tuple[float, float]: ...
@@ -34,18 +36,18 @@ class Law(Protocol):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurveLaw:
-    """The load of one joint as polynomials of ln d, piece by piece; the tangent is the slope of these.
+    """Force law of one joint: ln F as a piecewise polynomial of ln d; the tangent stiffness is its slope.
 
-    Below `shallowest` the load goes on as a power of the indentation, beyond `deepest` there is none.
+    Below `shallowest` the load is a power of the indentation; beyond `deepest` it is NaN.
 
     Attributes
     ----------
     shallowest, deepest : float
         Ends of the curve in mm.
     first, density : float
-        ln d where the first piece begins, and pieces per unit of ln d.
+        ln d at the start of the first piece, and pieces per unit of ln d.
     pieces : array (pieces, coefficients)
-        ln F in powers of a place that runs from -1 to 1 along a piece, the highest power first.
+        Coefficients of ln F in a coordinate from -1 to 1 along each piece, the highest power first.
     """
 
     shallowest: float
@@ -55,7 +57,7 @@ class CurveLaw:
     pieces: Numbers
 
     @cached_property
-    def _numbers(self) -> tuple[float, float, float, float, Pieces]:
+    def _numbers(self) -> tuple[float, float, float, float, PolynomialPieces]:
         rows = tuple(map(tuple, self.pieces.tolist()))
         return self.shallowest, self.deepest, self.first, self.density, rows
 
@@ -64,48 +66,53 @@ class CurveLaw:
 
 
 def force_and_tangent(
-    indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: Pieces
+    indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float]:
-    """A `CurveLaw` as a function of its numbers: what it says of an indentation."""
+    """Evaluate a `CurveLaw`, given by its attributes, at an indentation in mm."""
     if indentation <= 0.0:
         return 0.0, 0.0
     if not indentation <= deepest:
         return math.nan, math.nan
     along = (math.log(max(indentation, shallowest)) - first) * density
     number = min(max(int(along), 0), len(pieces) - 1)
-    place = 2.0 * (along - number) - 1.0
+    coordinate = 2.0 * (along - number) - 1.0
     value, slope = 0.0, 0.0
     for coefficient in pieces[number]:
-        slope = slope * place + value
-        value = value * place + coefficient
+        slope = slope * coordinate + value
+        value = value * coordinate + coefficient
     force, power = math.exp(value), 2.0 * density * slope
     if indentation < shallowest:
         force *= (indentation / shallowest) ** power
     return force, power * force / indentation
 
 
-def answered(force: float, stiffness: float) -> tuple[float, float]:
-    """Force and stiffness, both NaN where one of them is no number or infinite."""
+def finite_or_nan(force: float, stiffness: float) -> tuple[float, float]:
+    """Return force and stiffness, or NaN for both if one of them is not finite."""
     return (force, stiffness) if math.isfinite(force + stiffness) else (math.nan, math.nan)
 
 
 _DEGREE = 9
-_COUNTS = (24, 48, 96)
-_SMOOTH = 1e-11
-"""Of ln F: what the last terms of a curve may amount to."""
+"""Degree of the polynomial of a piece."""
 
-_TO_THE_END = 1e-6
+_PIECE_COUNTS = (24, 48, 96)
+"""Numbers of pieces that are tried in turn."""
+
+_SERIES_TOLERANCE = 1e-11
+"""Largest last term of ln F of a curve with enough pieces."""
+
+_END_TOLERANCE = 1e-6
+"""Relative tolerance of the deepest indentation that has a load."""
 
 
 def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
-    """The law through the loads of many indentations: more of them until the last terms of ln F are small.
+    """Fit a curve to the loads of many indentations, with more pieces until the last terms of ln F are small.
 
     Parameters
     ----------
     force : function
-        From indentations in mm to loads in N, NaN where there is none.
+        Loads in N of indentations in mm, NaN where there is none.
     shallowest, deepest : float
-        Where the curve begins, and where it ends at the latest: it ends with the loads, in mm.
+        Ends of the curve in mm. It ends earlier if the loads do.
 
     Raises
     ------
@@ -113,9 +120,9 @@ def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: f
         A load at the shallowest indentation that is not above 0.
     """
     end = _end(force, shallowest, deepest)
-    for count in _COUNTS:
+    for count in _PIECE_COUNTS:
         series = _series(force, shallowest, end, count)
-        if numpy.max(abs(series[:, -1])) <= _SMOOTH:
+        if numpy.max(abs(series[:, -1])) <= _SERIES_TOLERANCE:
             break
     return CurveLaw(
         shallowest=shallowest,
@@ -127,34 +134,37 @@ def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: f
 
 
 def _end(force: Callable[[Numbers], Numbers], low: float, high: float) -> float:
-    """The deepest indentation that has a load; a millionth less, since a solver finds that end to its tolerance."""
+    """Find the deepest indentation that has a load, less a millionth, which is the tolerance of a solver."""
     if not force(numpy.array([low]))[0] > 0:
-        raise TypeError(f"no curve of ln F, since a load is not above 0 N: that of {low:.3g} mm")
-    while high / low > 1 + _TO_THE_END:
-        tried = numpy.geomspace(low, high, 17)
-        last = max(numpy.flatnonzero(numpy.isfinite(force(tried))), default=0)
+        raise TypeError(f"no force law: the load at an indentation of {low:.3g} mm must be above 0 N")
+    while high / low > 1 + _END_TOLERANCE:
+        depths = numpy.geomspace(low, high, 17)
+        last = max(numpy.flatnonzero(numpy.isfinite(force(depths))), default=0)
         if last == 16:
             return high
-        low, high = float(tried[last]), float(tried[last + 1])
-    return low * (1 - _TO_THE_END)
+        low, high = float(depths[last]), float(depths[last + 1])
+    return low * (1 - _END_TOLERANCE)
 
 
 def _series(force: Callable[[Numbers], Numbers], low: float, high: float, count: int) -> Numbers:
-    """Chebyshev coefficients (pieces, terms) of ln F over ln d; neighbours share the load where they meet."""
-    places = -numpy.cos(math.pi * numpy.arange(_DEGREE + 1) / _DEGREE)
-    along = (numpy.arange(count)[:, None] + (1 + places[:-1]) / 2).ravel() / count
+    """Compute Chebyshev coefficients (pieces, terms) of ln F over ln d; neighbouring pieces meet continuously."""
+    nodes = -numpy.cos(math.pi * numpy.arange(_DEGREE + 1) / _DEGREE)
+    along = (numpy.arange(count)[:, None] + (1 + nodes[:-1]) / 2).ravel() / count
     depths = low * numpy.exp(math.log(high / low) * numpy.append(along, 1.0))
     depths[-1] = high
     logs = numpy.log(force(depths))
     inside, ends = logs[:-1].reshape(count, _DEGREE), logs[_DEGREE::_DEGREE, None]
     values = numpy.concatenate([inside, ends], axis=1)
-    return numpy.linalg.solve(numpy.polynomial.chebyshev.chebvander(places, _DEGREE), values.T).T
+    return numpy.linalg.solve(numpy.polynomial.chebyshev.chebvander(nodes, _DEGREE), values.T).T
 
 
 @cache
 def _powers() -> Numbers:
-    """The matrix from Chebyshev coefficients to those of powers."""
-    square = numpy.zeros((_DEGREE + 1, _DEGREE + 1))
+    """Compute the matrix that converts Chebyshev coefficients to coefficients of powers."""
+    matrix = numpy.zeros((_DEGREE + 1, _DEGREE + 1))
     for term in range(_DEGREE + 1):
-        square[term, : term + 1] = numpy.polynomial.chebyshev.cheb2poly(numpy.eye(term + 1)[term])
-    return square
+        matrix[term, : term + 1] = numpy.polynomial.chebyshev.cheb2poly(numpy.eye(term + 1)[term])
+    return matrix
+
+
+__getattr__ = renamed_names(__name__, {"Law": "ForceLaw", "Pieces": "PolynomialPieces"})

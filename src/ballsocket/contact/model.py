@@ -1,4 +1,4 @@
-"""What a model is: a frozen value that answers to `press`, from a few short laws; and one model around another."""
+"""Base classes of models: `Model`, which presses a joint, `ModelWrapper` around another model, and `RimLimited`."""
 
 from __future__ import annotations
 
@@ -12,60 +12,70 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array, where
-from ..core.checks import refuse_unnamed, require, vectors
-from ..core.validity import LOOSE, Nowhere, Range, inside
+from ..core.checks import check_vectors, reject_unnamed_loads, require
+from ..core.deprecation import RenamedAttribute, renamed_names
+from ..core.validity import NON_NEGATIVE_CLEARANCE, NeverValid, Range, check_domain
 from ..problem import Joint
 from ..problem.cup import Cup, Interface
-from .answer import Answer, check_joint, checked_load, finished, finished_number, prepared, spread
+from .assembly import (
+    SolverResult,
+    as_arrays,
+    broadcast_load,
+    check_joint,
+    check_load,
+    make_contact,
+    make_scalar_contact,
+)
 from .contact import Contact, Laws
-from .law import CurveLaw, Law, curve_law
-from .model_info import Theory
+from .law import CurveLaw, ForceLaw, curve_law
+from .model_info import ModelInfo
 
 
-class Model(Theory):
-    """Anything that answers `press(joint, force=... | indentation=... | half_angle=...)` with a `Contact`.
+class Model(ModelInfo):
+    """Base class of models: `press` returns the `Contact` of a joint under one load.
 
-    Most of what follows is the same for every value of a kind of model, and then a class variable.
+    Attributes that are equal for all instances of a model are class variables.
 
     Attributes
     ----------
     domain : tuple of Range
-        Open ranges outside of which there is no formula.
-    planar : bool
-        Whether the contact is a flat circle, whose pressure has one direction; otherwise it acts along the radius.
+        Open ranges outside of which the model has no formula.
     fits : tuple of Range
-        As the domain, of how ball and socket fit: without interference, except where a model knows better.
+        Part of the domain that limits the fit of ball and socket: by default a clearance of 0 or more.
     parameters : tuple of array
-        Numbers of the model's own that may be arrays and broadcast against joint and load.
+        Numbers of the model that may be arrays and broadcast against joint and load.
     off_axis : bool
-        Whether a press takes where the load points and where the cup faces: `tilt`, `inclination`, `anteversion`.
+        True if a press takes the direction of the load and of the cup: `tilt`, `inclination`, `anteversion`.
     differentiable : bool
-        Whether JAX can trace a press.
+        True if JAX can trace a press.
     smooth_step : float
-        A share of a number over which answers change by more than they are uncertain: for differences.
+        Relative step of finite differences that is larger than the noise of the results.
     seconds_a_press : float
-        Roughly, for one of many points on one core: studies cut their work by it.
+        Approximate time of one point on one core in s; studies divide their work by it.
     contact_type : type
-        What `press` answers with: `Contact`, or a kind of it that knows more.
-    of_numbers : bool
-        Whether the formulas take Python numbers as they are, which is quicker than arrays of one.
+        Class of the result of `press`: `Contact` or a subclass.
+    accepts_floats : bool
+        True if the formulas take Python floats, which is faster than arrays of one element.
     """
 
-    planar: ClassVar[bool] = False
-    fits: ClassVar[tuple[Range, ...]] = (LOOSE,)
+    fits: ClassVar[tuple[Range, ...]] = (NON_NEGATIVE_CLEARANCE,)
     off_axis: ClassVar[bool] = False
     differentiable: ClassVar[bool] = True
     smooth_step: ClassVar[float] = 1e-4
     seconds_a_press: ClassVar[float] = 4e-7
     contact_type: ClassVar[type[Contact]] = Contact
-    of_numbers: ClassVar[bool] = False
+    accepts_floats: ClassVar[bool] = False
+
+    of_numbers = RenamedAttribute("accepts_floats")
 
     @property
     def domain(self) -> tuple[Range, ...]:
+        """Open ranges outside of which the model has no formula."""
         return ()
 
     @property
     def parameters(self) -> tuple[Array, ...]:
+        """Numbers of the model that may be arrays."""
         return ()
 
     def press(
@@ -76,7 +86,7 @@ class Model(Theory):
         indentation: Array | None = None,
         half_angle: Array | None = None,
     ) -> Contact:
-        """Press the ball into the socket by exactly one of three loads.
+        """Press the ball into the socket with exactly one of three loads.
 
         Parameters
         ----------
@@ -91,198 +101,203 @@ class Model(Theory):
         Returns
         -------
         Contact
-            Of the shape that joint and load broadcast to, in their array library, dtype and device.
+            Contact of the shape that joint and load broadcast to, in their array library, dtype and device.
 
         Raises
         ------
         ValueError
-            Not exactly one load; a load that is not allowed; no point at all inside the model's domain.
+            Not exactly one load; a load that is not allowed; no point inside the model's domain.
         TypeError
-            What is no joint; a load without its name.
+            A `joint` that is not a Joint; a load without its name.
         """
-        refuse_unnamed(unnamed)
+        reject_unnamed_loads(unnamed)
         check_joint(joint)
-        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
-        given = spread(given, joint.strengths())
-        if self._takes_numbers(joint, given):
+        kind, value = check_load(force=force, indentation=indentation, half_angle=half_angle)
+        value = broadcast_load(value, joint.strengths())
+        if self._can_press_floats(joint, value):
             try:
-                return self._press_numbers(joint, kind, float(given))
+                return self._press_floats(joint, kind, float(value))
             except ArithmeticError:
-                pass  # where Python's numbers raise, NumPy's become infinite or NaN
-        plain, whole, load = prepared(joint, given, *self.parameters)
-        points = inside((*self.fits, *self.domain), whole, self.name)
-        with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
-            answer = self._solve(whole, kind, load)
-            return finished(self, joint if plain else whole, kind, load, points, answer, plain)
+                pass  # where Python floats raise, NumPy numbers become infinite or NaN
+        plain, array_joint, load = as_arrays(joint, value, *self.parameters)
+        points = check_domain((*self.fits, *self.domain), array_joint, self.name)
+        with numpy.errstate(all="ignore"):  # a failed point gets a status, not a warning
+            result = self._solve(array_joint, kind, load)
+            own_joint = joint if plain else array_joint
+            return make_contact(self, self.contact_type, own_joint, kind, load, points, result, plain)
 
-    def _takes_numbers(self, joint: Joint, load: Array) -> bool:
-        """Whether these are Python numbers, or such as can be made them, and the model has formulas for those."""
-        own = (type(number) in (float, int) for number in self.parameters)
-        return self.of_numbers and all(map(arrays.is_plain, (*joint.numbers(), load))) and all(own)
+    def _can_press_floats(self, joint: Joint, load: Array) -> bool:
+        """Return True if all numbers are plain and the formulas of the model take floats."""
+        plain_parameters = (type(number) in (float, int) for number in self.parameters)
+        plain = all(map(arrays.is_plain, (*joint.numbers(), load)))
+        return self.accepts_floats and plain and all(plain_parameters)
 
-    def _press_numbers(self, joint: Joint, kind: str, load: float) -> Contact:
-        """`press` with nothing but Python numbers."""
-        whole = joint.with_floats()
-        inside((*self.fits, *self.domain), whole, self.name)
-        return finished_number(self, joint, kind, load, self._solve(whole, kind, load))
+    def _press_floats(self, joint: Joint, kind: str, load: float) -> Contact:
+        """Press a joint of plain numbers without arrays."""
+        float_joint = joint.with_floats()
+        check_domain((*self.fits, *self.domain), float_joint, self.name)
+        result = self._solve(float_joint, kind, load)
+        return make_scalar_contact(self, self.contact_type, joint, kind, load, result)
 
-    def careful_laws(self, joint: Joint, indentation: float) -> Laws:
-        """The laws of a contact of Python numbers in those of NumPy, which become infinite or NaN where those raise."""
-        _, whole, d = prepared(joint, indentation)
+    def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
+        """Return the laws of a contact in NumPy numbers, which become infinite or NaN where Python floats raise."""
+        _, array_joint, d = as_arrays(joint, indentation)
         with numpy.errstate(all="ignore"):
-            return self._solve(whole, "indentation", d).laws
+            return self._solve(array_joint, "indentation", d).laws
 
     @abstractmethod
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        """The answer to a load of one kind ("force", "indentation", "half_angle"), all numbers being arrays.
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve for a load of one kind ("force", "indentation" or "half_angle"); all numbers are arrays.
 
-        Where the model is one `of_numbers` they may all be Python numbers instead, and then so is the answer.
+        If the model `accepts_floats`, all numbers may be Python floats instead, and the result has floats too.
         """
 
-    def law(self, joint: Joint) -> Law:
-        """Force and tangent of a joint, bound to it once: for programs that ask at one indentation after the other.
+    def law(self, joint: Joint) -> ForceLaw:
+        """Return force and tangent stiffness of one joint as a fast function of the indentation, for time integration.
 
         Parameters
         ----------
         joint : Joint
-            Of plain numbers.
+            Joint of plain numbers.
 
         Returns
         -------
-        Law
-            `law(indentation)` is (force, stiffness) in N and N/mm, as a press has them; 0 below an indentation of 0,
-            NaN where a press has no answer. A closed form says its formulas. Any other model says a curve in ln d that
-            was put through some hundred of its presses, which is what binding costs: with a relative error of 1e-9 in
-            the force and 1e-7 in the stiffness from a millionth of the clearance on, a power of d below, and NaN
-            beyond the socket's radius.
+        ForceLaw
+            `law(indentation)` is (force, stiffness) in N and N/mm, equal to those of a press. It is 0 below an
+            indentation of 0 and NaN where a press has no result. Closed forms evaluate their formulas. Any other model
+            fits a curve in ln d to some hundred presses. The relative error of that curve is 1e-9 in the force and
+            1e-7 in the stiffness above a millionth of the clearance. Below, it is a power of d; beyond the socket's
+            radius, NaN.
 
         Raises
         ------
         TypeError
-            Arrays; a model that is too noisy for a curve.
+            A joint or model of arrays; a model whose forces are too noisy for a curve.
         ValueError
             A joint outside the model's domain.
         """
         if not all(map(arrays.is_plain, (*joint.numbers(), *self.parameters))):
-            raise TypeError("a law is bound to one joint: its numbers, and those of the model, must be plain")
-        whole = joint.with_floats()
-        inside((*self.fits, *self.domain), whole, self.name)
-        return self._law(whole)
+            raise TypeError("a law needs one joint: the numbers of joint and model must be plain, not arrays")
+        float_joint = joint.with_floats()
+        check_domain((*self.fits, *self.domain), float_joint, self.name)
+        return self._law(float_joint)
 
-    def _law(self, joint: Joint) -> Law:
-        """The law of a joint of floats inside the domain."""
+    def _law(self, joint: Joint) -> ForceLaw:
+        """Return the law of a joint of floats inside the domain."""
         return self.curve(joint)
 
     def curve(self, joint: Joint) -> CurveLaw:
-        """The law of a joint as a curve through its presses, up to an indentation of the socket's radius."""
+        """Fit a curve to presses of a joint, up to an indentation of the socket's radius."""
         shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
         return curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, joint.socket_radius)
 
     def in_cup(self, cup: Cup) -> Model:
-        """This model in a cup; one that takes the socket for a whole sphere is trusted away from the rim alone."""
-        return self if cup == Cup() else Covered(model=self, cup=cup)
+        """Return this model in a cup; by default its validity then ends near the rim (`RimLimited`)."""
+        return self if cup == Cup() else RimLimited(model=self, cup=cup)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
-        """Force in N on the ball when its centre sits at `displacement` (mm) from the centre of the socket.
+        """Compute the force in N on the ball for a displacement of its centre from the centre of the socket.
 
         Parameters
         ----------
         joint : Joint
         displacement : array (..., 3)
-            Any direction; within the clearance nothing touches and the force is zero.
+            Displacement in mm in any direction; within the clearance the force is zero.
 
         Returns
         -------
         array (..., 3)
-            Points back to the centre of the socket. The rim of the socket is not part of the model.
+            Force in N, towards the centre of the socket. The rim of the socket is not modelled.
 
         Raises
         ------
         ValueError
             A displacement whose last axis is not of length 3, or that is not finite.
         """
-        displacement = vectors("displacement", displacement, "x, y, z (mm)")
+        displacement = check_vectors("displacement", displacement, "x, y, z (mm)")
         require("displacement", displacement, arrays.isfinite(displacement), "a displacement (mm) is finite")
         xp = arrays.namespace(displacement)
         square = xp.sum(displacement * displacement, axis=-1)
-        length = arrays.sqrt(arrays.divisor(square))
+        length = arrays.sqrt(arrays.safe_divisor(square))
         depth = length - joint.clearance
         touching = (square > 0) & (depth > 0)
         force = where(touching, self.press(joint, indentation=where(touching, depth, 0.0)).force, 0.0)
         return -displacement * (force / length)[..., None]
 
 
-def _passed_on(name: str) -> Any:
-    """What the wrapped model says of itself."""
-    return property(attrgetter(f"model.{name}"))
+def _declared_names(base: type) -> set[str]:
+    """Names of the public properties and class variables that a class and its bases declare."""
+    names = {name for cls in base.__mro__ for name in vars(cls).get("__annotations__", {})}
+    return names | {name for cls in base.__mro__ for name, value in vars(cls).items() if isinstance(value, property)}
+
+
+_Delegation: Any = type(
+    "_Delegation", (), {name: property(attrgetter(f"model.{name}")) for name in _declared_names(Model) - {"off_axis"}}
+)
+"""Class whose properties read every declared attribute of a model from `self.model`."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wrapped(Model):
-    """A model around another: whatever it does not say itself is what that one says.
+class ModelWrapper(_Delegation, Model):
+    """Model around another one; delegates every attribute it does not override to the wrapped model.
 
     Parameters
     ----------
     model : Model
+        The wrapped model.
     """
 
     model: Model
 
-    name = _passed_on("name")
-    title = _passed_on("title")
-    sources = _passed_on("sources")
-    fits = _passed_on("fits")
-    domain = _passed_on("domain")
-    validity = _passed_on("validity")
-    promise = _passed_on("promise")
-    remarks = _passed_on("remarks")
-    reach = _passed_on("reach")
-    parameters = _passed_on("parameters")
-    planar = _passed_on("planar")
-    differentiable = _passed_on("differentiable")
-    smooth_step = _passed_on("smooth_step")
-    seconds_a_press = _passed_on("seconds_a_press")
-    contact_type = _passed_on("contact_type")
-    of_numbers = _passed_on("of_numbers")
-
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         return self.model._solve(joint, kind, load)
 
-    def _law(self, joint: Joint) -> Law:
+    def _law(self, joint: Joint) -> ForceLaw:
         return self.model._law(joint)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Covered(Wrapped):
-    """A model in a cup that it knows nothing of: its own answers, with a validity that ends before the rim.
+class RimLimited(ModelWrapper):
+    """Model of a full sphere in a cup: equal results, with a validity that ends before the rim.
 
     Parameters
     ----------
     model : Model
+        Model without a rim.
     cup : Cup
-        Pressed by a force that points upwards in its frame.
+        Cup that is loaded upwards in its frame.
     """
 
     cup: Cup
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        rim = Range(quantity=partial(_from_rim, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM)
-        slides = Nowhere(why="the liner slides on its backing, which this model knows as bonded: ask fem or sphere")
-        return (*self.model.validity, rim, *((slides,) if self.cup.interface is Interface.SLIDING else ()))
+        """Validity of the model, a distance of one liner thickness to the rim, and a bonded liner."""
+        rim = Range(
+            quantity=partial(_relative_rim_distance, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM
+        )
+        sliding = NeverValid(
+            why="the liner slides on its backing, but this model takes it as bonded: use fem or sphere"
+        )
+        return (*self.model.validity, rim, *((sliding,) if self.cup.interface is Interface.SLIDING else ()))
 
     def in_cup(self, cup: Cup) -> Model:
+        """Return the wrapped model in another cup."""
         return self.model.in_cup(cup)
 
 
-_RIM = "the model takes the socket for a whole sphere; near the rim, which gives way, ask fem or sphere"
+_RIM = "the model takes the socket as a full sphere; near the rim, which is softer, use fem or sphere"
 
 
-def _from_rim(cup: Cup, contact: Contact) -> Array:
-    """The arc from the edge of a contact to the rim over the liner's thickness, or a massive socket's radius.
+def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
+    """Compute the arc from the edge of a contact to the rim over the liner thickness, or over R2 if that is smaller.
 
-    At 1, d is up to 2 % more than in a whole sphere and the largest pressure 1 % (ν 0.46), at 0.3 they are 9 and 4 %.
+    At 1, the indentation is up to 2 % larger than in a full sphere and the largest pressure 1 % (ν 0.46); at 0.3,
+    9 % and 4 %.
     """
     joint = contact.joint
     L, R2 = joint.liner_thickness, joint.socket_radius
     return cup.edge_distance(R2, contact.half_angle) / where(L < R2, L, R2)
+
+
+__getattr__ = renamed_names(__name__, {"Covered": "RimLimited", "Wrapped": "ModelWrapper"})

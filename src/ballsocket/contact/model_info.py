@@ -1,55 +1,74 @@
-"""What a theory is: something published that can be listed, cited and trusted."""
+"""Name, sources and validity of a model: the properties that catalogue, results, tables and citations read."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import ClassVar
+from typing import Any, ClassVar
 
+from ..core.arrays import Array
+from ..core.deprecation import renamed_names
 from ..core.sources import Source
 from ..core.validity import Promise, Range, Remark
+from ..problem import Joint
 
 
-class Theory(ABC):
-    """What can be listed, cited, and trusted inside of ranges; how it is asked is up to its kind.
+class ModelInfo(ABC):
+    """Description of a model, independent of the load that it takes.
 
     Attributes
     ----------
     name, title : str
-        As in the catalogue; one line for people.
+        Key in the catalogue; description in one line.
     sources : tuple of Source
-        Where the formulas come from.
+        Publications of the formulas.
     validity : tuple of Range
-        Closed ranges inside which the answer can be trusted.
+        Closed ranges in which a result is valid.
     promise : Promise or None
-        How close to the elastic answer it is there, as measured; None where there is nothing to measure it by.
+        Measured largest difference from the elastic solution inside the validity; None if it was not measured.
     remarks : tuple of Remark
-        Where something is to be said of an answer that can be trusted.
+        Ranges outside of which a valid result gets a note.
     reach : str
-        What loads have an answer, in words for those that have none; empty where there is nothing to say.
+        Description of the loads that have a result, printed with results that have none; may be empty.
+    planar : bool
+        True if the contact is a flat circle whose pressure has one direction, False if pressure acts along the radius.
     """
 
     reach: ClassVar[str] = ""
+    planar: ClassVar[bool] = False
 
     @property
     @abstractmethod
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Key of the model in the catalogue, in files and on the command line."""
 
     @property
     @abstractmethod
-    def title(self) -> str: ...
+    def title(self) -> str:
+        """Description of the model in one line."""
 
     @property
     @abstractmethod
-    def sources(self) -> tuple[Source, ...]: ...
+    def sources(self) -> tuple[Source, ...]:
+        """Publications of the formulas."""
 
     @property
     @abstractmethod
-    def validity(self) -> tuple[Range, ...]: ...
+    def validity(self) -> tuple[Range, ...]:
+        """Closed ranges in which a result is valid."""
 
     @property
     def promise(self) -> Promise | None:
+        """Measured largest difference from the elastic solution, or None."""
         return None
 
     @property
     def remarks(self) -> tuple[Remark, ...]:
+        """Ranges outside of which a valid result gets a note."""
         return ()
+
+    def numpy_laws(self, joint: Joint, indentation: Array) -> Any:
+        """Return the `Laws` of a contact in NumPy numbers, which become infinite or NaN where Python floats raise."""
+        raise NotImplementedError(f"{self.name} has no laws of a contact")
+
+
+__getattr__ = renamed_names(__name__, {"Theory": "ModelInfo"})

@@ -1,4 +1,4 @@
-"""Where the pressure of a solved contact is largest: from its profile, and as what every solved state offers."""
+"""Largest pressure of a solved contact and its polar angle."""
 
 from __future__ import annotations
 
@@ -8,61 +8,65 @@ from math import inf
 
 import numpy
 
-_PLACES = numpy.array([0.0, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 1.0])
-"""Shares of the half angle: a peak of less than 1e-6 between the first two counts as the pole."""
+_PROFILE_POSITIONS = numpy.array([0.0, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 1.0])
+"""Polar angles of a profile over the half angle; a peak of less than 1e-6 between the first two counts as the pole."""
 
-_ROUNDS, _FINER = 4, numpy.linspace(0.0, 1.0, 9)
+_REFINEMENTS = 4
+"""Number of refinements of the interval that holds the largest pressure."""
+
+_INTERVAL_POSITIONS = numpy.linspace(0.0, 1.0, 9)
+"""Positions in an interval of a refinement."""
 
 
-def largest_pressure(
+def find_peak_pressure(
     pressure: Callable[[numpy.ndarray], numpy.ndarray], pole: numpy.ndarray, edge: numpy.ndarray, noise: float
 ) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """The largest pressure of each contact and its polar angle, from the profiles alone.
+    """Find the largest pressure of each contact and its polar angle from the pressure profile.
 
     Parameters
     ----------
     pressure : function
-        From angles in rad (places, contacts) to MPa.
+        Pressure in MPa at angles in rad (angles, contacts).
     pole, edge : array (contacts,)
-        The pressure at the pole (MPa) and the half angle (rad).
+        Pressure at the pole in MPa, and half angle in rad.
     noise : float
-        Relative; a pressure that exceeds the pole's by less is taken for the pole's.
+        Relative excess over the pressure at the pole that is ignored.
 
     Returns
     -------
-    array (contacts,), twice
-        In MPa and in rad.
+    array (contacts,), array (contacts,)
+        Largest pressure in MPa and its angle in rad.
     """
-    values = numpy.vstack([pole, pressure(edge * _PLACES[1:-1, None]), 0.0 * edge])
+    values = numpy.vstack([pole, pressure(edge * _PROFILE_POSITIONS[1:-1, None]), 0.0 * edge])
     best = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
     off = (best > 0) & (values.max(axis=0, initial=-inf, where=numpy.isfinite(values)) > pole * (1 + noise))
     if not off.any():
         return pole, 0.0 * edge
-    low, high = (edge * _PLACES[numpy.clip(best + step, 0, len(_PLACES) - 1)] for step in (-1, 1))
-    each = numpy.arange(len(edge))
-    for _ in range(_ROUNDS):
-        angles = low + (high - low) * _FINER[:, None]
+    low, high = (edge * _PROFILE_POSITIONS[numpy.clip(best + step, 0, len(_PROFILE_POSITIONS) - 1)] for step in (-1, 1))
+    contacts = numpy.arange(len(edge))
+    for _ in range(_REFINEMENTS):
+        angles = low + (high - low) * _INTERVAL_POSITIONS[:, None]
         values = pressure(angles)
         best = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
-        angle, largest = angles[best, each], values[best, each]
-        low, high = (angles[numpy.clip(best + step, 0, len(_FINER) - 1), each] for step in (-1, 1))
+        angle, largest = angles[best, contacts], values[best, contacts]
+        low, high = (angles[numpy.clip(best + step, 0, len(_INTERVAL_POSITIONS) - 1), contacts] for step in (-1, 1))
     return numpy.where(off, largest, pole), numpy.where(off, angle, 0.0)
 
 
-class Peaked(ABC):
-    """What knows its largest pressure and where that is."""
+class PeakPressure(ABC):
+    """Mixin of solved states: largest pressure and its angle, from the property `largest`."""
 
     @property
     @abstractmethod
     def largest(self) -> tuple[numpy.ndarray, numpy.ndarray]:
-        """The largest pressure of each contact in MPa, and its polar angle in rad."""
+        """Largest pressure of each contact in MPa, and its polar angle in rad."""
 
     @property
     def max_pressure(self) -> numpy.ndarray:
-        """The largest pressure in MPa."""
+        """Largest pressure in MPa."""
         return self.largest[0]
 
     @property
     def max_pressure_angle(self) -> numpy.ndarray:
-        """Where the pressure is largest, in rad from the pole."""
+        """Polar angle of the largest pressure in rad."""
         return self.largest[1]

@@ -1,4 +1,4 @@
-"""Models that are solved joint by joint: arrays of joints and loads are taken apart, and the answers put together."""
+"""Models that solve one joint at a time: split arrays of joints and loads, and combine the solutions."""
 
 from __future__ import annotations
 
@@ -29,16 +29,25 @@ QUANTITIES = (
     "energy",
     "pressure_integral",
 )
-"""What a state knows, one number a contact, and how well; besides, where the largest pressure is."""
+"""Quantities of a solved state that have an error estimate, one number per contact."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Piece:
-    """Contacts of one joint.
+class JointContacts:
+    """Solved contacts of one joint.
 
-    `state` has those that are `touching` (a mask of the loads): `QUANTITIES`, `max_pressure_angle` and
-    `pressure(angle)` of them. `reached` marks the ones that have an answer, and `error` is the relative error of each
-    quantity.
+    Attributes
+    ----------
+    load : array
+        Load of each contact.
+    touching : array of bool
+        Mask of the loads whose contact is solved; the others are zero.
+    state : object
+        Solution of the touching contacts: `QUANTITIES`, `max_pressure_angle` and `pressure(angle)`.
+    reached : array of bool
+        Mask of the touching contacts that have a solution.
+    error : dict of str to array
+        Relative error of each quantity of the touching contacts.
     """
 
     load: numpy.ndarray
@@ -48,100 +57,123 @@ class Piece:
     error: dict[str, numpy.ndarray]
 
     def spread(self, values: numpy.ndarray) -> numpy.ndarray:
-        """Values of the touching contacts in the order of the loads: 0 without a load, NaN where none was reached."""
-        whole = numpy.zeros((*values.shape[:-1], len(self.load)))
-        whole[..., self.touching] = numpy.where(self.reached, values, numpy.nan)
-        return whole
+        """Expand values of the touching contacts to all loads: 0 without a load, NaN without a solution."""
+        expanded = numpy.zeros((*values.shape[:-1], len(self.load)))
+        expanded[..., self.touching] = numpy.where(self.reached, values, numpy.nan)
+        return expanded
 
 
-Solve = Callable[..., Piece]
-"""From a joint of plain numbers and its loads, and what else varies from load to load, to their contacts."""
+Solve = Callable[..., JointContacts]
+"""Solver of one joint of plain numbers: takes the joint, its loads and other arrays of the same length."""
 
 
-def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve, *others: Array) -> PiecedSolution:
-    """The contacts of all joints that lie in the model's domain; every one is solved with all of its loads at once.
+def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *parameters: Array) -> CombinedSolution:
+    """Solve each joint in the model's domain, with all of its loads at once.
 
-    `others` are arrays that broadcast against joint and load, handed to `solve` after the loads.
+    Parameters
+    ----------
+    model : Model
+    joint : Joint
+        Joint of numbers or arrays.
+    load : array
+    solve : function
+        Solver of one joint.
+    *parameters : array
+        Arrays that broadcast against joint and load; `solve` gets them after the loads.
 
     Raises
     ------
     TypeError
-        Numbers that are not known yet (inside `jax.jit`, `jax.grad`).
+        Traced numbers without a value (inside `jax.jit`, `jax.grad`).
     """
     joint = joint.without_strengths()
     numbers = [_values(model, number) for number in joint.numbers()]
-    varying = [_values(model, each) for each in (load, *others)]
+    varying = [_values(model, value) for value in (load, *parameters)]
     shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, *varying)))
-    loads = [numpy.broadcast_to(each, shape).ravel().astype(float) for each in varying]
+    loads = [numpy.broadcast_to(value, shape).ravel().astype(float) for value in varying]
     pieces = []
-    for column, place in _columns(numbers, shape):
-        one = joint.with_numbers(column)
-        if place.size and all(limit.strictly_holds(SimpleNamespace(joint=one)) for limit in model.domain):
-            pieces.append((place, solve(one, *(each[place] for each in loads))))
-    return PiecedSolution(like=load, shape=shape, pieces=tuple(pieces))
+    for column, indices in _distinct_joints(numbers, shape):
+        single_joint = joint.with_numbers(column)
+        if indices.size and all(limit.strictly_holds(SimpleNamespace(joint=single_joint)) for limit in model.domain):
+            pieces.append((indices, solve(single_joint, *(values[indices] for values in loads))))
+    return CombinedSolution(like=load, shape=shape, pieces=tuple(pieces))
 
 
-def _columns(numbers: list[numpy.ndarray], shape: tuple[int, ...]) -> Iterator[tuple[list[float], numpy.ndarray]]:
-    """Each joint's numbers, with the places in the flat shape where it stands."""
+def _distinct_joints(
+    numbers: list[numpy.ndarray], shape: tuple[int, ...]
+) -> Iterator[tuple[list[float], numpy.ndarray]]:
+    """Yield the numbers of each distinct joint, and its indices in the flattened shape."""
     if all(number.size == 1 for number in numbers):
         yield [float(number.item()) for number in numbers], numpy.arange(prod(shape))
         return
     table = numpy.stack([numpy.broadcast_to(number, shape).ravel() for number in numbers]).astype(float)
-    joints, which = numpy.unique(table, axis=1, return_inverse=True)
-    order = numpy.argsort(which.ravel(), kind="stable")
-    ends = numpy.cumsum(numpy.bincount(which.ravel(), minlength=joints.shape[1]))
-    for column, place in zip(joints.T, numpy.split(order, ends[:-1]), strict=False):
-        yield column.tolist(), place
+    joints, inverse = numpy.unique(table, axis=1, return_inverse=True)
+    order = numpy.argsort(inverse.ravel(), kind="stable")
+    ends = numpy.cumsum(numpy.bincount(inverse.ravel(), minlength=joints.shape[1]))
+    for column, indices in zip(joints.T, numpy.split(order, ends[:-1]), strict=False):
+        yield column.tolist(), indices
 
 
-def joint_at(joint: Joint, shape: tuple[int, ...], place: int) -> Joint:
-    """The joint of plain numbers at a place of the flat shape."""
-    wide = (numpy.broadcast_to(arrays.to_numpy(number), shape) for number in joint.numbers())
-    return joint.with_numbers([float(number.flat[place]) for number in wide])
+def joint_at(joint: Joint, shape: tuple[int, ...], index: int) -> Joint:
+    """Return the joint of plain numbers at an index of the flattened shape."""
+    broadcast = (numpy.broadcast_to(arrays.to_numpy(number), shape) for number in joint.numbers())
+    return joint.with_numbers([float(number.flat[index]) for number in broadcast])
 
 
 def _values(model: Model, number: Array) -> numpy.ndarray:
-    values = arrays.known(number)
+    """Convert a number to NumPy; raise TypeError for a traced one."""
+    values = arrays.concrete_values(number)
     if values is None:
-        raise TypeError(f"{model.name} cannot be traced by JAX: tabulated and refined can")
+        raise TypeError(f"model {model.name} cannot be traced by JAX: use tabulated or refined")
     return values
 
 
 def _of_state(name: str) -> Any:
-    """A quantity of all states, put together when it is first asked for."""
+    """Return a property that combines a quantity of all states, once."""
 
-    def quantity(self: PiecedSolution) -> Array:
+    def combine(self: CombinedSolution) -> Array:
         return self.spread(lambda piece: getattr(piece.state, name))
 
-    quantity.__name__ = name
-    return cached_property(quantity)
+    combine.__name__ = name
+    return cached_property(combine)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PiecedSolution:
-    """The contacts of all joints, as the `Laws` of the contact they belong to, in the caller's array library."""
+class CombinedSolution:
+    """Solved contacts of all joints: the `Laws` of their contact, in the array library of the load.
+
+    Attributes
+    ----------
+    like : array
+        Load, whose library, dtype and device the quantities have.
+    shape : tuple of int
+        Common shape of joint and load.
+    pieces : tuple of (array, JointContacts)
+        Indices in the flattened shape and contacts of each joint.
+    """
 
     like: Array
     shape: tuple[int, ...]
-    pieces: tuple[tuple[numpy.ndarray, Piece], ...]
+    pieces: tuple[tuple[numpy.ndarray, JointContacts], ...]
 
-    def spread(self, quantity: Callable[[Piece], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
-        """A quantity of every piece at its place, of the shape (*rows, *shape); NaN where there is none."""
-        return self._own(self._flat(lambda place, piece: quantity(piece), prod(rows)), rows)
+    def spread(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
+        """Combine a quantity of every joint to the shape (*rows, *shape); NaN where there is none."""
+        return self._like_load(self._flat(lambda indices, piece: quantity(piece), prod(rows)), rows)
 
-    def located(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray]) -> Array:
-        """Values of a quantity that depends on the places of the piece's contacts too."""
-        return self._own(self._flat(quantity))
+    def located(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
+        """Combine a quantity that also depends on the indices of the contacts."""
+        return self._like_load(self._flat(quantity))
 
-    def _flat(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray], rows: int = 1) -> numpy.ndarray:
-        whole = numpy.full((rows, prod(self.shape)), numpy.nan)
-        for place, piece in self.pieces:
-            whole[:, place] = piece.spread(quantity(place, piece))
-        return whole
+    def _flat(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: int = 1) -> numpy.ndarray:
+        """Combine a quantity to NumPy values of the shape (rows, points)."""
+        combined = numpy.full((rows, prod(self.shape)), numpy.nan)
+        for indices, piece in self.pieces:
+            combined[:, indices] = piece.spread(quantity(indices, piece))
+        return combined
 
-    def _own(self, whole: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
-        """NumPy values in the shape, library, dtype and device of the load."""
-        values = whole.reshape((*shape, *self.shape))
+    def _like_load(self, values: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
+        """Convert NumPy values to the shape, library, dtype and device of the load."""
+        values = values.reshape((*shape, *self.shape))
         xp = arrays.namespace(self.like)
         return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
 
@@ -150,7 +182,7 @@ class PiecedSolution:
 
     @property
     def worst(self) -> Array:
-        """The largest of the estimated errors, point by point."""
+        """Largest of the estimated errors of each point."""
         return self.spread(lambda piece: numpy.max(list(piece.error.values()), axis=0))
 
     @property
@@ -170,66 +202,71 @@ class PiecedSolution:
 
     @property
     def foundation_modulus(self) -> Array:
+        """Pressure at the pole over indentation in MPa/mm; infinite at zero indentation."""
         d = self.indentation
-        return arrays.where(d == 0, inf, self.pole_pressure / arrays.divisor(d))
+        return arrays.where(d == 0, inf, self.pole_pressure / arrays.safe_divisor(d))
 
     def pressure(self, angle: Array) -> Array:
-        """p(φ) at angles that broadcast against the contact's shape."""
-        given = arrays.to_numpy(angle)
-        shape = numpy.broadcast_shapes(given.shape, self.shape)
+        """Compute p(φ) in MPa at angles in rad that broadcast against the contact's shape."""
+        angles = arrays.to_numpy(angle)
+        shape = numpy.broadcast_shapes(angles.shape, self.shape)
         front = shape[: len(shape) - len(self.shape)]
-        rows = numpy.broadcast_to(given, (*front, *self.shape)).reshape(prod(front), prod(self.shape))
-        return self._own(
-            self._flat(lambda place, piece: piece.state.pressure(rows[:, place[piece.touching]]), rows=len(rows)), front
-        )
+        rows = numpy.broadcast_to(angles, (*front, *self.shape)).reshape(prod(front), prod(self.shape))
+
+        def pressure(indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+            values: numpy.ndarray = piece.state.pressure(rows[:, indices[piece.touching]])
+            return values
+
+        return self._like_load(self._flat(pressure, rows=len(rows)), front)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class SolvedContact(Contact):
-    """A `Contact` whose model solved it joint by joint, and estimated how well."""
+    """Contact of a model that solves one joint at a time and estimates its errors."""
 
-    laws: PiecedSolution
+    laws: CombinedSolution
 
     _inside: ClassVar[str] = "displacements and stresses"
 
     @cached_property
     def error(self) -> dict[str, Array]:
-        """Estimated relative error of each quantity, by name, from the solution itself."""
-        return {name: self._plain(error) for name, error in self.laws.error.items()}
+        """Estimated relative error of each quantity, by name."""
+        return {name: self._match_load(error) for name, error in self.laws.error.items()}
 
     @property
-    def von_mises_between(self) -> tuple[Array, Array]:
-        """What `von_mises` lies between, as far as that is known at once: about what other models say of it."""
-        least, most = strength.between(self, super()._largest_von_mises())
-        return self._plain(least), self._plain(most)
+    def von_mises_bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bound of `von_mises` in MPa, from the fit that closed-form models use."""
+        low, high = strength.von_mises_bounds(self, super()._compute_von_mises())
+        return self._match_load(low), self._match_load(high)
 
-    def _largest_von_mises(self) -> Array:
-        return self.laws.located(self._von_mises_of)
+    def _compute_von_mises(self) -> Array:
+        return self.laws.located(self._joint_von_mises)
 
-    def utilisation_where(self, asked: Array) -> Array:
-        wanted = numpy.broadcast_to(arrays.to_numpy(asked), self.laws.shape).ravel()
+    def utilisation_at(self, mask: Array) -> Array:
+        """Compute the utilisation at the points of a mask; NaN at the other points."""
+        flat_mask = numpy.broadcast_to(arrays.to_numpy(mask), self.laws.shape).ravel()
 
-        def there(place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
-            some = replace(piece, reached=piece.reached & wanted[place][piece.touching])
-            return self._von_mises_of(place, some)
+        def masked_von_mises(indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+            masked = replace(piece, reached=piece.reached & flat_mask[indices][piece.touching])
+            return self._joint_von_mises(indices, masked)
 
-        return self._utilisation_of(self._plain(self.laws.located(there)))
+        return self._compute_utilisation(self._match_load(self.laws.located(masked_von_mises)))
 
     @abstractmethod
-    def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
-        """Largest von Mises stress in the liner of the touching contacts of one joint, which lie at these places."""
+    def _joint_von_mises(self, indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+        """Compute the largest von Mises stress in the liner of the touching contacts of one joint."""
 
     @property
     def single_state(self) -> Any:
-        """The solver's own answer, of one contact that touches, with a load or preloaded.
+        """Solution of a single contact that is loaded or preloaded.
 
         Raises
         ------
         ValueError
-            More than one contact, or one that does not touch or has no answer.
+            More than one contact; a contact that does not touch or has no result.
         """
         if prod(self.laws.shape) != 1:
-            raise ValueError(f"{self._inside} are for one contact, not {self.laws.shape}: press it alone")
+            raise ValueError(f"{self._inside} are for one contact, got the shape {self.laws.shape}: press one load")
         pieces = self.laws.pieces
         if self._failed_everywhere or not pieces or not pieces[0][1].touching.all():
             raise ValueError(f"{self._inside} need a contact under load, or preloaded")
@@ -240,6 +277,6 @@ class SolvedContact(Contact):
         return bool(arrays.to_numpy(self._failed).all())
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON, with the error estimates."""
+        """Return a dictionary for JSON, with the error estimates."""
         error = {name: arrays.to_list(value) for name, value in self.error.items()}
         return {**super().summary(), "error": error}

@@ -1,4 +1,4 @@
-"""The one bracketed inversion: where an increasing law of one number or many has a given value."""
+"""Bracketed Newton iteration: the root of an increasing function of a number or of arrays."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 import array_api_compat
 import numpy
 
-from ..core.arrays import Array, divisor, false, frozen, namespace, truth, where
+from ..core.arrays import Array, all_true, logical_not, namespace, safe_divisor, stop_gradient, where
 
 Increasing = Callable[..., tuple[Array, Array]]
-"""x, ... -> (value, slope), both of the shape of x."""
+"""Increasing function: x, ... -> (value, slope), both of the shape of x."""
 
 
 def increasing_root(
@@ -21,44 +21,48 @@ def increasing_root(
     low: Array,
     high: Array,
     start: Array,
-    given: tuple[Any, ...] = (),
+    arguments: tuple[Any, ...] = (),
     steps: int = 60,
     tolerance: float = 1e-8,
 ) -> Array:
-    """Solve `law(x, *given)[0] == target` for an increasing law, element by element, inside the bracket [low, high].
+    """Solve `law(x, *arguments)[0] == target` for an increasing law, element by element, in the bracket [low, high].
 
-    Newton's method with the slope `law(x, *given)[1]`, see `bracketed`. At most `steps` evaluations (all of them inside
-    `jax.jit`), fewer once every element moves by less than `tolerance` of itself, which leaves an error of the order of
-    its square. Automatic differentiation gives the derivatives of the root (the implicit function theorem), not of the
-    way to it.
+    Newton's method with the slope `law(x, *arguments)[1]`, see `bracketed`. It stops after `steps` evaluations, or
+    once no element moves by more than `tolerance` times its value. The error is then of the order of the squared
+    tolerance. Inside `jax.jit` it always takes all steps. Automatic differentiation gives the derivatives of the root
+    by the implicit function theorem.
 
     Parameters
     ----------
     law : callable
-        x, *given -> (value, slope), both of the shape of x.
+        Increasing function: x, *arguments -> (value, slope), both of the shape of x.
     target, low, high, start : array
-        Broadcastable; low <= start <= high.
-    given : tuple
-        What else the law takes.
+        Value, bracket and first x; broadcastable, low <= start <= high.
+    arguments : tuple
+        Further arguments of the law.
+    steps : int
+        Largest number of evaluations.
+    tolerance : float
+        Relative step below which an element has converged.
 
     Returns
     -------
     array
-        The root; the nearest end of the bracket where there is none.
+        The root, or the nearest end of the bracket where there is none.
     """
     if type(start) is float:
-        return root_of_number(law, target, low, high, start, given, steps, tolerance)
+        return root_of_number(law, target, low, high, start, arguments, steps, tolerance)
 
     def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
-        return bracketed(law, target, given, tolerance, *state[:-1])
+        return bracketed(law, target, arguments, tolerance, *state[:-1])
 
     x = _repeated(step, (start, low, high, start < high, start == start), steps)
     if namespace(x) is numpy:
         return x
-    x = frozen(x)
-    for _ in range(2):  # each step at the root keeps its value and doubles the order of the derivatives that are right
-        value, slope = law(x, *given)
-        x = x - where(slope > 0, (value - target) / divisor(slope), 0.0)
+    x = stop_gradient(x)
+    for _ in range(2):  # a step at the root keeps its value and doubles the order of the correct derivatives
+        value, slope = law(x, *arguments)
+        x = x - where(slope > 0, (value - target) / safe_divisor(slope), 0.0)
     return x
 
 
@@ -68,24 +72,24 @@ def root_of_number(
     low: float,
     high: float,
     start: float,
-    given: tuple[Any, ...],
+    arguments: tuple[Any, ...],
     steps: int,
     tolerance: float,
 ) -> float:
-    """`increasing_root` of one number, step by step as in `bracketed`."""
+    """Solve for one number with the steps of `bracketed`."""
     x, fresh = start, start < high
     for _ in range(steps):
-        value, slope = law(x, *given)
+        value, slope = law(x, *arguments)
         if value <= target:
             low = x
         if value >= target:
             high = x
         fresh = fresh and x < high
-        after = x - (value - target) / slope if slope > 0 else math.nan
-        if not low <= after <= high:
-            after = high if fresh and after > high else low + (high - low) / 2
-        moved, x = abs(after - x), after
-        if moved <= tolerance * abs(x):
+        next_x = x - (value - target) / slope if slope > 0 else math.nan
+        if not low <= next_x <= high:
+            next_x = high if fresh and next_x > high else low + (high - low) / 2
+        step, x = abs(next_x - x), next_x
+        if step <= tolerance * abs(x):
             break
     return x
 
@@ -93,36 +97,42 @@ def root_of_number(
 def bracketed(
     law: Increasing,
     target: Array,
-    given: tuple[Any, ...],
+    arguments: tuple[Any, ...],
     tolerance: float,
     x: Array,
     low: Array,
     high: Array,
     fresh: Array,
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """One step of Newton's method inside a bracket, which shrinks: x, low, high, fresh, and whether x moved.
+    """Take one Newton step and shrink the bracket.
 
-    A step that leaves the bracket is replaced by its middle, or by its upper end if that is `fresh`: not tried yet.
+    A step out of the bracket is replaced by the middle of the bracket, or by its upper end while that is `fresh`, that
+    is, not yet evaluated.
+
+    Returns
+    -------
+    array, five times
+        x, low, high, fresh, and the mask of the elements that moved by more than the tolerance.
     """
-    value, slope = law(x, *given)
+    value, slope = law(x, *arguments)
     low = where(value <= target, x, low)
     high = where(value >= target, x, high)
     fresh = fresh & (x < high)
-    newton = x - (value - target) / divisor(slope)
+    newton = x - (value - target) / safe_divisor(slope)
     safe = (slope > 0) & (newton >= low) & (newton <= high)
-    other = where(fresh & (newton > high), high, low + (high - low) / 2)
-    after = where(safe, newton, other)
-    return after, low, high, fresh, abs(after - x) > tolerance * abs(after)
+    fallback = where(fresh & (newton > high), high, low + (high - low) / 2)
+    next_x = where(safe, newton, fallback)
+    return next_x, low, high, fresh, abs(next_x - x) > tolerance * abs(next_x)
 
 
 def _repeated(step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], times: int) -> Array:
-    """The first part of `state` after `step` has been taken until its last part, a mask, is false everywhere."""
-    if truth(state[-1]) is None and array_api_compat.is_jax_array(state[0]):
-        import jax  # a loop that is compiled once in place of one that is written out
+    """Repeat a step until the mask at the end of the state is false everywhere; return the start of the state."""
+    if all_true(state[-1]) is None and array_api_compat.is_jax_array(state[0]):
+        import jax  # compile one loop instead of unrolling the steps
 
-        return jax.lax.fori_loop(0, times, lambda _, now: step(now), state)[0]
+        return jax.lax.fori_loop(0, times, lambda _, current: step(current), state)[0]
     for _ in range(times):
         state = step(state)
-        if truth(false(state[-1])):
+        if all_true(logical_not(state[-1])):
             break
     return state[0]

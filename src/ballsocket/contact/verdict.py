@@ -1,4 +1,4 @@
-"""A contact in one sentence: whether its materials bear it."""
+"""Verdict on a contact in one sentence: the load is or is not below the strength of the materials."""
 
 from __future__ import annotations
 
@@ -6,17 +6,28 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..core.deprecation import renamed_names
 from ..core.quantities import STRENGTH
 from ..problem import Material
-from .strength import ball_share, unchecked_strength
+from .strength import joint_ball_stress_ratio, unchecked_strength_reason
 
 if TYPE_CHECKING:
     from .contact import Contact
 
 
 @dataclass(frozen=True, kw_only=True)
-class Share:
-    """What a contact takes of a strength of its liner or its ball."""
+class StrengthUse:
+    """Stress of a contact relative to one strength of the liner or the ball.
+
+    Attributes
+    ----------
+    part : str
+        "liner" or "ball".
+    strength : str
+        Name of the strength.
+    stress, allowed : float
+        Stress of the contact and the strength in MPa.
+    """
 
     part: str
     strength: str
@@ -25,6 +36,7 @@ class Share:
 
     @property
     def ratio(self) -> float:
+        """Stress over strength."""
         return self.stress / self.allowed
 
     def __str__(self) -> str:
@@ -32,47 +44,67 @@ class Share:
         return f"{much} {'of ' if self.ratio <= 1 else ''}the {STRENGTH[self.strength].title} of the {self.part}"
 
 
-def shares(contact: Contact) -> tuple[Share, ...]:
-    """Every strength that is known, largest share first; of a contact of plain numbers."""
-    return shares_of(contact, contact.von_mises if contact.joint.liner.strengths else 0.0)
+def strength_uses(contact: Contact) -> tuple[StrengthUse, ...]:
+    """List the stresses relative to all strengths of the materials, the largest first, for a single contact."""
+    return strength_uses_at(contact, contact.von_mises if contact.joint.liner.strengths else 0.0)
 
 
-def shares_of(contact: Contact, von_mises: float) -> tuple[Share, ...]:
-    """The same, for so much von Mises stress in the liner (MPa)."""
+def strength_uses_at(contact: Contact, von_mises: float) -> tuple[StrengthUse, ...]:
+    """List the same as `strength_uses` for a largest von Mises stress in the liner in MPa."""
     joint, pressure = contact.joint, float(contact.max_pressure)
-    found = list(_of("liner", joint.liner, pressure, von_mises))
+    uses = list(_material_uses("liner", joint.liner, pressure, von_mises))
     if joint.ball is not None:
-        found += _of("ball", joint.ball, pressure, ball_share(joint) * pressure)
-    return tuple(sorted(found, key=lambda share: -share.ratio))
+        uses += _material_uses("ball", joint.ball, pressure, joint_ball_stress_ratio(joint) * pressure)
+    return tuple(sorted(uses, key=lambda use: -use.ratio))
 
 
-def _of(part: str, material: Material, pressure: float, von_mises: float) -> Iterator[Share]:
+def _material_uses(body: str, material: Material, pressure: float, von_mises: float) -> Iterator[StrengthUse]:
     for name, strength in material.strengths.items():
         stress = pressure if name == "allowable_pressure" else von_mises
-        yield Share(part=part, strength=name, stress=float(stress), allowed=float(strength))
+        yield StrengthUse(part=body, strength=name, stress=float(stress), allowed=float(strength))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verdict:
-    """Whether the materials bear a contact (None where nothing can be said), and why."""
+class StrengthVerdict:
+    """Assessment of a contact.
+
+    Attributes
+    ----------
+    bears : bool or None
+        True below all strengths, False above one of them, None without a valid result or a strength of the liner.
+    words : str
+        Reason in one sentence.
+    """
 
     bears: bool | None
     words: str
 
 
-def verdict(contact: Contact) -> Verdict:
-    """The verdict on a contact of plain numbers.
+def assess_strength(contact: Contact) -> StrengthVerdict:
+    """Compare a single contact with the strengths of its materials.
 
-    An answer outside its model's validity has no verdict, and neither has one whose strength is not checked.
+    There is no verdict (None) on an invalid result, nor if the strength of the liner is unknown.
     """
     if contact.status.failed:
-        return Verdict(bears=None, words=f"no answer: {contact.status.sentence}")
-    found = shares(contact)
-    worst = found[0] if found else None
+        return StrengthVerdict(bears=None, words=f"no answer: {contact.status.sentence}")
+    uses = strength_uses(contact)
+    worst = uses[0] if uses else None
     if worst is not None and worst.ratio > 1:
-        return Verdict(bears=False, words=f"does not bear it: {worst}")
+        return StrengthVerdict(bears=False, words=f"overloaded: {worst}")
     if not contact.valid:
-        return Verdict(bears=None, words=f"not to be trusted here: {'; '.join(contact.notes)}")
+        return StrengthVerdict(bears=None, words=f"result not valid: {'; '.join(contact.notes)}")
     if worst is None or not contact.joint.liner.strengths:
-        return Verdict(bears=None, words=unchecked_strength(contact.joint))
-    return Verdict(bears=True, words=f"bears it: {worst}")
+        return StrengthVerdict(bears=None, words=unchecked_strength_reason(contact.joint))
+    return StrengthVerdict(bears=True, words=f"within its strength: {worst}")
+
+
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "Share": "StrengthUse",
+        "Verdict": "StrengthVerdict",
+        "shares": "strength_uses",
+        "shares_of": "strength_uses_at",
+        "verdict": "assess_strength",
+    },
+)

@@ -1,1 +1,1 @@
-"""Foundations without mechanics of contact: arrays, checks, quantities, sources, validity, storage and executors."""
+"""Foundations of all rooms: arrays, checks, quantities, sources, validity, plots, storage and executors."""

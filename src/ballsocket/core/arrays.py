@@ -1,9 +1,9 @@
-"""Which array library is this? The few functions the formulas need.
+"""Elementary functions of Python numbers and of arrays of any library.
 
 The formulas of this package are written once, with plain arithmetic and the functions below. They run on Python
-numbers, NumPy, JAX, PyTorch and any other library that follows the array API standard, and - because the functions
-below are all they call - a compiler can be taught to run them on scalars (`ballsocket.compiled`). A Python number stays
-one, and takes the quick way of the module `math`; what has no value there is infinite or NaN as in NumPy.
+numbers, NumPy, JAX, PyTorch and any other library that follows the array API standard. `ballsocket.compiled` compiles
+the same functions for scalars. The result of Python floats is a Python float from the module `math`; it is infinite or
+NaN, as in NumPy, where `math` raises.
 """
 
 from __future__ import annotations
@@ -20,31 +20,40 @@ Array = Any
 """A Python number or an array of any library that follows the array API standard."""
 
 Numbers = numpy.ndarray
-"""An array of NumPy, where no other library is let in: inside solvers, in studies and in files."""
+"""A NumPy array, in code that accepts no other library: solvers, studies and files."""
 
-_ROUNDING = float(numpy.finfo(float).eps)
-_OF_NUMPY = (float, int, numpy.ndarray, numpy.generic)
+_DOUBLE_EPSILON = float(numpy.finfo(float).eps)
+"""Relative rounding error of double precision."""
+
+_NUMPY_TYPES = (float, int, numpy.ndarray, numpy.generic)
+"""Types whose array library is NumPy."""
 
 
 def is_plain(value: Any) -> bool:
-    """Whether `value` is a Python (or NumPy) number, which takes the library and dtype of its neighbours."""
+    """Return True for a Python or NumPy number, which takes the library and dtype of the other operands."""
     return isinstance(value, int | float)
 
 
 def namespace(*values: Array) -> Any:
-    """The array library of `values`: NumPy where all of them are plain numbers."""
-    if all(isinstance(value, _OF_NUMPY) for value in values):
+    """Return the array library of some values; NumPy for plain numbers.
+
+    Raises
+    ------
+    TypeError
+        Arrays of several libraries.
+    """
+    if all(isinstance(value, _NUMPY_TYPES) for value in values):
         return numpy
     arrays = [value for value in values if not is_plain(value)]
     try:
         return array_api_compat.array_namespace(*arrays)
     except TypeError as error:
         kinds = sorted({f"{type(value).__module__.split('.')[0]}.{type(value).__name__}" for value in arrays})
-        raise TypeError(f"arrays of one library are needed, got {', '.join(kinds)}") from error
+        raise TypeError(f"all arrays must be of one library, got {', '.join(kinds)}") from error
 
 
 def _elementwise(name: str, of_number: Callable[[float], float]) -> Callable[[Array], Array]:
-    """The function of that name, of a Python number or of an array."""
+    """Return the elementwise function of that name for Python numbers and arrays."""
 
     def function(x: Array) -> Array:
         if type(x) is not float:
@@ -71,7 +80,7 @@ asin = _elementwise("asin", math.asin)
 
 
 def sqrt(x: Array) -> Array:
-    """√x. At 0 its derivative is taken as 0, so that a point without load does not make every derivative NaN."""
+    """Compute √x, with a derivative of 0 at 0, so that a point without load does not turn gradients into NaN."""
     if type(x) is float:
         return math.sqrt(x) if x >= 0 else math.nan
     xp = namespace(x)
@@ -81,7 +90,7 @@ def sqrt(x: Array) -> Array:
 
 
 def power(x: Array, exponent: float) -> Array:
-    """x^exponent for a positive exponent, with the derivative at 0 as in `sqrt`."""
+    """Compute x^exponent for a positive exponent, with a derivative of 0 at 0 as in `sqrt`."""
     if type(x) is float:
         return x**exponent if x >= 0 else math.nan
     if namespace(x) is numpy:
@@ -90,65 +99,69 @@ def power(x: Array, exponent: float) -> Array:
 
 
 def atan2(y: Array, x: Array) -> Array:
+    """Compute the angle in rad of the point (x, y)."""
     if type(y) is float and type(x) is float:
         return math.atan2(y, x)
     return namespace(y, x).atan2(y, x)
 
 
-def where(condition: Array, this: Array, that: Array) -> Array:
-    if type(condition) is bool and type(this) is float and type(that) is float:
-        return this if condition else that
-    return namespace(condition, this, that).where(condition, this, that)
+def where(condition: Array, if_true: Array, if_false: Array) -> Array:
+    """Select elements of two arrays by a mask."""
+    if type(condition) is bool and type(if_true) is float and type(if_false) is float:
+        return if_true if condition else if_false
+    return namespace(condition, if_true, if_false).where(condition, if_true, if_false)
 
 
 def clip(x: Array, low: float, high: float) -> Array:
+    """Limit x to the interval from low to high."""
     return min(max(x, low), high) if isinstance(x, float) else namespace(x).clip(x, low, high)
 
 
 def isfinite(x: Array) -> Array:
+    """Return the mask of the elements that are neither infinite nor NaN."""
     return math.isfinite(x) if type(x) is float else namespace(x).isfinite(x)
 
 
-def false(condition: Array) -> Array:
-    """Where a condition does not hold."""
+def logical_not(condition: Array) -> Array:
+    """Invert a mask."""
     return condition ^ True
 
 
-def divisor(x: Array) -> Array:
-    """`x`, and 1 where it is not above zero: a divisor for quotients whose numerator is zero there."""
+def safe_divisor(x: Array) -> Array:
+    """Replace elements that are not positive by 1, for quotients whose numerator is 0 there."""
     return where(x > 0, x, 1.0)
 
 
 def device(x: Array) -> Any:
-    """Where `x` lives."""
+    """Return the device that holds the array `x`."""
     return array_api_compat.device(x)
 
 
-def rounding(x: Array) -> float:
-    """The relative rounding error of `x`'s dtype."""
+def machine_epsilon(x: Array) -> float:
+    """Return the relative rounding error of the dtype of `x`."""
     if type(x) is float:
-        return _ROUNDING
+        return _DOUBLE_EPSILON
     return float(namespace(x).finfo(x.dtype).eps)
 
 
-def known(x: Array) -> numpy.ndarray | None:
-    """The values of `x` as a NumPy array; None where they cannot be known yet (inside `jax.jit`, `jax.grad`)."""
+def concrete_values(x: Array) -> numpy.ndarray | None:
+    """Return the values of `x` as a NumPy array, or None while they are traced (inside `jax.jit`, `jax.grad`)."""
     try:
         return to_numpy(x)
     except (TypeError, RuntimeError):
         return None
 
 
-def truth(condition: Array) -> bool | None:
-    """Whether all of `condition` holds; None where that cannot be known yet (inside `jax.jit`, `vmap`)."""
+def all_true(condition: Array) -> bool | None:
+    """Return True if all elements are true, or None while they are traced (inside `jax.jit`, `vmap`)."""
     try:
         return condition if isinstance(condition, bool) else bool(namespace(condition).all(condition))
-    except (TypeError, RuntimeError):  # JAX's and PyTorch's tracers refuse to be read
+    except (TypeError, RuntimeError):  # tracers of JAX and PyTorch have no value
         return None
 
 
-def frozen(x: Array) -> Array:
-    """The values of `x`, cut off from automatic differentiation."""
+def stop_gradient(x: Array) -> Array:
+    """Return `x` as a constant of automatic differentiation."""
     if array_api_compat.is_torch_array(x):
         return x.detach()
     if array_api_compat.is_jax_array(x):
@@ -158,10 +171,10 @@ def frozen(x: Array) -> Array:
     return x
 
 
-def common(*values: Array) -> tuple[Array, ...]:
-    """`values` as arrays of one library, floating dtype and device: those of the arrays among them.
+def to_common_arrays(*values: Array) -> tuple[Array, ...]:
+    """Convert values to arrays of the library, floating dtype and device of the arrays among them.
 
-    Lists and integers are taken as floats. Plain numbers alone become NumPy float64 scalars.
+    Lists and integers become floats. Plain numbers without an array become NumPy float64 scalars.
     """
     listed = [numpy.asarray(value) if isinstance(value, list | tuple) else value for value in values]
     xp = namespace(*listed)
@@ -178,34 +191,34 @@ def common(*values: Array) -> tuple[Array, ...]:
     return tuple(converted(value) for value in listed)
 
 
-def broadcast(x: Array, *others: Array) -> Array:
-    """`x` in the shape that it and `others` broadcast to; a Python number among such stays one."""
-    if type(x) is float and all(type(value) is float for value in others):
+def broadcast(x: Array, *values: Array) -> Array:
+    """Broadcast `x` against some values; floats among floats stay floats."""
+    if type(x) is float and all(type(value) is float for value in values):
         return x
-    shape = numpy.broadcast_shapes(*(tuple(getattr(value, "shape", ())) for value in (x, *others)))
+    shape = numpy.broadcast_shapes(*(tuple(getattr(value, "shape", ())) for value in (x, *values)))
     return broadcast_to(x, shape)
 
 
 def broadcast_to(x: Array, shape: tuple[int, ...]) -> Array:
-    """`x` in a given shape."""
+    """Broadcast `x` to a shape."""
     return x if tuple(x.shape) == shape else namespace(x).broadcast_to(x, shape)
 
 
 @cache
 def gauss_legendre(points: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Nodes and weights of the Gauss-Legendre rule on [0, 1]."""
+    """Compute nodes and weights of the Gauss-Legendre rule on [0, 1]."""
     nodes, weights = numpy.polynomial.legendre.leggauss(points)
     return tuple(float(x) for x in (1 + nodes) / 2), tuple(float(w) for w in weights / 2)
 
 
 def integral(integrand: Callable[[float], Array], points: int) -> Array:
-    """∫ integrand(x) dx over [0, 1] by the Gauss-Legendre rule, for integrands that are arrays of any kind."""
+    """Integrate a function of x over [0, 1] by the Gauss-Legendre rule; its values may be arrays of any library."""
     nodes, weights = gauss_legendre(points)
     return weighted_sum([integrand(node) for node in nodes], weights)
 
 
 def weighted_sum(values: Sequence[Array], weights: Sequence[float]) -> Array:
-    """Sum of `weights[i] * values[i]`: a quadrature rule over any kind of array."""
+    """Sum `weights[i] * values[i]`, a quadrature rule for arrays of any library."""
     total = weights[0] * values[0]
     for value, weight in zip(values[1:], weights[1:], strict=True):
         total = total + weight * value
@@ -213,7 +226,7 @@ def weighted_sum(values: Sequence[Array], weights: Sequence[float]) -> Array:
 
 
 def to_numpy(x: Array) -> numpy.ndarray:
-    """The values of `x` as a NumPy array on this machine, for people and files."""
+    """Convert `x` to a NumPy array in the memory of the host, for output and files."""
     if array_api_compat.is_torch_array(x):
         return numpy.asarray(x.detach().cpu())
     try:
@@ -223,7 +236,7 @@ def to_numpy(x: Array) -> numpy.ndarray:
 
 
 def to_list(x: Array) -> Any:
-    """The values of `x` for JSON, which has no NaN and no infinity: None and the text "inf" stand for them."""
+    """Convert `x` to lists for JSON: None in place of NaN, and the text "inf" in place of infinity."""
     values = to_numpy(x)
     if values.dtype == bool:
         return values.tolist()

@@ -1,4 +1,4 @@
-"""Bad input gets one clear sentence: what, its value, what is allowed."""
+"""Checks of inputs: each message states the name, the value and the allowed values."""
 
 from __future__ import annotations
 
@@ -11,81 +11,119 @@ from unicodedata import category
 
 import numpy
 
-from .arrays import Array, common, is_plain, namespace, truth
+from .arrays import Array, all_true, is_plain, namespace, to_common_arrays
 
 Value = TypeVar("Value")
 
+_MAX_TEXT_LENGTH = 1000
+"""Largest number of characters of a text."""
+
+_MAX_LIST_LENGTH = 200
+"""Largest number of characters of a list of names in a message."""
+
+_MAX_SHOWN_LENGTH = 60
+"""Largest number of characters of a value in a message."""
+
+_PREVIEW_LENGTH = 40
+"""Number of characters of a longer value in a message."""
+
 
 def require(name: str, value: Array, good: Array, allowed: str) -> None:
-    """Raise ValueError naming the first element of `value` for which `good` is false.
+    """Raise ValueError with the first element of `value` for which `good` is false.
 
-    Nothing is checked where the values are not known yet (inside `jax.jit`).
+    Traced values (inside `jax.jit`) are not checked.
+
+    Parameters
+    ----------
+    name : str
+        Name of the value in the message.
+    value : number or array
+    good : bool or array of bool
+        Mask of the allowed elements.
+    allowed : str
+        Description of the allowed values.
     """
-    if truth(good) is not False:
+    if all_true(good) is not False:
         return
-    raise ValueError(f"{name}{_first_bad(value, good)} is not allowed: {allowed}")
+    raise ValueError(f"{name}{_invalid_element(value, good)} is not allowed: {allowed}")
 
 
-def first_bad(value: Array, good: Array) -> float:
-    """The first element of `value` for which `good` is false."""
+def first_invalid(value: Array, good: Array) -> float:
+    """Return the first element of `value` for which `good` is false."""
     if not _shape(value):
         return value
-    return float(namespace(value).reshape(value, (-1,))[_first(good)[0]])
+    return float(namespace(value).reshape(value, (-1,))[_first_false(good)[0]])
 
 
-def _first_bad(value: Array, good: Array) -> str:
+def _invalid_element(value: Array, good: Array) -> str:
+    """Format index and value of the first invalid element, and the number of further ones."""
     shape = _shape(value)
     if not shape:
         return f" = {shown(value) if isinstance(value, int) else format(float(value), 'g')}"
-    first, count = _first(good)
-    index, rest = [], first
+    first, count = _first_false(good)
+    index, remainder = [], first
     for size in reversed(shape):
-        index.append(rest % size)
-        rest //= size
-    others = f" (and {count - 1} more)" if count > 1 else ""
-    return f"[{', '.join(map(str, reversed(index)))}] = {first_bad(value, good):g}{others}"
+        index.append(remainder % size)
+        remainder //= size
+    further = f" (and {count - 1} more)" if count > 1 else ""
+    return f"[{', '.join(map(str, reversed(index)))}] = {first_invalid(value, good):g}{further}"
 
 
 def _shape(value: Array) -> tuple[int, ...]:
     return tuple(getattr(value, "shape", ()))
 
 
-def _first(good: Array) -> tuple[int, int]:
-    """Where the first false element lies, and how many there are."""
+def _first_false(good: Array) -> tuple[int, int]:
+    """Return the flat index of the first false element, and the number of false elements."""
     xp = namespace(good)
     bad = ~xp.reshape(good, (-1,))
     return int(xp.argmax(xp.astype(bad, xp.int32))), int(xp.sum(xp.astype(bad, xp.int32)))
 
 
-def numeric(name: str, value: Any) -> Array:
-    """`value` if it is a number or an array; TypeError with a way out if it is not."""
+def check_numeric(name: str, value: Any) -> Array:
+    """Return a number or an array of real numbers; lists become arrays.
+
+    Raises
+    ------
+    TypeError
+        Any other value, such as text, booleans, complex numbers or masked arrays.
+    ValueError
+        An integer that is too large for a float.
+    """
     if isinstance(value, list | tuple):
-        value = _array_of(name, value)
+        value = _list_to_array(name, value)
     if is_plain(value) and not isinstance(value, bool):
-        return _in_range(name, value)
+        return _check_integer(name, value)
     if not hasattr(value, "dtype") or isinstance(value, numpy.ma.MaskedArray | numpy.matrix) or not _is_real(value):
-        raise TypeError(_refusal(name, value))
-    return common(value)[0]  # integers as floats, before they are added
+        raise TypeError(_type_message(name, value))
+    return to_common_arrays(value)[0]  # sums of small integers would overflow
 
 
-def one_number(name: str, value: Any) -> float:
-    """`value` as a float, where it is one number."""
-    number = numeric(name, value)
+def check_number(name: str, value: Any) -> float:
+    """Return a single number as a float; raise TypeError for anything else."""
+    number = check_numeric(name, value)
     if _shape(number):
         raise TypeError(f"{name} must be one number, got {shown(value)}")
     return float(number)
 
 
-def vectors(name: str, value: Any, axes: str) -> Array:
-    """`value` as an array whose last axis is that of `axes`, such as "x, y, z (mm)"."""
-    value = numeric(name, value)
+def check_vectors(name: str, value: Any, axes: str) -> Array:
+    """Return an array of vectors, whose last axis holds `axes`, such as "x, y, z (mm)".
+
+    Raises
+    ------
+    ValueError
+        A last axis that is not of length 3.
+    """
+    value = check_numeric(name, value)
     shape = tuple(getattr(value, "shape", ()))
     if shape[-1:] != (3,):
         raise ValueError(f"{name} of shape {shape} is not allowed: its last axis holds {axes}")
-    return common(value)[0]
+    return to_common_arrays(value)[0]
 
 
-def _in_range(name: str, value: float) -> float:
+def _check_integer(name: str, value: float) -> float:
+    """Return a number, unless it is an integer that is too large for a float."""
     try:
         float(value)
     except OverflowError as error:
@@ -93,147 +131,165 @@ def _in_range(name: str, value: float) -> float:
     return value
 
 
-def _array_of(name: str, value: Any) -> numpy.ndarray:
+def _list_to_array(name: str, value: Any) -> numpy.ndarray:
+    """Convert a list to an array of floats; raise TypeError for rows of different lengths."""
     try:
         listed = numpy.asarray(value)
     except (ValueError, OverflowError) as error:  # rows of different lengths
-        raise TypeError(_refusal(name, value)) from error
+        raise TypeError(_type_message(name, value)) from error
     return listed.astype(float) if listed.dtype.kind in "iuf" else listed
 
 
 def _is_real(value: Any) -> bool:
-    """Whether `value` is an array of integers, or of floating-point numbers of single or double precision."""
+    """Return True for an array of integers, or of floats of single or double precision."""
     xp = namespace(value)
     if xp.isdtype(value.dtype, "integral"):
         return True
     return bool(xp.isdtype(value.dtype, "real floating")) and xp.finfo(value.dtype).bits >= 32
 
 
-def _refusal(name: str, value: Any) -> str:
-    what = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
-    for kind, title in _OTHER_ARRAYS.items():
+def _type_message(name: str, value: Any) -> str:
+    """Format the message of a value that is neither a number nor an array of real numbers."""
+    text = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
+    for kind, title in _REJECTED_ARRAYS.items():
         if isinstance(value, kind):
-            what = title
+            text = title
     if type(value).__name__ == "DataFrame":
-        what = "a DataFrame: take one of its columns"
+        text = "a DataFrame: take one of its columns"
     hint = "; text with units belongs in a joint file or on the command line" if isinstance(value, str) else ""
-    return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {what}{hint}"
+    return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {text}{hint}"
 
 
-_OTHER_ARRAYS = {numpy.ma.MaskedArray: "a masked array", numpy.matrix: "a numpy.matrix: use numpy.asarray"}
+_REJECTED_ARRAYS = {numpy.ma.MaskedArray: "a masked array", numpy.matrix: "a numpy.matrix: use numpy.asarray"}
 
 
-def refuse_unnamed(loads: tuple[Any, ...]) -> None:
-    """Raise TypeError for loads without a name."""
+def reject_unnamed_loads(loads: tuple[Any, ...]) -> None:
+    """Raise TypeError for loads that are positional arguments."""
     if loads:
-        given = shown(loads[0])
-        raise TypeError(f"a load needs its name: force={given} in N, indentation={given} in mm or half_angle={given}")
+        load = shown(loads[0])
+        raise TypeError(f"a load needs its name: force={load} in N, indentation={load} in mm or half_angle={load}")
 
 
-def in_radians(value: float) -> str:
-    """What somebody means who gives an angle in degrees."""
+def degrees_hint(value: float) -> str:
+    """Convert an angle in degrees for the hint of a message."""
     return f"{value:g} degrees are {radians(value):.4g} radians"
 
 
-def one_load(**loads: Any) -> tuple[str, Any]:
-    """The one load that was given, with its name."""
-    given = {name: value for name, value in loads.items() if value is not None}
-    if len(given) != 1:
-        got = ", ".join(given) if given else "none"
+def select_load(**loads: Any) -> tuple[str, Any]:
+    """Return name and value of the single load that is not None; raise ValueError for none or several."""
+    set_loads = {name: value for name, value in loads.items() if value is not None}
+    if len(set_loads) != 1:
+        got = ", ".join(set_loads) if set_loads else "none"
         raise ValueError(f"exactly one of {', '.join(loads)} is needed, got {got}")
-    return next(iter(given.items()))
+    return next(iter(set_loads.items()))
 
 
 def needs(extra: str, *modules: str) -> None:
-    """Raise ImportError, with what to install, unless all modules of an extra are there."""
+    """Raise ImportError, with the command to install, unless all modules of an extra are installed."""
     for module in modules:
         if find_spec(module) is None:
             raise ImportError(f"{module} is not installed: pip install 'ballsocket[{extra}]'", name=module)
 
 
 def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
-    """Raise ValueError for the first of `names` that is not `known`."""
+    """Raise ValueError for the first name that is unknown; `where` completes the message."""
     for name in names:
         if name not in known:
             raise ValueError(f"{shown(name)} {where} is not known{nearest(name, known)}")
 
 
 def nearest(name: Any, known: Iterable[str]) -> str:
-    """A hint: the nearest known name, or those that there are."""
-    text = plain_name((name if isinstance(name, str) else shown(name))[:_LONGEST])
-    known = {plain_name(each): each for each in known}
-    close = get_close_matches(text, known, n=1, cutoff=0.8)
-    close = close or [each for each in known if len(text) > 2 and each.startswith(text)]
-    close = close or get_close_matches(text, known, n=1, cutoff=0.5)
-    return f"; did you mean {known[close[0]]!r}?" if close else f"; known: {_listed(list(known.values()))}"
+    """Format a hint for an unknown name: the most similar known name, or the known names."""
+    text = normalise_name((name if isinstance(name, str) else shown(name))[:_MAX_SHOWN_LENGTH])
+    names = {normalise_name(known_name): known_name for known_name in known}
+    close = get_close_matches(text, names, n=1, cutoff=0.8)
+    close = close or [candidate for candidate in names if len(text) > 2 and candidate.startswith(text)]
+    close = close or get_close_matches(text, names, n=1, cutoff=0.5)
+    return f"; did you mean {names[close[0]]!r}?" if close else f"; known: {_join_names(list(names.values()))}"
 
 
-def _listed(names: list[str]) -> str:
-    """Names, as many as a sentence holds."""
+def _join_names(names: list[str]) -> str:
+    """Join names to a text of limited length."""
     text = ", ".join(names)
-    return text if len(text) <= _LISTED else f"{text[: text.rindex(', ', 0, _LISTED)]}, ..."
+    return text if len(text) <= _MAX_LIST_LENGTH else f"{text[: text.rindex(', ', 0, _MAX_LIST_LENGTH)]}, ..."
 
 
-def plain_name(text: str) -> str:
-    """A name in small letters with hyphens, as those of materials, joints and models are."""
+def normalise_name(text: str) -> str:
+    """Convert a name to lower case with hyphens, the form of the names of materials, joints and models."""
     return text.strip().lower().replace(" ", "-").replace("_", "-")
 
 
-def known_name(what: str, name: Any, known: Iterable[str]) -> str:
-    """The known name that is meant, however its capitals, spaces, hyphens and underscores are written.
+def known_name(kind: str, name: Any, known: Iterable[str]) -> str:
+    """Find a known name, regardless of capitals, spaces, hyphens and underscores.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the named item, for the message.
+    name : object
+    known : iterable of str
 
     Raises
     ------
     ValueError
-        None is, with the nearest one.
+        An unknown name; the message suggests the most similar one.
     """
     names = list(known)
-    for each in (name, plain_name(name)) if isinstance(name, str) else ():
-        if each in names:
-            return each
-    raise ValueError(f"{what} {shown(name)} is not known{nearest(name, names)}")
+    for candidate in (name, normalise_name(name)) if isinstance(name, str) else ():
+        if candidate in names:
+            return candidate
+    raise ValueError(f"{kind} {shown(name)} is not known{nearest(name, names)}")
 
 
-class Named(dict[str, Value]):
-    """Things by their names; one that is not known is told with the nearest.
+class NamedItems(dict[str, Value]):
+    """Dictionary whose KeyError suggests the most similar name.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the items, for the message.
+    items : mapping of str to item
 
     Examples
     --------
-    >>> Named("planet", {"earth": 3, "mars": 4})["Mars"]
+    >>> NamedItems("planet", {"earth": 3, "mars": 4})["Mars"]
     Traceback (most recent call last):
     KeyError: "planet 'Mars' is not known; did you mean 'mars'?"
     """
 
-    def __init__(self, what: str, things: Mapping[str, Value]) -> None:
-        super().__init__(things)
-        self._what = what
+    def __init__(self, kind: str, items: Mapping[str, Value]) -> None:
+        super().__init__(items)
+        self._kind = kind
 
     def __missing__(self, name: Any) -> Value:
-        raise KeyError(f"{self._what} {shown(name)} is not known{nearest(name, self)}")
+        raise KeyError(f"{self._kind} {shown(name)} is not known{nearest(name, self)}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self._what, dict(self))
+        return type(self), (self._kind, dict(self))
 
 
 def check_text(name: str, value: Any) -> str:
-    """`value`, if it is text that any terminal can show."""
+    """Return a text without control characters.
+
+    Raises
+    ------
+    ValueError
+        A value that is no text, too long, or contains control characters other than tabs and line ends.
+    """
     if not isinstance(value, str):
         raise ValueError(f"{name} = {shown(value)} must be text")
-    if len(value) > _LONGEST_TEXT or any(category(each) == "Cc" and each not in "\t\n" for each in value):
-        raise ValueError(f"{name} = {shown(value)} must be at most {_LONGEST_TEXT} characters, none that controls")
+    control = any(category(character) == "Cc" and character not in "\t\n" for character in value)
+    if len(value) > _MAX_TEXT_LENGTH or control:
+        limit = f"at most {_MAX_TEXT_LENGTH} characters with no control characters"
+        raise ValueError(f"{name} = {shown(value)} must be {limit}")
     return value
 
 
 def shown(value: Any) -> str:
-    """Whatever came in, as a refusal shows it: on one line, and short."""
+    """Format any value for a message, on one short line."""
     try:
         text = repr(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits; lists in lists in lists
         return f"({type(value).__name__} too long to show)"
     text = " ".join(line.strip() for line in text.splitlines())
-    return text if len(text) < _LONGEST else f"{text[:40]}..."
-
-
-_LONGEST_TEXT = 1000
-_LISTED = 200
-_LONGEST = 60  # characters of what is shown, and of a name for which others like it are looked for
+    return text if len(text) < _MAX_SHOWN_LENGTH else f"{text[:_PREVIEW_LENGTH]}..."

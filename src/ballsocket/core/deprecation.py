@@ -29,6 +29,7 @@ MOVED = {
     "ballsocket.gaps": "ballsocket.problem.gaps",
     "ballsocket.presets": "ballsocket.problem.presets",
     "ballsocket.model": "ballsocket.contact",
+    "ballsocket.model.answer": "ballsocket.contact.assembly",
     "ballsocket.model.largest": "ballsocket.contact.peak_pressure",
     "ballsocket.model.theory": "ballsocket.contact.model_info",
     "ballsocket.pytrees": "ballsocket.compiled.pytrees",
@@ -85,7 +86,7 @@ def _warn(old: str, new: str) -> None:
 
 
 def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
-    """Return a module's `__getattr__` that gives renamed functions and classes by their old names.
+    """Return a module's `__getattr__` that finds renamed functions and classes by their old names.
 
     `names` maps each old name to the present one, in the same module or with the path of another.
     """
@@ -101,7 +102,7 @@ def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
 
 
 class RenamedAttribute:
-    """Old name of a method or attribute: `told = RenamedAttribute("identifiable")` in the body of a class."""
+    """Old name of a method or attribute: `listen = RenamedAttribute("progress")` in the body of a class."""
 
     def __init__(self, new: str) -> None:
         self._new = new

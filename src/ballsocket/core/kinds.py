@@ -1,4 +1,4 @@
-"""What numbers measure: the units inside, those that people read, and those that the door for units takes."""
+"""Physical kinds of numbers and their units: internal, displayed and accepted as input."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from math import degrees
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit as people read it: `text` behind a number, and the `factor` that leads to it from the unit inside."""
+    """Displayed unit: `text` after a number, and `factor` from the internal unit to this one."""
 
     text: str
     factor: float = 1.0
 
     @property
     def bracketed(self) -> str:
-        """Behind the head of a column or the label of an axis; empty for a plain number."""
+        """Unit in brackets for the head of a column or the label of an axis; empty for a plain number."""
         return f" [{self.text}]" if self.text else ""
 
 
 class Kind(StrEnum):
-    """What a number measures, and with that its units."""
+    """Physical kind of a number, which determines its units."""
 
     LENGTH = "length"
     FORCE = "force"
@@ -38,27 +38,27 @@ class Kind(StrEnum):
 
     @property
     def unit(self) -> str:
-        """The unit inside, spelled as the CF conventions do ("mm2", "1")."""
+        """Internal unit in the spelling of the CF conventions, such as "mm2" or "1"."""
         return _KINDS[self][0]
 
     @property
     def example(self) -> str:
-        """What the door for units asks for where text is no such quantity."""
+        """Example of an input with a unit, for messages."""
         return _KINDS[self][1]
 
     @property
     def written(self) -> Unit:
-        """The unit in JSON, files and tables of plain numbers, which is degrees for an angle, else the unit inside."""
+        """Unit in JSON, files and tables of plain numbers: degrees for an angle, otherwise the internal unit."""
         return _WRITTEN.get(self, Unit(self.unit))
 
     @property
     def suffix(self) -> str:
-        """`written` as part of a name: the end of a column's head in CSV, empty for a plain number."""
+        """Unit as the end of a column name in CSV; empty for a plain number."""
         return _SUFFIXES.get(self, self.unit)
 
     @property
     def typed(self) -> str:
-        """The unit of a bare number in a file or on the command line; empty for a plain number."""
+        """Unit of a number without a unit in a file or on the command line; empty for a plain number."""
         return _TYPED.get(self, self.unit)
 
 

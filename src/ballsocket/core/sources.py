@@ -1,4 +1,4 @@
-"""Where a formula or a number comes from, and how to cite it."""
+"""Publications of formulas and numbers, and their citation in BibTeX."""
 
 from __future__ import annotations
 
@@ -12,9 +12,14 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Source:
-    """A publication (a key of `data/references.bib`) and the place in it.
+    """Publication and the position in it.
 
-    `place` names equations or tables; it is empty where the whole text is meant.
+    Attributes
+    ----------
+    key : str
+        Key of `data/references.bib`.
+    place : str
+        Equations or tables; empty for the complete text.
     """
 
     key: str
@@ -22,7 +27,7 @@ class Source:
 
     @property
     def doi(self) -> str:
-        """The DOI, or an empty text where none is on record."""
+        """DOI, or an empty text if the entry has none."""
         return _field(bibliography()[self.key], "doi")
 
     @property
@@ -40,30 +45,30 @@ class Source:
 
 @cache
 def bibliography() -> dict[str, str]:
-    """Every BibTeX entry of the project by its key."""
+    """Read the BibTeX entries of the project by key."""
     text = (files("ballsocket") / "data" / "references.bib").read_text(encoding="utf-8")
     return {entry.split("{", 1)[1].split(",", 1)[0]: entry.strip() for entry in re.split(r"\n(?=@)", text.strip())}
 
 
 def cite(*used: Any) -> str:
-    """BibTeX of what was used.
+    """Return the BibTeX entries of models, contacts, materials or joints.
 
     Parameters
     ----------
     *used
-        Models, moduli, contacts, comparisons, materials or joints. The `source` of a material or a joint is text:
-        of it, the publications in the project's bibliography are cited that it names by authors and year, or by DOI.
+        Models, moduli, contacts, comparisons, materials or joints. The `source` of a material or a joint is text.
+        Publications of the project's bibliography that it names by authors and year, or by DOI, are cited.
 
     Returns
     -------
     str
-        BibTeX entries in the order of first use, none twice.
+        BibTeX entries in the order of first use, each once.
 
     Raises
     ------
     TypeError
-        Something that has no sources, or a material or joint whose source text names no known publication; inside a
-        contact such text is passed over.
+        An item without sources, or a material or joint whose source text names no known publication. Inside a
+        contact, such a text is ignored.
 
     Examples
     --------
@@ -71,50 +76,52 @@ def cite(*used: Any) -> str:
     >>> "10.3390/app112311170" in bs.cite(bs.HessForsbach())
     True
     """
-    keys = dict.fromkeys(key for one in used for key in _keys(one))
+    keys = dict.fromkeys(key for item in used for key in _keys(item))
     return "\n\n".join(bibliography()[key] for key in keys)
 
 
-def _keys(used: Any) -> list[str]:
-    if isinstance(used, Source):
-        return [used.key]
-    if isinstance(used, type) or not any(hasattr(used, mark) for mark in ("sources", "source", "model")):
-        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_shown(used)}")
-    keys = list(_found(used))
-    if not keys and hasattr(used, "source"):
-        raise TypeError(f"no known publication is named in the source of {used}: {used.source!r}")
+def _keys(item: Any) -> list[str]:
+    """List the keys of an item; raise TypeError if it cannot be cited."""
+    if isinstance(item, Source):
+        return [item.key]
+    if isinstance(item, type) or not any(hasattr(item, mark) for mark in ("sources", "source", "model")):
+        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_describe(item)}")
+    keys = list(_collect_keys(item))
+    if not keys and hasattr(item, "source"):
+        raise TypeError(f"no known publication is named in the source of {item}: {item.source!r}")
     return keys
 
 
-def _found(used: Any) -> Iterator[str]:
-    yield from (source.key for source in getattr(used, "sources", ()))
-    yield from named_in(str(getattr(used, "source", "")))
-    for layer in getattr(used, "backing", ()):
-        yield from _found(layer)
-    for part in ("model", "joint", "liner", "ball", "material"):
-        if getattr(used, part, None) is not None:
-            yield from _found(getattr(used, part))
+def _collect_keys(item: Any) -> Iterator[str]:
+    """Yield the keys of an item and of its model, joint, materials and layers."""
+    yield from (source.key for source in getattr(item, "sources", ()))
+    yield from named_in(str(getattr(item, "source", "")))
+    for layer in getattr(item, "backing", ()):
+        yield from _collect_keys(layer)
+    for attribute in ("model", "joint", "liner", "ball", "material"):
+        if getattr(item, attribute, None) is not None:
+            yield from _collect_keys(getattr(item, attribute))
 
 
 def named_in(text: str) -> Iterator[str]:
-    """The publications that a text names, such as "Plank et al. 2007"."""
+    """Yield the keys of the publications that a text names, such as "Plank et al. 2007"."""
     for key in bibliography() if text else ():
         source = Source(key)
         if (source.doi and source.doi in text) or re.search(rf"(?<!& )\b{re.escape(source.short)}\b", text):
             yield key
 
 
-def _shown(used: Any) -> str:
-    name = getattr(used, "__name__", "")
-    return f"{name} itself; is {name}() meant?" if name and callable(used) else f"{used!r:.60}"
+def _describe(item: Any) -> str:
+    name = getattr(item, "__name__", "")
+    return f"the class or function {name}; use {name}()" if name and callable(item) else f"{item!r:.60}"
 
 
 def _field(entry: str, name: str) -> str:
-    """One field of an entry as plain text."""
-    found = re.search(rf"^\s*{name}\s*=\s*\{{(.*)\}},?\s*$", entry, flags=re.MULTILINE)
-    text = found.group(1) if found else ""
-    for spelled, letter in _LETTERS.items():
-        text = text.replace(spelled, letter)
+    """Extract a field of a BibTeX entry as plain text."""
+    match = re.search(rf"^\s*{name}\s*=\s*\{{(.*)\}},?\s*$", entry, flags=re.MULTILINE)
+    text = match.group(1) if match else ""
+    for latex, letter in _LETTERS.items():
+        text = text.replace(latex, letter)
     return text.replace("{", "").replace("}", "")
 
 

@@ -1,4 +1,4 @@
-"""Validity as data: the range of a quantity, why it ends there, and what a press that has no answer is called."""
+"""Validity as data: statuses of a press, and ranges of quantities with the reason of each limit."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
-from .arrays import Array, divisor, false, to_numpy, truth, where
+from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
 from .kinds import Unit
 from .quantities import QUANTITIES
 
 
 class Status(IntEnum):
-    """How a press ended, point by point. Arrays hold its codes."""
+    """Success of a press or the reason of its failure. Arrays hold its integer codes."""
 
     OK = 0
     OUTSIDE_DOMAIN = 1
@@ -31,11 +31,12 @@ class Status(IntEnum):
 
     @property
     def sentence(self) -> str:
+        """Message of this status."""
         return _SENTENCES[self]
 
     @property
     def failed(self) -> bool:
-        """Whether the numbers are missing (NaN)."""
+        """True if the result has no numbers (NaN)."""
         return self in _FAILED
 
 
@@ -51,45 +52,45 @@ _FAILED = frozenset(
 )
 
 
-def missing(status: Array) -> Array:
-    """Where a status says that the numbers are missing, point by point."""
-    bad = status != status
-    for one in _FAILED:
-        bad = bad | (status == int(one))
-    return bad
+def is_missing(status: Array) -> Array:
+    """Return the mask of the points whose status means that their numbers are NaN."""
+    mask = status != status
+    for failure in _FAILED:
+        mask = mask | (status == int(failure))
+    return mask
 
 
 _SENTENCES = {
-    Status.OK: "done",
+    Status.OK: "solved",
     Status.OUTSIDE_DOMAIN: "the model has no formula for this joint",
     Status.NOT_REACHED: "the model does not reach this load",
     Status.NOT_CONVERGED: "the iteration did not converge",
     Status.BEYOND_EQUATOR: "the contact circle would pass the socket's equator (half angle above 90 degrees)",
     Status.AT_RIM: "the contact fills the socket and reaches its rim",
-    Status.NOT_ROUND: "ball and socket do not touch in one round patch around the pole, as the model takes it",
-    Status.NO_JOINT: "these numbers make no joint: they leave no liner, or less than no clearance",
+    Status.NOT_ROUND: "the contact is not a single round patch around the pole, as the model assumes",
+    Status.NO_JOINT: "invalid geometry: liner thickness or clearance would be negative",
     Status.DISLOCATED: "dislocated: the load pushes the ball out of its bore",
 }
 
 
 class OutsideDomainError(ValueError):
-    """No point of a joint lies where the model has a formula."""
+    """Error of a press without any point in the domain of the model."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Range:
-    """Where one quantity may lie, and why.
+    """Range of a quantity in which a model is valid or has formulas, with the reason of its limits.
 
     Parameters
     ----------
     quantity : str or function
-        The attribute path from a contact ("joint.liner.poisson", "half_angle"), or a function of it.
+        Attribute path of a contact ("joint.liner.poisson", "half_angle"), or a function of a contact.
     symbol : str
-        How people write it; by default the symbol of the quantity of that name.
+        Symbol in messages; by default that of the quantity.
     low, high : float
-        In the quantity's own unit. A half angle is stored in rad and printed in degrees.
+        Limits in the internal unit of the quantity; angles are printed in degrees.
     why : str
-        Why it ends there.
+        Reason of the limits.
     """
 
     quantity: str | Callable[[Any], Array]
@@ -105,26 +106,26 @@ class Range:
 
     @cached_property
     def of(self) -> Callable[[Any], Array]:
-        """The quantity of a contact."""
+        """Function that returns the quantity of a contact."""
         return self.quantity if callable(self.quantity) else attrgetter(self.quantity)
 
     def holds(self, contact: Any) -> Array:
-        """Inside the closed range."""
+        """Return the mask of the points inside the closed range."""
         value = self.of(contact)
         return (value >= self.low) & (value <= self.high)
 
     def strictly_holds(self, contact: Any) -> Array:
-        """Inside the open range."""
+        """Return the mask of the points inside the open range."""
         value = self.of(contact)
         return (value > self.low) & (value < self.high)
 
     @property
     def sentence(self) -> str:
-        """What a contact outside the range is told."""
+        """Message for a contact outside the range."""
         return f"outside {self}: {self.why}"
 
     def value_text(self, joint: Any) -> str:
-        """The quantity of a joint in words."""
+        """Format the quantity of a joint with its symbol."""
         value = to_numpy(self.of(SimpleNamespace(joint=joint))).ravel()
         return f"{self.symbol} = {value[0]:g}" + (f" (and {value.size - 1} more)" if value.size > 1 else "")
 
@@ -138,23 +139,23 @@ class Range:
 
     @property
     def _unit(self) -> Unit:
-        """Degrees for an angle; nothing for numbers."""
-        known = QUANTITIES.get(self.quantity) if isinstance(self.quantity, str) else None
-        return Unit("") if known is None else known.written
+        """Unit of the printed limits: degrees for an angle, empty for numbers."""
+        quantity = QUANTITIES.get(self.quantity) if isinstance(self.quantity, str) else None
+        return Unit("") if quantity is None else quantity.written
 
 
 @dataclass(frozen=True, kw_only=True)
 class Promise:
-    """What "valid" says: how close to the elastic answer a model is, at a given force, where it trusts itself.
+    """Measured difference of a model from the elastic solution at the same force, inside its validity.
 
-    Measured by `ballsocket.evidence.validity`: at 99 % of the points, and at the worst within 1.3 times as much.
+    `ballsocket.evidence.validity` measures it: 99 % of the points lie within it, and all within 1.3 times as much.
 
     Parameters
     ----------
     within : float
-        Relative.
+        Largest relative difference.
     quantities : tuple of str
-        By their names in a `Contact`.
+        Names of the attributes of a `Contact`.
     """
 
     within: float
@@ -169,13 +170,14 @@ def _symbol(name: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Nowhere(Range):
-    """A range that nothing lies in: an answer for comparison, not to be trusted anywhere."""
+class NeverValid(Range):
+    """Empty range of a model whose results are for comparison and never valid."""
 
     quantity: str | Callable[[Any], Array] = "indentation"
     symbol: str = ""
 
     def holds(self, contact: Any) -> Array:
+        """Return False for each point."""
         return self.of(contact) != self.of(contact)
 
     def __str__(self) -> str:
@@ -183,33 +185,44 @@ class Nowhere(Range):
 
     @property
     def sentence(self) -> str:
-        return f"not to be trusted anywhere: {self.why}"
+        """Message for each contact."""
+        return f"never valid: {self.why}"
 
 
-def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
-    """Where all of a model's (or modulus') domain holds for a joint; OutsideDomainError where it does nowhere.
+def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
+    """Return the mask of the points inside the domain of a model or modulus; True for an empty array of joints.
 
-    Of no joint at all it holds.
+    Parameters
+    ----------
+    domain : tuple of Range
+    joint : Joint
+    name : str
+        Name of the model or modulus for the message.
+
+    Raises
+    ------
+    OutsideDomainError
+        No point is inside one of the ranges.
     """
     points: Array = joint.ball_radius == joint.ball_radius
-    asked = SimpleNamespace(joint=joint)
+    unloaded = SimpleNamespace(joint=joint)
     for limit in domain:
-        holds = limit.strictly_holds(asked)
-        if truth(false(holds)) and 0 not in getattr(holds, "shape", ()):
+        holds = limit.strictly_holds(unloaded)
+        if all_true(logical_not(holds)) and 0 not in getattr(holds, "shape", ()):
             raise OutsideDomainError(f"{name} has no answer for {limit.value_text(joint)}: {limit.why}")
         points = points & holds
     return points
 
 
-LOOSE = Range(
+NON_NEGATIVE_CLEARANCE = Range(
     quantity="joint.clearance",
     low=-5e-324,  # 0 is inside
-    why="a preloaded joint (interference) presses at rest: ask sphere",
+    why="a joint with interference is preloaded: use sphere",
 )
 CLOSE_FIT = Range(
     quantity="joint.clearance_ratio",
     high=0.02,
-    why="Eq. (6) neglects sin²φ, 1 % of p0 here: ask with gap=CircularGap",
+    why="Eq. (6) neglects sin²φ, 1 % of p0 here: use gap=CircularGap",
 )
 SMALL_STRAIN = Range(
     quantity="depth_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"
@@ -224,42 +237,43 @@ RIGID_BACKING = Range(
 
 @dataclass(frozen=True, kw_only=True)
 class Remark(Range):
-    """A range outside of which something is said of an answer, which is valid all the same."""
+    """Range outside of which a result gets a note; it does not limit the validity."""
 
     @property
     def sentence(self) -> str:
+        """Note for a contact outside the range."""
         return self.why
 
 
-def far_share(contact: Any) -> Array:
-    """How much of d is the way that an infinite last layer gives as a whole; 0 without one.
+def infinite_layer_share(contact: Any) -> Array:
+    """Estimate the fraction of the indentation that depends on the form of an infinite last layer; 0 without one.
 
-    Half a space around a hemisphere gives α (1 + ν) F/(E b) more than a whole space around a closed sphere, E and the
-    inner radius b being the layer's: α is 0.06 to 0.1 behind a rigid ball (ν 0.48 to 0.1), 0.17 in bone behind a shell,
-    0.25 where ball and socket are of one steel. Here it is 0.1.
+    The indentation of a half space around a hemisphere exceeds that of a full space around a closed sphere by
+    α (1 + ν) F/(E b), with E, ν and the inner radius b of the layer. The factor α is 0.06 to 0.1 for a rigid ball
+    (ν 0.48 to 0.1), 0.17 for bone behind a shell, and 0.25 for ball and socket of one steel. The estimate takes 0.1.
     """
     joint = contact.joint
     inner, material, last = joint.socket_radius, joint.liner, joint.liner_thickness
     for layer in joint.backing:
         inner, material, last = inner + last, layer.material, layer.thickness
-    endless = last == inf
-    radius, d = where(endless, 1.0 * inner, 1.0), contact.indentation
-    moved = 0.1 * (1 + material.poisson) * contact.force / (material.young * radius * divisor(d))
-    return where(endless & (d > 0), moved, 0.0 * d)
+    infinite = last == inf
+    radius, d = where(infinite, 1.0 * inner, 1.0), contact.indentation
+    fraction = 0.1 * (1 + material.poisson) * contact.force / (material.young * radius * safe_divisor(d))
+    return where(infinite & (d > 0), fraction, 0.0 * d)
 
 
-def bodies(socket: str, ball: str) -> tuple[Remark, Remark]:
-    """What a model says that takes an infinite layer and a soft ball for some body, where others take another."""
+def body_remarks(socket: str, ball: str) -> tuple[Remark, Remark]:
+    """Return the remarks of a model about the bodies that it assumes for an infinite layer and for a soft ball."""
     spaces = (
-        f"the infinite layer is {socket}; between a whole space around a closed sphere (exact) and half a space around "
+        f"the infinite layer is {socket}; between a full space around a closed sphere (exact) and a half space around "
         "a hemisphere (fem) d differs by more than 2 %, up to 26 % in massive sockets and 55 % in bone behind a shell, "
         "pmax and ε by less than 4 %"
     )
     balls = (
-        f"the ball is {ball}; between a whole ball (exact) and half a ball on its plane equator (fem) d differs by "
+        f"the ball is {ball}; between a full ball (exact) and half a ball on its plane equator (fem) d differs by "
         "10 to 40 % and pmax by 1 to 10 % where the ball is as soft as its liner"
     )
     return (
-        Remark(quantity=far_share, symbol="share of the infinite layer in d", high=0.02, why=spaces),
+        Remark(quantity=infinite_layer_share, symbol="share of the infinite layer in d", high=0.02, why=spaces),
         Remark(quantity="joint.modulus_ratio", high=0.05, why=balls),
     )

@@ -1,11 +1,14 @@
-"""What is pressed, and into what: a joint, its materials and layers, and the lengths that people state.
+"""Definition of the problem: a joint, its materials, layers and lengths, and the cup around its socket.
 
-`joint` itself; `material`, materials and layers; `dimensions`, from radii or diameters to what a joint keeps; `values`,
-what they are made of.
+`joint`, a ball in a lined socket; `material`, materials and layers; `dimensions`, the lengths of a joint from radii or
+diameters; `cup`, rim and orientation of a socket; `gaps`, the displacement that a rigid ball prescribes; `presets`,
+materials and joints with sources; `values`, frozen values without checks.
 """
 
 from .joint import Joint, Support
 from .material import Layer, Material
-from .values import larger, unchecked
+from .values import larger, make_unchecked
 
-__all__ = ["Joint", "Layer", "Material", "Support", "larger", "unchecked"]
+unchecked = make_unchecked  # name of version 1.0
+
+__all__ = ["Joint", "Layer", "Material", "Support", "larger", "make_unchecked", "unchecked"]

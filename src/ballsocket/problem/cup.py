@@ -1,4 +1,4 @@
-"""What the joint's radii leave open: how far the socket reaches around the ball, what holds its liner, where it faces.
+"""Cup: rim, interface of the liner, and orientation of the socket in the body.
 
 Directions are those of the patient's body: x to the right, y to the front, z upwards.
 """
@@ -11,71 +11,71 @@ from math import cos, pi, sin
 
 from ..core import arrays
 from ..core.arrays import Array, is_plain
-from ..core.checks import numeric, require, shown
+from ..core.checks import check_numeric, require, shown
 from ..core.quantities import CUP
 
 Direction = tuple[float, float, float]
 
 UP: Direction = (0.0, 0.0, 1.0)
-"""The direction of a vertical load on a cup: the ball presses it upwards."""
+"""Direction of a vertical load of the ball on a cup."""
 
 
 class Interface(Enum):
-    """What the liner does on the layer behind it, or on the rigid socket: it is bonded, or slides without friction."""
+    """Interface between the liner and the layer behind it, or the rigid socket: bonded, or sliding without friction."""
 
     BONDED = "bonded"
     SLIDING = "sliding"
 
 
 class Side(Enum):
-    """The side of the body that a cup belongs to: on the left, x points to the middle."""
+    """Side of the body; on the left, x points to the middle."""
 
     RIGHT = "right"
     LEFT = "left"
 
 
-class NotGiven(float):
+class UnsetAngle(float):
     """Default angle of a cup without an orientation: 0, which the standard of a cycle may replace."""
 
 
-_NOT_GIVEN = NotGiven(0.0)
+_UNSET_ANGLE = UnsetAngle(0.0)
 
-_CHOICES = {"interface": Interface, "side": Side}
+_ENUMERATIONS = {"interface": Interface, "side": Side}
+"""Type of each attribute that is an enumeration."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cup:
-    """The socket seen from the side, and where it faces in the body.
+    """Rim of the socket, interface of its liner, and orientation in the body.
 
-    `Cup()` is a hemisphere that opens straight down: a vertical load presses it along its own axis, which is what every
-    axisymmetric model takes for granted. Inclination and anteversion are the radiographic ones: the anteversion lies
-    between the cup's axis and the frontal plane, the inclination between the body's axis and the cup's, seen from the
-    front.
+    `Cup()` is a hemisphere that opens downwards. A vertical load acts along its axis, as every axisymmetric model
+    assumes. Inclination and anteversion are radiographic: the anteversion is the angle between the cup's axis and the
+    frontal plane, the inclination the angle between the axes of body and cup in the frontal view.
 
     Parameters
     ----------
     arc_of_cover : float
-        From rim to rim in rad, 40° to 340°; π (default) is a hemisphere. The face of the rim is a cone towards the
-        centre of the bore, whatever the arc: a corner of 90°, where the pressure stays finite. The sharper or blunter
-        corner of a flat face is not modelled; one above 90° has an unbounded pressure in linear elasticity.
+        Angle from rim to rim in rad, 40° to 340°; π (default) is a hemisphere. The face of the rim is a cone towards
+        the centre of the bore for any arc: a corner of 90°, where the pressure is finite. Other corners of a flat face
+        are not modelled; above 90° the pressure is unbounded in linear elasticity.
     chamfer : float
-        Of the rim's inner edge in mm, at 45°: so much is taken away along the bore and into the depth. Default 0.
+        Width of the 45° chamfer of the rim's inner edge in mm, along the bore and in depth. Default 0.
     interface : Interface
-        Between liner and backing. A liner that slides stays in touch with it everywhere.
+        Interface between liner and backing. A sliding liner stays in contact with the backing everywhere.
     inclination : float
-        Radiographic inclination in rad, 0 (default) to π/2: how far the cup opens to the side.
+        Radiographic inclination in rad, 0 (default) to π/2: opening to the side.
     anteversion : float
-        Radiographic anteversion in rad, -π/2 to π/2: opening to the front. Default 0. A hip in use takes the
-        tilt of its cycle's standard only where neither angle is set; an explicit 0 counts as set.
+        Radiographic anteversion in rad, -π/2 to π/2: opening to the front. Default 0. A hip simulation takes the
+        tilt of its cycle's standard only if neither angle is set; an explicit 0 counts as set.
     side : Side
-        Of the body, RIGHT (default) or LEFT.
+        Side of the body, RIGHT (default) or LEFT.
 
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value.
+        A number that is not allowed; the message has its value.
     TypeError
-        An array, or an interface or a side that is none.
+        An array; an interface or a side of another type.
 
     References
     ----------
@@ -92,48 +92,48 @@ class Cup:
     arc_of_cover: float = pi
     chamfer: float = 0.0
     interface: Interface = Interface.BONDED
-    inclination: float = _NOT_GIVEN
-    anteversion: float = _NOT_GIVEN
+    inclination: float = _UNSET_ANGLE
+    anteversion: float = _UNSET_ANGLE
     side: Side = Side.RIGHT
 
     def __post_init__(self) -> None:
         for name, quantity in CUP.items():
             if not is_plain(quantity.checked(getattr(self, name))):
                 raise TypeError(f"{name} must be one number, got {shown(getattr(self, name))}")
-        for name, kind in _CHOICES.items():
+        for name, kind in _ENUMERATIONS.items():
             if not isinstance(getattr(self, name), kind):
-                known = " or ".join(map(str, kind))
-                raise TypeError(f"{name} must be {known}, got {shown(getattr(self, name))}")
+                choices = " or ".join(map(str, kind))
+                raise TypeError(f"{name} must be {choices}, got {shown(getattr(self, name))}")
 
     @property
     def rim(self) -> float:
-        """The rim's polar angle in rad."""
+        """Polar angle of the rim in rad."""
         return self.arc_of_cover / 2
 
     @property
     def oriented(self) -> bool:
-        """True where an inclination or an anteversion was set, 0 included."""
-        return not (isinstance(self.inclination, NotGiven) and isinstance(self.anteversion, NotGiven))
+        """True if an inclination or an anteversion was set, 0 included."""
+        return not (isinstance(self.inclination, UnsetAngle) and isinstance(self.anteversion, UnsetAngle))
 
     @property
     def opening(self) -> Direction:
-        """The unit vector along the cup's axis, out of its opening."""
-        # (sin RI cos RA, sin RA, -cos RI cos RA), x being lateral
+        """Unit vector along the axis of the cup, out of its opening."""
+        # (sin RI cos RA, sin RA, -cos RI cos RA) with x lateral
         lateral = sin(self.inclination) * cos(self.anteversion)
         down = cos(self.inclination) * cos(self.anteversion)
         return (lateral if self.side is Side.RIGHT else -lateral), sin(self.anteversion), -down
 
     @property
     def dome(self) -> Direction:
-        """The unit vector along the cup's axis, to the pole of its bore."""
+        """Unit vector along the axis of the cup, to the pole of its bore."""
         x, y, z = self.opening
         return -x, -y, -z
 
     @property
     def frame(self) -> tuple[Direction, Direction, Direction]:
-        """Unit vectors of the cup's own frame in the body's: x upwards along the rim's plane, y across, z to the dome.
+        """Unit vectors x, y, z of the cup frame in the body frame: x up in the plane of the rim, z to the dome.
 
-        Turned so that an inclined cup feels a vertical load between x and z: it is tilted towards x.
+        In an inclined cup, a vertical load lies between x and z.
         """
         level = cos(self.inclination)
         x, z = (level if self.side is Side.RIGHT else -level, 0.0, sin(self.inclination)), self.dome
@@ -141,28 +141,28 @@ class Cup:
         return x, y, z
 
     def tilted(self, angle: float) -> Cup:
-        """This cup turned so that a vertical load comes at this angle (rad, at most π/2) from its axis."""
+        """Return this cup with its axis at an angle (rad, at most π/2) to a vertical load."""
         return replace(self, inclination=angle, anteversion=0.0)
 
     def tilt(self, direction: Array) -> Array:
-        """The angle γ in rad between a direction and the dome's axis.
+        """Compute the angle γ in rad between a direction and the axis of the cup.
 
         Parameters
         ----------
         direction : array, (..., 3)
-            Of the force on the cup, say; its length does not matter.
+            Direction of any length, for example of the force on the cup.
 
         Returns
         -------
         float or array
-            From 0 (the load presses along the cup's own axis) to π.
+            Angle from 0 (along the axis, to the dome) to π.
 
         Raises
         ------
         ValueError
             Not three components, or a direction without a length.
         """
-        vector = numeric("direction", direction)
+        vector = check_numeric("direction", direction)
         if tuple(getattr(vector, "shape", ()))[-1:] != (3,):
             raise ValueError(f"a direction has three components, x, y and z, got {direction!r:.60}")
         (x, y, z), (a, b, c) = (vector[..., axis] for axis in range(3)), self.dome
@@ -174,17 +174,22 @@ class Cup:
         return float(angle) if is_plain(angle) else angle
 
     def edge_distance(self, radius: Array, half_angle: Array, direction: Array = UP) -> Array:
-        """The arc in mm from the edge of a contact to the rim where that is nearest; below 0 the contact is cut off.
+        """Compute the shortest arc in mm from the edge of a contact to the rim; negative if the rim cuts the contact.
 
-        R (β/2 - γ - ε), the contact-patch-to-rim distance; with ε = 0 it is that of the contact's centre.
+        It is the contact-patch-to-rim distance R (β/2 - γ - ε). With ε = 0 it is the distance of the contact's centre.
 
         Parameters
         ----------
         radius : float or array
-            Of the sphere that the arc lies on in mm: the socket's, say.
+            Radius in mm of the sphere of the arc, for example of the socket.
         half_angle : float or array
-            ε of the contact in rad.
+            Half angle ε of the contact in rad.
         direction : array, (..., 3)
-            Of the force on the cup, upwards by default; of any length.
+            Direction of the force on the cup, of any length; upwards by default.
+
+        Returns
+        -------
+        float or array
+            Distance in mm.
         """
         return (self.rim - self.tilt(direction) - half_angle) * radius

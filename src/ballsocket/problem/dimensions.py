@@ -1,4 +1,4 @@
-"""The lengths of a joint from those that people state: radii or diameters, a radial or a diametral clearance."""
+"""Lengths of a joint, derived from radii or diameters and from a radial or diametral clearance."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from ..core.quantities import FIT, JOINT
 DIAMETERS = MappingProxyType(
     {"head_diameter": "ball_radius", "diametral_clearance": "clearance", "outer_diameter": "outer_radius"}
 )
-"""What is twice another length of a joint."""
+"""Stored length whose double each of these lengths is."""
 
 LENGTHS = MappingProxyType({**JOINT, **FIT})
-"""Every length that a joint can be stated by."""
+"""All lengths that can define a joint."""
 
-_SAME = MappingProxyType({**DIAMETERS, "interference": "clearance"})
-"""What says the same as another length."""
+_EQUIVALENTS = MappingProxyType({**DIAMETERS, "interference": "clearance"})
+"""Equivalent length of each diameter and of the interference."""
 
-_TIGHTEST = 0.1
-"""Of the ball's radius: an interference that is no larger."""
+_MAX_INTERFERENCE = 0.1
+"""Largest interference over the radius of the ball."""
 
-OWN = ("ball_radius", "clearance", "liner_thickness")
-"""What a joint holds; every other length follows."""
+STORED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")
+"""Lengths that a joint stores; the others are derived."""
 
-_ACROSS = ("ball_radius", "socket_radius", "clearance")
-"""Any two of them fix the third."""
+_RADIAL_LENGTHS = ("ball_radius", "socket_radius", "clearance")
+"""Lengths of which any two determine the third."""
 
 
 class Lengths(TypedDict, total=False):
-    """What a joint is made of: two of radius, socket and clearance, and the liner's thickness or what it ends at."""
+    """Keyword arguments for the lengths of a joint: two of radius, socket and clearance; thickness or outer radius."""
 
     ball_radius: Array
     head_diameter: Array
@@ -48,7 +48,7 @@ class Lengths(TypedDict, total=False):
 
 
 class Dimensions:
-    """The lengths that follow from those that a joint holds."""
+    """Mixin of derived lengths of a joint."""
 
     ball_radius: Array
     clearance: Array
@@ -57,11 +57,11 @@ class Dimensions:
     @property
     @abstractmethod
     def shell(self) -> Array:
-        """Thickness in mm of the layer right behind the liner; 0 where there is none, or where it is infinite."""
+        """Thickness in mm of the layer right behind the liner; 0 without a layer, or if it is infinite."""
 
     @property
     def socket_radius(self) -> Array:
-        """R2 = R1 + c in mm."""
+        """Socket radius R2 = R1 + c in mm."""
         return self.ball_radius + self.clearance
 
     @property
@@ -71,17 +71,17 @@ class Dimensions:
 
     @property
     def head_diameter(self) -> Array:
-        """2 R1 in mm."""
+        """Diameter 2 R1 of the ball in mm."""
         return 2 * self.ball_radius
 
     @property
     def diametral_clearance(self) -> Array:
-        """2 c in mm, what implant papers usually quote."""
+        """Diametral clearance 2 c in mm, which implant papers usually state."""
         return 2 * self.clearance
 
     @property
     def interference(self) -> Array:
-        """-c in mm, above 0 in a preloaded joint."""
+        """Interference -c in mm, positive in a preloaded joint."""
         return -self.clearance
 
     @property
@@ -90,88 +90,96 @@ class Dimensions:
         return 2 * self.outer_radius
 
 
-def made_of(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Array) -> dict[str, Array]:
-    """Radius, clearance and thickness of a joint of given lengths; what is not given stands, if it can.
+def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], shell: Array) -> dict[str, Array]:
+    """Check some lengths and derive radius, clearance and thickness of a joint from them.
 
     Parameters
     ----------
-    given : mapping of str to array
-        Lengths in mm by their names in `Lengths`.
-    standing : mapping of str to array
-        Radius, clearance and thickness of a joint that there is; of a new one nothing.
+    lengths : mapping of str to array
+        New lengths in mm by their names in `Lengths`.
+    current : mapping of str to array
+        Radius, clearance and thickness of an existing joint, kept if possible; empty for a new joint.
     shell : array
-        As of `Dimensions`.
+        Thickness of the shell in mm, see `Dimensions`.
+
+    Returns
+    -------
+    dict of str to array
+        The lengths of `STORED_LENGTHS` in mm.
 
     Raises
     ------
     ValueError
-        A length that is not allowed, one too few, one too many.
+        A length that is not allowed; too few or too many lengths.
     TypeError
-        What is neither a number nor an array.
+        A length that is neither a number nor an array.
     """
-    check_names(given, LENGTHS, "among the lengths of a joint")
-    numbers = {name: LENGTHS[name].checked(value) for name, value in given.items()}
-    check_once(numbers)
-    if not standing:
+    check_names(lengths, LENGTHS, "among the lengths of a joint")
+    numbers = {name: LENGTHS[name].checked(value) for name, value in lengths.items()}
+    check_unique_lengths(numbers)
+    if not current:
         _check_enough(numbers)
-    made = resolved(numbers, standing, shell)
+    stored = derive_lengths(numbers, current, shell)
     for name in ("outer_radius", "outer_diameter"):
         if name in numbers:
-            require(name, numbers[name], made["liner_thickness"] > 0, "it leaves no liner between socket and backing")
+            allowed = "it must leave a liner between socket and backing"
+            require(name, numbers[name], stored["liner_thickness"] > 0, allowed)
     if "interference" in numbers:
-        tight = numbers["interference"] <= _TIGHTEST * made["ball_radius"]
-        require("interference", numbers["interference"], tight, "it is at most a tenth of the ball's radius")
-    loose = not {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers)
-    return {name: JOINT[name].checked(made[name]) if name != "clearance" or loose else made[name] for name in OWN}
+        good = numbers["interference"] <= _MAX_INTERFERENCE * stored["ball_radius"]
+        require("interference", numbers["interference"], good, "it is at most a tenth of the ball's radius")
+    unchecked = {"clearance"} if {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers) else set()
+    return {name: length if name in unchecked else JOINT[name].checked(length) for name, length in stored.items()}
 
 
-def resolved(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Array) -> dict[str, Array]:
-    """`made_of`, with nothing checked: a liner may be thinner than nothing.
+def derive_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], shell: Array) -> dict[str, Array]:
+    """Derive radius, clearance and thickness as `resolve_lengths`, without checks; a thickness may be negative.
 
-    Two of radius, socket radius and clearance fix the third; of those that are not given the ball stands, and else the
-    clearance. An outer radius takes the place of the liner's thickness.
+    Two of radius, socket radius and clearance determine the third. With only one new length, the current ball radius is
+    kept, or else the current clearance. An outer radius determines the thickness of the liner.
     """
-    radii = {DIAMETERS.get(name, name): value / 2 if name in DIAMETERS else value for name, value in given.items()}
+    radii = {DIAMETERS.get(name, name): value / 2 if name in DIAMETERS else value for name, value in lengths.items()}
     if "interference" in radii:
         radii["clearance"] = -radii.pop("interference")
-    known = {**standing, **radii}
+    known = {**current, **radii}
     if "socket_radius" in radii:
         if "clearance" in radii:
-            known["ball_radius"] = _less(radii["socket_radius"], radii["clearance"])
+            known["ball_radius"] = _difference(radii["socket_radius"], radii["clearance"])
         else:
-            known["clearance"] = _less(radii["socket_radius"], known["ball_radius"])
+            known["clearance"] = _difference(radii["socket_radius"], known["ball_radius"])
     if "outer_radius" in radii:
         socket = radii.get("socket_radius", known["ball_radius"] + known["clearance"])
-        known["liner_thickness"] = _less(radii["outer_radius"], socket + shell)
-    return {name: known[name] for name in OWN}
+        known["liner_thickness"] = _difference(radii["outer_radius"], socket + shell)
+    return {name: known[name] for name in STORED_LENGTHS}
 
 
-def check_once(names: Iterable[str]) -> None:
-    """Raise ValueError for lengths that say the same in two ways."""
-    said = {_SAME.get(name, name): name for name in names}
+def check_unique_lengths(names: Iterable[str]) -> None:
+    """Raise ValueError for lengths of which one follows from the others."""
+    names_by_length = {_EQUIVALENTS.get(name, name): name for name in names}
     for name in names:
-        if said[_SAME.get(name, name)] != name:
-            other = said[_SAME.get(name, name)]
-            raise ValueError(f"{name} and {other} are one too many: either fixes the other")
-    across = [said[name] for name in _ACROSS if name in said]
-    if len(across) == len(_ACROSS):
-        raise ValueError(f"{', '.join(across[:2])} and {across[2]} are one too many: any two of them fix the third")
-    if "outer_radius" in said and "liner_thickness" in said:
-        raise ValueError(f"{said['outer_radius']} and liner_thickness are one too many: either fixes the other")
+        duplicate = names_by_length[_EQUIVALENTS.get(name, name)]
+        if duplicate != name:
+            raise ValueError(f"{name} and {duplicate} are one too many: either fixes the other")
+    radial = [names_by_length[name] for name in _RADIAL_LENGTHS if name in names_by_length]
+    if len(radial) == len(_RADIAL_LENGTHS):
+        raise ValueError(f"{', '.join(radial[:2])} and {radial[2]} are one too many: any two of them fix the third")
+    if "outer_radius" in names_by_length and "liner_thickness" in names_by_length:
+        outer = names_by_length["outer_radius"]
+        raise ValueError(f"{outer} and liner_thickness are one too many: either fixes the other")
 
 
 def _check_enough(names: Iterable[str]) -> None:
-    said = {_SAME.get(name, name): name for name in names}
-    if not ("liner_thickness" in said or "outer_radius" in said):
+    """Raise ValueError for too few lengths of a new joint."""
+    names_by_length = {_EQUIVALENTS.get(name, name): name for name in names}
+    if not ("liner_thickness" in names_by_length or "outer_radius" in names_by_length):
         raise ValueError("liner_thickness is missing, or outer_radius; liner_thickness = inf is a massive socket")
-    across = [said[name] for name in _ACROSS if name in said]
-    if len(across) < 2:
-        got = across[0] if across else "none"
+    radial = [names_by_length[name] for name in _RADIAL_LENGTHS if name in names_by_length]
+    if len(radial) < 2:
+        got = radial[0] if radial else "none"
         raise ValueError(f"two of ball_radius, socket_radius, clearance are needed, got {got}")
 
 
-def _less(larger: Array, smaller: Array) -> Array:
-    """The difference; of Python numbers without the digits that are rounding alone, so that 18 - 17.9 is 0.1."""
+def _difference(larger: Array, smaller: Array) -> Array:
+    """Subtract; round plain numbers to the digits of the minuend, so that 18 - 17.9 is 0.1."""
     if not (is_plain(larger) and is_plain(smaller) and 0 < larger < float("inf")):
         return larger - smaller
     return round(larger - smaller, 14 - floor(log10(larger)))

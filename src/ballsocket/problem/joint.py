@@ -1,4 +1,4 @@
-"""The problem itself: a ball in a lined socket."""
+"""Joint: a ball in a lined socket."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from typing import Any, Unpack
 
 from ..core.arrays import Array, is_plain, to_list, where
 from ..core.checks import check_names, require, shown
-from .dimensions import LENGTHS, OWN, Dimensions, Lengths, made_of
+from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
 from .material import Layer, Material
-from .values import larger, set_fields, short_text, unchecked
+from .values import larger, make_unchecked, set_fields, short_text
 
 
 class Support(Enum):
-    """What holds the outermost surface of a socket: nothing moves it (FIXED), or nothing touches it (FREE)."""
+    """Boundary condition of the outermost surface of a socket: no displacement (FIXED) or no traction (FREE)."""
 
     FIXED = "fixed"
     FREE = "free"
@@ -28,10 +28,10 @@ class Support(Enum):
 class Joint(Dimensions):
     """A ball in a socket of nearly its own radius, lined with an elastic layer.
 
-    What is behind the liner is rigid, unless `backing` or `support` say otherwise. Models that take it as rigid all
-    the same say so in their validity.
+    The support of the liner is rigid unless `backing` or `support` define it. The validity of a model states if it
+    assumes a rigid support.
 
-    Every number may be an array; arrays broadcast against each other and against the loads.
+    Every number may be an array. Arrays broadcast against each other and against the loads.
 
     Parameters
     ----------
@@ -42,28 +42,27 @@ class Joint(Dimensions):
     liner_thickness : float or array
         L in mm, positive; `inf` is a massive socket.
     head_diameter, diametral_clearance, socket_radius, outer_radius, outer_diameter : float or array
-        In mm, in place of the radius, the clearance or the thickness that they fix: 2 R1; 2 c; R2, where one of R1 and
-        c is given; R2 + L, with the layer right behind the liner (the shell) if that is of finite thickness; twice
-        that. What is fixed twice is refused.
+        Lengths in mm in place of radius, clearance or thickness: 2 R1; 2 c; R2 with one of R1 and c; R2 + L, plus the
+        shell, that is, a layer of finite thickness right behind the liner; twice that. Redundant lengths are an error.
     liner : Material
-        What the socket is lined with.
+        Material of the liner.
     ball : Material or None
-        None is a rigid ball. Models that take the ball as rigid say so in their validity.
+        Material of the ball; None is a rigid ball. The validity of a model states if it assumes a rigid ball.
     backing : tuple of Layer
-        The layers behind the liner, from the liner outwards, bonded to it and to each other. Only the outermost layer
-        of all may be infinite.
+        Layers behind the liner, from the liner outwards, bonded to it and to each other. Only the outermost layer may
+        be infinite.
     support : Support
-        The outermost surface, of the liner if there is no backing: FIXED (default) or FREE of traction. That of an
-        infinite layer is at rest either way.
+        Boundary condition of the outermost surface: FIXED (default) or FREE. An infinite layer has no displacement at
+        infinity in both cases.
     name, source : str
-        What it is called, and where the numbers come from.
+        Name of the joint, and source of its numbers.
 
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value; a length too few or too many.
+        A number that is not allowed; too few or too many lengths.
     TypeError
-        What is neither a number nor an array; a liner, ball, backing or support of another type.
+        A length that is neither a number nor an array; a liner, ball, backing or support of another type.
 
     Examples
     --------
@@ -104,18 +103,19 @@ class Joint(Dimensions):
         if not isinstance(support, Support):
             raise TypeError(f"support must be Support.FIXED or Support.FREE, got {shown(support)}")
         layers = _checked_backing(backing)
-        set_fields(self, **made_of(lengths, {}, _shell(layers)))
+        set_fields(self, **resolve_lengths(lengths, {}, _shell(layers)))
         set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
         for name, inner in self._thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
 
     def _thicknesses(self) -> list[tuple[str, Array]]:
-        """Thicknesses of the liner and the layers behind it, with their names."""
+        """List names and thicknesses of the liner and the layers behind it."""
         layers = [(f"backing[{number}].thickness", layer.thickness) for number, layer in enumerate(self.backing)]
         return [("liner_thickness", self.liner_thickness), *layers]
 
     @property
     def shell(self) -> Array:
+        """Thickness in mm of the layer right behind the liner; 0 without a layer, or if it is infinite."""
         return _shell(self.backing)
 
     @property
@@ -137,7 +137,7 @@ class Joint(Dimensions):
     def backing_ratio(self) -> Array:
         """Young's modulus of the liner over that of the softest layer behind it.
 
-        0 for a rigid backing: none at all, on a fixed support. `inf` where the outermost surface is free.
+        It is 0 for a fixed support without backing, and `inf` for a free outermost surface.
         """
         rigid = 0.0 * self.liner.young
         softest = reduce(larger, (self.liner.young / layer.material.young for layer in self.backing), rigid)
@@ -150,18 +150,18 @@ class Joint(Dimensions):
 
     @property
     def effective_modulus(self) -> Array:
-        """E* in MPa of ball and liner, from 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2."""
+        """Effective modulus E* in MPa of ball and liner, from 1/E* = (1 - ν1²)/E1 + (1 - ν²)/E."""
         compliance = (1 - self.liner.poisson**2) / self.liner.young
         if self.ball is not None:
             compliance = compliance + (1 - self.ball.poisson**2) / self.ball.young
         return 1 / compliance
 
     def numbers(self) -> tuple[Array, ...]:
-        """Every number of the joint, in a fixed order (see `with_numbers`)."""
+        """List all numbers of the joint in a fixed order (see `with_numbers`)."""
         ball = () if self.ball is None else (self.ball.young, self.ball.poisson)
-        own = (self.ball_radius, self.clearance, self.liner_thickness)
-        behind = ((layer.thickness, layer.material.young, layer.material.poisson) for layer in self.backing)
-        return (*own, self.liner.young, self.liner.poisson, *ball, *chain.from_iterable(behind))
+        lengths = (self.ball_radius, self.clearance, self.liner_thickness)
+        layers = ((layer.thickness, layer.material.young, layer.material.poisson) for layer in self.backing)
+        return (*lengths, self.liner.young, self.liner.poisson, *ball, *chain.from_iterable(layers))
 
     def strengths(self) -> tuple[Array, ...]:
         """Return the known strengths and proportional limits of liner and ball."""
@@ -169,49 +169,49 @@ class Joint(Dimensions):
         return (*self.liner.stress_limits.values(), *ball)
 
     def without_strengths(self) -> Joint:
-        """This joint of materials whose strengths are not known; no solution depends on them."""
+        """Return this joint without strengths, on which no solution depends."""
         parts: dict[str, Any] = {
             "liner": self.liner.without_strengths(),
             "ball": None if self.ball is None else self.ball.without_strengths(),
             "backing": tuple(layer.without_strengths() for layer in self.backing),
         }
-        return unchecked(Joint, **{**vars(self), **parts})
+        return make_unchecked(Joint, **{**vars(self), **parts})
 
     def with_numbers(self, numbers: Any) -> Joint:
-        """A joint like this one with other numbers, in the order of `numbers()`. Nothing is checked."""
-        radius, clearance, thickness, young, poisson, *others = numbers
-        behind = others if self.ball is None else others[2:]
-        triples = zip(self.backing, behind[::3], behind[1::3], behind[2::3], strict=True)
-        return unchecked(
+        """Return this joint with other numbers in the order of `numbers()`, without checks."""
+        radius, clearance, thickness, young, poisson, *remaining = numbers
+        behind = remaining if self.ball is None else remaining[2:]
+        layers = zip(self.backing, behind[::3], behind[1::3], behind[2::3], strict=True)
+        return make_unchecked(
             Joint,
             ball_radius=radius,
             clearance=clearance,
             liner_thickness=thickness,
             liner=self.liner.with_numbers(young, poisson),
-            ball=self.ball.with_numbers(*others[:2]) if self.ball is not None else None,
-            backing=tuple(layer.with_numbers(*three) for layer, *three in triples),
+            ball=self.ball.with_numbers(*remaining[:2]) if self.ball is not None else None,
+            backing=tuple(layer.with_numbers(*layer_numbers) for layer, *layer_numbers in layers),
             support=self.support,
             name=self.name,
             source=self.source,
         )
 
     def replace(self, **changes: Any) -> Joint:
-        """A joint like this one with other lengths, materials, layers or another name.
+        """Return this joint with other lengths, materials, layers or another name.
 
-        Of radius, clearance and thickness stays what the changes do not fix: with another head the clearance and the
-        liner's thickness are the same. A joint with a name is called "varied" afterwards.
+        Radius, clearance and thickness stay the same unless the changes determine them. For example, another head
+        diameter keeps the clearance and the thickness of the liner. The name of a changed joint ends in ", varied".
 
         Parameters
         ----------
         **changes
-            As of `Joint`.
+            Arguments of `Joint`.
 
         Raises
         ------
         ValueError
-            A name that is not known; a number that is not allowed.
+            An unknown argument; a number that is not allowed.
         TypeError
-            As of `Joint`.
+            A value of the wrong type, see `Joint`.
 
         Examples
         --------
@@ -219,25 +219,27 @@ class Joint(Dimensions):
         >>> print(bs.joints["hip-36"].replace(liner=bs.UHMWPE, head_diameter=32.0).dimensions)
         R1 16 mm, clearance 0.1 mm, liner 5 mm
         """
-        known = [each.name for each in fields(self) if each.name not in OWN]
-        check_names(changes, (*LENGTHS, *known), "in a joint")
+        attributes = [field.name for field in fields(self) if field.name not in STORED_LENGTHS]
+        check_names(changes, (*LENGTHS, *attributes), "in a joint")
         lengths = {name: value for name, value in changes.items() if name in LENGTHS}
-        others = {name: value for name, value in changes.items() if name not in LENGTHS}
-        standing = {name: getattr(self, name) for name in OWN}
-        made = made_of(lengths, standing, _shell(_checked_backing(others.get("backing", self.backing))))
-        if is_plain(made["clearance"]) and made["clearance"] < 0:
-            made["interference"] = -made.pop("clearance")
-        called = {"name": f"{self.name.removesuffix(_VARIED)}{_VARIED}", "source": ""} if changes and self.name else {}
-        kept: dict[str, Any] = {name: getattr(self, name) for name in known}
-        return Joint(**kept | called | others, **made)
+        new_attributes = {name: value for name, value in changes.items() if name not in LENGTHS}
+        current = {name: getattr(self, name) for name in STORED_LENGTHS}
+        shell = _shell(_checked_backing(new_attributes.get("backing", self.backing)))
+        stored = resolve_lengths(lengths, current, shell)
+        if is_plain(stored["clearance"]) and stored["clearance"] < 0:
+            stored["interference"] = -stored.pop("clearance")
+        varied_name = f"{self.name.removesuffix(_VARIED)}{_VARIED}"
+        names = {"name": varied_name, "source": ""} if changes and self.name else {}
+        old_attributes: dict[str, Any] = {name: getattr(self, name) for name in attributes}
+        return Joint(**old_attributes | names | new_attributes, **stored)
 
     def with_floats(self) -> Joint:
-        """This joint of Python numbers with all of them floats."""
+        """Return this joint of plain numbers with floats in place of integers."""
         numbers = self.numbers()
         return self if all(type(number) is float for number in numbers) else self.with_numbers(map(float, numbers))
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON in mm and MPa; arrays become lists, and what is infinite the text "inf"."""
+        """Return a dictionary for JSON in mm and MPa; arrays become lists, and infinity the text "inf"."""
         lengths = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
         return {
             "name": self.name,
@@ -250,9 +252,9 @@ class Joint(Dimensions):
 
     @property
     def dimensions(self) -> str:
-        """Ball, clearance and what lines the socket, in words."""
-        lined = _thickness(self.liner_thickness)
-        return f"R1 {short_text(self.ball_radius)} mm, clearance {short_text(self.clearance)} mm, {lined}"
+        """Text of ball radius, clearance and liner thickness."""
+        liner = _thickness_text(self.liner_thickness)
+        return f"R1 {short_text(self.ball_radius)} mm, clearance {short_text(self.clearance)} mm, {liner}"
 
     def __str__(self) -> str:
         ball = "rigid" if self.ball is None else str(self.ball)
@@ -263,10 +265,11 @@ class Joint(Dimensions):
 
 
 _VARIED = ", varied"
+"""End of the name of a changed joint."""
 
 
 def _shell(backing: Sequence[Layer]) -> Array:
-    """Thickness of the layer right behind the liner; 0 of none, and of an infinite one."""
+    """Return the thickness of the first layer; 0 without layers, or if it is infinite."""
     if not backing:
         return 0.0
     thickness = backing[0].thickness
@@ -276,6 +279,7 @@ def _shell(backing: Sequence[Layer]) -> Array:
 
 
 def _checked_backing(backing: Any) -> tuple[Layer, ...]:
+    """Return a list of layers as a tuple; raise TypeError for anything else."""
     if not isinstance(backing, list | tuple):
         raise TypeError(f"backing must be a tuple of Layers from the liner outwards, got {shown(backing)}")
     for number, layer in enumerate(backing):
@@ -284,6 +288,6 @@ def _checked_backing(backing: Any) -> tuple[Layer, ...]:
     return tuple(backing)
 
 
-def _thickness(value: Array) -> str:
+def _thickness_text(value: Array) -> str:
     text = short_text(value)
     return "massive socket" if text == "inf" else f"liner {text} mm"

@@ -1,4 +1,4 @@
-"""Materials, and layers of them."""
+"""Materials and layers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from ..core.arrays import Array, to_list
 from ..core.checks import shown
 from ..core.quantities import LAYER, MATERIAL, STRENGTH, STRESS_LIMITS
-from .values import set_fields, short_text, unchecked
+from .values import make_unchecked, set_fields, short_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,7 +22,7 @@ class Material:
     poisson : float or array
         Poisson's ratio, above -1 and at most 0.5.
     name, source : str
-        What it is called, and where the numbers come from.
+        Name of the material, and source of its numbers.
     proportional_limit : float or array, optional
         Stress in MPa above which the secant modulus is lower than `young`. None (default) is an unknown limit.
     yield_stress, fatigue_limit, allowable_pressure : float or array, optional
@@ -31,9 +31,9 @@ class Material:
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value.
+        A number that is not allowed; the message has its value.
     TypeError
-        What is neither a number nor an array.
+        A value that is neither a number nor an array of numbers.
 
     Examples
     --------
@@ -68,14 +68,14 @@ class Material:
 
     def without_strengths(self) -> Material:
         """Return this material without strengths and proportional limit."""
-        return unchecked(Material, **{**vars(self), **dict.fromkeys(STRESS_LIMITS)})
+        return make_unchecked(Material, **{**vars(self), **dict.fromkeys(STRESS_LIMITS)})
 
     def with_numbers(self, young: Array, poisson: Array) -> Material:
-        """A material like this one with other elastic numbers. Nothing is checked."""
-        return unchecked(Material, **{**vars(self), "young": young, "poisson": poisson})
+        """Return this material with other elastic constants, without checks."""
+        return make_unchecked(Material, **{**vars(self), "young": young, "poisson": poisson})
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return a dictionary for JSON."""
         numbers = {"young": self.young, "poisson": self.poisson, **self.stress_limits}
         return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
 
@@ -86,20 +86,20 @@ class Material:
 
 @dataclass(frozen=True, kw_only=True)
 class Layer:
-    """A layer behind the liner: a metal shell, cement, bone.
+    """Layer behind the liner: a metal shell, cement or bone.
 
     Parameters
     ----------
     thickness : float or array
-        In mm, positive; `inf` is a massive body.
+        Thickness in mm, positive; `inf` is a massive body.
     material : Material
 
     Raises
     ------
     ValueError
-        A thickness that is not allowed, named with its value.
+        A thickness that is not allowed; the message has its value.
     TypeError
-        A material that is none.
+        A `material` of another type.
 
     Examples
     --------
@@ -118,15 +118,15 @@ class Layer:
         set_fields(self, thickness=thickness)
 
     def without_strengths(self) -> Layer:
-        """This layer of a material whose strengths are not known."""
-        return unchecked(Layer, thickness=self.thickness, material=self.material.without_strengths())
+        """Return this layer without strengths."""
+        return make_unchecked(Layer, thickness=self.thickness, material=self.material.without_strengths())
 
     def with_numbers(self, thickness: Array, young: Array, poisson: Array) -> Layer:
-        """A layer like this one with other numbers. Nothing is checked."""
-        return unchecked(Layer, thickness=thickness, material=self.material.with_numbers(young, poisson))
+        """Return this layer with other numbers, without checks."""
+        return make_unchecked(Layer, thickness=thickness, material=self.material.with_numbers(young, poisson))
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return a dictionary for JSON."""
         return {"thickness": to_list(self.thickness), **self.material.summary()}
 
     def __str__(self) -> str:

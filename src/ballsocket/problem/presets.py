@@ -1,13 +1,13 @@
-"""Materials and joints to start from, each with the source of its numbers.
+"""Preset materials and joints, each with the source of its numbers.
 
-`representative` marks a typical engineering figure that no source was found to print.
+`representative` marks a typical engineering value without a published source.
 """
 
 from __future__ import annotations
 
 from math import inf
 
-from ..core.checks import Named
+from ..core.checks import NamedItems
 from .joint import Joint
 from .material import Material
 
@@ -83,7 +83,7 @@ CANCELLOUS_BONE = Material(
     young=500.0, poisson=0.2, name="cancellous bone", source="representative; varies widely with its density"
 )
 
-materials: dict[str, Material] = Named(
+materials: dict[str, Material] = NamedItems(
     "material",
     {
         "uhmwpe": UHMWPE,
@@ -100,7 +100,7 @@ materials: dict[str, Material] = Named(
         "cancellous-bone": CANCELLOUS_BONE,
     },
 )
-"""Materials by the name that files and the command line use: that of their constant, in small letters with hyphens."""
+"""Materials by the name in files and on the command line: the name of the constant in lower case with hyphens."""
 
 
 def _joint(
@@ -144,5 +144,5 @@ _ALL_JOINTS = (
     ),
 )
 
-joints: dict[str, Joint] = Named("joint", {joint.name: joint for joint in _ALL_JOINTS})
-"""Joints by name: common hips, reverse shoulder, suspension ball joint, tilting-pad pivot."""
+joints: dict[str, Joint] = NamedItems("joint", {joint.name: joint for joint in _ALL_JOINTS})
+"""Joints by name: common hips, reverse shoulders, a suspension ball joint and a tilting-pad pivot."""

@@ -1,4 +1,4 @@
-"""Frozen values of numbers: made without checks where those were done before, and written short."""
+"""Helpers of frozen values: construction without checks, short text, and maximum."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from typing import Any
 from ..core.arrays import Array, is_plain, where
 
 
-def unchecked(cls: Any, **fields: Any) -> Any:
-    """A material, layer or joint from numbers that have been checked before, or are not known yet."""
-    made = object.__new__(cls)
-    set_fields(made, **fields)
-    return made
+def make_unchecked(cls: Any, **fields: Any) -> Any:
+    """Make a material, layer or joint without checks, from checked or traced numbers."""
+    instance = object.__new__(cls)
+    set_fields(instance, **fields)
+    return instance
 
 
-def set_fields(made: Any, **fields: Any) -> None:
-    """Fields of a frozen value that is being made."""
+def set_fields(instance: Any, **fields: Any) -> None:
+    """Set fields of a frozen value during its construction."""
     for name, value in fields.items():
-        object.__setattr__(made, name, value)
+        object.__setattr__(instance, name, value)
 
 
 def short_text(value: Array) -> str:
-    """A number in six digits, or what stands in its place."""
+    """Format a number with six digits; return the shape of an array, or "<traced>"."""
     shape = tuple(getattr(value, "shape", ()))
     try:
         return f"{float(value):g}" if not shape else f"<array {'x'.join(map(str, shape))}>"
@@ -29,6 +29,6 @@ def short_text(value: Array) -> str:
         return "<traced>"
 
 
-def larger(one: Array, other: Array) -> Array:
-    """The larger of two, element by element."""
-    return max(one, other) if is_plain(one) and is_plain(other) else where(one > other, one, other)
+def larger(x: Array, y: Array) -> Array:
+    """Return the larger of two values, element by element."""
+    return max(x, y) if is_plain(x) and is_plain(y) else where(x > y, x, y)

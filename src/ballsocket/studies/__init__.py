@@ -7,10 +7,10 @@ for what matters; `design_map` and its kin draw.
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from ..core.checks import nearest
+from ..core.plotting import load_plot
 from .axes import Method, Span
 from .design import Design, grid, sample
 from .distributions import LogNormal, Normal, Rectangular, tolerance
@@ -61,9 +61,7 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "sensitivity_figure",
 ]
 
-# pictures are made a floor above, which knows studies: here they are looked up when they are asked for, never imported
-_ABOVE = "ballsocket.output.study_plots"
-_PICTURES = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
+_PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
 band_figure: Callable[..., Any]
 design_map: Callable[..., Any]
 front_figure: Callable[..., Any]
@@ -72,8 +70,8 @@ sensitivity_figure: Callable[..., Any]
 if not TYPE_CHECKING:  # a checker of types would take any name for an offered one
 
     def __getattr__(name: str) -> Any:
-        if name in _PICTURES:
-            return getattr(import_module(_ABOVE), name)
+        if name in _PLOTS:
+            return load_plot(name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}{nearest(name, __all__)}")
 
 

@@ -1,0 +1,151 @@
+"""Checked inputs of a press, and the contact assembled from the result of a solver."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy
+
+from ..core import arrays
+from ..core.arrays import Array, where
+from ..core.checks import normalise_name, select_load, shown
+from ..core.quantities import LOADS
+from ..core.validity import Status, is_missing
+from ..problem import Joint
+from ..problem.presets import joints
+from .contact import Contact, Laws
+from .model_info import ModelInfo
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SolverResult:
+    """Result of a solver before its points get a status.
+
+    Attributes
+    ----------
+    laws : Laws
+        Formulas or solution of the other quantities.
+    force, indentation : array
+        In N and mm; not finite where the load is not reached.
+    failures : mapping of Status to array
+        Mask of the points with each failure. A point that is not finite needs no mask.
+    """
+
+    laws: Laws
+    force: Array
+    indentation: Array
+    failures: Mapping[Status, Array] = field(default_factory=dict)
+
+
+def check_joint(joint: Any) -> None:
+    """Raise TypeError unless `joint` is a Joint; name the preset if it is the name of one."""
+    if isinstance(joint, Joint):
+        return
+    is_preset = isinstance(joint, str) and normalise_name(joint) in joints
+    hint = f"; use bs.joints[{normalise_name(joint)!r}]" if is_preset else ""
+    raise TypeError(f"joint must be a Joint, got {shown(joint)}{hint}")
+
+
+def check_load(**loads: Array | None) -> tuple[str, Array]:
+    """Select the single load that is not None, check it and return its name and value."""
+    kind, load = select_load(**loads)
+    return kind, LOADS[kind].checked(load)
+
+
+def broadcast_load(load: Array, strengths: tuple[Array, ...]) -> Array:
+    """Broadcast a load against the strengths of the materials, so that stresses can be compared with them."""
+    if all(map(arrays.is_plain, strengths)):
+        return load
+    return arrays.broadcast(*arrays.to_common_arrays(load, *strengths))
+
+
+def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
+    """Convert joint and load to arrays of one library and dtype.
+
+    The `parameters` of a model count for the choice of the library; they are not returned.
+
+    Returns
+    -------
+    bool
+        True if all numbers are plain.
+    Joint, array
+        The joint and the load of arrays.
+    """
+    numbers = (*joint.numbers(), load)
+    plain = all(arrays.is_plain(number) for number in (*numbers, *parameters))
+    joint_numbers = arrays.to_common_arrays(*numbers, *parameters)[: len(numbers)]
+    return plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
+
+
+_BY_SEVERITY = (
+    Status.BEYOND_EQUATOR,
+    Status.AT_RIM,
+    Status.NOT_ROUND,
+    Status.NOT_CONVERGED,
+    Status.NOT_REACHED,
+    Status.DISLOCATED,
+    Status.OUTSIDE_DOMAIN,
+)
+"""Failures in ascending order of severity; a point with several failures gets the last of them."""
+
+
+def make_contact(
+    model: ModelInfo,
+    contact_type: type[Contact],
+    joint: Joint,
+    kind: str,
+    load: Array,
+    points: Array,
+    result: SolverResult,
+    plain: bool,
+) -> Contact:
+    """Assemble a contact of arrays: status, and NaN at the points that failed.
+
+    Parameters
+    ----------
+    model : ModelInfo
+    contact_type : type
+        Class of the contact.
+    joint : Joint
+    kind : str
+        "force", "indentation" or "half_angle".
+    load : array
+    points : array of bool
+        Points inside the domain of the model.
+    result : SolverResult
+    plain : bool
+        True if the contact must consist of Python numbers.
+    """
+    xp = arrays.namespace(load)
+    shape = (load, result.force, result.indentation, *joint.numbers())
+    F = arrays.broadcast(load if kind == "force" else result.force, *shape)
+    d = arrays.broadcast(load if kind == "indentation" else result.indentation, *shape)
+    reached = arrays.isfinite(result.force) & arrays.isfinite(result.indentation)
+    failures = {**result.failures, Status.NOT_REACHED: ~reached, Status.OUTSIDE_DOMAIN: ~points}
+    status = xp.zeros_like(xp.astype(F > 0, xp.int8))
+    for code in _BY_SEVERITY:
+        if code in failures:
+            status = where(failures[code], xp.asarray(int(code), dtype=xp.int8), status)
+    solved = ~is_missing(status)
+    F, d = where(solved | (kind == "force"), F, xp.nan), where(solved | (kind == "indentation"), d, xp.nan)
+    if plain:
+        F, d, status = float(F), float(d), Status(int(status))
+    return contact_type(model=model, laws=result.laws, joint=joint, force=F, indentation=d, status=status)
+
+
+def make_scalar_contact(
+    model: ModelInfo, contact_type: type[Contact], joint: Joint, kind: str, load: float, result: SolverResult
+) -> Contact:
+    """Assemble a contact of Python numbers; the joint is inside the domain. See `make_contact`."""
+    F, d, status = result.force, result.indentation, Status.OK
+    failures = {**result.failures, Status.NOT_REACHED: not (arrays.isfinite(F) and arrays.isfinite(d))}
+    for code in _BY_SEVERITY:
+        if failures.get(code):
+            status = code
+    if status.failed:
+        F, d = numpy.nan, numpy.nan
+    if kind != "half_angle":
+        F, d = (load, d) if kind == "force" else (F, load)
+    return contact_type(model=model, laws=result.laws, joint=joint, force=F, indentation=d, status=status)

@@ -1,0 +1,33 @@
+"""Registration of the plots that contacts, comparisons and studies offer as methods and attributes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..core.plotting import Plot, register_plot
+
+STUDY_PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
+"""Plots that `ballsocket.studies` offers."""
+
+
+def register_plots() -> None:
+    """Register the plots of this room; matplotlib is imported when the first of them is loaded."""
+    register_plot("contacts", _load_contact_plot)
+    for name in STUDY_PLOTS:
+        register_plot(name, _study_plot_loader(name))
+
+
+def _load_contact_plot() -> Plot:
+    from .quick_plot import plot
+
+    return plot
+
+
+def _study_plot_loader(name: str) -> Callable[[], Plot]:
+    def load() -> Plot:
+        from . import study_plots
+
+        plot: Plot = getattr(study_plots, name)
+        return plot
+
+    return load
