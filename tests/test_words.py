@@ -23,7 +23,7 @@ PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
     [
         (
             lambda: bs.Exact().press("Hip 28", force=1.0),
-            r"joint must be a Joint, got 'Hip 28'; bs.joints\['hip-28'\] ",
+            r"joint must be a Joint, got 'Hip 28'; use bs.joints\['hip-28'\]",
         ),
         (lambda: bs.Exact().press(28.0, force=1.0), r"joint must be a Joint, got 28\.0$"),
         (lambda: bs.PinInHole().press("hip-28", line_load=1.0), "joint must be a Joint, got 'hip-28'"),
@@ -51,7 +51,7 @@ def test_what_is_something_else_is_told_in_a_sentence(ask, message):
         (lambda: bs.joints["hip36"], "joint 'hip36' is not known; did you mean 'hip-36'"),
         (lambda: bs.materials["UHMPE"], "material 'UHMPE' is not known; did you mean 'uhmwpe'"),
         (lambda: bs.catalogue["hess"], "model 'hess' is not known; did you mean 'hess-forsbach'"),
-        (lambda: bs.compare(HIP, force=1.0)["herz"], "model 'herz' was not asked; did you mean 'hertz'"),
+        (lambda: bs.compare(HIP, force=1.0)["herz"], "model 'herz' is not in this comparison; did you mean 'hertz'"),
     ],
 )
 def test_a_name_that_is_not_known_is_told_with_the_nearest(ask, message):

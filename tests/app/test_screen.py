@@ -156,7 +156,7 @@ def test_arrays_are_no_joint_file():
         ("a" * 7900 + "=1", "'aaaa.* in the link is not known"),
         ("limit=force<=1&" * 21, "a map has at most 20 limits, got 21"),
         ("across=force=" + " .." * 1500 + "%0a", "is not a range"),
-        ("name=%1b[31m&joint=2", "name = .* none that controls|must be a table"),
+        ("name=%1b[31m&joint=2", "name = .* no control characters|must be a table"),
         ("joint=2&joint.clearance=1", "'joint' is given as text and as a table in the link"),
         ("up=head_diameter=1..2", "a map has two axes, and both are head_diameter"),
         ("up=clearance=2..1", "clearance from 2 to 1 is no range: it must go upwards"),

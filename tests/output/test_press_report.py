@@ -35,7 +35,7 @@ def pages():
 def test_the_page_has_the_verdict_the_drawing_and_every_input(pages):
     text = unescape(pages[0][Units.SI])
     assert "<strong>11.16 MPa</strong> largest pressure under 3000 N, by exact" in text
-    assert "bears it: 33 % of the yield stress of the liner" in text
+    assert "within its strength: 33 % of the yield stress of the liner" in text
     for cell in ("36 mm", "36.2 mm", "0.2 mm", "5 mm", "171.9°", "Young's modulus 750 MPa", "2026-01-02"):
         assert cell in text, cell
     assert text.count("data:image/svg+xml;base64,") == 2

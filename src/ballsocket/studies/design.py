@@ -129,7 +129,7 @@ def _check_allowed(name: str, values: Numbers, hint: str) -> None:
     if bad.any():
         first = int(numpy.argmax(bad))
         more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
-        what, meant = PARAMETERS[name].title, PARAMETERS[name].meant(float(values[first]))
+        what, meant = PARAMETERS[name].title, PARAMETERS[name].radian_hint(float(values[first]))
         raise ValueError(f"{name}[{first}] = {values[first]:g}{more} is not allowed for a {what}{hint}{meant}")
 
 

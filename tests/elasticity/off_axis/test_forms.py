@@ -209,7 +209,7 @@ def test_springs_in_a_preloaded_shell_are_the_linear_law():
 
 def test_only_sphere_knows_preload():
     for model in (bs.Exact(), bs.HessForsbach(), bs.Tabulated()):
-        with pytest.raises(bs.OutsideDomainError, match="ask sphere"):
+        with pytest.raises(bs.OutsideDomainError, match="use sphere"):
             model.press(TIGHT, force=100.0)
     with pytest.raises(ValueError, match="beyond the equator"):
         bs.Preload(model=bs.Sphere(), joint=TIGHT)

@@ -21,7 +21,7 @@ from math import ceil, pi
 
 import numpy
 
-from ...contact.peak_pressure import Peaked, largest_pressure
+from ...contact.peak_pressure import PeakPressure, find_peak_pressure
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem.gaps import Gap
 from .grid import Grid
@@ -30,7 +30,7 @@ from .kernel import Kernel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class State(Peaked):
+class State(PeakPressure):
     """Contacts of one joint at half angles ε (loads,) above 0; quantities have that shape.
 
     Arrays over the points of the grid have one more axis. H and G are counted in units of 1/C: they are in mm.
@@ -89,7 +89,7 @@ class State(Peaked):
         """d in mm: H(ε) = 0, by Newton's method."""
         d = numpy.zeros_like(self.half_angle)[:, None]
         for _ in range(self.gap.steps):
-            miss, slope = (side(self._targets, d) for side in (self.gap.transform, self.gap.deepening))
+            miss, slope = (side(self._targets, d) for side in (self.gap.transform, self.gap.indentation_derivative))
             step = (self._at_edge(miss) / self._at_edge(slope))[:, None]
             d = d - step
             if not numpy.any(abs(step) > 1e-13 * abs(d)):
@@ -99,7 +99,7 @@ class State(Peaked):
     @cached_property
     def _deepening(self) -> Numbers:
         """A[∂u/∂d] at the targets."""
-        return self.gap.deepening(self._targets, self.indentation[:, None])
+        return self.gap.indentation_derivative(self._targets, self.indentation[:, None])
 
     @cached_property
     def _G(self) -> tuple[Numbers, Numbers]:  # noqa: N802
@@ -151,7 +151,7 @@ class State(Peaked):
         """The largest pressure of each contact in MPa, and its polar angle in rad."""
         if self.falls.all():
             return self.pole_pressure, 0.0 * self.half_angle
-        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, ROUNDING)
+        return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, ROUNDING)
 
     @cached_property
     def pressure_integral(self) -> Numbers:

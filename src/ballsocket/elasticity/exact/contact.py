@@ -19,10 +19,10 @@ from ...contact.closed_sphere import (
     indentation_change,
     largest_change,
 )
-from ...contact.per_joint import Piece, SolvedContact
+from ...contact.per_joint import JointContacts, SolvedContact
 from ...core import arrays
 from ...core.arrays import Array
-from ...core.checks import numeric, require
+from ...core.checks import check_numeric, require
 from ...core.quantities import QUANTITIES
 from ...core.stress import Peak, Stress
 from ...core.validity import Range
@@ -104,7 +104,8 @@ class ElasticContact(SolvedContact):
             outermost layer.
         """
         angles, depths = (
-            numpy.asarray(value, dtype=float) for value in (QUANTITIES["angle"].checked(angle), numeric("depth", depth))
+            numpy.asarray(value, dtype=float)
+            for value in (QUANTITIES["angle"].checked(angle), check_numeric("depth", depth))
         )
         thickness = sum(shell.thickness for shell in self._single.kernel.socket.shells)
         good = (depths >= 0) & (depths <= thickness * (1 + 1e-9))
@@ -123,7 +124,7 @@ class ElasticContact(SolvedContact):
         where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
         """
         changes = self.laws.spread(_hemisphere_of, rows=(len(CHANGES),))
-        return {name: self._plain(changes[number, ...]) for number, name in enumerate(CHANGES)}
+        return {name: self._match_load(changes[number, ...]) for number, name in enumerate(CHANGES)}
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -154,7 +155,7 @@ class ElasticContact(SolvedContact):
     def hemisphere_at_most(self, name: str) -> float:
         """Estimate an upper bound of the "indentation" or "largest" change; infinite without a formula."""
         fitted = not self.joint.backing and self.joint.support is Support.FIXED
-        if not fitted or not all(arrays.truth(limit.holds(self)) for limit in _FITTED):
+        if not fitted or not all(arrays.all_true(limit.holds(self)) for limit in _FITTED):
             return inf
         estimate = indentation_change(self) if name == "indentation" else largest_change(self)
         return _SAFETY * float(numpy.max(arrays.to_numpy(estimate), where=~arrays.to_numpy(self._failed), initial=0.0))
@@ -171,17 +172,17 @@ class ElasticContact(SolvedContact):
         return peak(self._single, float(self.joint.liner_thickness))
 
     @cached_property
-    def von_mises_between(self) -> tuple[Array, Array]:
-        least, most = super().von_mises_between
-        if arrays.truth(arrays.isfinite(most) | self._failed) is not False:
+    def von_mises_bounds(self) -> tuple[Array, Array]:
+        least, most = super().von_mises_bounds
+        if arrays.all_true(arrays.isfinite(most) | self._failed) is not False:
             return least, most
-        about = self._answer(lambda: self.laws.located(lambda place, piece: self._about_von_mises(piece)))
+        about = self._mask_failed(lambda: self.laws.located(lambda place, piece: self._about_von_mises(piece)))
         return (1 - OFF) * about, (1 + OFF) * about
 
-    def _about_von_mises(self, piece: Piece) -> numpy.ndarray:
+    def _about_von_mises(self, piece: JointContacts) -> numpy.ndarray:
         return about_von_mises(piece.state)
 
-    def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+    def _joint_von_mises(self, place: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
         return largest_von_mises(piece.state, piece.reached)
 
     def summary(self) -> dict[str, Any]:
@@ -201,16 +202,16 @@ class ElasticContact(SolvedContact):
 class CurveContact(ElasticContact):
     """An `ElasticContact` whose largest stress in the liner lies on a curve of its joint too, to about 1e-3."""
 
-    def _about_von_mises(self, piece: Piece) -> numpy.ndarray:
-        return self._von_mises_of(numpy.empty(0), piece)
+    def _about_von_mises(self, piece: JointContacts) -> numpy.ndarray:
+        return self._joint_von_mises(numpy.empty(0), piece)
 
-    def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+    def _joint_von_mises(self, place: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
         if isinstance(piece.state, FittedState):
             return piece.state.largest_von_mises(piece.reached)
-        return super()._von_mises_of(place, piece)
+        return super()._joint_von_mises(place, piece)
 
 
-def _hemisphere_of(piece: Piece) -> numpy.ndarray:
+def _hemisphere_of(piece: JointContacts) -> numpy.ndarray:
     """Compute the changes of the touching contacts of one joint: (quantities, contacts)."""
     changes = hemisphere_of(piece.state.kernel).changes(piece.state.half_angle)
     return numpy.stack([changes[name] for name in CHANGES])

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy
 
-from ...contact.per_joint import Piece
+from ...contact.per_joint import JointContacts
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .abel import State
@@ -60,7 +60,7 @@ class Curve:
     gap: Gap
     tolerance: float
 
-    def press(self, kind: str, load: Numbers) -> Piece:
+    def press(self, kind: str, load: Numbers) -> JointContacts:
         """The contacts that belong to loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         given = load[touching]
@@ -73,7 +73,7 @@ class Curve:
             if not any(numpy.any(part[reached] > self.tolerance) for part in error.values()):
                 break
             angle = numpy.where(angle <= self._end, state.half_angle, angle)
-        return Piece(load=load, touching=touching, state=state, reached=reached, error=error)
+        return JointContacts(load=load, touching=touching, state=state, reached=reached, error=error)
 
     def state(self, angle: Numbers, points: int) -> State:
         """The contacts of half angles, solved at so many points."""

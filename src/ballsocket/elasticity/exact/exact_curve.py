@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import ClassVar
 
-from ...contact import Contact, Wrapped
-from ...contact.answer import Answer
-from ...contact.per_joint import taken_apart
+from ...contact import Contact, ModelWrapper
+from ...contact.assembly import SolverResult
+from ...contact.per_joint import solve_per_joint
 from ...core.arrays import Array
 from ...core.checks import shown
 from ...problem import Joint
@@ -20,7 +20,7 @@ from .model import Exact, answer_of, curve_of
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExactCurve(Wrapped):
+class ExactCurve(ModelWrapper):
     """`Exact` for many loads on few joints, backed ones too: about a millionth of a second a load.
 
     The first load on a joint costs 32 to 72 exact solutions, a hundredth of a second for most joints; series through
@@ -61,8 +61,8 @@ class ExactCurve(Wrapped):
         if self.model.gap is not LinearGap:
             raise ValueError("a curve is that of the linear gap: ask Exact for the circular one")
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        solution = taken_apart(self, joint, load, lambda one, loads: fitted_of(self.model, one).press(kind, loads))
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        solution = solve_per_joint(self, joint, load, lambda one, loads: fitted_of(self.model, one).press(kind, loads))
         return answer_of(solution, self.model.tolerance, load)
 
 

@@ -14,7 +14,7 @@ from math import inf
 
 import numpy
 
-from ...contact.per_joint import Piece
+from ...contact.per_joint import JointContacts
 from ...core.arrays import Numbers
 from .abel import ROUNDING, State
 from .curve import Curve, errors, steepness
@@ -58,14 +58,16 @@ class FittedCurve:
     curve: Curve
     knots: State
 
-    def press(self, kind: str, load: Numbers) -> Piece:
+    def press(self, kind: str, load: Numbers) -> JointContacts:
         """The contacts that belong to loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         given = load[touching]
         angle = given if kind == "half_angle" else _in_blocks(lambda part: self._angle_of(kind, part), given)
         reached = angle <= self.curve.widest
         state = FittedState(fitted=self, half_angle=numpy.where(reached, angle, self.curve.widest))
-        return Piece(load=load, touching=touching, state=state, reached=reached, error=self._errors(kind, state))
+        return JointContacts(
+            load=load, touching=touching, state=state, reached=reached, error=self._errors(kind, state)
+        )
 
     def _errors(self, kind: str, state: FittedState) -> dict[str, Numbers]:
         """Relative errors of each quantity, at the given load."""

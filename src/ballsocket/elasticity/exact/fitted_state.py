@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ...contact.peak_pressure import Peaked, largest_pressure
+from ...contact.peak_pressure import PeakPressure, find_peak_pressure
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .abel import State, pressure_of
@@ -24,7 +24,7 @@ _FLAT = 1e-7  # of a pressure: what series may ripple
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FittedState(Peaked):
+class FittedState(PeakPressure):
     """Contacts at half angles ε (contacts,) above 0, with the quantities of a `State`."""
 
     fitted: FittedCurve
@@ -110,7 +110,7 @@ class FittedState(Peaked):
         """The largest pressure of each contact in MPa, and its polar angle in rad."""
         if self.fitted.knots.falls.all():
             return self.pole_pressure, 0.0 * self.half_angle
-        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _FLAT)
+        return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _FLAT)
 
     def largest_von_mises(self, reached: Numbers) -> Numbers:
         """That in the liner of each contact that was reached (a mask), between those of half angles along the curve."""

@@ -8,11 +8,11 @@ from math import inf
 from typing import Any, ClassVar
 
 from ...contact import Contact, Model
-from ...contact.answer import Answer
-from ...contact.per_joint import PiecedSolution, taken_apart
+from ...contact.assembly import SolverResult
+from ...contact.per_joint import CombinedSolution, solve_per_joint
 from ...core import arrays
 from ...core.arrays import Array
-from ...core.checks import numeric, require, shown
+from ...core.checks import check_numeric, require, shown
 from ...core.sources import Source
 from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from ...problem import Joint, Support
@@ -63,7 +63,7 @@ class Exact(Model):
     gap: type[LinearGap] | type[CircularGap] = LinearGap
 
     def __post_init__(self) -> None:
-        tolerance = numeric("tolerance", self.tolerance)
+        tolerance = check_numeric("tolerance", self.tolerance)
         if not arrays.is_plain(tolerance):
             raise TypeError(f"tolerance must be one number, got {shown(self.tolerance)}")
         good = 1e-10 <= tolerance <= 1e-2
@@ -105,21 +105,21 @@ class Exact(Model):
 
     reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        solution = taken_apart(self, joint, load, lambda one, loads: curve_of(self, one).press(kind, loads))
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        solution = solve_per_joint(self, joint, load, lambda one, loads: curve_of(self, one).press(kind, loads))
         return answer_of(solution, self.tolerance, load)
 
 
 _BODY = NearHemisphere()
 
 
-def answer_of(solution: PiecedSolution, tolerance: float, load: Array) -> Answer:
+def answer_of(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
     """The answer that a solution is, not converged where its own errors are more than the tolerance."""
-    return Answer(
+    return SolverResult(
         laws=solution,
         force=solution.force,
         indentation=solution.indentation,
-        failures={Status.NOT_CONVERGED: ~(solution.worst <= max(tolerance, 10 * arrays.rounding(load)))},
+        failures={Status.NOT_CONVERGED: ~(solution.worst <= max(tolerance, 10 * arrays.machine_epsilon(load)))},
     )
 
 

@@ -8,7 +8,7 @@ from math import inf, log1p, radians
 
 import numpy
 
-from ...contact.strength import share_of_ball
+from ...contact.strength import ball_stress_ratio
 from ...core.arrays import Numbers
 from ...core.stress import Peak, Stress
 from .abel import State
@@ -78,7 +78,7 @@ def _places(state: State, thickness: float) -> tuple[Numbers, Numbers]:
 
 def about_von_mises(state: State) -> Numbers:
     """About what `largest_von_mises` says of each contact, within `OFF` of it: from an eighth of the modes."""
-    values = state.max_pressure * share_of_ball(state.kernel.socket.shells[0].poisson)
+    values = state.max_pressure * ball_stress_ratio(state.kernel.socket.shells[0].poisson)
     for number in numpy.flatnonzero(state.half_angle >= NARROWEST):
         alone = state.alone(int(number))
         angles, depths = _places(alone, alone.kernel.socket.shells[0].thickness)
@@ -118,7 +118,7 @@ def largest_von_mises(state: State, reached: Numbers) -> Numbers:
     values = numpy.full(len(state.half_angle), numpy.nan)
     for number in numpy.flatnonzero(reached):
         if state.half_angle[number] < NARROWEST:  # a half-space
-            values[number] = state.max_pressure[number] * share_of_ball(liner.poisson)
+            values[number] = state.max_pressure[number] * ball_stress_ratio(liner.poisson)
         else:
             values[number] = peak(state.alone(int(number)), liner.thickness).von_mises
     return values

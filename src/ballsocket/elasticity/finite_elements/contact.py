@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ...contact.per_joint import Piece, SolvedContact, joint_at
+from ...contact.per_joint import JointContacts, SolvedContact, joint_at
 from ...core.arrays import Array, Numbers, to_numpy
 from ...core.stress import Peak
 from ...core.validity import Status
@@ -48,12 +48,12 @@ class MeshedContact(SolvedContact):
         return section(self._plain_joint, self.model.cup, self._solved)
 
     @property
-    def von_mises_between(self) -> tuple[Array, Array]:
+    def von_mises_bounds(self) -> tuple[Array, Array]:
         """What `von_mises` lies between, as far as that is known at once; near a rim that is nothing."""
-        least, most = super().von_mises_between
+        least, most = super().von_mises_bounds
         return (least, most) if self.model.cup == Cup() else (0.0 * least, most + inf)
 
-    def _von_mises_of(self, place: Numbers, piece: Piece) -> Numbers:
+    def _joint_von_mises(self, place: Numbers, piece: JointContacts) -> Numbers:
         from .section import section
 
         found = [

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy
 
-from ...contact.per_joint import QUANTITIES, Piece
+from ...contact.per_joint import QUANTITIES, JointContacts
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .full_contact import Brimful
@@ -54,7 +54,7 @@ class Curve:
     meshes: int
     order: int
 
-    def press(self, kind: str, load: Numbers) -> Piece:
+    def press(self, kind: str, load: Numbers) -> JointContacts:
         """The contacts that belong to loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         given = load[touching].tolist()
@@ -67,7 +67,7 @@ class Curve:
         error = dict.fromkeys(QUANTITIES, numpy.full(len(given), numpy.nan))
         if coarse:
             error = errors_of(kind, fine, coarse[0], self.order)
-        return Piece(load=load, touching=touching, state=fine, reached=reached, error=error)
+        return JointContacts(load=load, touching=touching, state=fine, reached=reached, error=error)
 
     def _class(self, kind: str, load: float) -> int:
         """The class that a load belongs to, by its half angle on the coarse mesh of a class not far from it."""

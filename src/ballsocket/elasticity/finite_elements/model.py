@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from ...contact import Contact, Model
-from ...contact.answer import Answer
-from ...contact.law import Law
-from ...contact.per_joint import taken_apart
+from ...contact.assembly import SolverResult
+from ...contact.law import ForceLaw
+from ...contact.per_joint import solve_per_joint
 from ...core import arrays
 from ...core.arrays import Array
 from ...core.checks import needs, require
 from ...core.sources import Source
-from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, bodies
+from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, body_remarks
 from ...problem import Joint
 from ...problem.cup import Cup
 from ...problem.gaps import CircularGap, LinearGap, check_gap
@@ -113,7 +113,7 @@ class FiniteElement(Model):
         ),
         Range(quantity="joint.thickness_ratio", high=200.0, why="so thin a liner is not meshed"),
     )
-    remarks: ClassVar[tuple[Remark, ...]] = bodies(
+    remarks: ClassVar[tuple[Remark, ...]] = body_remarks(
         "cut off at the plane of the socket's rim", "half a one on its equator"
     )
     reach: ClassVar[str] = (
@@ -125,13 +125,13 @@ class FiniteElement(Model):
     def validity(self) -> tuple[Range, ...]:
         return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
 
-    def _law(self, joint: Joint) -> Law:
+    def _law(self, joint: Joint) -> ForceLaw:
         raise TypeError("finite elements are too noisy for a law, each load having a mesh of its own: ask exact")
 
     def in_cup(self, cup: Cup) -> FiniteElement:
         return replace(self, cup=cup)
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")
         from .solver import Settings, curve  # takes its time to import
 
@@ -143,8 +143,8 @@ class FiniteElement(Model):
             meshes=self.meshes,
             gap=self.gap,
         )
-        solution = taken_apart(self, joint, load, lambda one, loads: curve(settings, one).press(kind, loads))
-        return Answer(
+        solution = solve_per_joint(self, joint, load, lambda one, loads: curve(settings, one).press(kind, loads))
+        return SolverResult(
             laws=solution,
             force=solution.force,
             indentation=solution.indentation,

@@ -9,7 +9,7 @@ from operator import attrgetter
 
 import numpy
 
-from ...contact.peak_pressure import Peaked, largest_pressure
+from ...contact.peak_pressure import PeakPressure, find_peak_pressure
 from ...contact.per_joint import QUANTITIES
 from ...core.arrays import Numbers
 from .full_contact import Brimful
@@ -25,7 +25,7 @@ _LAWS: dict[str, Callable[[Solved], float]] = {"stiffness": stiffness, "energy":
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class States(Peaked):
+class States(PeakPressure):
     """Solved contacts side by side, each quantity one number a contact; None and NaN where there is none."""
 
     solved: tuple[Solved | None, ...]
@@ -56,7 +56,7 @@ class States(Peaked):
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
         """The largest pressure of each contact in MPa, and its polar angle in rad."""
-        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _NOISE)
+        return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _NOISE)
 
     def pressure(self, angle: Numbers) -> Numbers:
         """p(φ) in MPa at angles (anything, loads)."""

@@ -110,7 +110,7 @@ def _angle_of(miss: Increasing, load: Array, start: Array, curve: Curve) -> Arra
     """By Newton's method from ln ε = `start`, which is near: F ~ ε³ and d ~ ε² as in Hertz, but never wide."""
     start = start + (_END - math.log(LIMIT))
     end = 0.0 * start + (_END + 1e-12)  # the widest contact itself is answered
-    root = increasing_root(miss, 0.0 * start, start - 6.0, end, start, given=(load, curve), steps=16)
+    root = increasing_root(miss, 0.0 * start, start - 6.0, end, start, arguments=(load, curve), steps=16)
     return where(root < end, exp(root - _END) * LIMIT, math.nan)
 
 

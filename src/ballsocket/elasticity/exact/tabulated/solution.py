@@ -11,7 +11,7 @@ from math import inf, pi, prod
 import numpy
 
 from ....core import arrays
-from ....core.arrays import Array, broadcast, clip, divisor, gauss_legendre, sin, sqrt, where
+from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
 from ....problem import Joint
 from .chebyshev import LIMIT, angle_place, polynomials, waves_at
 from .curves import LITTLE, Curves, curves_of_one
@@ -55,7 +55,7 @@ class TableSolution:
 
     @property
     def foundation_modulus(self) -> Array:
-        return where(self.values[0] == 0, inf, self.values[2] / divisor(self.values[0]))
+        return where(self.values[0] == 0, inf, self.values[2] / safe_divisor(self.values[0]))
 
     @cached_property
     def energy(self) -> Array:
@@ -79,17 +79,17 @@ class TableSolution:
         """What makes the profile 1 at the pole and carry F: p = p0 sqrt(1 - v) [q(v) + (first) + (second) v]."""
         q = [self._profile[k, ...] for k in range(self._profile.shape[0])]
         _, F, p0, _ = self.values
-        height = sin(divisor(self.angle) / 2) ** 2
+        height = sin(safe_divisor(self.angle) / 2) ** 2
         plain, tilted = _moments(len(q))
         carries = [even - 2 * height * odd for even, odd in zip(plain, tilted, strict=True)]
         lift = 1 - arrays.weighted_sum(q, [(-1.0) ** k for k in range(len(q))])
-        wanted = F / divisor(4 * pi * self.joint.socket_radius**2 * p0 * height)
+        wanted = F / safe_divisor(4 * pi * self.joint.socket_radius**2 * p0 * height)
         carried = sum((part * each for part, each in zip(q, carries, strict=False)), lift * carries[0])
         return lift, (wanted - carried) / carries[-1]
 
     def pressure(self, angle: Array) -> Array:
         lift, tilt = self._tilt
-        half, height = sin(angle / 2), sin(divisor(self.angle) / 2) ** 2
+        half, height = sin(angle / 2), sin(safe_divisor(self.angle) / 2) ** 2
         v = half * half / height
         total = _clenshaw(self._profile, clip(2 * v - 1, -1.0, 1.0)) + lift + tilt * v
         inside = (v < 1) & (abs(angle) < pi) & (self.angle > 0)
@@ -137,7 +137,7 @@ Reading = Callable[[Curves, Array], tuple[Array, ...]]
 def solution_of(file: str, joint: Joint, load: Array, read: Reading) -> TableSolution:
     """The contacts that belong to the loads, NaN where the tables end; `read` finds ε, d, F, p0 and dF/dd."""
     found = _in_blocks(file, joint, load, read)
-    fits = arrays.false(found[1] < 0)  # a ball that filled its socket at less has no wider contact
+    fits = arrays.logical_not(found[1] < 0)  # a ball that filled its socket at less has no wider contact
     angle, d, F, p0, stiffness = (
         where(broadcast(load, part) > 0, where(fits, part, float("nan")), 0.0) for part in found
     )
