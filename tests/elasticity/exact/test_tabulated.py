@@ -135,7 +135,7 @@ def test_the_tables_are_small():
 
 @pytest.mark.long
 def test_the_builder_reproduces_the_shipped_profile():
-    built = build_tables._KINDS["profile"].fitted(lambda sample, liners, chunksize: map(sample, liners))
+    built = build_tables._TABLE_SPECS["profile"].fitted(lambda sample, liners, chunksize: map(sample, liners))
     with np.load(build_tables.SHIPPED) as stored:
         np.testing.assert_allclose(built, stored["profile"], atol=1e-6)
 
@@ -150,7 +150,7 @@ def test_the_report_names_where_it_is_worst():
 def test_places_and_angles_are_inverse():
     place, ratio = np.linspace(-0.9, 1.0, 9), np.array([[0.2], [20.0]])
     np.testing.assert_allclose(
-        chebyshev.angle_place(chebyshev.angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
+        chebyshev.angle_coordinate(chebyshev.angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
     )
 
 

@@ -321,10 +321,10 @@ DAT = """
 def test_the_end_of_each_step_is_read(tmp_path):
     path = tmp_path / "a.dat"
     path.write_text(DAT)
-    forces = ccx.printed(path, "PUSHED")
+    forces = ccx.read_printed(path, "PUSHED")
     assert {step: rows[0, 1] for step, rows in forces.items()} == {0: -1.0, 1: -2.0}
-    np.testing.assert_array_equal(ccx.printed(path, "BORE")[0][:, 0], [7, 12])
-    assert ccx.printed(tmp_path / "none.dat", "PUSHED") == {}
+    np.testing.assert_array_equal(ccx.read_printed(path, "BORE")[0][:, 0], [7, 12])
+    assert ccx.read_printed(tmp_path / "none.dat", "PUSHED") == {}
 
 
 def test_contact_pressures_are_told_from_other_results(tmp_path):
@@ -336,7 +336,7 @@ def test_contact_pressures_are_told_from_other_results(tmp_path):
     ]
     path = tmp_path / "a.frd"
     path.write_text("".join(blocks))
-    assert ccx.contact_pressures(path) == {0: {7: 4.5}}
+    assert ccx.read_contact_pressures(path) == {0: {7: 4.5}}
 
 
 def test_the_edge_is_where_the_gap_closes():

@@ -448,10 +448,10 @@ def test_an_answer_that_is_missing_has_a_summary():
 
 
 def test_progress_is_told_to_those_who_listen_only():
-    from ballsocket.elasticity.finite_elements.progress import listening
+    from ballsocket.elasticity.finite_elements.progress import progress_to
 
     joint, told = replace(HIP, ball_radius=10.0), []
-    with listening(told.append):
+    with progress_to(told.append):
         bs.FiniteElement(meshes=1).press(joint, force=10.0)
     heard = len(told)
     assert heard > 0

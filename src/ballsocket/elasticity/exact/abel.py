@@ -10,7 +10,7 @@ pressure follows from G = -H', which obeys the derivative of the equation and is
 
     p(φ) = ∫ G(s) ds / sqrt(2 (cos φ - cos s)) over [φ, ε],     p_n = ∫ sin((n + ½) s) G(s) ds over [0, ε].
 
-Both equations are of the second kind. They are solved at the points of a `Grid`, for many half angles at once.
+Both equations are of the second kind. They are solved at the points of a `QuadratureGrid`, for many half angles at once.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ import numpy
 from ...contact.peak_pressure import Peaked, largest_pressure
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem.gaps import Gap
-from .grid import Grid
-from .intervals import Intervals, KeptIntervals
+from .grid import QuadratureGrid
+from .intervals import CachedIntervals, Intervals
 from .kernel import Kernel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class State(Peaked):
+class AbelState(Peaked):
     """Contacts of one joint at half angles ε (loads,) above 0; quantities have that shape.
 
     Arrays over the points of the grid have one more axis. H and G are counted in units of 1/C: they are in mm.
@@ -38,14 +38,14 @@ class State(Peaked):
 
     kernel: Kernel
     gap: Gap
-    intervals: Intervals | KeptIntervals
+    intervals: Intervals | CachedIntervals
 
     @property
     def half_angle(self) -> Numbers:
         return self.intervals.half_angle
 
     @property
-    def grid(self) -> Grid:
+    def grid(self) -> QuadratureGrid:
         return self.intervals.grid
 
     @cached_property
@@ -137,10 +137,10 @@ class State(Peaked):
         return self._integral(0.5 / numpy.sin(self._places / 2))
 
     @property
-    def falls(self) -> Numbers:
+    def decreases(self) -> Numbers:
         """Whether the pressure is sure to fall from the pole to the edge.
 
-        By p = 2 sqrt(Δ)/C ∫ g dz, g = G/sin s (see `pressure`), it does where g sqrt(sin²(ε/2) - sin²(s/2)) falls.
+        By p = 2 sqrt(Δ)/C ∫ g dz, g = G/sin s (see `pressure`), it does where g sqrt(sin²(ε/2) - sin²(s/2)) decreases.
         """
         s = self._places
         room = numpy.sin(self.half_angle / 2)[:, None] ** 2 - numpy.sin(s / 2) ** 2
@@ -149,7 +149,7 @@ class State(Peaked):
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
         """The largest pressure of each contact in MPa, and its polar angle in rad."""
-        if self.falls.all():
+        if self.decreases.all():
             return self.pole_pressure, 0.0 * self.half_angle
         return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, ROUNDING)
 
@@ -181,7 +181,7 @@ class State(Peaked):
     def _work(self) -> Numbers:
         nodes, weights = (numpy.array(part) for part in gauss_legendre(16))
         angles = (nodes[:, None] * self.half_angle).ravel()
-        parts = State(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angles, grid=self.grid))
+        parts = AbelState(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angles, grid=self.grid))
         power = (parts.force * parts.widening).reshape(len(nodes), -1)
         return self.half_angle * (weights @ power)
 
@@ -197,7 +197,7 @@ class State(Peaked):
         """p(φ) in MPa at angles (anything, loads); 0 outside the contact."""
         return pressure_of(self.half_angle, self.expansion.T, angle) / self.kernel.compliance
 
-    def alone(self, number: int) -> State:
+    def alone(self, number: int) -> AbelState:
         """One of the contacts."""
         return replace(self, intervals=Intervals(half_angle=self.half_angle[number : number + 1], grid=self.grid))
 

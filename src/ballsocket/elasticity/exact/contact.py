@@ -27,13 +27,13 @@ from ...core.quantities import QUANTITIES
 from ...core.stress import Peak, Stress
 from ...core.validity import Range
 from ...problem import Support
-from .abel import State
-from .fitted_state import FittedState
+from .abel import AbelState
+from .chebyshev_curve import ChebyshevState
 from .hemisphere import CHANGES, hemisphere_of
 from .subsurface import (
-    NARROWEST,
-    OFF,
-    about_von_mises,
+    MIN_HALF_ANGLE,
+    VON_MISES_TOLERANCE,
+    estimate_von_mises,
     largest_von_mises,
     peak,
     stress,
@@ -143,11 +143,11 @@ class ElasticContact(SolvedContact):
 
     @property
     def _is_single(self) -> bool:
-        return prod(self.laws.shape) == 1 and bool(self.single_state.half_angle[0] >= NARROWEST)
+        return prod(self.laws.shape) == 1 and bool(self.single_state.half_angle[0] >= MIN_HALF_ANGLE)
 
     @property
     def _hemisphere_von_mises(self) -> float:
-        state: State = self.single_state.alone(0)
+        state: AbelState = self.single_state.alone(0)
         factor = 1 + float(arrays.to_numpy(self.hemisphere["half_angle"]).item())
         return von_mises_change(state, float(state.half_angle[0]) * factor)
 
@@ -175,11 +175,11 @@ class ElasticContact(SolvedContact):
         least, most = super().von_mises_between
         if arrays.truth(arrays.isfinite(most) | self._failed) is not False:
             return least, most
-        about = self._answer(lambda: self.laws.located(lambda place, piece: self._about_von_mises(piece)))
-        return (1 - OFF) * about, (1 + OFF) * about
+        about = self._answer(lambda: self.laws.located(lambda place, piece: self._estimate_von_mises(piece)))
+        return (1 - VON_MISES_TOLERANCE) * about, (1 + VON_MISES_TOLERANCE) * about
 
-    def _about_von_mises(self, piece: Piece) -> numpy.ndarray:
-        return about_von_mises(piece.state)
+    def _estimate_von_mises(self, piece: Piece) -> numpy.ndarray:
+        return estimate_von_mises(piece.state)
 
     def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
         return largest_von_mises(piece.state, piece.reached)
@@ -190,10 +190,10 @@ class ElasticContact(SolvedContact):
         return {**super().summary(), "hemisphere": changes}
 
     @property
-    def _single(self) -> State:
-        state: State = self.single_state.alone(0)
+    def _single(self) -> AbelState:
+        state: AbelState = self.single_state.alone(0)
         width = float(state.half_angle[0])
-        require("half_angle", width, width >= NARROWEST, "inside a contact of less than 1 degree ask hertz")
+        require("half_angle", width, width >= MIN_HALF_ANGLE, "inside a contact of less than 1 degree ask hertz")
         return state
 
 
@@ -201,11 +201,11 @@ class ElasticContact(SolvedContact):
 class CurveContact(ElasticContact):
     """An `ElasticContact` whose largest stress in the liner lies on a curve of its joint too, to about 1e-3."""
 
-    def _about_von_mises(self, piece: Piece) -> numpy.ndarray:
+    def _estimate_von_mises(self, piece: Piece) -> numpy.ndarray:
         return self._von_mises_of(numpy.empty(0), piece)
 
     def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
-        if isinstance(piece.state, FittedState):
+        if isinstance(piece.state, ChebyshevState):
             return piece.state.largest_von_mises(piece.reached)
         return super()._von_mises_of(place, piece)
 

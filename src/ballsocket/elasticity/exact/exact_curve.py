@@ -13,10 +13,10 @@ from ...core.arrays import Array
 from ...core.checks import shown
 from ...problem import Joint
 from ...problem.gaps import LinearGap
+from .chebyshev_curve import ChebyshevCurve, fitted
 from .contact import CurveContact
-from .curve import Curve
-from .fitted import FittedCurve, fitted
-from .model import Exact, answer_of, curve_of
+from .load_curve import LoadCurve
+from .model import Exact, curve_of, make_answer
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,11 +62,13 @@ class ExactCurve(Wrapped):
             raise ValueError("a curve is that of the linear gap: ask Exact for the circular one")
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        solution = taken_apart(self, joint, load, lambda one, loads: fitted_of(self.model, one).press(kind, loads))
-        return answer_of(solution, self.model.tolerance, load)
+        solution = taken_apart(
+            self, joint, load, lambda one, loads: chebyshev_curve_of(self.model, one).press(kind, loads)
+        )
+        return make_answer(solution, self.model.tolerance, load)
 
 
 @lru_cache(maxsize=256)
-def fitted_of(model: Exact, joint: Joint) -> Curve | FittedCurve:
+def chebyshev_curve_of(model: Exact, joint: Joint) -> LoadCurve | ChebyshevCurve:
     """The series of a joint of plain numbers; kept, since more loads on it are likely."""
     return fitted(curve_of(model, joint))

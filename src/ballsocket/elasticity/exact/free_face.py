@@ -201,7 +201,7 @@ def _at_equator(count: int) -> tuple[Numbers, Numbers]:
 
 
 @lru_cache(maxsize=8)
-def face_of(socket: Socket) -> FreeFace | None:
+def free_face_of(socket: Socket) -> FreeFace | None:
     """Return the free face of a socket; None for a socket that stands on its rim."""
     loose = socket.support is Support.FREE and socket.shells[-1].thickness < inf
     return None if loose else FreeFace(socket=socket)

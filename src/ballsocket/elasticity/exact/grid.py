@@ -16,7 +16,7 @@ from ...core.arrays import Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Grid:
+class QuadratureGrid:
     """Points t = ε sin(πy/2), y in (0, 1), at which functions on [0, ε] are known; and t = ε as one more target.
 
     Arrays over sources have 2 * points entries from -ε to ε; arrays over targets have points + 1, from 0 to ε.
@@ -85,11 +85,11 @@ class Grid:
 
 
 @cache
-def grid(points: int) -> Grid:
-    return Grid(points=points)
+def cached_grid(points: int) -> QuadratureGrid:
+    return QuadratureGrid(points=points)
 
 
-def _from_moments(moments, grid: Grid) -> Numbers:  # type: ignore[no-untyped-def]
+def _from_moments(moments, grid: QuadratureGrid) -> Numbers:  # type: ignore[no-untyped-def]
     """Product weights: exact for polynomials in y, from ∫ kernel(y, y') P_l(y') dy'."""
     size = 2 * grid.points
     z, w = grid.nodes

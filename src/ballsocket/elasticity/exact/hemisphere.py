@@ -18,10 +18,10 @@ from numpy.polynomial import legendre
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem.gaps import LinearGap
-from .abel import State
-from .curve import Curve, window_of
-from .free_face import MODES, POLAR_TERMS, face_of
+from .abel import AbelState
+from .free_face import MODES, POLAR_TERMS, free_face_of
 from .kernel import Kernel
+from .load_curve import LoadCurve, window_of
 from .modes import Ball, Socket
 
 _ITERATIONS = 3
@@ -64,7 +64,7 @@ def response(socket: Socket, ball: Ball | None) -> Numbers:
     n = numpy.arange(MODES)
     signs = numpy.where(n % 2, -1.0, 1.0)
     total = numpy.zeros((MODES, MODES))
-    face = face_of(socket)
+    face = free_face_of(socket)
     if face is None:
         total += numpy.diag(signs * socket.compliance(n))
     else:
@@ -75,10 +75,10 @@ def response(socket: Socket, ball: Ball | None) -> Numbers:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class HemisphereState(State):
+class HemisphereState(AbelState):
     """Contacts on the hemisphere with the half angles of the contacts `closed` on the closed sphere."""
 
-    closed: State
+    closed: AbelState
 
     @property
     def _operators(self) -> tuple[Numbers, Numbers]:
@@ -93,7 +93,7 @@ class HemisphereState(State):
         return self.closed._edge_weights
 
 
-def on_hemisphere(closed: State, more: Numbers) -> State:
+def on_hemisphere(closed: AbelState, more: Numbers) -> AbelState:
     """Solve contacts of the same half angles on the hemisphere, with its `response`.
 
     The additional displacements and the pressures depend linearly on each other. A few fixed-point iterations with
@@ -105,7 +105,7 @@ def on_hemisphere(closed: State, more: Numbers) -> State:
     return _pressed(closed, _extrapolated(numpy.stack(iterates, axis=-1)))
 
 
-def low_modes(state: State) -> Numbers:
+def low_modes(state: AbelState) -> Numbers:
     """Compute p_n in MPa for n below MODES: (contacts, modes)."""
     waves, sines = _waves(tuple(state.half_angle.tolist()))
     size = state.grid.points
@@ -132,7 +132,7 @@ def _even_legendre(count: int) -> Numbers:
     return even
 
 
-def _pressed(closed: State, extra: Numbers) -> State:
+def _pressed(closed: AbelState, extra: Numbers) -> AbelState:
     gap = closed.gap
     return HemisphereState(
         kernel=closed.kernel,
@@ -215,9 +215,9 @@ class Hemisphere:
     kernel: Kernel
 
     @cached_property
-    def _curve(self) -> Curve:
+    def _curve(self) -> LoadCurve:
         gap = LinearGap(clearance=1.0, socket_radius=self.kernel.socket.radius)
-        return Curve(kernel=self.kernel, gap=gap, tolerance=_TOLERANCE)
+        return LoadCurve(kernel=self.kernel, gap=gap, tolerance=_TOLERANCE)
 
     @cached_property
     def _response(self) -> Numbers:
@@ -247,7 +247,7 @@ class Hemisphere:
         except numpy.linalg.LinAlgError:
             return None
 
-    def _solved(self, closed: State) -> Bodies | None:
+    def _solved(self, closed: AbelState) -> Bodies | None:
         """Solve the contacts of the hemisphere with the half angles of those of the closed sphere."""
         free = on_hemisphere(closed, self._response)
         clearance, angle = closed.gap.clearance, closed.half_angle
@@ -293,9 +293,9 @@ CHANGES = ("indentation", "half_angle", "max_pressure", "stiffness")
 _MIN_CONTACTS, _MAX_SHARE, _NEWTON_STEPS, _RELATIVE_TOLERANCE, _TOLERANCE = 4, 1 - 1e-9, 4, 1e-3, 1e-3
 
 
-def _largest(state: State) -> Numbers:
+def _largest(state: AbelState) -> Numbers:
     """Estimate the largest pressure: at the pole, or the largest at a few angles."""
-    if state.falls.all():
+    if state.decreases.all():
         return state.pole_pressure
     return state.pressure(state.half_angle * numpy.linspace(0.0, 0.95, 20)[:, None]).max(axis=0)
 

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import ceil, pi
+from math import ceil, pi, prod
+from threading import local
 
 import numpy
 
 from ...core.arrays import Numbers
 from .closed_forms import ORDER, logarithmic, modular, smooth
-from .grid import Grid
-from .scratch import scratch
+from .grid import QuadratureGrid
 
 Operators = tuple[Numbers, Numbers]
 """Operators of even functions and of odd ones."""
@@ -26,12 +26,35 @@ _LONGEST_PANEL = 96
 _KEPT = (32, 64, 128)  # so many waves are kept
 
 
+_MOST = 1 << 18  # bytes that are kept of each
+
+
+class _Held(local):
+    """What this thread holds, by name."""
+
+    def __init__(self) -> None:
+        self.arrays: dict[str, numpy.ndarray] = {}
+
+
+_held = _Held()
+
+
+def scratch(name: str, shape: tuple[int, ...], dtype: type = float) -> numpy.ndarray:
+    """An array with whatever was in it, good until the same thread asks for that name again."""
+    size = prod(shape)
+    if size * numpy.dtype(dtype).itemsize > _MOST:
+        return numpy.empty(shape, dtype)
+    if name not in _held.arrays:
+        _held.arrays[name] = numpy.empty(_MOST, numpy.uint8)
+    return _held.arrays[name].view(dtype)[:size].reshape(shape)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Intervals:
     """[-ε, ε] for half angles ε (loads,) on a grid."""
 
     half_angle: Numbers
-    grid: Grid
+    grid: QuadratureGrid
 
     def closed(self, a: Numbers) -> Operators:
         """The operators of the closed forms with the coefficients a_1 .. a_6."""
@@ -61,11 +84,11 @@ class Intervals:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class KeptIntervals:
+class CachedIntervals:
     """`Intervals` that many joints ask for: what does not depend on the joint is computed once."""
 
     half_angle: Numbers
-    grid: Grid
+    grid: QuadratureGrid
 
     @cached_property
     def _fresh(self) -> Intervals:
@@ -106,7 +129,7 @@ def _add(waves: tuple[Numbers, Numbers, Numbers, Numbers], rest: Numbers, operat
         whole += numpy.matmul(strong, back, out=scratch("rest", whole.shape))
 
 
-def _waves_between(half_angle: Numbers, grid: Grid, count: int) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+def _waves_between(half_angle: Numbers, grid: QuadratureGrid, count: int) -> tuple[Numbers, Numbers, Numbers, Numbers]:
     """The waves cos and sin of (n + ½) t at the targets (loads, points + 1, count), and the integrals of functions at
     the points against them (loads, count, points). They are good until the next call.
 
@@ -124,7 +147,7 @@ def _waves_between(half_angle: Numbers, grid: Grid, count: int) -> tuple[Numbers
     return even, odd, back, odd_back
 
 
-def _fine(half_angle: Numbers, grid: Grid, count: int) -> _Panels:
+def _fine(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Panels:
     """Points for that many waves."""
     return _panels(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
 
@@ -192,17 +215,17 @@ def _panels_of(panels: int, points: int) -> _Panels:
 
 
 @cache
-def _even_between(grid: Grid, fine: _Panels) -> Numbers:
+def _even_between(grid: QuadratureGrid, fine: _Panels) -> Numbers:
     """From an even function at the points of a grid to its weighted values at those of the panels."""
     return _between(grid, fine, 0)
 
 
 @cache
-def _odd_between(grid: Grid, fine: _Panels) -> Numbers:
+def _odd_between(grid: QuadratureGrid, fine: _Panels) -> Numbers:
     return _between(grid, fine, 1)
 
 
-def _between(grid: Grid, fine: _Panels, parity: int) -> Numbers:
+def _between(grid: QuadratureGrid, fine: _Panels, parity: int) -> Numbers:
     y, w = grid.right
     degree = 2 * numpy.arange(grid.points) + parity
     P, Q = (numpy.polynomial.legendre.legvander(part, 2 * grid.points)[:, degree] for part in (y, fine.nodes[0]))

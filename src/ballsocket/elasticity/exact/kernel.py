@@ -19,7 +19,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from .closed_forms import ORDER
-from .intervals import Intervals, KeptIntervals, Operators
+from .intervals import CachedIntervals, Intervals, Operators
 from .modes import Ball, Socket
 
 
@@ -61,7 +61,7 @@ class Kernel:
         q = numpy.arange(max(ceil(tail), self.socket.reach(self.tolerance), 24)) + 0.5
         return self.excess((q - 0.5).astype(int)) - sum(a[j] * q ** -(j + 1.0) for j in range(ORDER))
 
-    def operators(self, intervals: Intervals | KeptIntervals) -> Operators:
+    def operators(self, intervals: Intervals | CachedIntervals) -> Operators:
         """½ ∫ k(t - s) f(s) ds over [-ε, ε] for even f and for odd f, see `intervals`."""
         found = intervals.closed(self.expansion[:ORDER])
         intervals.add_rest(self.rest, found)

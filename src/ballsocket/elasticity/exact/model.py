@@ -18,8 +18,8 @@ from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from ...problem import Joint, Support
 from ...problem.gaps import CircularGap, LinearGap, check_gap
 from .contact import ElasticContact, NearHemisphere
-from .curve import Curve
 from .kernel import Kernel
+from .load_curve import LoadCurve
 from .modes import ball_of, socket_of
 
 
@@ -107,13 +107,13 @@ class Exact(Model):
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
         solution = taken_apart(self, joint, load, lambda one, loads: curve_of(self, one).press(kind, loads))
-        return answer_of(solution, self.tolerance, load)
+        return make_answer(solution, self.tolerance, load)
 
 
 _BODY = NearHemisphere()
 
 
-def answer_of(solution: PiecedSolution, tolerance: float, load: Array) -> Answer:
+def make_answer(solution: PiecedSolution, tolerance: float, load: Array) -> Answer:
     """The answer that a solution is, not converged where its own errors are more than the tolerance."""
     return Answer(
         laws=solution,
@@ -124,8 +124,8 @@ def answer_of(solution: PiecedSolution, tolerance: float, load: Array) -> Answer
 
 
 @lru_cache(maxsize=256)
-def curve_of(model: Exact, joint: Joint) -> Curve:
+def curve_of(model: Exact, joint: Joint) -> LoadCurve:
     """The curve of a joint of plain numbers; kept, since more loads on it are likely."""
     kernel = Kernel(socket=socket_of(joint), ball=ball_of(joint), tolerance=max(1e-3 * model.tolerance, 1e-14))
     gap = model.gap(clearance=float(joint.clearance), socket_radius=float(joint.socket_radius))
-    return Curve(kernel=kernel, gap=gap, tolerance=model.tolerance)
+    return LoadCurve(kernel=kernel, gap=gap, tolerance=model.tolerance)

@@ -13,12 +13,11 @@ from math import ceil, inf, isinf, log, log1p
 import numpy
 from numpy.typing import ArrayLike
 
-from ...core.arrays import Array
+from ...core.arrays import Array, Numbers
 from ...core.checks import require
 from ...core.quantities import MATERIAL
 from ...problem import Joint, Material, Support
-from .massive import asymptote_of, massive_excess, series
-from .waves import UNIT, GroundedLayer, fixed, free
+from .waves import UNIT, SupportedLayer, fixed, free
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,13 +184,13 @@ class Socket:
         """The radii of the bore, of the interfaces and of the outermost surface."""
         return numpy.cumsum([self.radius, *(shell.thickness for shell in self.shells)])
 
-    def _layers(self, n: numpy.ndarray) -> list[GroundedLayer]:
+    def _layers(self, n: numpy.ndarray) -> list[SupportedLayer]:
         """From the bore outwards, each on what is behind it."""
         loose = self.support is Support.FREE and not isinf(self.shells[-1].thickness)
         ground = free(n) if loose else fixed()
-        layers: list[GroundedLayer] = []
+        layers: list[SupportedLayer] = []
         for shell, inner in zip(self.shells[::-1], self._bounds[-2::-1], strict=True):
-            layers.insert(0, GroundedLayer(**vars(shell), inner=float(inner), n=n, ground=ground))
+            layers.insert(0, SupportedLayer(**vars(shell), inner=float(inner), n=n, ground=ground))
             ground = UNIT, -layers[0].compliance
         return layers
 
@@ -298,3 +297,34 @@ def _checked(degrees: ArrayLike) -> numpy.ndarray:
         raise TypeError(f"degrees must be integers, got an array of {n.dtype}")
     require("degrees", n, n >= 0, "a degree is 0 or more")
     return n.astype(float)
+
+
+def asymptote_of(radius: float, young: float, poisson: float) -> float:
+    """C in mm/MPa, the limit of c_n (n + ½) at high degrees, where a sphere is a half-space."""
+    return 2 * (1 - poisson**2) * radius / young
+
+
+def _polynomials(nu: float) -> tuple[list[float], list[float]]:
+    """Polynomials of ρ in an infinite socket, in falling powers of q = n + ½.
+
+    The numerator begins with q², the denominator with q³. A ball has -q in place of q.
+    """
+    above = [-((1 - 2 * nu) ** 2) / (2 * (1 - nu)), -(4 - 17 * nu + 12 * nu**2) / (4 * (1 - nu)), -9 / 8]
+    below = [1.0, 3 / 2 - 2 * nu, 3 / 4 - 3 * nu, 9 / 8]  # (q + 3/2)(q² - 2νq + 3/4)
+    return above, below
+
+
+def massive_excess(q: Numbers, nu: float) -> Numbers:
+    """ρ_n = c_n (n + ½)/C - 1 of an infinite socket at q = n + ½, of a ball at q = -(n + ½)."""
+    above, _ = _polynomials(nu)
+    return numpy.asarray(numpy.polyval(above, q) / ((q + 1.5) * (q * (q - 2 * nu) + 0.75)))
+
+
+def series(nu: float, order: int) -> Numbers:
+    """The quotient of the polynomials in powers of 1/q."""
+    above, below = _polynomials(nu)
+    a = [0.0, 0.0, 0.0]
+    for j in range(order):
+        earlier = below[1] * a[-1] + below[2] * a[-2] + below[3] * a[-3]
+        a.append((above[j] if j < 3 else 0.0) - earlier)
+    return numpy.array(a[3:])

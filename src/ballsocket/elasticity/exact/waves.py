@@ -114,7 +114,7 @@ def _twice_shear(young: float, nu: float) -> float:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class GroundedLayer:
+class SupportedLayer:
     """One layer on its ground, A u + B r σ = 0 on its outer surface, for all degrees at once.
 
     `inner` is its inner radius in mm; thickness in mm and Young's modulus in MPa.

@@ -13,13 +13,13 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...problem import Support
-from .condense import Body
-from .elasticity import Elastic
+from .condensation import CondensedBody
+from .elasticity import ElasticBlock
 from .mesh import Block, block
 from .shapes import Resolution, SocketShape, ball_corners
 
 
-def socket_body(shape: SocketShape, resolution: Resolution) -> Body:
+def socket_body(shape: SocketShape, resolution: Resolution) -> CondensedBody:
     """The socket, pressed from the inside."""
     angle, radii = shape.corners(resolution)
     mesh = socket_block(shape, angle, radii, resolution.order)
@@ -32,7 +32,7 @@ def socket_body(shape: SocketShape, resolution: Resolution) -> Body:
         outermost = mesh.strips[mesh.layer == len(radii) - 1][0]  # a liner that slides in it keeps its own rim free
         held[2 * mesh.number[-1, outermost:]] = True
     bore = mesh.number[: int(numpy.searchsorted(mesh.angle, shape.reach + 1e-9)), 0]
-    return Body(elastic=socket_elastic(shape, mesh), held=held, contact=bore)
+    return CondensedBody(elastic=socket_elastic(shape, mesh), held=held, contact=bore)
 
 
 def socket_block(shape: SocketShape, angle: Numbers, radii: list[Numbers], order: int) -> Block:
@@ -40,20 +40,20 @@ def socket_block(shape: SocketShape, angle: Numbers, radii: list[Numbers], order
     return block(angle, radii, order, (1,) if shape.slides and len(radii) > 1 else ())
 
 
-def socket_elastic(shape: SocketShape, mesh: Block) -> Elastic:
+def socket_elastic(shape: SocketShape, mesh: Block) -> ElasticBlock:
     """The socket's mesh with the materials of its layers."""
     young, poisson = (numpy.array([layer[i] for layer in shape.layers]) for i in (1, 2))
-    return Elastic(block=mesh, young=young, poisson=poisson)
+    return ElasticBlock(block=mesh, young=young, poisson=poisson)
 
 
-def ball_body(poisson: float, resolution: Resolution) -> Body:
+def ball_body(poisson: float, resolution: Resolution) -> CondensedBody:
     """A ball of radius 1 and Young's modulus 1, pressed from the outside."""
     angle, radii = ball_corners(resolution)
     mesh = block(angle, [radii], resolution.order)
     held = _axis_held(mesh)
     held[2 * mesh.number[-1]] = True  # the equator stays plane
-    elastic = Elastic(block=mesh, young=numpy.ones(1), poisson=numpy.array([poisson]))
-    return Body(elastic=elastic, held=held, contact=mesh.number[:, -1])
+    elastic = ElasticBlock(block=mesh, young=numpy.ones(1), poisson=numpy.array([poisson]))
+    return CondensedBody(elastic=elastic, held=held, contact=mesh.number[:, -1])
 
 
 def _axis_held(mesh: Block) -> Numbers:
@@ -74,6 +74,6 @@ def ball_compliance(poisson: float, resolution: Resolution) -> tuple[Numbers, Nu
     return _condensed(ball_body(poisson, resolution))
 
 
-def _condensed(body: Body) -> tuple[Numbers, Numbers]:
+def _condensed(body: CondensedBody) -> tuple[Numbers, Numbers]:
     block = body.elastic.block
     return block.angle[: len(body.contact)], body.compliance()

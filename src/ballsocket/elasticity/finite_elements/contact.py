@@ -19,7 +19,7 @@ from .memory import MeshSize, mesh_size
 
 if TYPE_CHECKING:
     from .section import Section
-    from .work import Solved
+    from .tangent import Solved
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)

@@ -56,7 +56,7 @@ class Strains(Gradients):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Elastic:
+class ElasticBlock:
     """A block of elastic layers.
 
     Parameters

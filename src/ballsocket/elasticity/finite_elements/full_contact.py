@@ -10,14 +10,14 @@ import numpy
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .round_contact import pole
-from .surfaces import Pair
+from .surfaces import SurfacePair
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Brimful:
-    """A contact at an indentation (mm) that is deeper than that of a `Cap` up to the rim; it knows the same things."""
+class FullContact:
+    """A contact at an indentation (mm) that is deeper than that of a `PartialContact` up to the rim; it knows the same things."""
 
-    pair: Pair
+    pair: SurfacePair
     gap: Gap
     indentation: float
 

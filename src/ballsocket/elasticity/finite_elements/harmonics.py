@@ -19,8 +19,8 @@ from scipy.sparse.linalg import splu
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem import Support
 from .bodies import socket_block, socket_elastic
-from .condense import dissected
-from .elasticity import Elastic, integration
+from .condensation import nested_dissection
+from .elasticity import ElasticBlock, integration
 from .mesh import Block
 from .shapes import Resolution, SocketShape
 from .surfaces import lagrange
@@ -36,12 +36,12 @@ class Harmonics:
 
     Parameters
     ----------
-    elastic : Elastic
+    elastic : ElasticBlock
     shape : SocketShape
         What the mesh was made of.
     """
 
-    elastic: Elastic
+    elastic: ElasticBlock
     shape: SocketShape
 
     @property
@@ -98,7 +98,7 @@ class Harmonics:
         block = self._block
         grid = numpy.arange(len(block.angle) * (block.place[-1] + 1)).reshape(len(block.angle), -1)
         rank = numpy.empty(grid.size, dtype=int)
-        rank[dissected(grid, block.order)] = numpy.arange(grid.size)
+        rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
         of_node = rank[grid[:, block.place]].ravel()
         normals = 3 * self.bore + 1
         normals = normals[~self._held(m)[normals]]

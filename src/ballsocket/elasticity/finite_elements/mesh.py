@@ -93,14 +93,14 @@ def block(angle: Numbers, layers: list[Numbers], order: int, parted: tuple[int, 
     parted : tuple of int
         The layers that slide on the one inside of them.
     """
-    angle = with_middles(angle, order)
+    angle = add_midpoints(angle, order)
     columns: list[Numbers] = []
     strips: list[int] = []
     owner: list[int] = []
     count = 0
     for index, layer in enumerate(layers):
         rows = numpy.broadcast_to(layer, ((len(angle) - 1) // order + 1, layer.shape[-1]))
-        radius = with_middles(with_middles(rows.T, order).T, order)
+        radius = add_midpoints(add_midpoints(rows.T, order).T, order)
         shared = 0 if index == 0 or index in parted else 1
         strips += range(count - shared, count - shared + radius.shape[1] - order, order)
         owner += [index] * ((radius.shape[1] - 1) // order)
@@ -110,18 +110,18 @@ def block(angle: Numbers, layers: list[Numbers], order: int, parted: tuple[int, 
     return Block(angle=angle, radius=radii, strips=numpy.array(strips), layer=numpy.array(owner), order=order)
 
 
-def with_middles(corners: Numbers, order: int) -> Numbers:
+def add_midpoints(corners: Numbers, order: int) -> Numbers:
     """The places of all nodes from those of the corners, along the first axis."""
-    return corners if order == 1 else bisected(corners)
+    return corners if order == 1 else bisect_intervals(corners)
 
 
-def bisected(corners: Numbers) -> Numbers:
+def bisect_intervals(corners: Numbers) -> Numbers:
     """The corners with one more between each two of them."""
     between = (corners[1:] + corners[:-1]) / 2
     return numpy.insert(corners, numpy.arange(1, len(corners)), between, axis=0)
 
 
-def graded(start: float, end: float, first: float, growth: float, longest: float) -> Numbers:
+def graded_points(start: float, end: float, first: float, growth: float, longest: float) -> Numbers:
     """Places from start to end: the first interval about as given, each next one longer, up to `longest`."""
     reach = abs(end - start)
     steps = [min(first, reach)]
@@ -134,7 +134,7 @@ def graded(start: float, end: float, first: float, growth: float, longest: float
     return places
 
 
-def joined(parts: list[Numbers]) -> Numbers:
+def join_points(parts: list[Numbers]) -> Numbers:
     """Rows of places that each begin where the one before ends."""
     for before, after in pairwise(parts):
         assert before[-1] == after[0]

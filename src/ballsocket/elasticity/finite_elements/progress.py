@@ -13,14 +13,14 @@ def _silent(_: str) -> None: ...
 _LISTENER: ContextVar[Callable[[str], None]] = ContextVar("listener", default=_silent)
 
 
-def tell(text: str) -> None:
+def report_progress(text: str) -> None:
     """Say what is about to be done."""
     _LISTENER.get()(text)
 
 
 @contextmanager
-def listening(listener: Callable[[str], None]) -> Iterator[None]:
-    """Inside, finite elements tell the listener in words what they are about to do."""
+def progress_to(listener: Callable[[str], None]) -> Iterator[None]:
+    """Inside, finite elements report_progress the listener in words what they are about to do."""
     token = _LISTENER.set(listener)
     try:
         yield

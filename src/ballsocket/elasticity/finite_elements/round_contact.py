@@ -1,6 +1,6 @@
 """One contact of a given half angle: the pressure that closes the gap, and the indentation at which it ends just there.
 
-The pressure is that of the `Pair`, with hats φ_i up to the node φ_k, three or four elements before the edge. From
+The pressure is that of the `SurfacePair`, with hats φ_i up to the node φ_k, three or four elements before the edge. From
 there it falls as it does in truth, with t = sqrt((ε - φ)/(ε - φ_k)) like p_k t + q (t - t³). The gap is closed in the
 mean, weighted with each of these shapes. One more weight, the slope of t in ε, which is singular at the edge like the
 pressure of a contact of the wrong size, belongs to no pressure and so says what the indentation must be. There is no
@@ -16,7 +16,7 @@ import numpy
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem.gaps import Gap
-from .surfaces import Pair
+from .surfaces import SurfacePair
 
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(6))
 _NEWTON = 1e-13  # of the indentation
@@ -25,10 +25,10 @@ _POLE = 0.35
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Cap:
+class PartialContact:
     """A contact of half angle ε (rad) on a pair; `last` is the node k from which the pressure falls to the edge."""
 
-    pair: Pair
+    pair: SurfacePair
     gap: Gap
     half_angle: float
     last: int
@@ -203,7 +203,7 @@ def pole(angle: Numbers, pressures: Numbers, half_angle: float) -> float:
     return float(numpy.polynomial.polynomial.polyfit(angle[1:near] ** 2, pressures[1:near], degree)[0])
 
 
-def cap(pair: Pair, gap: Gap, half_angle: float) -> Cap:
+def partial_contact(pair: SurfacePair, gap: Gap, half_angle: float) -> PartialContact:
     """The contact of a half angle, its last shapes three to four elements wide."""
     last = max(int(numpy.searchsorted(pair.angle, half_angle, side="right")) - 4, 1)
-    return Cap(pair=pair, gap=gap, half_angle=half_angle, last=last)
+    return PartialContact(pair=pair, gap=gap, half_angle=half_angle, last=last)

@@ -13,10 +13,10 @@ from ...core.stress import Peak, Stress
 from ...problem import Joint
 from ...problem.cup import Cup
 from .bodies import ball_body, socket_body
-from .condense import Body
+from .condensation import CondensedBody
 from .elasticity import shape_functions
 from .shapes import socket_shape
-from .work import Solved
+from .tangent import Solved
 
 _CORNER = 0.25  # of the liner's thickness, or of the socket's radius where that is less
 
@@ -133,7 +133,7 @@ class _Loaded:
     `radius` is that of its picture, which `lift` moves; `drop` moves all of it.
     """
 
-    body: Body
+    body: CondensedBody
     radius: float
     pressed: float
     young: float

@@ -10,7 +10,7 @@ import numpy
 from ...core.arrays import Numbers
 from ...problem import Joint, Support
 from ...problem.cup import Cup, Interface
-from .mesh import bisected, graded, joined
+from .mesh import bisect_intervals, graded_points, join_points
 
 _CORE = 0.02  # of the ball, left out around its centre
 _FAR = 1e4  # of the bore's radius: where a massive socket is held
@@ -49,7 +49,7 @@ class Resolution:
     def cut(self, corners: Numbers) -> Numbers:
         """The corners with all halvings."""
         for _ in range(self.halvings):
-            corners = bisected(corners)
+            corners = bisect_intervals(corners)
         return corners
 
     def angles(self, end: float) -> Numbers:
@@ -58,7 +58,7 @@ class Resolution:
         near = numpy.linspace(0.0, fine, max(round(fine / self.size), 1) + 1)
         if end - fine < self.size / 2:
             return numpy.linspace(0.0, end, len(near))
-        return joined([near, graded(fine, end, self.size * self.growth, self.growth, self.widest)])
+        return join_points([near, graded_points(fine, end, self.size * self.growth, self.growth, self.widest)])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,7 +100,7 @@ class SocketShape:
         """Corners along the bore, and on across the chamfer."""
         if not self.chamfer:
             return angle
-        return joined([angle, graded(self.reach, self.rim, min(size, self.chamfer / 2), 1.0, inf)])
+        return join_points([angle, graded_points(self.reach, self.rim, min(size, self.chamfer / 2), 1.0, inf)])
 
     def radii(self, angle: Numbers, resolution: Resolution) -> list[Numbers]:
         """Radii of the corners in each layer, finer towards the bore."""
@@ -108,7 +108,7 @@ class SocketShape:
         for outer, _, _ in self.layers:
             thickness = min(outer, _FAR) - inner
             longest = inf if outer == inf else thickness * resolution.deepest
-            layer = graded(inner, inner + thickness, min(first, longest), resolution.growth, longest)
+            layer = graded_points(inner, inner + thickness, min(first, longest), resolution.growth, longest)
             radii.append(resolution.cut(layer))
             first, inner = (layer[-1] - layer[-2]) * resolution.growth, float(layer[-1])
         return [self._chamfered(angle, radii[0]), *radii[1:]]
@@ -139,5 +139,5 @@ def socket_shape(joint: Joint, cup: Cup) -> SocketShape:
 
 def ball_corners(resolution: Resolution) -> tuple[Numbers, Numbers]:
     """Corners of the ball's elements: angles, and radii from the inside out."""
-    radii = graded(1.0, _CORE, resolution.size, resolution.growth, resolution.deepest / 2)[::-1]
+    radii = graded_points(1.0, _CORE, resolution.size, resolution.growth, resolution.deepest / 2)[::-1]
     return resolution.cut(resolution.angles(pi / 2)), resolution.cut(radii)

@@ -11,12 +11,12 @@ from ...problem import Joint, Support
 from ...problem.cup import Cup, Interface
 from ...problem.gaps import CircularGap, LinearGap
 from .bodies import ball_compliance, socket_compliance
-from .curve import COARSE, Curve
+from .load_curve import COARSE, MeshedLoadCurve
 from .memory import check_memory, mesh_size
-from .progress import tell
+from .progress import report_progress
 from .shapes import Resolution, socket_shape
 from .spacing import Spacing, Uniform
-from .surfaces import Pair, Surface
+from .surfaces import ContactSurface, SurfacePair
 
 LIMIT = radians(88.0)
 """The widest contact where the socket reaches further."""
@@ -40,7 +40,7 @@ class Settings:
 
 
 @lru_cache(maxsize=32)
-def curve(settings: Settings, joint: Joint) -> Curve:
+def curve(settings: Settings, joint: Joint) -> MeshedLoadCurve:
     """The curve of a joint of plain numbers; kept, since more loads on it are likely."""
     _check(settings, joint)
     radius, bore = float(joint.socket_radius), socket_shape(joint, settings.cup).reach
@@ -54,12 +54,14 @@ def curve(settings: Settings, joint: Joint) -> Curve:
         coarse = spacing.coarse(classes[number], radius, thickness, order)
         return coarse if mesh == COARSE else replace(coarse, halvings=1)
 
-    def pair(number: int, mesh: int) -> Pair:
+    def pair(number: int, mesh: int) -> SurfacePair:
         socket, ball = (resolution(one, number, mesh) for one in (settings.spacing, settings.ball_spacing))
         return _pair(settings, joint, socket, ball, min(_BEYOND * classes[number], widest))
 
     gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
-    return Curve(pairs=pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order)
+    return MeshedLoadCurve(
+        pairs=pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order
+    )
 
 
 def _check(settings: Settings, joint: Joint) -> None:
@@ -92,16 +94,20 @@ def _check_size(size: float, joint: Joint, bore: float) -> None:
     require("size", size, bore / MOST <= size <= bore / LEAST, allowed)
 
 
-def _pair(settings: Settings, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float) -> Pair:
+def _pair(
+    settings: Settings, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float
+) -> SurfacePair:
     size = mesh_size(joint, settings.cup, resolution, ball_resolution)
     check_memory(size, resolution.order)
-    tell(f"condensing {size.elements} elements, {size.nodes} nodes")
+    report_progress(f"condensing {size.elements} elements, {size.nodes} nodes")
     R2, order = float(joint.socket_radius), resolution.order  # the ball, too, is pressed on a patch of the radius R2
     angle, compliance = socket_compliance(socket_shape(joint, settings.cup), resolution)
-    surfaces = [Surface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.liner.young)))]
+    surfaces = [ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.liner.young)))]
     if joint.ball is not None:
         angle, compliance = ball_compliance(float(joint.ball.poisson), ball_resolution)
-        surfaces.append(Surface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.ball.young))))
-    return Pair(
+        surfaces.append(
+            ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.ball.young)))
+        )
+    return SurfacePair(
         surfaces=tuple(surfaces), radius=R2, reach=reach, resolution=resolution, ball_resolution=ball_resolution
     )

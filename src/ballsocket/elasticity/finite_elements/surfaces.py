@@ -22,7 +22,7 @@ _SAME = 1e-9  # rad: corners of two meshes that are one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Surface:
+class ContactSurface:
     """A body's contact surface: the angles of its nodes in rad, and normal displacements in mm by forces in N."""
 
     angle: Numbers
@@ -60,10 +60,10 @@ def _around(corners: Numbers, order: int, angle: Numbers) -> tuple[Numbers, Numb
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Pair:
+class SurfacePair:
     """The socket's surface and the ball's (a rigid one has none) on a sphere of this radius (mm), up to an angle."""
 
-    surfaces: tuple[Surface, ...]
+    surfaces: tuple[ContactSurface, ...]
     radius: float
     reach: float
     resolution: Resolution

@@ -20,8 +20,8 @@ from ....core.arrays import Numbers
 from ....core.storage.atomic import at_once
 from ....problem import Joint, Material
 from ....problem.gaps import LinearGap
-from ..abel import State
-from ..grid import grid
+from ..abel import AbelState
+from ..grid import cached_grid
 from ..intervals import Intervals
 from ..kernel import Kernel
 from ..modes import Ball, Shell, Socket
@@ -36,14 +36,14 @@ BY_FORCE = ("half_angle", "indentation", "pole_pressure")
 QUANTITIES = (*BY_ANGLE, "half_angle")
 _BALLS = (0.15, 0.27, 0.38)  # ν of the tabulated balls
 _SHARES = 5  # how soft they are
-_PROFILE = 11  # places along the contact
+_PROFILE = 11  # chebyshev_points along the contact
 _CLEARANCE = 0.005  # of the socket's radius, of the joints that check the tables: the answer scales with it
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 _Liner = tuple[float, float]  # ν and R2/L
 
 
 @dataclass(frozen=True, kw_only=True)
-class Worst:
+class LargestError:
     """The largest relative error of one quantity, and the contact that has it."""
 
     quantity: str
@@ -55,13 +55,13 @@ class Worst:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Accuracy:
+class TableAccuracy:
     """The tables against the equation at random contacts between the tabulated ones."""
 
     points: int
     size: int
-    rigid: tuple[Worst, ...]
-    elastic: tuple[Worst, ...]
+    rigid: tuple[LargestError, ...]
+    elastic: tuple[LargestError, ...]
 
     def __str__(self) -> str:
         head = f"{self.size} bytes; largest relative errors at {self.points} random contacts"
@@ -69,7 +69,7 @@ class Accuracy:
         return "\n".join((head, *parts))
 
 
-def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> Accuracy:
+def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
     """Write the tables and check them.
 
     Parameters
@@ -92,7 +92,7 @@ def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
     with at_once(path) as draft:  # now, and not after two minutes, it is told where nothing can be written
         stored: dict[str, Numbers] = {}
         with _pool(workers) as pool:
-            for name, kind in _KINDS.items():
+            for name, kind in _TABLE_SPECS.items():
                 stored[name] = kind.fitted(pool.map)
         with draft.open("wb") as stream:
             numpy.savez_compressed(stream, allow_pickle=False, **stored)
@@ -115,7 +115,7 @@ def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
                 os.environ[name] = value
 
 
-# What is sampled: each takes ν, R2/L and answers with (places of the ball ..., functions, angles)
+# What is sampled: each takes ν, R2/L and answers with (chebyshev_points of the ball ..., functions, angles)
 
 
 def _poisson_at(place: Numbers) -> Numbers:
@@ -124,8 +124,8 @@ def _poisson_at(place: Numbers) -> Numbers:
 
 
 def _ratio_at(place: Numbers) -> Numbers:
-    low, high = (float(numpy.log(end + chebyshev.SHIFT)) for end in chebyshev.THICKNESS_RATIO)
-    return numpy.exp((low + high + place * (high - low)) / 2) - chebyshev.SHIFT
+    low, high = (float(numpy.log(end + chebyshev.RATIO_SHIFT)) for end in chebyshev.THICKNESS_RATIO)
+    return numpy.exp((low + high + place * (high - low)) / 2) - chebyshev.RATIO_SHIFT
 
 
 def _share_at(place: float, poisson: float, ratio: float) -> float:
@@ -133,7 +133,7 @@ def _share_at(place: float, poisson: float, ratio: float) -> float:
     return float(scale * numpy.expm1((place + 1) / 2 * numpy.log1p(chebyshev.STIFFEST_SHARE / scale)))
 
 
-def _state(liner: _Liner, angle: Numbers, points: int, share: float = 0.0, ball_poisson: float = 0.3) -> State:
+def _state(liner: _Liner, angle: Numbers, points: int, share: float = 0.0, ball_poisson: float = 0.3) -> AbelState:
     """Contacts with R2 = c = E = 1; `share` is the ball's of the compliance."""
     poisson, ratio = liner
     socket = Socket(radius=1.0, shells=(Shell(thickness=1 / ratio, young=1.0, poisson=poisson),))
@@ -141,44 +141,50 @@ def _state(liner: _Liner, angle: Numbers, points: int, share: float = 0.0, ball_
     ball = Ball(radius=1.0, young=young, poisson=ball_poisson) if share else None
     kernel = Kernel(socket=socket, ball=ball, tolerance=1e-13)
     gap = LinearGap(clearance=1.0, socket_radius=1.0)
-    return State(kernel=kernel, gap=gap, intervals=Intervals(half_angle=angle, grid=grid(points)))
+    return AbelState(kernel=kernel, gap=gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points)))
 
 
-def _three(state: State) -> Numbers:
+def _rigid_functions(state: AbelState) -> Numbers:
     angle, d, C = state.half_angle, state.indentation, state.kernel.compliance
     share = d / (1 + d) / (2 * numpy.sin(angle / 2) ** 2)
     load, pole = state.force / angle**3, state.pole_pressure / angle
     return numpy.log([share, load * C / (1 + d), pole * C / (1 + d)])
 
 
-def _profile(state: State) -> Numbers:
+def _profile(state: AbelState) -> Numbers:
     """Chebyshev coefficients of p/(p0 sqrt(1 - v)) in 2v - 1."""
-    v = (1 + chebyshev.places(_PROFILE)[:, None]) / 2
+    v = (1 + chebyshev.chebyshev_points(_PROFILE)[:, None]) / 2
     angle = 2 * numpy.arcsin(numpy.sqrt(v) * numpy.sin(state.half_angle / 2))
     return chebyshev.coefficients(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
 
 
-def _rigid(liner: _Liner, *, what: Callable[[State], Numbers], angles: int, points: int) -> Numbers:
-    return what(_state(liner, chebyshev.angle_at(chebyshev.places(angles), liner[1]), points))
+def _rigid(liner: _Liner, *, what: Callable[[AbelState], Numbers], angles: int, points: int) -> Numbers:
+    return what(_state(liner, chebyshev.angle_at(chebyshev.chebyshev_points(angles), liner[1]), points))
 
 
 def _ball(
-    liner: _Liner, *, what: Callable[[State], Numbers], angles: int, points: int, shares: int, balls: Sequence[float]
+    liner: _Liner,
+    *,
+    what: Callable[[AbelState], Numbers],
+    angles: int,
+    points: int,
+    shares: int,
+    balls: Sequence[float],
 ) -> Numbers:
     """What a ball of each softness and ν adds, over how soft it is."""
-    angle = chebyshev.angle_at(chebyshev.places(angles), liner[1])
+    angle = chebyshev.angle_at(chebyshev.chebyshev_points(angles), liner[1])
     rigid = what(_state(liner, angle, points))
 
     def added(place: float, ball_poisson: float) -> Numbers:
         state = _state(liner, angle, points, _share_at(place, *liner), ball_poisson)
         return (what(state) - rigid) * (2 / (1 + place))
 
-    return numpy.array([[added(float(place), nu) for nu in balls] for place in chebyshev.places(shares)])
+    return numpy.array([[added(float(place), nu) for nu in balls] for place in chebyshev.chebyshev_points(shares)])
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Kind:
-    """One table: what is sampled at how many places, and which products are kept."""
+class _TableSpec:
+    """One table: what is sampled at how many chebyshev_points, and which products are kept."""
 
     sample: Callable[[_Liner], Numbers]
     counts: tuple[int, int]
@@ -188,7 +194,10 @@ class _Kind:
 
     def fitted(self, spread: Callable[..., Any]) -> Numbers:
         """Coefficients (ν, R2/L, share, roundness, function, angle)."""
-        poisson, ratio = _poisson_at(chebyshev.places(self.counts[0])), _ratio_at(chebyshev.places(self.counts[1]))
+        poisson, ratio = (
+            _poisson_at(chebyshev.chebyshev_points(self.counts[0])),
+            _ratio_at(chebyshev.chebyshev_points(self.counts[1])),
+        )
         liners = [(float(nu), float(z)) for nu in poisson for z in ratio]
         sampled = numpy.array(list(spread(self.sample, liners, chunksize=4)))
         values = sampled.reshape(*self.counts, *((1, 1) if not self.balls else ()), *sampled.shape[1:])
@@ -208,16 +217,18 @@ def _in_roundness(balls: tuple[float, ...], values: Numbers) -> Numbers:
     return numpy.tensordot(numpy.linalg.inv(basis), values, 1)
 
 
-_KINDS = {
-    "rigid": _Kind(sample=partial(_rigid, what=_three, angles=32, points=40), counts=(19, 21), order=33, single=False),
-    "ball": _Kind(
-        sample=partial(_ball, what=_three, angles=24, points=30, shares=_SHARES, balls=_BALLS),
+_TABLE_SPECS = {
+    "rigid": _TableSpec(
+        sample=partial(_rigid, what=_rigid_functions, angles=32, points=40), counts=(19, 21), order=33, single=False
+    ),
+    "ball": _TableSpec(
+        sample=partial(_ball, what=_rigid_functions, angles=24, points=30, shares=_SHARES, balls=_BALLS),
         counts=(15, 16),
         order=22,
         balls=_BALLS,
     ),
-    "profile": _Kind(sample=partial(_rigid, what=_profile, angles=24, points=30), counts=(12, 13), order=16),
-    "profile_ball": _Kind(
+    "profile": _TableSpec(sample=partial(_rigid, what=_profile, angles=24, points=30), counts=(12, 13), order=16),
+    "profile_ball": _TableSpec(
         sample=partial(_ball, what=_profile, angles=20, points=28, shares=3, balls=_BALLS[1:2]),
         counts=(9, 10),
         order=14,
@@ -229,7 +240,7 @@ _KINDS = {
 # Checks
 
 
-def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> Accuracy:
+def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
     """The tables in a file against the equation: half angles 2 to 80 degrees, ν 0 to 0.499, R2/L 0.2 to 20."""
     chebyshev.tables(str(path))  # a file that holds none is told at once
     rigid, elastic = random_contacts(points, seed=2021), random_contacts(max(points // 5, 1), seed=2022, elastic=True)
@@ -240,7 +251,7 @@ def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
         ]
     model = table.Tabulated(file=str(path))
     worst = [_worst(model, numbers, exact) for numbers, exact in zip((rigid, elastic), known, strict=True)]
-    return Accuracy(points=points, size=Path(path).stat().st_size, rigid=worst[0], elastic=worst[1])
+    return TableAccuracy(points=points, size=Path(path).stat().st_size, rigid=worst[0], elastic=worst[1])
 
 
 def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Numbers, ...]:
@@ -270,7 +281,7 @@ def _exact(numbers: tuple[float, ...]) -> list[float]:
     return [float(getattr(state, name)[0]) * _CLEARANCE ** powers.get(name, 1) for name in QUANTITIES]
 
 
-def _worst(model: table.Tabulated, numbers: tuple[Numbers, ...], exact: Numbers) -> tuple[Worst, ...]:
+def _worst(model: table.Tabulated, numbers: tuple[Numbers, ...], exact: Numbers) -> tuple[LargestError, ...]:
     known = dict(zip(QUANTITIES, exact, strict=True))
     known["stiffness"] = known["stiffness"] / _CLEARANCE
     joint = joint_of(*numbers[1:])
@@ -280,9 +291,9 @@ def _worst(model: table.Tabulated, numbers: tuple[Numbers, ...], exact: Numbers)
     return tuple(_place(name + how, abs(value / right - 1), numbers) for name, value, right, how in found)
 
 
-def _place(name: str, error: Numbers, numbers: tuple[Numbers, ...]) -> Worst:
+def _place(name: str, error: Numbers, numbers: tuple[Numbers, ...]) -> LargestError:
     k = int(numpy.argmax(numpy.nan_to_num(error, nan=numpy.inf)))
     angle, poisson, ratio, softness, ball_poisson = (float(part[k]) for part in numbers)
     ball = f", E/E_ball {softness:.4f}, ν_ball {ball_poisson:.3f}" if softness else ""
     text = f"ε {degrees(angle):.2f}°, ν {poisson:.4f}, R2/L {ratio:.3f}{ball}"
-    return Worst(quantity=name, error=float(error[k]), where=text)
+    return LargestError(quantity=name, error=float(error[k]), where=text)

@@ -27,7 +27,7 @@ THICKNESS_RATIO = (0.195, 20.5)
 STIFFEST_SHARE = 0.0275
 """β/(1 + β) of the softest ball in the tables: E/E_ball 0.02 and a little more."""
 
-NEAR, SHIFT = 0.8, 0.2
+ANGLE_SCALE, RATIO_SHIFT = 0.8, 0.2
 """Of the axes of ε and R2/L: what is tabulated is smooth in them. Tables belong to the axes they were built with."""
 
 WITH_BALL = {"rigid": "ball", "profile": "profile_ball"}
@@ -36,32 +36,32 @@ WITH_BALL = {"rigid": "ball", "profile": "profile_ball"}
 # The axes: places run from -1 to 1, and what is tabulated is smooth in them.
 
 
-def poisson_place(poisson: Array) -> Array:
+def poisson_coordinate(poisson: Array) -> Array:
     """ν as ln(1 - 2ν): stiffness falls by decades towards ν = 1/2."""
     near, far = log(1 - 2 * POISSON[1]), log(1 - 2 * POISSON[0])
     return (far + near - 2 * ln(1 - 2 * poisson)) / (far - near)
 
 
-def thickness_place(ratio: Array) -> Array:
+def thickness_coordinate(ratio: Array) -> Array:
     """R2/L as its shifted logarithm."""
-    low, high = (log(end + SHIFT) for end in THICKNESS_RATIO)
-    return (2 * ln(ratio + SHIFT) - low - high) / (high - low)
+    low, high = (log(end + RATIO_SHIFT) for end in THICKNESS_RATIO)
+    return (2 * ln(ratio + RATIO_SHIFT) - low - high) / (high - low)
 
 
-def angle_place(angle: Array, ratio: Array) -> Array:
+def angle_coordinate(angle: Array, ratio: Array) -> Array:
     """ε as the root of a logarithm: the root tames ε ln ε at a point contact, the logarithm follows L."""
     return 2 * angle_root(angle, ratio) - 1
 
 
 def angle_root(angle: Array, ratio: Array) -> Array:
     """The root itself, from 0 to 1; of an angle as small as the rounding of 1 too."""
-    near = NEAR * (1 + ratio)
+    near = ANGLE_SCALE * (1 + ratio)
     return sqrt(log1p(near * angle) / log1p(near * LIMIT))
 
 
 def angle_at(place: Array, ratio: Array) -> Array:
     """ε at a place."""
-    near, share = NEAR * (1 + ratio), (1 + place) / 2
+    near, share = ANGLE_SCALE * (1 + ratio), (1 + place) / 2
     return (exp(share * share * ln(1 + near * LIMIT)) - 1) / near
 
 
@@ -70,7 +70,7 @@ def ball_scale(poisson: Array, ratio: Array) -> Array:
     return 1.1 * sqrt(1 - 2 * poisson) / ratio
 
 
-def ball_place(share: Array, poisson: Array, ratio: Array) -> Array:
+def ball_coordinate(share: Array, poisson: Array, ratio: Array) -> Array:
     """The ball's share of the compliance, from -1 (rigid) to 1."""
     scale = ball_scale(poisson, ratio)
     return 2 * ln(1 + share / scale) / ln(1 + STIFFEST_SHARE / scale) - 1
@@ -82,12 +82,12 @@ def roundness(ball_poisson: Array) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Table:
-    """Curves over the half angle, as a sum of products of Chebyshev polynomials of the places of liner and ball.
+class ChebyshevTable:
+    """JointCurves over the half angle, as a sum of products of Chebyshev chebyshev_polynomials of the places of liner and ball.
 
     Few combinations of the products matter: those of `liner` (combinations, products) and, where there is a ball,
     those of `ball` (combinations, products * combinations of the liner). `curves` (functions * angles, combinations)
-    turns them into Chebyshev coefficients. `counts` are the polynomials of ν, R2/L and the ball's two places.
+    turns them into Chebyshev coefficients. `counts` are the chebyshev_polynomials of ν, R2/L and the ball's two places.
     """
 
     counts: tuple[int, int, int, int]
@@ -101,15 +101,15 @@ class Table:
 
         Places are (joints,), or (1,) where all joints have the same.
         """
-        first, second, *ball = (polynomials(*both) for both in zip(places, self.counts, strict=False))
-        found = _applied(own(self.liner, first), first, second)
+        first, second, *ball = (chebyshev_polynomials(*both) for both in zip(places, self.counts, strict=False))
+        found = _applied(as_like(self.liner, first), first, second)
         if ball:
-            found = _applied(own(self.ball, first), *ball, found)
-        return arrays.namespace(first).reshape(own(self.curves, first) @ found, (*self.shape, -1))
+            found = _applied(as_like(self.ball, first), *ball, found)
+        return arrays.namespace(first).reshape(as_like(self.curves, first) @ found, (*self.shape, -1))
 
     def of_one(self, places: list[float]) -> numpy.ndarray:
         """Values (functions, angles) of one joint."""
-        first, second, *ball = (waves_at(*both) for both in zip(places, self.counts, strict=False))
+        first, second, *ball = (chebyshev_values(*both) for both in zip(places, self.counts, strict=False))
         found = self.liner @ numpy.outer(first, second).ravel()
         if ball:
             found = self.ball @ numpy.outer(numpy.outer(*ball), found).ravel()
@@ -135,11 +135,11 @@ def _applied(matrix: Array, *factors: Array) -> Array:
     return xp.reshape(cube, (matrix.shape[0], -1)) @ rows
 
 
-def polynomials(place: Array, count: int) -> Array:
+def chebyshev_polynomials(place: Array, count: int) -> Array:
     """T_0 ... T_count-1 at places (n,), as rows: by recurrence in NumPy, in few steps to compile elsewhere."""
     xp = arrays.namespace(place)
     if xp is not numpy:
-        return cos(own(numpy.arange(count, dtype=float), place)[:, None] * xp.acos(place))
+        return cos(as_like(numpy.arange(count, dtype=float), place)[:, None] * xp.acos(place))
     twice, rows = 2 * place, numpy.empty((count, *place.shape), dtype=place.dtype)
     rows[0], rows[1:2] = 1.0, place
     for k in range(2, count):
@@ -148,7 +148,7 @@ def polynomials(place: Array, count: int) -> Array:
     return rows
 
 
-def places(count: int) -> Numbers:
+def chebyshev_points(count: int) -> Numbers:
     """Chebyshev points from -1 to 1."""
     return -numpy.cos(pi * (numpy.arange(count) + 0.5) / count)
 
@@ -162,7 +162,7 @@ def coefficients(values: Numbers, axis: int) -> Numbers:
     return numpy.moveaxis(numpy.tensordot(matrix, values, (1, axis)), 0, axis)
 
 
-def waves_at(place: float, count: int) -> numpy.ndarray:
+def chebyshev_values(place: float, count: int) -> numpy.ndarray:
     """T_0 ... T_count-1 at one place."""
     return numpy.cos(_orders(count) * math.acos(min(max(place, -1.0), 1.0)))
 
@@ -172,7 +172,7 @@ def _orders(count: int) -> numpy.ndarray:
     return numpy.arange(count, dtype=float)
 
 
-def own(values: numpy.ndarray, like: Array) -> Array:
+def as_like(values: numpy.ndarray, like: Array) -> Array:
     """A table in the library, dtype and device of the caller."""
     xp = arrays.namespace(like)
     if xp is numpy and like.dtype == values.dtype:
@@ -181,7 +181,7 @@ def own(values: numpy.ndarray, like: Array) -> Array:
 
 
 @cache
-def tables(file: str = "") -> dict[str, Table]:
+def tables(file: str = "") -> dict[str, ChebyshevTable]:
     """The tables in a file, read when first asked for: "rigid", its "profile", and what a "ball" adds to each.
 
     Raises
@@ -200,10 +200,10 @@ def tables(file: str = "") -> dict[str, Table]:
     if set(stored) != {*WITH_BALL, *WITH_BALL.values()}:
         raise ValueError(f"{file} holds no tables")
     angles = {ball: stored[name].shape[-1] for name, ball in WITH_BALL.items()}
-    return {name: squeezed(values, angles.get(name, 0)) for name, values in stored.items()}
+    return {name: compress(values, angles.get(name, 0)) for name, values in stored.items()}
 
 
-def squeezed(coefficients: numpy.ndarray, angles: int = 0) -> Table:
+def compress(coefficients: numpy.ndarray, angles: int = 0) -> ChebyshevTable:
     """A table from coefficients (ν, R2/L, share, roundness, function, angle), with room for more `angles`.
 
     Singular values that do not count are left out.
@@ -216,7 +216,9 @@ def squeezed(coefficients: numpy.ndarray, angles: int = 0) -> Table:
     rest = numpy.moveaxis(rest.reshape(len(rest), balls, prod(shape)), 0, 1).reshape(-1, prod(shape))
     ball, curves = _combined(rest, least) if balls > 1 else (numpy.empty((0, 0)), rest)
     factors = (numpy.ascontiguousarray(factor.T) for factor in (liner, ball, curves))
-    return Table(counts=tuple(counts), shape=shape, **dict(zip(("liner", "ball", "curves"), factors, strict=True)))
+    return ChebyshevTable(
+        counts=tuple(counts), shape=shape, **dict(zip(("liner", "ball", "curves"), factors, strict=True))
+    )
 
 
 def _combined(matrix: numpy.ndarray, least: float) -> tuple[numpy.ndarray, numpy.ndarray]:

@@ -10,12 +10,21 @@ import numpy
 from ....core import arrays
 from ....core.arrays import Array
 from ....problem import Joint
-from .chebyshev import WITH_BALL, Table, ball_place, own, poisson_place, roundness, tables, thickness_place
-from .formulas import Curve, Scale, angle_of_force, angle_of_indentation, contact
+from .chebyshev import (
+    WITH_BALL,
+    ChebyshevTable,
+    as_like,
+    ball_coordinate,
+    poisson_coordinate,
+    roundness,
+    tables,
+    thickness_coordinate,
+)
+from .formulas import CurveCoefficients, Scale, angle_of_force, angle_of_indentation, contact
 
 
 @dataclass(frozen=True, eq=False)
-class Curves:
+class JointCurves:
     """The curves of joints (joints,), one or as many as there are contacts (contacts,).
 
     Where many contacts share few joints, `shared` are the curves of these, and `which` of them each contact has.
@@ -23,7 +32,7 @@ class Curves:
 
     file: str
     joint: Joint
-    shared: Curves | None = None
+    shared: JointCurves | None = None
     which: Array | None = None
 
     def _taken(self, values: Array) -> Array:
@@ -59,35 +68,38 @@ class Curves:
         if self.shared is not None:
             return self._taken(self.shared.series(name))
         nu, shelf = self.joint.liner.poisson, tables(self.file)
-        places, of = [poisson_place(nu), thickness_place(self.ratio)], Table.of_one if self._is_one else Table.of
+        places, of = (
+            [poisson_coordinate(nu), thickness_coordinate(self.ratio)],
+            ChebyshevTable.of_one if self._is_one else ChebyshevTable.of,
+        )
         total = of(shelf[name], places)
         if self.joint.ball is not None:
             share = self._softness / (1 + self._softness)
-            soft = ball_place(share, nu, self.ratio)
+            soft = ball_coordinate(share, nu, self.ratio)
             added = of(shelf[WITH_BALL[name]], [*places, soft, roundness(self.joint.ball.poisson)])
             total = total + (1 + soft) / 2 * added
         return total
 
     @cached_property
-    def three(self) -> Array:
-        return self.series("rigid") if self.shared is None else self._taken(self.shared.three)
+    def functions(self) -> Array:
+        return self.series("rigid") if self.shared is None else self._taken(self.shared.functions)
 
     @cached_property
     def slopes(self) -> Array:
         """Coefficients of the derivatives."""
         if self.shared is not None:
             return self._taken(self.shared.slopes)
-        xp = arrays.namespace(self.three)
-        flow = own(_derivative(self.three.shape[1]), self.three)
-        return xp.stack([flow @ self.three[row, ...] for row in range(3)])
+        xp = arrays.namespace(self.functions)
+        flow = as_like(_derivative(self.functions.shape[1]), self.functions)
+        return xp.stack([flow @ self.functions[row, ...] for row in range(3)])
 
     @cached_property
-    def curve(self) -> Curve:
+    def curve(self) -> CurveCoefficients:
         """The functions."""
         if self._is_one:
-            both = numpy.concatenate([self.three, self.three @ _derivative(self.three.shape[1]).T])
-            return Curve(self.ratio, both, both)
-        return Curve(self.ratio, self.three, self.slopes)
+            both = numpy.concatenate([self.functions, self.functions @ _derivative(self.functions.shape[1]).T])
+            return CurveCoefficients(self.ratio, both, both)
+        return CurveCoefficients(self.ratio, self.functions, self.slopes)
 
     @cached_property
     def scale(self) -> Scale:
@@ -109,9 +121,9 @@ class Curves:
 
 
 @lru_cache(maxsize=256)
-def curves_of_one(file: str, joint: Joint) -> Curves:
-    """Curves of a joint of Python numbers; kept, since more loads on it are likely."""
-    return Curves(file, joint)
+def curves_of_one(file: str, joint: Joint) -> JointCurves:
+    """JointCurves of a joint of Python numbers; kept, since more loads on it are likely."""
+    return JointCurves(file, joint)
 
 
 @cache
@@ -122,4 +134,4 @@ def _derivative(count: int) -> numpy.ndarray:
     return square
 
 
-LITTLE = 1e-3
+SMALL_LOAD = 1e-3

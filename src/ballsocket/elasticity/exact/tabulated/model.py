@@ -14,7 +14,7 @@ from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
 from ....problem import Joint
 from .chebyshev import POISSON, THICKNESS_RATIO
-from .solution import Reading, reading, solution_of
+from .solution import CurveReader, curve_reader, solution_of
 
 
 def _ball_poisson(contact: Any) -> Array:
@@ -80,9 +80,9 @@ class Tabulated(Model):
     promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        return self.answer(joint, kind, load, reading(kind))
+        return self.answer(joint, kind, load, curve_reader(kind))
 
-    def answer(self, joint: Joint, kind: str, load: Array, read: Reading) -> Answer:
+    def answer(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> Answer:
         """The answer to a load of one kind, where `read` finds the contacts on their joints' curves."""
         solution = solution_of(self.file, joint, load, read)
         d, F, _, _ = solution.values

@@ -13,9 +13,9 @@ import numpy
 from ....core import arrays
 from ....core.arrays import Array, broadcast, clip, divisor, gauss_legendre, sin, sqrt, where
 from ....problem import Joint
-from .chebyshev import LIMIT, angle_place, polynomials, waves_at
-from .curves import LITTLE, Curves, curves_of_one
-from .formulas import summed
+from .chebyshev import LIMIT, angle_coordinate, chebyshev_polynomials, chebyshev_values
+from .curves import SMALL_LOAD, JointCurves, curves_of_one
+from .formulas import sum_series
 
 _BLOCK = 2000  # contacts at a time: what stays in the cache; rows of a power of two would fall on each other there
 
@@ -104,15 +104,15 @@ def _clenshaw(series: Array, x: Array) -> Array:
     return series[0, ...] + x * here - ahead
 
 
-def _profile(curves: Curves, angle: Array) -> tuple[Array]:
+def _profile(curves: JointCurves, angle: Array) -> tuple[Array]:
     series = curves.series("profile")
     if series.ndim == 2:
-        return (series @ waves_at(angle_place(angle, curves.ratio), series.shape[1]),)
-    waves = polynomials(angle_place(angle, curves.ratio), series.shape[1])
-    return (arrays.namespace(angle).stack([summed(series[k, ...], waves) for k in range(series.shape[0])]),)
+        return (series @ chebyshev_values(angle_coordinate(angle, curves.ratio), series.shape[1]),)
+    waves = chebyshev_polynomials(angle_coordinate(angle, curves.ratio), series.shape[1])
+    return (arrays.namespace(angle).stack([sum_series(series[k, ...], waves) for k in range(series.shape[0])]),)
 
 
-def _work(curves: Curves, angle: Array) -> tuple[Array]:
+def _work(curves: JointCurves, angle: Array) -> tuple[Array]:
     """∫ F dd, with ε' = ε sin²(πy/2): a root at a point contact, and steep where the load becomes infinite."""
     total = 0.0 * angle
     for node, weight in zip(*gauss_legendre(32), strict=True):
@@ -130,11 +130,11 @@ def _moments(size: int) -> tuple[list[float], list[float]]:
     return [float(w @ part) for part in parts], [float(w @ (part * v)) for part in parts]
 
 
-Reading = Callable[[Curves, Array], tuple[Array, ...]]
+CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
 """From the curves of joints and the loads of contacts (contacts,) to numbers of each contact."""
 
 
-def solution_of(file: str, joint: Joint, load: Array, read: Reading) -> TableSolution:
+def solution_of(file: str, joint: Joint, load: Array, read: CurveReader) -> TableSolution:
     """The contacts that belong to the loads, NaN where the tables end; `read` finds ε, d, F, p0 and dF/dd."""
     found = _in_blocks(file, joint, load, read)
     fits = arrays.false(found[1] < 0)  # a ball that filled its socket at less has no wider contact
@@ -144,45 +144,45 @@ def solution_of(file: str, joint: Joint, load: Array, read: Reading) -> TableSol
     return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness))
 
 
-def reading(kind: str) -> Reading:
+def curve_reader(kind: str) -> CurveReader:
     """ε, d, F, p0 and dF/dd of contacts by loads of one kind."""
 
-    def read(curves: Curves, given: Array) -> tuple[Array, ...]:
+    def read(curves: JointCurves, given: Array) -> tuple[Array, ...]:
         angle = where(given <= LIMIT, given, float("nan")) if kind == "half_angle" else curves.angle(kind, given)
         return (angle, *curves.contact(angle)[:4])
 
     return read
 
 
-def _in_blocks(file: str, joint: Joint, load: Array, read: Reading) -> tuple[Array, ...]:
+def _in_blocks(file: str, joint: Joint, load: Array, read: CurveReader) -> tuple[Array, ...]:
     """read(curves, load) in the shape of the contacts, with a little in place of loads that are not above 0."""
     if type(load) is float:
-        return read(curves_of_one(file, joint), load if load > 0 else LITTLE)
+        return read(curves_of_one(file, joint), load if load > 0 else SMALL_LOAD)
     xp, numbers = arrays.namespace(load), joint.numbers()
     shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
     if not prod(shape):  # the shape of nothing is that of something, cut off
         one = xp.ones((1,), dtype=load.dtype)
-        some = read(Curves(file, joint.with_numbers([one for _ in numbers])), one)
+        some = read(JointCurves(file, joint.with_numbers([one for _ in numbers])), one)
         return tuple(xp.reshape(part[..., :0], (*part.shape[:-1], *shape)) for part in some)
     alone = all(prod(part.shape) == 1 for part in numbers)
     shared, which = (None, None) if alone else _shared(file, joint, shape)
     wide = (part if prod(part.shape) == 1 else arrays.broadcast_to(part, shape) for part in numbers)
     flat = [xp.reshape(part, (-1,)) for part in wide]
-    loads = xp.reshape(arrays.broadcast_to(where(load > 0, load, LITTLE), shape), (-1,))
-    whole = Curves(file, joint.with_numbers(flat))
+    loads = xp.reshape(arrays.broadcast_to(where(load > 0, load, SMALL_LOAD), shape), (-1,))
+    whole = JointCurves(file, joint.with_numbers(flat))
     size = (4 if alone else 1) * (_BLOCK if xp is numpy else 64 * _BLOCK)
     results = []
     for first in range(0, max(prod(shape), 1), size):
         block = slice(first, min(first + size, prod(shape)))
         here = None if which is None else which[block]
         parts = [part if part.shape[0] == 1 else part[block] for part in flat]
-        curves = whole if alone else Curves(file, joint.with_numbers(parts), shared, here)
+        curves = whole if alone else JointCurves(file, joint.with_numbers(parts), shared, here)
         results.append(read(curves, loads[block]))
     joined = (xp.concat(parts, axis=-1) if len(parts) > 1 else parts[0] for parts in zip(*results, strict=True))
     return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)
 
 
-def _shared(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[Curves | None, Array | None]:
+def _shared(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[JointCurves | None, Array | None]:
     """The curves of the joints of a grid, and which of them each contact has: worth while in NumPy, from a few on."""
     numbers = joint.numbers()
     inner = numpy.broadcast_shapes(*(tuple(part.shape) for part in numbers))
@@ -190,7 +190,7 @@ def _shared(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[Curves | N
         return None, None
     flat = [numpy.broadcast_to(part, inner).ravel() for part in numbers]
     which = numpy.broadcast_to(numpy.arange(prod(inner)).reshape(inner), shape).ravel()
-    return Curves(file, joint.with_numbers(flat)), which
+    return JointCurves(file, joint.with_numbers(flat)), which
 
 
 _FEW = 4  # contacts a joint

@@ -13,16 +13,16 @@ from ..bodies import ball_body, socket_body
 from ..contact import MeshedContact
 from ..mesh import Block, block
 from ..shapes import socket_shape
-from ..surfaces import Pair
-from ..work import Solved
-from .solid import Solid
+from ..surfaces import SurfacePair
+from ..tangent import Solved
+from .solid import DeckBody
 
 _RING = 0.05  # of a rigid ball's radius, meshed
 _SAME = 1e-9  # rad
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Bodies:
+class DeckBodies:
     """Ball and socket of one contact, their materials, and how far a pressure is looked for."""
 
     contact: MeshedContact
@@ -39,10 +39,10 @@ class Bodies:
         return self.contact._plain_joint
 
     @cached_property
-    def socket(self) -> Solid:
+    def socket(self) -> DeckBody:
         """Liner and backing."""
         body = socket_body(socket_shape(self.joint, self.contact.model.cup), self.solved.pair.resolution)
-        return Solid(
+        return DeckBody(
             names=("LINER", *(f"BACKING{number}" for number in range(1, len(self.joint.backing) + 1))),
             block=body.elastic.block,
             held=body.held.reshape(-1, 2).T,
@@ -51,11 +51,11 @@ class Bodies:
         )
 
     @cached_property
-    def ball(self) -> Solid:
+    def ball(self) -> DeckBody:
         """Where it first touches. It is as large as the scaled clearance leaves room for."""
         mesh, held, contact = self._ring() if self.joint.ball is None else self._half(self.joint.ball)
         clearance = self.scale * float(self.joint.clearance)
-        return Solid(
+        return DeckBody(
             names=("BALL",),
             block=mesh,
             held=held,
@@ -95,7 +95,7 @@ class Bodies:
         return {**moduli, "BALL": (young * float(joint.socket_radius) / self.ball.radius, poisson)}
 
 
-def false_gap(pair: Pair) -> float:
+def faceting_gap(pair: SurfacePair) -> float:
     """Between the surface of elements and its sphere, in mm; 0 where it is the same for both bodies.
 
     A chord lies R h²/2 below its arc of half angle h, a parabola through three of its points R h⁴/32.

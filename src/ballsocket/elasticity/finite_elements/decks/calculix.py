@@ -59,14 +59,14 @@ def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
         did not reach are NaN.
     """
     folder = Path(folder)
-    done = started(folder, threads)
+    done = run_calculix(folder, threads)
     answer = read(folder)
     if numpy.isnan(answer.force).all():
-        raise RuntimeError(f"ccx ended with {done.returncode} before the first step did: {last_words(done)}")
+        raise RuntimeError(f"ccx ended with {done.returncode} before the first step did: {last_output(done)}")
     return answer
 
 
-def started(folder: Path, threads: int) -> subprocess.CompletedProcess[str]:
+def run_calculix(folder: Path, threads: int) -> subprocess.CompletedProcess[str]:
     """CalculiX, ended, on the deck in a folder; what an earlier run left there is gone.
 
     Raises
@@ -93,7 +93,7 @@ def started(folder: Path, threads: int) -> subprocess.CompletedProcess[str]:
     )
 
 
-def last_words(done: subprocess.CompletedProcess[str]) -> str:
+def last_output(done: subprocess.CompletedProcess[str]) -> str:
     """What CalculiX said in the end, in a line."""
     return "; ".join([line.strip() for line in done.stdout.splitlines() if line.strip()][-_LINES:])
 
@@ -102,8 +102,8 @@ def read(folder: Path) -> CcxAnswer:
     """The answer of the last run in a folder."""
     deck = json.loads((folder / EXPECTED).read_text(encoding="ascii"))
     dat = folder / f"{NAME}.dat"
-    forces, bore, ball = printed(dat, "PUSHED"), printed(dat, "BORE"), printed(dat, "ROUND")
-    pressures = contact_pressures(folder / f"{NAME}.frd")
+    forces, bore, ball = read_printed(dat, "PUSHED"), read_printed(dat, "BORE"), read_printed(dat, "ROUND")
+    pressures = read_contact_pressures(folder / f"{NAME}.frd")
     answer = CcxAnswer(**{field.name: numpy.full(len(deck["steps"]), numpy.nan) for field in fields(CcxAnswer)})
     for step in forces.keys() & bore.keys() & ball.keys() & pressures.keys():
         surfaces = _Surfaces(deck=deck, bore=bore[step], ball=ball[step], pressures=pressures[step])
@@ -184,7 +184,7 @@ def pole(angle: Numbers, pressures: Numbers, half_angle: float) -> float:
     return float(numpy.polynomial.Polynomial.fit(angle[near] ** 2, pressures[near], degree)(0.0))
 
 
-def printed(dat: Path, name: str) -> dict[int, Numbers]:
+def read_printed(dat: Path, name: str) -> dict[int, Numbers]:
     """The rows of numbers that a .dat file has of a set of nodes at the end of each step, the first of which is 0."""
     return {
         step: numpy.array([row.split() for row in table.splitlines() if row.strip()], dtype=float)
@@ -192,7 +192,7 @@ def printed(dat: Path, name: str) -> dict[int, Numbers]:
     }
 
 
-def contact_pressures(frd: Path) -> dict[int, dict[int, float]]:
+def read_contact_pressures(frd: Path) -> dict[int, dict[int, float]]:
     """The contact pressures that a .frd file has at the end of each step, the first of which is 0, by node."""
     return {
         step: {int(row[3:13]): float(row[49:61]) for row in table.splitlines() if row.startswith(" -1")}

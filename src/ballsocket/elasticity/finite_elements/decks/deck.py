@@ -34,14 +34,13 @@ from ....core.storage.atomic import write_text
 from ....problem.gaps import LinearGap
 from ....version import __version__
 from ..contact import MeshedContact
-from .bodies import Bodies, false_gap
-from .lines import contact_lines, material_lines, mesh_lines, step_lines, support_lines
-from .solid import TYPES
+from .bodies import DeckBodies, faceting_gap
+from .solid import TYPES, DeckBody, node_set
 
 NAME, EXPECTED = "ballsocket", "expected.json"
 """Names of the deck, as CalculiX wants it, and of the file beside it."""
 
-MOST_STEPS = 1000
+MAX_STEPS = 1000
 """Steps of a deck; our own answer to each is computed and written beside it."""
 
 _STIFFER = 2000.0
@@ -61,7 +60,7 @@ def deck_of(contact: MeshedContact, *, steps: int = 8, scale: float = 1e-3) -> D
     contact : MeshedContact
         One contact under load, pressed by a `FiniteElement` with the linear gap.
     steps : int
-        Equal indentations up to the contact's own, one step each; 1 to `MOST_STEPS`.
+        Equal indentations up to the contact's own, one step each; 1 to `MAX_STEPS`.
     scale : float
         What clearance and indentation are multiplied by, above 0 and at most 1. 1 is the real geometry, whose answer
         differs from ours by what small displacements leave out.
@@ -74,12 +73,12 @@ def deck_of(contact: MeshedContact, *, steps: int = 8, scale: float = 1e-3) -> D
     """
     if prod(contact.laws.shape) != 1:
         raise ValueError(f"a deck is for one contact, not {contact.laws.shape}: press it alone")
-    good = isinstance(steps, int) and 1 <= steps <= MOST_STEPS
-    require("steps", steps, good, f"a deck has a whole number of steps, 1 to {MOST_STEPS}")
+    good = isinstance(steps, int) and 1 <= steps <= MAX_STEPS
+    require("steps", steps, good, f"a deck has a whole number of steps, 1 to {MAX_STEPS}")
     require("scale", scale, 0 < scale <= 1, "a scale lies above 0 and is at most 1")
     if contact.model.gap is not LinearGap:
         raise ValueError("a deck tends to the linear gap: press with gap=LinearGap")
-    room = false_gap(contact._solved.pair) / (scale * contact._solved.indentation)
+    room = faceting_gap(contact._solved.pair) / (scale * contact._solved.indentation)
     if room > _FALSE:
         raise ValueError(
             f"elements of ball and socket do not match, which leaves a gap of {room:.1%} of the scaled indentation: "
@@ -132,8 +131,8 @@ class Deck:
         return write_text(folder / f"{NAME}.inp", self.text(), encoding="ascii")
 
     @cached_property
-    def _bodies(self) -> Bodies:
-        return Bodies(contact=self.contact, scale=self.scale)
+    def _bodies(self) -> DeckBodies:
+        return DeckBodies(contact=self.contact, scale=self.scale)
 
     # --- what is expected ---
 
@@ -205,3 +204,81 @@ class Deck:
             f"{self.steps} steps push the ball (set PUSHED) down by equal parts. Expected of the real joint: "
             "step, indentation (mm), force (N), pressure at the pole (MPa), half angle (deg)."
         )
+
+
+_INSIDE, _OUTSIDE = "S4", "S2"  # faces of elements
+
+
+def mesh_lines(bodies: DeckBodies) -> Iterator[str]:
+    """Nodes and elements of both bodies, and the sets of nodes that may touch."""
+    yield "*NODE, NSET=ALL"
+    for body in (bodies.socket, bodies.ball):
+        yield from body.node_lines()
+    for body in (bodies.socket, bodies.ball):
+        yield from body.element_lines()
+    yield from node_set("BORE", bodies.socket.surface()["node"])
+    yield from node_set("ROUND", bodies.ball.surface()["node"])
+
+
+def material_lines(bodies: DeckBodies) -> Iterator[str]:
+    """A material for each set of elements."""
+    for name, (young, poisson) in bodies.materials.items():
+        yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {poisson:.12g}")
+        yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
+
+
+def contact_lines(bodies: DeckBodies, slope: float) -> Iterator[str]:
+    """What touches: the surfaces go as far as a pressure was looked for, the ball's by an element farther."""
+    yield "*SURFACE, NAME=LINED, TYPE=ELEMENT"
+    yield from (f"{element}, {_INSIDE}" for element in bodies.socket.touching(bodies.reach, strip=0))
+    yield "*SURFACE, NAME=PRESSED, TYPE=ELEMENT"
+    yield from (f"{element}, {_OUTSIDE}" for element in bodies.ball.touching(bodies.reach, strip=-1, more=1))
+    yield from ("*SURFACE INTERACTION, NAME=TOUCH", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR")
+    yield from (f"{slope:.6g}", "*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "LINED, PRESSED")
+
+
+def support_lines(bodies: DeckBodies) -> Iterator[str]:
+    """What is held: x and y where both or, on the axis, x is held; else radius and angle, which are 1 and 2."""
+    socket, ball = bodies.socket, bodies.ball
+    upright = [*socket.numbers(socket.on_axis & ~socket.fixed), *ball.numbers(ball.on_axis | ball.fixed)]
+    seated, rolling = socket.held & ~socket.fixed & ~socket.on_axis
+    yield from node_set("PUSHED", ball.numbers(ball.held[0] & (ball.fixed | ~ball.on_axis)))
+    yield from _polar(socket, seated | rolling)
+    for name, directions, nodes in (
+        ("UPRIGHT", "1, 1", upright),
+        ("FIXED", "1, 2", socket.numbers(socket.fixed)),
+        ("SEATED", "2, 2", socket.numbers(seated)),
+        ("ROLLING", "1, 1", socket.numbers(rolling)),
+    ):
+        yield from _held(name, directions, nodes)
+
+
+def _polar(socket: DeckBody, held: Numbers) -> Iterator[str]:
+    """Directions of the nodes that are held or slide, and what slides: the first direction is the radius."""
+    inner, outer = socket.sliding
+    polar = held.copy()
+    polar[inner] = polar[outer] = True
+    numbers = socket.numbers(polar & ~socket.on_axis)
+    if numbers:
+        yield from node_set("POLAR", numbers)
+        yield from ("*TRANSFORM, NSET=POLAR, TYPE=C", "0., 0., 0., 0., 0., 1.")
+    if len(inner):
+        yield "*EQUATION"
+    for one, other in zip(inner, outer, strict=True):
+        direction = 2 if socket.on_axis[one] else 1
+        yield from ("2", f"{socket.number[one]}, {direction}, 1., {socket.number[other]}, {direction}, -1.")
+
+
+def _held(name: str, directions: str, nodes: list[int]) -> Iterator[str]:
+    if nodes:
+        yield from node_set(name, nodes)
+        yield from ("*BOUNDARY", f"{name}, {directions}")
+
+
+def step_lines(height: float) -> Iterator[str]:
+    """One step, which pushes the ball to a height (mm, negative is down), and what is printed of it."""
+    yield from ("*STEP, INC=100", "*STATIC", "1., 1.", "*BOUNDARY", f"PUSHED, 2, 2, {height:.13g}")
+    yield from ("*NODE PRINT, NSET=PUSHED, TOTALS=ONLY", "RF")
+    for surface in ("BORE", "ROUND"):
+        yield from (f"*NODE PRINT, NSET={surface}, GLOBAL=YES", "U")
+    yield from ("*CONTACT FILE", "CDIS, CSTR", "*END STEP")

@@ -20,7 +20,7 @@ _SAME = 1e-9  # rad
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Solid:
+class DeckBody:
     """A body in the deck.
 
     `names` are its layers; `held` (2, nodes) is along the angle and along the radius; `contact` are the nodes of its

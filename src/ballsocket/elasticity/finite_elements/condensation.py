@@ -15,25 +15,25 @@ import numpy
 from scipy.sparse.linalg import splu
 
 from ...core.arrays import Numbers
-from .elasticity import Elastic
+from .elasticity import ElasticBlock
 
 _LEAF = 24  # places in a part that is not halved any more
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Body:
+class CondensedBody:
     """An elastic block with supports, and normal loads on its contact surface.
 
     Parameters
     ----------
-    elastic : Elastic
+    elastic : ElasticBlock
     held : array of bool (unknowns,)
         Unknowns that are zero.
     contact : array (nodes,)
         Nodes of the contact surface, from the pole on.
     """
 
-    elastic: Elastic
+    elastic: ElasticBlock
     held: Numbers
     contact: Numbers
 
@@ -48,7 +48,7 @@ class Body:
         block = self.elastic.block
         grid = numpy.arange(len(block.angle) * (block.place[-1] + 1)).reshape(len(block.angle), -1)
         rank = numpy.empty(grid.size, dtype=int)
-        rank[dissected(grid, block.order)] = numpy.arange(grid.size)
+        rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
         of_node = rank[grid[:, block.place]].ravel()
         free = numpy.unique(self.elastic.unknowns)
         free = free[~self.held[free] & ~numpy.isin(free, self.normals)]
@@ -76,7 +76,7 @@ class Body:
         return whole.reshape(-1, 2)
 
 
-def dissected(part: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Numbers:
+def nested_dissection(part: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Numbers:
     """The places of a grid in nested dissection order; only lines between elements separate what lies beside them.
 
     `start` is where the part begins in the whole grid.
@@ -89,4 +89,6 @@ def dissected(part: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Num
     middle += (start[along] + middle) % order  # counted in the whole block
     beyond = (start[0] + middle + 1, start[1]) if along == 0 else (start[0], start[1] + middle + 1)
     first, second = (half if along == 0 else half.T for half in (lines[:middle], lines[middle + 1 :]))
-    return numpy.concatenate([dissected(first, order, start), dissected(second, order, beyond), lines[middle]])
+    return numpy.concatenate(
+        [nested_dissection(first, order, start), nested_dissection(second, order, beyond), lines[middle]]
+    )

@@ -14,14 +14,16 @@ from math import inf
 
 import numpy
 
+from ...contact.peak_pressure import Peaked, largest_pressure
 from ...contact.per_joint import Piece
 from ...core.arrays import Numbers
-from .abel import ROUNDING, State
-from .curve import Curve, errors, steepness
-from .fitted_state import LOGS, FittedState
-from .stress_curve import StressCurve
-from .tabulated.chebyshev import angle_at, angle_root, coefficients, places, polynomials
-from .tabulated.formulas import widening_of
+from ...problem.gaps import Gap
+from .abel import ROUNDING, AbelState, pressure_of
+from .kernel import Kernel
+from .load_curve import LoadCurve, errors, log_slope
+from .subsurface import StressCurve
+from .tabulated.chebyshev import angle_at, angle_root, chebyshev_points, chebyshev_polynomials, coefficients
+from .tabulated.formulas import angle_derivative
 
 _TERMS, _POINTS, _TRIES = 32, 28, 4
 """Contacts, and points at which each is solved: at first, and half as many more of what errs most each time."""
@@ -33,8 +35,13 @@ _BLOCK = 2000  # contacts at a time: what stays in the cache
 _POWERS = {"indentation": 2.0, "force": 3.0}  # of ε in the load of a point contact
 _STARTS, _SMALLEST, _STEPS, _ROUNDED = 800, 1e-9, 3, 1e-12
 
+LOGS = 2
+"""So many of the functions are logarithms."""
 
-def _functions(state: State) -> Numbers:
+_FLAT = 1e-7  # of a pressure: what series may ripple
+
+
+def _functions(state: AbelState) -> Numbers:
     """ln of d/X/(1 - cos ε) and of F C/(R2² X ε³), then p0 C/(X ε), dF/dd C/(R2² ε), U/(F d) and ∫ p dA/F."""
     angle, d, F, C = state.half_angle, state.indentation, state.force, state.kernel.compliance
     reach, area = state.gap.clearance + d, state.gap.socket_radius**2
@@ -44,19 +51,19 @@ def _functions(state: State) -> Numbers:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FittedCurve:
+class ChebyshevCurve:
     """Force, indentation and half angle of one joint, by the series.
 
     Attributes
     ----------
-    curve : Curve
+    curve : LoadCurve
         The exact solutions.
-    knots : State
-        Those that the series go through, at `places`.
+    knots : AbelState
+        Those that the series go through, at `chebyshev_points`.
     """
 
-    curve: Curve
-    knots: State
+    curve: LoadCurve
+    knots: AbelState
 
     def press(self, kind: str, load: Numbers) -> Piece:
         """The contacts that belong to loads of one kind: "force", "indentation" or "half_angle"."""
@@ -64,13 +71,13 @@ class FittedCurve:
         given = load[touching]
         angle = given if kind == "half_angle" else _in_blocks(lambda part: self._angle_of(kind, part), given)
         reached = angle <= self.curve.widest
-        state = FittedState(fitted=self, half_angle=numpy.where(reached, angle, self.curve.widest))
+        state = ChebyshevState(fitted=self, half_angle=numpy.where(reached, angle, self.curve.widest))
         return Piece(load=load, touching=touching, state=state, reached=reached, error=self._errors(kind, state))
 
-    def _errors(self, kind: str, state: FittedState) -> dict[str, Numbers]:
+    def _errors(self, kind: str, state: ChebyshevState) -> dict[str, Numbers]:
         """Relative errors of each quantity, at the given load."""
         # near the perfect fit X says little of a half angle, and a half angle much of X: that of a load is as good
-        felt = 1.0 if kind == "half_angle" else _SLOPE / steepness(kind, state)
+        felt = 1.0 if kind == "half_angle" else _SLOPE / log_slope(kind, state)
         more = felt * state.distance + self.curve.kernel.tolerance
         return {name: more * (name != kind) + each for name, each in errors(kind, state).items()}
 
@@ -94,7 +101,7 @@ class FittedCurve:
     @property
     def good(self) -> bool:
         """Whether these are enough terms, of loads that grow with the half angle."""
-        state = FittedState(fitted=self, half_angle=self.knots.half_angle)
+        state = ChebyshevState(fitted=self, half_angle=self.knots.half_angle)
         found = [error for kind in _POWERS for error in self._errors(kind, state).values()]
         away = [error[state.to_fit > _FULL] for error in self._errors("half_angle", state).values()]
         worst = max(numpy.max(error) for error in (*found, *away))
@@ -102,7 +109,7 @@ class FittedCurve:
 
     @cached_property
     def expansion(self) -> Numbers:
-        """Coefficients (Legendre polynomials, terms) of G/sin s/X, see `abel`, as far as they count."""
+        """Coefficients (Legendre chebyshev_polynomials, terms) of G/sin s/X, see `abel`, as far as they count."""
         reach = self.curve.gap.clearance + self.knots.indentation
         scaled = coefficients((self.knots.expansion / reach[:, None]).T, 1)
         return scaled[numpy.cumsum(abs(scaled[::-1]).max(axis=1))[::-1] > ROUNDING * abs(scaled).max()]
@@ -110,12 +117,12 @@ class FittedCurve:
     def at(self, angle: Numbers) -> tuple[Numbers, Numbers]:
         """The functions at ε (functions, contacts), and the slopes of the two logarithms by ln ε."""
         rows = _in_blocks(lambda part: self._series @ self.waves(part), angle)
-        slope = widening_of(angle, angle_root(angle, self.curve.ratio), self.curve.ratio) / self._whole
+        slope = angle_derivative(angle, angle_root(angle, self.curve.ratio), self.curve.ratio) / self._whole
         return rows[:-LOGS], rows[-LOGS:] * slope
 
     def waves(self, angle: Numbers) -> Numbers:
-        """Chebyshev polynomials (terms, contacts) at ε."""
-        return polynomials(2 * angle_root(angle, self.curve.ratio) / self._whole - 1, self._series.shape[1])
+        """Chebyshev chebyshev_polynomials (terms, contacts) at ε."""
+        return chebyshev_polynomials(2 * angle_root(angle, self.curve.ratio) / self._whole - 1, self._series.shape[1])
 
     @cached_property
     def stresses(self) -> StressCurve:
@@ -131,7 +138,7 @@ class FittedCurve:
     @cached_property
     def _known(self) -> dict[str, Numbers]:
         """ln(load) of the starts."""
-        state = FittedState(fitted=self, half_angle=self._starts)
+        state = ChebyshevState(fitted=self, half_angle=self._starts)
         return {kind: numpy.log(getattr(state, kind)) for kind in _POWERS}
 
     def _angle_of(self, kind: str, given: Numbers) -> Numbers:
@@ -140,18 +147,127 @@ class FittedCurve:
         below = numpy.minimum(goal - known[0], 0.0) / _POWERS[kind]
         angle = numpy.exp(numpy.interp(goal, known, numpy.log(self._starts)) + below)
         for _ in range(_STEPS):
-            state = FittedState(fitted=self, half_angle=angle)
-            step = (numpy.log(getattr(state, kind)) - goal) / steepness(kind, state)
+            state = ChebyshevState(fitted=self, half_angle=angle)
+            step = (numpy.log(getattr(state, kind)) - goal) / log_slope(kind, state)
             angle = numpy.minimum(angle * numpy.exp(-step), self.curve.widest)
         return numpy.where(goal <= known[-1] + _ROUNDED, angle, inf)
 
 
-def fitted(curve: Curve) -> Curve | FittedCurve:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChebyshevState(Peaked):
+    """Contacts at half angles ε (contacts,) above 0, with the quantities of a `AbelState`."""
+
+    fitted: ChebyshevCurve
+    half_angle: Numbers
+
+    @property
+    def kernel(self) -> Kernel:
+        return self.fitted.curve.kernel
+
+    @property
+    def gap(self) -> Gap:
+        return self.fitted.curve.gap
+
+    @cached_property
+    def _at(self) -> tuple[Numbers, Numbers]:
+        return self.fitted.at(self.half_angle)
+
+    @cached_property
+    def _opened(self) -> tuple[Numbers, Numbers]:
+        """d/X and its distance to 1, the perfect fit."""
+        share = numpy.exp(self._at[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
+        return share, 1 - share
+
+    @property
+    def to_fit(self) -> Numbers:
+        """c/X, from 1 down to 0 at the perfect fit."""
+        return self._opened[1]
+
+    @cached_property
+    def _reach(self) -> Numbers:
+        """X = c + d in mm."""
+        return self.gap.clearance / self._opened[1]
+
+    @cached_property
+    def indentation(self) -> Numbers:
+        return self._reach * self._opened[0]
+
+    @cached_property
+    def widening(self) -> Numbers:
+        """dd/dε in mm/rad."""
+        rate = self._at[1][0] / self.half_angle + 1 / numpy.tan(self.half_angle / 2)
+        return self._reach * self._opened[0] * rate / self._opened[1]
+
+    @cached_property
+    def _unit(self) -> Numbers:
+        """X ε/C in MPa."""
+        return self._reach * self.half_angle / self.kernel.compliance
+
+    @cached_property
+    def force(self) -> Numbers:
+        radius = self.gap.socket_radius * self.half_angle
+        return numpy.exp(self._at[0][1]) * self._unit * radius * radius
+
+    @cached_property
+    def pole_pressure(self) -> Numbers:
+        return self._at[0][2] * self._unit
+
+    @cached_property
+    def stiffness(self) -> Numbers:
+        return self._at[0][3] * self.gap.socket_radius**2 * self.half_angle / self.kernel.compliance
+
+    @cached_property
+    def energy(self) -> Numbers:
+        return self._at[0][4] * self.force * self.indentation
+
+    @cached_property
+    def pressure_integral(self) -> Numbers:
+        return self._at[0][5] * self.force
+
+    @cached_property
+    def error(self) -> Numbers:
+        """Relative, at ε and X: of the exact solutions, and of what the series leave out."""
+        missed, values = self.fitted.missed[:, None], abs(self._at[0][LOGS:])
+        return numpy.max(missed[:LOGS]) + numpy.max(missed[LOGS:] / values, axis=0) + numpy.max(self.fitted.knots.error)
+
+    @property
+    def distance(self) -> Numbers:
+        """Relative error of X at ε: it is that of the distance to the perfect fit."""
+        return self.fitted.missed[0] * self._opened[0] / self._opened[1]
+
+    @cached_property
+    def largest(self) -> tuple[Numbers, Numbers]:
+        """The largest pressure of each contact in MPa, and its polar angle in rad."""
+        if self.fitted.knots.decreases.all():
+            return self.pole_pressure, 0.0 * self.half_angle
+        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _FLAT)
+
+    def largest_von_mises(self, reached: Numbers) -> Numbers:
+        """That in the liner of each contact that was reached (a mask), between those of half angles along the curve."""
+        found = self.half_angle[reached]
+        values = numpy.full(len(self.half_angle), numpy.nan)
+        values[reached] = self.fitted.stresses.share(found) * self.max_pressure[reached]
+        return values
+
+    @cached_property
+    def _expansion(self) -> Numbers:
+        return self.fitted.expansion @ self.fitted.waves(self.half_angle)
+
+    def pressure(self, angle: Numbers) -> Numbers:
+        """p(φ) in MPa at angles (anything, contacts); 0 outside the contact."""
+        return pressure_of(self.half_angle, self._expansion, angle) * (self._reach / self.kernel.compliance)
+
+    def alone(self, number: int) -> AbelState:
+        """One of the contacts, solved."""
+        return self.fitted.curve.state(self.half_angle[number : number + 1], self.fitted.knots.grid.points)
+
+
+def fitted(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
     """The series through a curve, of as many terms as its tolerance asks; the curve itself where these do not do."""
     terms, points = _TERMS, _POINTS
     with numpy.errstate(all="ignore"):
         for _ in range(_TRIES if curve.widest > 0 else 0):
-            found = FittedCurve(curve=curve, knots=curve.state(_knots(curve, terms), points))
+            found = ChebyshevCurve(curve=curve, knots=curve.state(_knots(curve, terms), points))
             if found.good:
                 return found
             short = numpy.max(found.missed) > numpy.max(found.knots.error)
@@ -159,10 +275,10 @@ def fitted(curve: Curve) -> Curve | FittedCurve:
     return curve
 
 
-def _knots(curve: Curve, terms: int) -> Numbers:
-    """Half angles at `places`."""
+def _knots(curve: LoadCurve, terms: int) -> Numbers:
+    """Half angles at `chebyshev_points`."""
     whole = float(angle_root(curve.widest, curve.ratio))
-    return angle_at(whole * (1 + places(terms)) - 1, curve.ratio)
+    return angle_at(whole * (1 + chebyshev_points(terms)) - 1, curve.ratio)
 
 
 def _in_blocks(values: Callable[[Numbers], Numbers], over: Numbers) -> Numbers:

@@ -12,9 +12,9 @@ import numpy
 from ...contact.per_joint import Piece
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
-from .abel import State
-from .grid import grid
-from .intervals import Intervals, KeptIntervals
+from .abel import AbelState
+from .grid import cached_grid
+from .intervals import CachedIntervals, Intervals
 from .kernel import Kernel
 
 LIMIT = radians(85.0)
@@ -28,14 +28,14 @@ _SAFETY = 3.0  # over how far the two solutions of the equation disagree
 _END = 1.03 * LIMIT  # of the contacts that are computed, to see which are too wide
 _DEGREES = (0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85)
 _ANGLES = numpy.append(numpy.radians(_DEGREES), _END)
-_FIRST_LOOK = KeptIntervals(half_angle=_ANGLES, grid=grid(_COARSE))
+_FIRST_LOOK = CachedIntervals(half_angle=_ANGLES, grid=cached_grid(_COARSE))
 _WINDOW, _WINDOW_STEP = 8, 4
 """Number of knots around one half angle, and the step between the windows that are used."""
 
 _LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
 
 
-class Known(Protocol):
+class CurvePoints(Protocol):
     """What is known of contacts that were solved, or read from a curve."""
 
     @property
@@ -53,7 +53,7 @@ class Known(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Curve:
+class LoadCurve:
     """Force, indentation and half angle of one joint, to a relative tolerance."""
 
     kernel: Kernel
@@ -75,11 +75,13 @@ class Curve:
             angle = numpy.where(angle <= self._end, state.half_angle, angle)
         return Piece(load=load, touching=touching, state=state, reached=reached, error=error)
 
-    def state(self, angle: Numbers, points: int) -> State:
+    def state(self, angle: Numbers, points: int) -> AbelState:
         """The contacts of half angles, solved at so many points."""
-        return State(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angle, grid=grid(points)))
+        return AbelState(
+            kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points))
+        )
 
-    def _solved(self, kind: str, given: Numbers, angle: Numbers, points: int) -> tuple[State, Numbers]:
+    def _solved(self, kind: str, given: Numbers, angle: Numbers, points: int) -> tuple[AbelState, Numbers]:
         """The state at the half angle that gives the load, by Newton's method in the logarithms, and what it misses."""
         state = self.state(angle, points)
         if kind == "half_angle":
@@ -88,7 +90,7 @@ class Curve:
             miss = numpy.log(_LAWS[kind](state) / given)
             if not numpy.any(abs(miss) > _CLOSE):
                 break
-            step = numpy.clip(miss / steepness(kind, state), -0.5, 0.5)
+            step = numpy.clip(miss / log_slope(kind, state), -0.5, 0.5)
             state = self.state(self._bounded(state.half_angle * numpy.exp(-step)), points)
         return state, abs(miss)
 
@@ -123,11 +125,11 @@ class Curve:
         return min(LIMIT, self._end)
 
     @cached_property
-    def _first_look(self) -> State:
-        return State(kernel=self.kernel, gap=self.gap, intervals=_FIRST_LOOK)
+    def _first_look(self) -> AbelState:
+        return AbelState(kernel=self.kernel, gap=self.gap, intervals=_FIRST_LOOK)
 
     @cached_property
-    def knots(self) -> State:
+    def knots(self) -> AbelState:
         """A few contacts, all of them sound."""
         if self._end == _END:
             return self._first_look
@@ -135,9 +137,9 @@ class Curve:
         room = self._end - inside.max(initial=0.0)
         return self.state(numpy.append(inside, self._end - room * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE)
 
-    def knots_in(self, window: slice) -> State | None:
+    def knots_in(self, window: slice) -> AbelState | None:
         """Return the contacts at some of the knots; None where one of them is not sound."""
-        state = State(kernel=self.kernel, gap=self.gap, intervals=_window_intervals(window.start, window.stop))
+        state = AbelState(kernel=self.kernel, gap=self.gap, intervals=_window_intervals(window.start, window.stop))
         return state if _sound(state).all() else None
 
     @cached_property
@@ -145,7 +147,7 @@ class Curve:
         """ln(load), ln ε and their slope at the coarse contacts."""
         coarse = self.knots
         y = numpy.log(coarse.half_angle)
-        return {kind: (numpy.log(law(coarse)), y, 1 / steepness(kind, coarse)) for kind, law in _LAWS.items()}
+        return {kind: (numpy.log(law(coarse)), y, 1 / log_slope(kind, coarse)) for kind, law in _LAWS.items()}
 
     def _guess(self, kind: str, given: Numbers) -> Numbers:
         """The half angle by cubics between a few coarse contacts; like a power of the load below the first."""
@@ -171,27 +173,27 @@ def window_of(angle: Numbers) -> slice | None:
 
 
 @cache
-def _window_intervals(start: int, stop: int) -> KeptIntervals:
-    return KeptIntervals(half_angle=_ANGLES[start:stop], grid=grid(_COARSE))
+def _window_intervals(start: int, stop: int) -> CachedIntervals:
+    return CachedIntervals(half_angle=_ANGLES[start:stop], grid=cached_grid(_COARSE))
 
 
-def _sound(state: State) -> Numbers:
+def _sound(state: AbelState) -> Numbers:
     """Whether there is a contact: not beyond the perfect fit, where the ball does not reach, or without a number."""
     with numpy.errstate(invalid="ignore", over="ignore", under="ignore"):
         work = state.indentation * state.force  # infinite or zero before any of the other quantities
         return (state.indentation > 0) & (state.pole_pressure > 0) & (work > 0) & (work < inf)
 
 
-def steepness(kind: str, state: Known) -> Numbers:
+def log_slope(kind: str, state: CurvePoints) -> Numbers:
     """d ln(load)/d ln ε."""
     deepening = state.half_angle * state.widening
     return deepening / state.indentation if kind == "indentation" else deepening * state.stiffness / state.force
 
 
-def errors(kind: str, state: Known) -> dict[str, Numbers]:
+def errors(kind: str, state: CurvePoints) -> dict[str, Numbers]:
     """Relative errors of each quantity, at the given load."""
     own = _SAFETY * state.error
-    steep = {name: steepness(name, state) for name in _LAWS}
+    steep = {name: log_slope(name, state) for name in _LAWS}
     shift = own / steep[kind] if kind in _LAWS else 0.0 * own
     errors = {name: own + shift * each for name, each in steep.items()}
     errors["half_angle"] = shift
