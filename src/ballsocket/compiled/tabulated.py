@@ -30,7 +30,7 @@ def solved(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> Answer:
 
     def read(curves: JointCurves, given: Numbers) -> tuple[Numbers, ...]:
         """ε, d, F, p0 and dF/dd of contacts (contacts,)."""
-        inputs = (curves.scaled(kind, given), curves.ratio, *curves.scale)
+        inputs = (curves.scaled_load(kind, given), curves.ratio, *curves.scale)
         found = numpy.empty((5, len(given)))
         _kernel(kind)(*(flat(part, given.shape) for part in inputs), curves.functions, found)
         return tuple(found)
@@ -57,7 +57,7 @@ def _kernel(kind: str) -> Any:
     return compiled(run)
 
 
-@overload(formulas.at, strict=False)
+@overload(formulas.evaluate, strict=False)
 def _at(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
     if rows.count == 1:
         return lambda angle, curve, rows: _functions(angle, curve)[:1]
@@ -94,9 +94,9 @@ for _formula in (
     formulas.angle_derivative,
     formulas.opening,
     formulas.contact,
-    formulas._angle_of,
-    formulas._indentation_miss,
-    formulas._force_miss,
+    formulas._solve_angle,
+    formulas._indentation_residual,
+    formulas._force_residual,
     formulas.angle_of_indentation,
     formulas.angle_of_force,
 ):

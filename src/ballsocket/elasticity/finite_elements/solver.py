@@ -1,4 +1,4 @@
-"""From a joint and the settings of the finite elements to the curve of its contacts."""
+"""Load curves of joints from the settings of the finite element model."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from .spacing import Spacing, Uniform
 from .surfaces import ContactSurface, SurfacePair
 
 LIMIT = radians(88.0)
-"""The widest contact where the socket reaches further."""
+"""Largest half angle in rad that is solved."""
 
-_BEYOND = 1.2  # of a class's widest contact: so far a pressure is looked for
+_REACH_FACTOR = 1.2  # of a class's widest contact: extent of its pressure nodes
 
-LEAST, MOST = 24, 100_000
-"""Elements of one size along the bore."""
+MIN_ELEMENTS, MAX_ELEMENTS = 24, 100_000
+"""Limits on the number of elements of one size along the bore."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """What a user chose of `FiniteElement`, by the same names; `order` is that of the elements."""
+    """Settings of `FiniteElement` by the same names; `order` is that of the elements."""
 
     cup: Cup
     spacing: Spacing
@@ -40,8 +40,8 @@ class Settings:
 
 
 @lru_cache(maxsize=32)
-def curve(settings: Settings, joint: Joint) -> MeshedLoadCurve:
-    """The curve of a joint of plain numbers; kept, since more loads on it are likely."""
+def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
+    """Return the load curve of a joint of plain numbers, cached for further loads."""
     _check(settings, joint)
     radius, bore = float(joint.socket_radius), socket_shape(joint, settings.cup).reach
     ends_at_rim = bore <= pi / 2 + 1e-12
@@ -55,8 +55,8 @@ def curve(settings: Settings, joint: Joint) -> MeshedLoadCurve:
         return coarse if mesh == COARSE else replace(coarse, halvings=1)
 
     def pair(number: int, mesh: int) -> SurfacePair:
-        socket, ball = (resolution(one, number, mesh) for one in (settings.spacing, settings.ball_spacing))
-        return _pair(settings, joint, socket, ball, min(_BEYOND * classes[number], widest))
+        socket, ball = (resolution(spacing, number, mesh) for spacing in (settings.spacing, settings.ball_spacing))
+        return _pair(settings, joint, socket, ball, min(_REACH_FACTOR * classes[number], widest))
 
     gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
     return MeshedLoadCurve(
@@ -73,15 +73,22 @@ def _check(settings: Settings, joint: Joint) -> None:
 
 
 def check_cup(cup: Cup, joint: Joint) -> None:
-    """Raise ValueError for a cup that this joint cannot have."""
+    """Raise ValueError for a cup that does not fit the joint."""
     if cup.interface is Interface.SLIDING and not joint.backing:
         ground = joint.support is Support.FIXED and float(joint.liner_thickness) < inf
         if not ground:
-            raise ValueError("interface = 'sliding' is not allowed: there is nothing behind the liner to slide on")
+            raise ValueError("interface = 'sliding' needs a backing or a fixed outer surface behind the liner")
     chamfer, liner, bore = cup.chamfer, float(joint.liner_thickness), socket_shape(joint, cup).reach
-    require("chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer leaves a tenth of the liner, which is {liner:g} mm")
-    require("chamfer", chamfer, chamfer == 0 or chamfer > 1e-3 * liner, "a chamfer is 0 or a thousandth of the liner")
-    require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer leaves half of the bore")
+    require(
+        "chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer must leave a tenth of the liner thickness, {liner:g} mm"
+    )
+    require(
+        "chamfer",
+        chamfer,
+        chamfer == 0 or chamfer > 1e-3 * liner,
+        "a chamfer must be 0 or above a thousandth of the liner thickness",
+    )
+    require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer must leave half of the bore")
 
 
 def _check_size(size: float, joint: Joint, bore: float) -> None:
@@ -89,9 +96,9 @@ def _check_size(size: float, joint: Joint, bore: float) -> None:
     thicknesses = {"liner_thickness": joint.liner_thickness}
     thicknesses |= {f"backing[{number}].thickness": layer.thickness for number, layer in enumerate(joint.backing)}
     for name, thickness in thicknesses.items():
-        require(name, thickness, thickness >= 2 * size, f"elements of {size:g} mm need two of them in a layer")
-    allowed = f"the bore is {bore:.4g} mm long: it takes {LEAST} to {MOST} elements"
-    require("size", size, bore / MOST <= size <= bore / LEAST, allowed)
+        require(name, thickness, thickness >= 2 * size, f"a layer must have at least two elements of {size:g} mm")
+    allowed = f"the bore of {bore:.4g} mm allows {MIN_ELEMENTS} to {MAX_ELEMENTS} elements"
+    require("size", size, bore / MAX_ELEMENTS <= size <= bore / MIN_ELEMENTS, allowed)
 
 
 def _pair(

@@ -1,4 +1,4 @@
-"""Tangent and work of one solved contact, from contacts beside it on the same mesh."""
+"""Tangent stiffness and work of one solved contact, from neighbouring contacts on the same mesh."""
 
 from __future__ import annotations
 
@@ -12,60 +12,63 @@ from .load_search import ContactBracket, is_pressed
 from .round_contact import PartialContact, partial_contact
 
 Solved = PartialContact | FullContact
-"""A contact on one mesh: inside of its socket, or filling it."""
+"""Contact on one mesh: with its edge inside the socket, or filling the socket."""
 
-_AROUND = 0.02 * numpy.arange(-3, 4)
+_RELATIVE_STEPS = 0.02 * numpy.arange(-3, 4)
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(12))
 _DEPTHS = numpy.geomspace(1 / 30, 1.0, 12)
 
 
-def stiffness(one: Solved) -> float:
-    """dF/dd in N/mm, from contacts on both sides, since the edge moves unevenly through the elements.
+def stiffness(contact: Solved) -> float:
+    """Compute dF/dd in N/mm from contacts on both sides, since the edge moves unevenly through the elements.
 
     With q = ln(F/d) and v = 1/d, both smooth in ε even where d goes to infinity: F' = (F/d) (1 - v q'/v').
     """
-    if isinstance(one, FullContact):
-        return one.stiffness
-    angles = numpy.minimum(_AROUND, one.pair.angle[-1] / one.half_angle - 1)
-    beside = [partial_contact(one.pair, one.gap, float(one.half_angle * (1 + angle))) for angle in numpy.unique(angles)]
-    sound = [other for other in beside if is_pressed(other)]
-    if len(sound) < _CUBIC + 1:
+    if isinstance(contact, FullContact):
+        return contact.stiffness
+    angles = numpy.minimum(_RELATIVE_STEPS, contact.pair.angle[-1] / contact.half_angle - 1)
+    neighbours = [
+        partial_contact(contact.pair, contact.gap, float(contact.half_angle * (1 + angle)))
+        for angle in numpy.unique(angles)
+    ]
+    valid = [neighbour for neighbour in neighbours if is_pressed(neighbour)]
+    if len(valid) < _DEGREE + 1:
         return numpy.nan
-    x = numpy.array([other.half_angle / one.half_angle - 1 for other in sound])
-    q = numpy.log([other.force / other.indentation for other in sound])
-    v = numpy.array([one.indentation / other.indentation for other in sound])
-    dq, dv = (numpy.polynomial.Polynomial.fit(x, values, _CUBIC).deriv()(0.0) for values in (q, v))
-    return float(one.force / one.indentation * (1 - dq / dv))
+    x = numpy.array([neighbour.half_angle / contact.half_angle - 1 for neighbour in valid])
+    q = numpy.log([neighbour.force / neighbour.indentation for neighbour in valid])
+    v = numpy.array([contact.indentation / neighbour.indentation for neighbour in valid])
+    dq, dv = (numpy.polynomial.Polynomial.fit(x, values, _DEGREE).deriv()(0.0) for values in (q, v))
+    return float(contact.force / contact.indentation * (1 - dq / dv))
 
 
-_CUBIC = 3
+_DEGREE = 3
 
 
-def work(one: Solved) -> float:
-    """Work of the load in N mm: the strain energy, where the gap makes that the same."""
-    if one.gap.conservative:
-        return one.strain_energy
-    if isinstance(one, FullContact):
-        return _work_up_to(partial_contact(one.pair, one.gap, one.half_angle)) + _work_beyond(one)
-    return _work_up_to(one)
+def work(contact: Solved) -> float:
+    """Compute the work of the load in N mm; it is the strain energy if the gap has a potential."""
+    if contact.gap.conservative:
+        return contact.strain_energy
+    if isinstance(contact, FullContact):
+        return _partial_work(partial_contact(contact.pair, contact.gap, contact.half_angle)) + _rim_work(contact)
+    return _partial_work(contact)
 
 
-def _work_up_to(one: PartialContact) -> float:
-    """∫ F dd, from where F is a power of d: ln F is a polynomial of ln d over what matters of it."""
-    ladder = ContactBracket(pair=one.pair, gap=one.gap, low=0.2 * one.half_angle, high=one.half_angle)
-    found = [ladder.find("indentation", float(depth * one.indentation)) for depth in _DEPTHS[:-1]]
-    known = [other for other in found if other is not None] + [one]
-    x = numpy.log([other.indentation / one.indentation for other in known])
-    y = numpy.log([other.force / one.force for other in known])
+def _partial_work(contact: PartialContact) -> float:
+    """Integrate F dd of a partial contact: ln F is fitted by a polynomial of ln d."""
+    bracket = ContactBracket(pair=contact.pair, gap=contact.gap, low=0.2 * contact.half_angle, high=contact.half_angle)
+    narrower = [bracket.solve("indentation", float(depth * contact.indentation)) for depth in _DEPTHS[:-1]]
+    known = [neighbour for neighbour in narrower if neighbour is not None] + [contact]
+    x = numpy.log([neighbour.indentation / contact.indentation for neighbour in known])
+    y = numpy.log([neighbour.force / contact.force for neighbour in known])
     law = numpy.polynomial.Polynomial.fit(x, y, min(6, len(x) - 1))
     depths = x[0] * (1 - _NODES)  # ln d
     narrow = numpy.exp(law(x[0]) + x[0]) / (law.deriv()(x[0]) + 1)
-    return float(one.force * one.indentation * (narrow - x[0] * (_WEIGHTS @ numpy.exp(law(depths) + depths))))
+    return float(contact.force * contact.indentation * (narrow - x[0] * (_WEIGHTS @ numpy.exp(law(depths) + depths))))
 
 
-def _work_beyond(one: FullContact) -> float:
-    """∫ F dd from where the contact reaches the rim."""
-    start = partial_contact(one.pair, one.gap, one.half_angle).indentation
-    depth = one.indentation - start
-    forces = [replace(one, indentation=start + depth * node).force for node in _NODES]
+def _rim_work(contact: FullContact) -> float:
+    """Integrate F dd from the indentation at which the contact reaches the rim."""
+    start = partial_contact(contact.pair, contact.gap, contact.half_angle).indentation
+    depth = contact.indentation - start
+    forces = [replace(contact, indentation=start + depth * node).force for node in _NODES]
     return float(depth * (_WEIGHTS @ forces))
