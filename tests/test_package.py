@@ -9,7 +9,7 @@ import sys
 import pytest
 
 import ballsocket as bs
-from ballsocket.catalogue import judge, off_axis, theories
+from ballsocket.catalogue import judge, listed_models, off_axis
 from ballsocket.contact.describe import COLUMNS
 from ballsocket.core.sources import bibliography
 from ballsocket.dynamics import Bristles, Motion, Viscoelastic, relations
@@ -134,7 +134,7 @@ def test_a_source_that_names_no_publication_is_refused_alone_and_passed_over_ins
 
 
 def test_every_publication_is_cited_by_something():
-    unused = set(bibliography()) - set(keys(*theories.values(), *CITABLE))
+    unused = set(bibliography()) - set(keys(*listed_models.values(), *CITABLE))
     unused -= {source.key for source in elsewhere.SOURCES}
     unused -= {source.key for used in (*relations.relations, Bristles, Motion, Viscoelastic) for source in used.sources}
     assert unused == set()

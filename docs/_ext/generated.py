@@ -10,7 +10,7 @@ from os import environ
 from pathlib import Path
 
 import ballsocket as bs
-from ballsocket.catalogue import theories
+from ballsocket.catalogue import listed_models
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.sources import Source, bibliography
 from ballsocket.evidence.comparator import between
@@ -37,7 +37,7 @@ def write(folder: Path) -> None:
     write_report(results, report)
     pages = {
         "bibliography": _bibliography(),
-        "catalogue": "\n".join(map(_model, theories.values())),
+        "catalogue": "\n".join(map(_model, listed_models.values())),
         "accuracy": markdown(results["accuracy"][0]),
         "claims": _claims(results["claims"]),
         "elsewhere": _claims(results["elsewhere"]),

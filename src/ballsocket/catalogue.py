@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from .contact import Model
-from .contact.model_info import Theory
-from .core.checks import Named
+from .contact.model_info import ModelInfo
+from .core.checks import NamedItems
 from .elasticity.exact.model import Exact
 from .elasticity.exact.tabulated.model import Tabulated
 from .elasticity.finite_elements.model import FiniteElement
@@ -43,8 +43,8 @@ _MODELS: tuple[Model, ...] = (
     AdhesiveSocket(),
 )
 
-catalogue: dict[str, Model] = Named("model", {model.name: model for model in _MODELS})
+catalogue: dict[str, Model] = NamedItems("model", {model.name: model for model in _MODELS})
 """Name -> model: what `--model` and files call them, all of them answering in milliseconds or less."""
 
-theories: dict[str, Theory] = {theory.name: theory for theory in (*_MODELS, judge, off_axis, PinInHole())}
+listed_models: dict[str, ModelInfo] = {theory.name: theory for theory in (*_MODELS, judge, off_axis, PinInHole())}
 """Name -> all that is listed and cited: the catalogue, the judge, and the plane relative, which knows no force."""

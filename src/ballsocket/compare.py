@@ -13,9 +13,9 @@ import numpy
 
 from .catalogue import catalogue, reference
 from .contact import Contact, Model
-from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count, number_text
+from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count_text, number_text
 from .core.arrays import Array, to_list, where
-from .core.checks import nearest, needs, one_load, refuse_unnamed, shown
+from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
 from .core.quantities import HEADLINE
 from .core.sources import Source
 from .core.validity import OutsideDomainError
@@ -75,12 +75,12 @@ class Comparison(Mapping[str, Contact]):
         if exact is None or name == reference.name or name not in self.contacts:
             return None
         contact = self.contacts[name]
-        return {column.name: relative(column.of(contact), column.of(exact)) for column in COLUMNS}
+        return {column.name: relative_deviation(column.of(contact), column.of(exact)) for column in COLUMNS}
 
     def rows(self) -> list[tuple[str, ...]]:
         """Text for a table: model, force, indentation, half angle, max pressure, area, stiffness, valid."""
         return [
-            (name, *(number_text(column.of(contact), 5, "-") for column in _SHOWN), count(contact.valid))
+            (name, *(number_text(column.of(contact), 5, "-") for column in _SHOWN), count_text(contact.valid))
             for name, contact in self.contacts.items()
         ]
 
@@ -123,8 +123,8 @@ class Comparison(Mapping[str, Contact]):
         return made
 
     def __repr__(self) -> str:
-        table = [HEADS, *self.rows()]
-        widths = [max(len(row[i]) for row in table) for i in range(len(HEADS))]
+        table = [COLUMN_HEADS, *self.rows()]
+        widths = [max(len(row[i]) for row in table) for i in range(len(COLUMN_HEADS))]
         lines = [
             "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(pairs))
             for pairs in (list(zip(row, widths, strict=True)) for row in table)
@@ -132,13 +132,13 @@ class Comparison(Mapping[str, Contact]):
         return "\n".join([str(self.joint), *lines, *self.notes()])
 
     def _repr_html_(self) -> str:
-        cells = "".join(f"<th>{escape(text)}</th>" for text in HEADS)
+        cells = "".join(f"<th>{escape(text)}</th>" for text in COLUMN_HEADS)
         rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in self.rows())
         notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.notes())
         return f"<div>{escape(str(self.joint))}</div><table><tr>{cells}</tr>{rows}</table>{notes}"
 
 
-def relative(value: Array, truth: Array) -> Array:
+def relative_deviation(value: Array, truth: Array) -> Array:
     """value/truth - 1: 0 where they are equal, NaN where the truth is 0, infinite or not known."""
     known = (truth > -inf) & (truth < inf) & (truth != 0)
     return where(truth == value, 0.0, where(known, value / where(known, truth, 1.0) - 1, float("nan")))
@@ -149,7 +149,7 @@ def _listed(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
 
 
 _SHOWN = tuple(column for column in COLUMNS if column.attribute in HEADLINE)
-HEADS = ("model", *(column.head for column in _SHOWN), "valid")
+COLUMN_HEADS = ("model", *(column.head for column in _SHOWN), "valid")
 """Heads of the columns of `Comparison.rows`."""
 
 
@@ -193,13 +193,13 @@ def compare(
     >>> round(answers["bartel"].max_pressure, 3)
     11.717
     """
-    refuse_unnamed(unnamed)
+    reject_unnamed_loads(unnamed)
     if not (models is None or isinstance(models, Mapping)):
         raise TypeError(f"models must be a mapping such as {{'exact': bs.Exact()}}, got {shown(models)}")
     for name, model in ({} if models is None else models).items():
         if isinstance(model, type) or not hasattr(model, "press"):
             raise TypeError(f"models[{name!r}] must be a model, such as bs.Exact(), got {shown(model)}")
-    kind, load = one_load(force=force, indentation=indentation, half_angle=half_angle)
+    kind, load = select_load(force=force, indentation=indentation, half_angle=half_angle)
     keyword: dict[str, Any] = {kind: load}
     contacts, missing = {}, {}
     for name, model in (catalogue if models is None else models).items():
@@ -210,12 +210,12 @@ def compare(
     return Comparison(joint, contacts, missing)
 
 
-def answered(comparison: Mapping[str, Contact]) -> dict[str, Contact]:
+def successful_contacts(comparison: Mapping[str, Contact]) -> dict[str, Contact]:
     """The contacts of models that have an answer."""
     return {name: contact for name, contact in comparison.items() if not contact.status.failed}
 
 
-THIN = 12.0
+THIN_LINER_RATIO = 12.0
 """R2/L from which a model that solves for its answer takes seconds over a curve."""
 
 _SOLVES, _MESHES = 1e-3, 0.1  # s a press, from which a model solves or makes a mesh for its answer
@@ -224,9 +224,9 @@ _FEW = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)  # each class of co
 _DOZEN, _WIDEST = numpy.linspace(0.0, 1.0, 12), radians(84.9)
 
 
-def takes_long(model: Model, joint: Joint) -> bool:
+def is_slow(model: Model, joint: Joint) -> bool:
     """Whether many presses of a joint of plain numbers take seconds: the thinner a liner, the more is to be summed."""
-    return model.seconds_a_press > _SOLVES and float(joint.thickness_ratio) > THIN
+    return model.seconds_a_press > _SOLVES and float(joint.thickness_ratio) > THIN_LINER_RATIO
 
 
 def short_curve(contact: Contact, model: Model) -> Contact:
@@ -255,7 +255,7 @@ def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -
     def curve(contact: Contact, model: Model) -> Contact:
         if model.seconds_a_press > _MESHES:
             return model.press(contact.joint, indentation=deepest * _FEW)
-        if takes_long(model, contact.joint):
+        if is_slow(model, contact.joint):
             return short_curve(contact, model)
         return model.press(contact.joint, indentation=deepest * _MANY)
 

@@ -21,7 +21,7 @@ from ballsocket.app.page import Page
 from ballsocket.app.pressing import pressed
 from ballsocket.app.solving import heavy
 from ballsocket.app.views.press import Press
-from ballsocket.compare import THIN
+from ballsocket.compare import THIN_LINER_RATIO
 from ballsocket.elasticity.exact.model import Exact
 from ballsocket.models.plane_layer import PlaneLayer
 
@@ -70,7 +70,7 @@ SLOW = [
     link(190, 0.4999, **{"load.half_angle": 80}),
     link(99, shown=",".join(bs.catalogue)),
     link(150, view="compare"),
-    "view=compare&" + link(THIN * 1.01, **{"beside1.preset": "hip-36"}),
+    "view=compare&" + link(THIN_LINER_RATIO * 1.01, **{"beside1.preset": "hip-36"}),
 ]
 
 
@@ -81,7 +81,7 @@ def test_a_link_to_thin_liners_does_not_hold_the_server(query, monkeypatch):
     page = Page(query)
     page.leave()
     assert not page.channel.told("#trouble")
-    assert all(float(joint.thickness_ratio) <= THIN for joint in seen)
+    assert all(float(joint.thickness_ratio) <= THIN_LINER_RATIO for joint in seen)
     said = page.channel.told("#press-table") or page.view._table.object
     assert "exact is being solved: at R2/L = " in said
 
@@ -93,7 +93,7 @@ def test_joints_as_people_make_them_are_pressed_at_once():
 
 
 def test_what_was_solved_elsewhere_is_what_a_press_answers():
-    page = Page(link(THIN * 1.2, answered_by="plane-layer"))
+    page = Page(link(THIN_LINER_RATIO * 1.2, answered_by="plane-layer"))
     waited_for(page)
     joint = page.screen.file.joint
     for name in ("exact", "plane-layer"):

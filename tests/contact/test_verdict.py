@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 import ballsocket as bs
-from ballsocket.contact.verdict import shares, verdict
+from ballsocket.contact.verdict import assess_strength, strength_uses
 
 HIP = bs.joints["hip-36"]
 
@@ -13,10 +13,10 @@ HIP = bs.joints["hip-36"]
 def test_a_share_is_that_of_the_strength_it_names():
     liner = replace(HIP.liner, allowable_pressure=20.0)
     contact = bs.Exact().press(replace(HIP, liner=liner), force=3000.0)
-    by_name = {share.strength: share for share in shares(contact)}
+    by_name = {share.strength: share for share in strength_uses(contact)}
     assert by_name["allowable_pressure"].ratio == pytest.approx(contact.max_pressure / 20.0)
     assert by_name["yield_stress"].ratio == pytest.approx(contact.utilisation)
-    assert str(shares(contact)[0]) == "56 % of the allowable pressure of the liner"
+    assert str(strength_uses(contact)[0]) == "56 % of the allowable pressure of the liner"
 
 
 @pytest.mark.parametrize(
@@ -29,17 +29,17 @@ def test_a_share_is_that_of_the_strength_it_names():
     ],
 )
 def test_what_is_said(contact, bears, words):
-    said = verdict(contact)
+    said = assess_strength(contact)
     assert said.bears is bears
     assert said.words.startswith(words)
 
 
 def test_without_a_strength_nothing_is_said():
     joint = replace(HIP, liner=HIP.liner.without_strengths(), ball=None)
-    said = verdict(bs.HessForsbach().press(joint, force=3000.0))
+    said = assess_strength(bs.HessForsbach().press(joint, force=3000.0))
     assert (said.bears, said.words) == (None, "strength not checked: the liner has no yield stress")
 
 
 def test_a_strong_ball_gives_no_verdict_on_a_liner_of_unknown_strength():
     joint = replace(HIP, liner=HIP.liner.without_strengths(), ball=bs.COCR)
-    assert verdict(bs.HessForsbach().press(joint, force=3000.0)).bears is None
+    assert assess_strength(bs.HessForsbach().press(joint, force=3000.0)).bears is None

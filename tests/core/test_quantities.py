@@ -17,7 +17,7 @@ import pint
 import pytest
 
 import ballsocket as bs
-from ballsocket.compare import HEADS
+from ballsocket.compare import COLUMN_HEADS
 from ballsocket.contact.describe import COLUMNS
 from ballsocket.core import quantities
 from ballsocket.core.kinds import Unit
@@ -94,7 +94,7 @@ def test_tables_studies_and_json_speak_of_the_same_objects():
     assert all(load is PARAMETERS[name] is CONTACT[name] for name, load in LOADS.items())
     assert set(ANSWERS) == {*CONTACT, *BEARING}
     assert set(LIMITED) <= set(QUANTITIES)
-    assert all(any(head.startswith(QUANTITIES[name].symbol) for head in HEADS) for name in quantities.HEADLINE)
+    assert all(any(head.startswith(QUANTITIES[name].symbol) for head in COLUMN_HEADS) for name in quantities.HEADLINE)
 
 
 def test_nothing_is_named_or_written_twice():

@@ -9,7 +9,7 @@ from math import inf, radians
 import numpy as np
 
 import ballsocket as bs
-from ballsocket.contact.strength import POWERS, places
+from ballsocket.contact.strength import FIT_EXPONENTS, fit_variables
 
 ANGLES = (4, 8, 15, 25, 35, 45, 55, 65, 75, 85)
 POISSON = (0.0, 0.15, 0.3, 0.4, 0.45, 0.48, 0.499)
@@ -34,20 +34,20 @@ def share(angle: float, poisson: float, ratio: float) -> tuple[float, ...] | Non
     contact = bs.Exact(tolerance=1e-5).press(joint, half_angle=radians(angle))
     if contact.status.failed:
         return None
-    where = places(contact.half_angle, joint.liner.poisson, joint.thickness_ratio)
+    where = fit_variables(contact.half_angle, joint.liner.poisson, joint.thickness_ratio)
     return (*where, contact.peak_stress.von_mises / contact.max_pressure)
 
 
 def main() -> None:
     found = (share(*case) for case in product(ANGLES, POISSON, RATIOS))
     x, y, nu, known = np.array([case for case in found if case is not None]).T
-    terms = np.stack([x**i * y**j * nu**k for i, j, k in POWERS], axis=1)
+    terms = np.stack([x**i * y**j * nu**k for i, j, k in FIT_EXPONENTS], axis=1)
     scale = np.maximum(known, LEAST)
     fitted, *_ = np.linalg.lstsq(terms / scale[:, None], known / scale)
     off = abs(terms @ fitted - known) / scale
     print(HEAD.format(typical=np.sqrt(np.mean(off**2)), worst=off.max(), least=LEAST))
     print("terms = [")
-    for number, powers in zip(fitted, POWERS, strict=True):
+    for number, powers in zip(fitted, FIT_EXPONENTS, strict=True):
         print(f"    [{number:.4f}, {', '.join(map(str, powers))}],")
     print("]")
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from html import escape
 from typing import Any
 
-from ..compare import relative
+from ..compare import relative_deviation
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column
-from ..contact.verdict import Share
+from ..contact.verdict import StrengthUse
 from ..core.quantities import STRENGTH
 from .reading import Reading, number_text
 from .verdict import most_used, sentence
@@ -63,7 +63,7 @@ def _cell(each: Column, contact: Contact) -> str:
     )
 
 
-def _share(most: Share | None, surely: str, contact: Contact, reading: Reading) -> str:
+def _share(most: StrengthUse | None, surely: str, contact: Contact, reading: Reading) -> str:
     """The share as a bar and in words."""
     if most is None or most.ratio != most.ratio:
         return ""
@@ -77,7 +77,7 @@ def _share(most: Share | None, surely: str, contact: Contact, reading: Reading) 
     )
 
 
-def _verdict(contact: Contact, most: Share | None) -> str:
+def _verdict(contact: Contact, most: StrengthUse | None) -> str:
     holds, words = sentence(contact, most)
     kind, sign = {True: ("yes", "✓ "), False: ("no", "✗ "), None: ("quiet", "")}[holds]
     return f"<p class='verdict {kind}' role='status'>{sign}{escape(words)}</p>"
@@ -98,5 +98,5 @@ def _error(contact: Contact) -> float:
 
 
 def _apart(contact: Contact, exact: Contact) -> float:
-    shares = [abs(float(relative(each.of(contact), each.of(exact)))) for each in COLUMNS]
+    shares = [abs(float(relative_deviation(each.of(contact), each.of(exact)))) for each in COLUMNS]
     return max((share for share in shares if share == share), default=float("nan"))

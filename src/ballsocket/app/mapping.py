@@ -11,11 +11,11 @@ from typing import Any
 import numpy
 
 from ..catalogue import catalogue
-from ..compare import THIN
+from ..compare import THIN_LINER_RATIO
 from ..contact import Model
 from ..core.kinds import Kind
 from ..core.quantities import PARTS, QUANTITIES, Quantity
-from ..core.validity import OutsideDomainError, inside
+from ..core.validity import OutsideDomainError, check_domain
 from ..io.joint_file import JointFile
 from ..problem import Joint
 from ..studies.design import Span, grid
@@ -43,10 +43,12 @@ def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: Axis, up:
 def _asked(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
     """The model of that name; for tables that know none of the joints the one behind them, where it is quick enough."""
     model = usual(joint, ends) if name == START.map_model else catalogue[name]
-    if model.name in QUICK or not bool(numpy.any(joints_of(joint, ends).thickness_ratio > THIN)):
+    if model.name in QUICK or not bool(numpy.any(joints_of(joint, ends).thickness_ratio > THIN_LINER_RATIO)):
         return model
     if name not in QUICK:
-        raise ValueError(f"{name} takes minutes where R2/L is above {THIN:g}: choose another model for this map")
+        raise ValueError(
+            f"{name} takes minutes where R2/L is above {THIN_LINER_RATIO:g}: choose another model for this map"
+        )
     return catalogue[name]
 
 
@@ -57,7 +59,7 @@ def models_of(screen: Screen) -> list[str]:
 
 def _knows(name: str, joint: Joint) -> bool:
     try:
-        return bool(inside(catalogue[name].domain, joint, name))
+        return bool(check_domain(catalogue[name].domain, joint, name))
     except OutsideDomainError:
         return False
 

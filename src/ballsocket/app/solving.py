@@ -11,7 +11,7 @@ from typing import Any
 import panel as pn
 
 from ..catalogue import catalogue
-from ..compare import short_curve, takes_long
+from ..compare import is_slow, short_curve
 from ..core.validity import OutsideDomainError
 from ..io.joint_file import JointFile
 from ..problem import Joint
@@ -34,7 +34,7 @@ Solved = WrittenContact | str
 
 def heavy(joint: Joint, name: str) -> bool:
     """Whether a press of a model may take longer than others are to wait."""
-    return takes_long(catalogue[name], joint)
+    return is_slow(catalogue[name], joint)
 
 
 _solved: OrderedDict[Key, tuple[Solved, bool]] = OrderedDict()

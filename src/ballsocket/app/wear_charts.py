@@ -8,7 +8,7 @@ from math import nan
 
 import numpy
 
-from ..compare import relative
+from ..compare import relative_deviation
 from ..core.quantities import CONTACT, DERIVED
 from ..output.html import table
 from ..output.style import BLUE, VERMILLION, Line
@@ -41,7 +41,7 @@ def wear_numbers(found: Mapping[str, Worn], reading: Reading = SHOWN) -> str:
 
 
 def _apart(value: float, base: float) -> str:
-    return percent(float(relative(value, base)), "+") if base else "–"
+    return percent(float(relative_deviation(value, base)), "+") if base else "–"
 
 
 def _told(worn: Worn, reading: Reading) -> dict[str, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from ..catalogue import theories
+from ..catalogue import listed_models
 from ..core.sources import Source, bibliography, named_in
 from ..output.list_summary import source_summary
 from ..problem import Joint, Material
@@ -59,8 +59,8 @@ def _sources(part: Any) -> Iterator[Source]:
 
 
 def _said(name: str, value: Any) -> Iterator[Source]:
-    if name == "model" and isinstance(value, str) and value in theories:
-        yield from theories[value].sources
+    if name == "model" and isinstance(value, str) and value in listed_models:
+        yield from listed_models[value].sources
     elif name == "name" and isinstance(value, str):
         yield from (Source(key) for preset in _presets(value) for key in named_in(preset.source))
     elif name == "source" and isinstance(value, str):

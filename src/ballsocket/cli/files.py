@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from ..catalogue import judge, off_axis, reference
-from ..compare import Comparison, answered
+from ..compare import Comparison, successful_contacts
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..output import quick_plot
@@ -58,7 +58,7 @@ class Files:
 
     def write(self, comparison: Comparison, leading: str) -> None:
         """Write what was asked for; `leading` is the name of the model that is asked first."""
-        shown = answered(comparison)
+        shown = successful_contacts(comparison)
         if self.figure is not None and shown:
             alone = leading == off_axis.name and leading in shown
             save(quick_plot.plot({leading: shown[leading]} if alone else shown), self.figure)

@@ -9,7 +9,7 @@ import typer
 
 import ballsocket as bs
 
-from ..catalogue import theories
+from ..catalogue import listed_models
 from ..core.checks import known_name
 from ..output.list_summary import model_summary, preset_summary
 from ..output.list_terminal import print_model, print_models, print_preset, print_presets
@@ -25,7 +25,7 @@ PresetName = Annotated[str | None, typer.Argument(help="A joint or material, in 
 @app.command()
 def models(name: ModelName = None, *, as_json: AsJson = False) -> None:
     """The catalogue: every model, where it can be trusted, and where it comes from."""
-    chosen = list(theories.values()) if name is None else [theories[known_name("model", name, theories)]]
+    chosen = list(listed_models.values()) if name is None else [listed_models[known_name("model", name, listed_models)]]
     if as_json:
         echo_json({"version": bs.__version__, "models": list(map(model_summary, chosen))})
     elif name is None:
@@ -57,5 +57,5 @@ def cite(
     names: Annotated[list[str] | None, typer.Argument(help="Models by name; all of them if none is given.")] = None,
 ) -> None:
     """BibTeX of what a model is made of."""
-    chosen = [known_name("model", name, theories) for name in names or theories]
-    typer.echo(bs.cite(*(theories[name] for name in chosen)))
+    chosen = [known_name("model", name, listed_models) for name in names or listed_models]
+    typer.echo(bs.cite(*(listed_models[name] for name in chosen)))

@@ -11,7 +11,7 @@ import typer
 import ballsocket as bs
 
 from ..catalogue import judge, off_axis, reference
-from ..compare import Comparison, answered
+from ..compare import Comparison, successful_contacts
 from ..contact import Model
 from ..core.checks import known_name
 from ..core.validity import Status
@@ -134,4 +134,8 @@ def _failure(comparison: Comparison, chosen: Iterable[str]) -> str:
     unsettled = [name for name, contact in comparison.items() if contact.status == Status.NOT_CONVERGED]
     if unsettled:
         return f"no convergence of {', '.join(unsettled)} (see the notes)"
-    return "" if set(answered(comparison)) & set(chosen) else f"no answer from {', '.join(chosen)} (see the notes)"
+    return (
+        ""
+        if set(successful_contacts(comparison)) & set(chosen)
+        else f"no answer from {', '.join(chosen)} (see the notes)"
+    )

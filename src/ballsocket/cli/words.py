@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.checks import nearest, plain_name
+from ..core.checks import nearest, normalise_name
 from ..core.input_files import resolve_input
 from ..io.joint_file import JointFile, joint_of, read_joint, read_load, varied
 from ..problem.dimensions import LENGTHS
@@ -101,8 +101,8 @@ def named_joint(name: str) -> JointFile:
         raise ValueError(f"{name!r} is a folder; a joint file is needed")
     if path.exists():
         return read_joint(path)
-    if plain_name(name) in joints:
-        return JointFile(joints[plain_name(name)], {})
+    if normalise_name(name) in joints:
+        return JointFile(joints[normalise_name(name)], {})
     if not path.parent.is_dir():
         raise ValueError(f"{name!r} is no file: there is no folder {str(path.parent)!r}")
     raise ValueError(f"{name!r} is neither a file nor a preset{nearest(name, joints)}")

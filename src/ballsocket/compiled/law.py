@@ -20,7 +20,7 @@ from numba.extending import (
 )
 
 from ..contact import law as formulas
-from ..contact.law import CurveLaw, Law
+from ..contact.law import CurveLaw, ForceLaw
 from ..models.closed_form import ClosedLaw
 from ..models.foundation import Springs
 from ..models.kinematics import Kinematics
@@ -64,7 +64,7 @@ class CompiledLaw:
         return force, stiffness
 
 
-def compiled_law(law: Law) -> CompiledLaw:
+def compiled_law(law: ForceLaw) -> CompiledLaw:
     """The law of any model, compiled: of a radial foundation its formulas, of all others a curve.
 
     Parameters
@@ -88,7 +88,7 @@ def compiled_law(law: Law) -> CompiledLaw:
 
 @cache
 def _springs(motion: Kinematics) -> Any:
-    force, stiffness, answered = taught(motion.force), taught(motion.stiffness), taught(formulas.answered)
+    force, stiffness, answered = taught(motion.force), taught(motion.stiffness), taught(formulas.finite_or_nan)
 
     @njit(error_model="numpy")
     def force_and_tangent(indentation, R2, c, K):  # type: ignore[no-untyped-def]

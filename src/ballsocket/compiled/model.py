@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy
 
-from ..contact import Contact, Wrapped
-from ..contact.answer import Answer, check_joint, checked_load, prepared, spread
+from ..contact import Contact, ModelWrapper
+from ..contact.assembly import SolverResult, as_arrays, broadcast_load, check_joint, check_load
 from ..core import arrays
 from ..core.arrays import Array
-from ..core.checks import refuse_unnamed, shown
-from ..core.validity import Status, inside
+from ..core.checks import reject_unnamed_loads, shown
+from ..core.validity import Status, check_domain
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..models.closed_form import Bound
 from ..models.foundation import RadialFoundation
@@ -23,7 +23,7 @@ from .law import CompiledLaw, compiled_law
 
 
 @dataclass(frozen=True, kw_only=True)
-class Compiled(Wrapped):
+class Compiled(ModelWrapper):
     """A model whose presses of NumPy float64 arrays are compiled: by force, and by indentation where that is solved.
 
     Everything else (half angles, other array libraries, dtypes, plain numbers) is passed on to the model. `law(joint)`
@@ -59,10 +59,10 @@ class Compiled(Wrapped):
         indentation: Array | None = None,
         half_angle: Array | None = None,
     ) -> Contact:
-        refuse_unnamed(unnamed)
+        reject_unnamed_loads(unnamed)
         check_joint(joint)
-        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
-        given = spread(given, joint.strengths())
+        kind, given = check_load(force=force, indentation=indentation, half_angle=half_angle)
+        given = broadcast_load(given, joint.strengths())
         if kind == "force" and isinstance(self.model, RadialFoundation) and self._in_one_pass(joint, given):
             return self._passed(self.model, joint, given)
         return super().press(joint, force=force, indentation=indentation, half_angle=half_angle)
@@ -72,10 +72,10 @@ class Compiled(Wrapped):
         return bool(large) and all(map(_is_float64, large)) and all(map(arrays.is_plain, self.parameters))
 
     def _passed(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:
-        _, whole, load = prepared(joint, force)
-        points = inside((*self.fits, *self.domain), whole, self.name)
+        _, whole, load = as_arrays(joint, force)
+        points = check_domain((*self.fits, *self.domain), whole, self.name)
         d, p0, angle, status = foundation.passed(model, whole, load)
-        if not arrays.truth(points):
+        if not arrays.all_true(points):
             status = numpy.where(points, status, numpy.int8(Status.OUTSIDE_DOMAIN))
             d, p0, angle = (numpy.where(points, part, numpy.nan) for part in (d, p0, angle))
         contact = Contact(
@@ -89,7 +89,7 @@ class Compiled(Wrapped):
         vars(contact).update(max_pressure=p0, half_angle=angle)
         return contact
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         if kind != "half_angle" and all(map(_is_float64, (*joint.numbers(), load))):
             if isinstance(self.model, Refined):
                 return refined.solved(joint, kind, load)

@@ -18,7 +18,7 @@ from ..elasticity.exact.tabulated.solution import TableSolution
 from ..models.closed_form import Bound
 from ..models.plane_layer import LayerSolution
 from ..models.refined import RefinedSolution
-from ..problem import Joint, Layer, Material, unchecked
+from ..problem import Joint, Layer, Material, make_unchecked
 
 Parts = tuple[Any, ...]
 
@@ -31,7 +31,7 @@ def _register(cls: Any, parts: tuple[str, ...], fixed: tuple[str, ...]) -> None:
 
     def unflatten(fixed_values: Parts, values: Parts) -> Any:
         names = (*parts, *fixed)
-        return unchecked(cls, **dict(zip(names, (*values, *fixed_values), strict=True)))
+        return make_unchecked(cls, **dict(zip(names, (*values, *fixed_values), strict=True)))
 
     register_pytree_node(cls, flatten, unflatten)
 

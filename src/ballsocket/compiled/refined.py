@@ -10,7 +10,7 @@ from typing import Any
 import numpy
 from numba.extending import overload
 
-from ..contact.answer import Answer
+from ..contact.assembly import SolverResult
 from ..core.arrays import Numbers
 from ..models import liner_compliance, refined_state
 from ..models.liner_compliance import liner_of
@@ -20,7 +20,7 @@ from ..problem import Joint
 from .teaching import compiled, flat, pick, taught
 
 
-def solved(joint: Joint, kind: str, load: Numbers) -> Answer:
+def solved(joint: Joint, kind: str, load: Numbers) -> SolverResult:
     """The answer to a load of a joint of arrays."""
     shape = numpy.broadcast_shapes(*(number.shape for number in (*joint.numbers(), load)))
     widening = 1 + joint.liner_thickness / joint.socket_radius

@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 from numba.extending import overload
 
-from ..contact.answer import Answer
+from ..contact.assembly import SolverResult
 from ..core.arrays import Numbers
 from ..elasticity.exact.tabulated import chebyshev, formulas
 from ..elasticity.exact.tabulated.curves import JointCurves
@@ -25,7 +25,7 @@ from ..problem import Joint
 from .teaching import compilable, compiled, flat, pick, taught
 
 
-def solved(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> Answer:
+def solved(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> SolverResult:
     """The answer to a load of a joint of arrays."""
 
     def read(curves: JointCurves, given: Numbers) -> tuple[Numbers, ...]:

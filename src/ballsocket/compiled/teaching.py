@@ -97,24 +97,24 @@ def _clip(x: Any, low: Any, high: Any) -> Callable[..., Any]:
     return lambda x, low, high: min(max(x, low), high)
 
 
-@overload(arrays.truth, strict=False)
+@overload(arrays.all_true, strict=False)
 def _truth(condition: Any) -> Callable[..., Any]:
     return lambda condition: condition
 
 
-@overload(arrays.false, strict=False)
+@overload(arrays.logical_not, strict=False)
 def _false(condition: Any) -> Callable[..., Any]:
     return lambda condition: not condition
 
 
 @overload(roots.increasing_root, strict=False)
 def _increasing_root(
-    law: Any, target: Any, low: Any, high: Any, start: Any, given: Any = (), steps: Any = 60, tolerance: Any = 1e-8
+    law: Any, target: Any, low: Any, high: Any, start: Any, arguments: Any = (), steps: Any = 60, tolerance: Any = 1e-8
 ) -> Callable[..., Any]:
-    return lambda law, target, low, high, start, given=(), steps=60, tolerance=1e-8: roots.root_of_number(
-        law, target, low, high, start, given, steps, tolerance
+    return lambda law, target, low, high, start, arguments=(), steps=60, tolerance=1e-8: roots.root_of_number(
+        law, target, low, high, start, arguments, steps, tolerance
     )
 
 
-compilable(arrays.divisor)
+compilable(arrays.safe_divisor)
 taught(roots.root_of_number)

@@ -9,6 +9,6 @@ name, sources and validity; `roots`, the inversion.
 """
 
 from .contact import Contact, Laws, Pressed
-from .model import Covered, Model, Wrapped
+from .model import Model, ModelWrapper, RimLimited
 
 __all__ = ["Contact", "Covered", "Laws", "Model", "Pressed", "Wrapped"]

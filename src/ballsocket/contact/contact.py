@@ -14,7 +14,7 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array
-from ..core.checks import in_radians, numeric, require, vectors
+from ..core.checks import check_numeric, check_vectors, degrees_hint, require
 from ..core.kinds import Unit
 from ..core.quantities import QUANTITIES
 from ..core.validity import Range
@@ -31,7 +31,7 @@ class Pressed(Answerer, Protocol):
 
     @property
     def planar(self) -> bool: ...
-    def careful_laws(self, joint: Joint, indentation: float) -> Laws: ...
+    def numpy_laws(self, joint: Joint, indentation: float) -> Laws: ...
 
 
 class Laws(Protocol):
@@ -60,7 +60,7 @@ def _law(name: str) -> Any:
     """A quantity of the contact, computed by the law of that name when it is first asked for."""
 
     def quantity(self: Contact) -> Array:
-        return self._asked(law)
+        return self._evaluate(law)
 
     law = attrgetter(name)
 
@@ -114,7 +114,7 @@ class Contact(Outcome):
         A share of the largest pressure that is fitted to the exact answer for liners on a rigid backing, typically 6 %
         off (`strength.share`); models that know the inside of the socket say what is there.
         """
-        return self._answer(self._largest_von_mises)
+        return self._mask_failed(self._compute_von_mises)
 
     @cached_property
     def utilisation(self) -> Array:
@@ -123,30 +123,30 @@ class Contact(Outcome):
         From 1 on the material yields somewhere; a linear answer is not valid beyond 1.38 (`strength.ELASTIC`).
         """
         known = any(part is not None and part.yield_stress is not None for part in (self.joint.liner, self.joint.ball))
-        return self._utilisation_of(self.von_mises if known else self.max_pressure)
+        return self._compute_utilisation(self.von_mises if known else self.max_pressure)
 
-    def utilisation_where(self, asked: Array) -> Array:
+    def utilisation_at(self, asked: Array) -> Array:
         """`utilisation`, at the least where it is asked for (a mask): for models that take long to know it."""
         return self.utilisation
 
-    def _utilisation_of(self, von_mises: Array) -> Array:
-        return self._plain(strength.utilisation(self.joint, von_mises, self.max_pressure))
+    def _compute_utilisation(self, von_mises: Array) -> Array:
+        return self._match_load(strength.utilisation(self.joint, von_mises, self.max_pressure))
 
     @property
-    def von_mises_between(self) -> tuple[Array, Array]:
+    def von_mises_bounds(self) -> tuple[Array, Array]:
         """What `von_mises` lies between, as far as that is known at once."""
         return self.von_mises, self.von_mises
 
     @property
-    def utilisation_between(self) -> tuple[Array, Array]:
+    def utilisation_bounds(self) -> tuple[Array, Array]:
         """What `utilisation` lies between, as far as that is known at once."""
-        least, most = self.von_mises_between
+        least, most = self.von_mises_bounds
         pressure = self.max_pressure
         return strength.utilisation(self.joint, least, pressure), strength.utilisation(self.joint, most, pressure)
 
-    def _largest_von_mises(self) -> Array:
+    def _compute_von_mises(self) -> Array:
         liner = self.joint.liner
-        return strength.share(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
+        return strength.von_mises_ratio(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
 
     @property
     def _limits(self) -> tuple[Range, ...]:
@@ -155,21 +155,23 @@ class Contact(Outcome):
     @property
     def notes(self) -> tuple[str, ...]:
         """What has no answer, what lies outside the model's validity, and what a material does not bear, in words."""
-        unchecked = [self.utilisation_note] if self.utilisation_note and arrays.truth(self._failed) is not True else []
+        unchecked = (
+            [self.utilisation_note] if self.utilisation_note and arrays.all_true(self._failed) is not True else []
+        )
         compared = (note for good, said in strength.remarks(self) for note in self._note(good | self._failed, said))
         return (*super().notes, *unchecked, *compared)
 
     @property
     def utilisation_note(self) -> str:
         """Reason why `utilisation` does not cover the liner; empty where the liner has a yield stress."""
-        return strength.unchecked_strength(self.joint)
+        return strength.unchecked_strength_reason(self.joint)
 
     @cached_property
     def area(self) -> Array:
         """Contact area on the ball, A = 2π R1² (1 - cos ε) in mm², Eq. (19)."""
         half_sine = arrays.sin(arrays.clip(self.half_angle, 0.0, pi) / 2)
         with numpy.errstate(all="ignore"):
-            return self._plain(4 * pi * self.joint.ball_radius * self.joint.ball_radius * half_sine * half_sine)
+            return self._match_load(4 * pi * self.joint.ball_radius * self.joint.ball_radius * half_sine * half_sine)
 
     @property
     def indentation_ratio(self) -> Array:
@@ -190,8 +192,8 @@ class Contact(Outcome):
     @property
     def conformity(self) -> Array:
         """Clearance over indentation, c/d; 0 is a ball of the socket's own radius."""
-        quotient = self.joint.clearance / arrays.divisor(self.indentation)
-        return self._plain(arrays.where(self.indentation == 0, numpy.inf, quotient))
+        quotient = self.joint.clearance / arrays.safe_divisor(self.indentation)
+        return self._match_load(arrays.where(self.indentation == 0, numpy.inf, quotient))
 
     def pressure(self, angle: Array) -> Array:
         """Contact pressure in MPa at polar angles from the load axis; 0 outside the contact.
@@ -214,14 +216,14 @@ class Contact(Outcome):
         TypeError
             What is neither a number nor an array.
         """
-        angle = numeric("angle", angle)
+        angle = check_numeric("angle", angle)
         QUANTITIES["angle"].checked(
             arrays.where(angle == angle, angle, 0.0)
         )  # where there is no edge angles are missing
         if self._is_plain and arrays.is_plain(angle):
-            return self._asked(lambda laws: laws.pressure(float(angle)))
-        _, angle = arrays.common(self.indentation, angle)
-        return self._asked(lambda laws: laws.pressure(angle))
+            return self._evaluate(lambda laws: laws.pressure(float(angle)))
+        _, angle = arrays.to_common_arrays(self.indentation, angle)
+        return self._evaluate(lambda laws: laws.pressure(angle))
 
     def pressure_at(self, direction: Array) -> Array:
         """Contact pressure in MPa where a ray from the centre of the socket meets its surface; 0 outside the contact.
@@ -242,7 +244,7 @@ class Contact(Outcome):
         ValueError
             A direction whose last axis is not of length 3, or that is not of length 1.
         """
-        direction = vectors("direction", direction, "x, y, z of a unit vector")
+        direction = check_vectors("direction", direction, "x, y, z of a unit vector")
         x, y, z = (direction[..., i] for i in range(3))
         across = arrays.sqrt(x * x + y * y)
         length = across * across + z * z
@@ -273,11 +275,11 @@ class Contact(Outcome):
         TypeError
             What is neither a number nor an array.
         """
-        coefficient = numeric("coefficient", coefficient)
+        coefficient = check_numeric("coefficient", coefficient)
         allowed = "a coefficient of friction is 0 or more and finite"
         require("coefficient", coefficient, (coefficient >= 0) & (coefficient < inf), allowed)
 
-        require("axis_angle", axis_angle, abs(axis_angle) <= 2 * pi, f"it is in radians; {in_radians(axis_angle)}")
+        require("axis_angle", axis_angle, abs(axis_angle) <= 2 * pi, f"it is in radians; {degrees_hint(axis_angle)}")
 
         def ring(x: float) -> Array:
             angle = self.half_angle * sin(pi / 2 * x)  # tames a square root at the edge
@@ -287,18 +289,18 @@ class Contact(Outcome):
 
         R2 = self.joint.socket_radius
         lever = coefficient * self.joint.ball_radius
-        return self._plain(lever * 2 * pi * R2 * R2 * arrays.integral(ring, 24))
+        return self._match_load(lever * 2 * pi * R2 * R2 * arrays.integral(ring, 24))
 
-    def _asked(self, law: Callable[[Laws], Array]) -> Array:
+    def _evaluate(self, law: Callable[[Laws], Array]) -> Array:
         """What a law says, in NumPy's numbers where Python's raise."""
 
         def value() -> Array:
             try:
                 return law(self.laws)
             except ArithmeticError:
-                return law(self.model.careful_laws(self.joint, self.indentation))
+                return law(self.model.numpy_laws(self.joint, self.indentation))
 
-        return self._answer(value)
+        return self._mask_failed(value)
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON in N, mm, MPa and degrees; arrays become (nested) lists, a missing number None."""
@@ -340,7 +342,7 @@ class Contact(Outcome):
         return describe.html(self)
 
 
-_ELASTIC = strength.Elastic()
+_ELASTIC = strength.ElasticLimit()
 
 _UNIT = 1e-10  # square of how far the square of a unit vector may miss 1
 

@@ -100,7 +100,7 @@ def frame(contact: Any) -> pandas.DataFrame:
 
 def text(contact: Any) -> str:
     """A few aligned lines."""
-    if arrays.truth(contact.indentation == contact.indentation) is None:
+    if arrays.all_true(contact.indentation == contact.indentation) is None:
         return f"<Contact of {contact.model.name}, traced>"
     rows = _rows(contact)
     width = max(len(number) for _, number, _ in rows)
@@ -120,7 +120,7 @@ def html(contact: Any) -> str:
     return f"<b>{escape(contact.model.name)}</b><div>{escape(str(contact.joint))}</div><table>{rows}</table>{notes}"
 
 
-def count(valid: Array) -> str:
+def count_text(valid: Array) -> str:
     """yes or no; how many of how many for more than one."""
     listed = arrays.to_numpy(valid)
     return ("yes" if listed.item() else "no") if listed.size == 1 else f"{int(listed.sum())} of {listed.size}"
@@ -139,7 +139,7 @@ def number_text(value: Array, digits: int, gap: str) -> str:
 def _rows(contact: Any) -> list[tuple[str, str, str]]:
     digits = 6 if arrays.to_numpy(contact.indentation).size == 1 else 5
     rows = [(column.attribute, number_text(column.of(contact), digits, "no answer"), column.unit) for column in COLUMNS]
-    return [*rows, *_borne(contact), ("valid", count(contact.valid), "")]
+    return [*rows, *_borne(contact), ("valid", count_text(contact.valid), "")]
 
 
 def _borne(contact: Any) -> list[tuple[str, str, str]]:

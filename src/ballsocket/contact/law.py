@@ -12,10 +12,10 @@ import numpy
 
 from ..core.arrays import Numbers
 
-Pieces = Sequence[Sequence[float]]
+PolynomialPieces = Sequence[Sequence[float]]
 
 
-class Law(Protocol):
+class ForceLaw(Protocol):
     """What `model.law(joint)` returns: a function of one indentation.
 
     Parameters
@@ -55,7 +55,7 @@ class CurveLaw:
     pieces: Numbers
 
     @cached_property
-    def _numbers(self) -> tuple[float, float, float, float, Pieces]:
+    def _numbers(self) -> tuple[float, float, float, float, PolynomialPieces]:
         rows = tuple(map(tuple, self.pieces.tolist()))
         return self.shallowest, self.deepest, self.first, self.density, rows
 
@@ -64,7 +64,7 @@ class CurveLaw:
 
 
 def force_and_tangent(
-    indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: Pieces
+    indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float]:
     """A `CurveLaw` as a function of its numbers: what it says of an indentation."""
     if indentation <= 0.0:
@@ -84,7 +84,7 @@ def force_and_tangent(
     return force, power * force / indentation
 
 
-def answered(force: float, stiffness: float) -> tuple[float, float]:
+def finite_or_nan(force: float, stiffness: float) -> tuple[float, float]:
     """Force and stiffness, both NaN where one of them is no number or infinite."""
     return (force, stiffness) if math.isfinite(force + stiffness) else (math.nan, math.nan)
 

@@ -12,17 +12,25 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array, where
-from ..core.checks import refuse_unnamed, require, vectors
-from ..core.validity import LOOSE, Nowhere, Range, inside
+from ..core.checks import check_vectors, reject_unnamed_loads, require
+from ..core.validity import NON_NEGATIVE_CLEARANCE, NeverValid, Range, check_domain
 from ..problem import Joint
 from ..problem.cup import Cup, Interface
-from .answer import Answer, check_joint, checked_load, finished, finished_number, prepared, spread
+from .assembly import (
+    SolverResult,
+    as_arrays,
+    broadcast_load,
+    check_joint,
+    check_load,
+    make_contact,
+    make_scalar_contact,
+)
 from .contact import Contact, Laws
-from .law import CurveLaw, Law, curve_law
-from .model_info import Theory
+from .law import CurveLaw, ForceLaw, curve_law
+from .model_info import ModelInfo
 
 
-class Model(Theory):
+class Model(ModelInfo):
     """Anything that answers `press(joint, force=... | indentation=... | half_angle=...)` with a `Contact`.
 
     Most of what follows is the same for every value of a kind of model, and then a class variable.
@@ -52,13 +60,13 @@ class Model(Theory):
     """
 
     planar: ClassVar[bool] = False
-    fits: ClassVar[tuple[Range, ...]] = (LOOSE,)
+    fits: ClassVar[tuple[Range, ...]] = (NON_NEGATIVE_CLEARANCE,)
     off_axis: ClassVar[bool] = False
     differentiable: ClassVar[bool] = True
     smooth_step: ClassVar[float] = 1e-4
     seconds_a_press: ClassVar[float] = 4e-7
     contact_type: ClassVar[type[Contact]] = Contact
-    of_numbers: ClassVar[bool] = False
+    accepts_floats: ClassVar[bool] = False
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -100,46 +108,46 @@ class Model(Theory):
         TypeError
             What is no joint; a load without its name.
         """
-        refuse_unnamed(unnamed)
+        reject_unnamed_loads(unnamed)
         check_joint(joint)
-        kind, given = checked_load(force=force, indentation=indentation, half_angle=half_angle)
-        given = spread(given, joint.strengths())
+        kind, given = check_load(force=force, indentation=indentation, half_angle=half_angle)
+        given = broadcast_load(given, joint.strengths())
         if self._takes_numbers(joint, given):
             try:
                 return self._press_numbers(joint, kind, float(given))
             except ArithmeticError:
                 pass  # where Python's numbers raise, NumPy's become infinite or NaN
-        plain, whole, load = prepared(joint, given, *self.parameters)
-        points = inside((*self.fits, *self.domain), whole, self.name)
+        plain, whole, load = as_arrays(joint, given, *self.parameters)
+        points = check_domain((*self.fits, *self.domain), whole, self.name)
         with numpy.errstate(all="ignore"):  # a point without an answer becomes a status, not a warning
             answer = self._solve(whole, kind, load)
-            return finished(self, joint if plain else whole, kind, load, points, answer, plain)
+            return make_contact(self, joint if plain else whole, kind, load, points, answer, plain)
 
     def _takes_numbers(self, joint: Joint, load: Array) -> bool:
         """Whether these are Python numbers, or such as can be made them, and the model has formulas for those."""
         own = (type(number) in (float, int) for number in self.parameters)
-        return self.of_numbers and all(map(arrays.is_plain, (*joint.numbers(), load))) and all(own)
+        return self.accepts_floats and all(map(arrays.is_plain, (*joint.numbers(), load))) and all(own)
 
     def _press_numbers(self, joint: Joint, kind: str, load: float) -> Contact:
         """`press` with nothing but Python numbers."""
         whole = joint.with_floats()
-        inside((*self.fits, *self.domain), whole, self.name)
-        return finished_number(self, joint, kind, load, self._solve(whole, kind, load))
+        check_domain((*self.fits, *self.domain), whole, self.name)
+        return make_scalar_contact(self, joint, kind, load, self._solve(whole, kind, load))
 
-    def careful_laws(self, joint: Joint, indentation: float) -> Laws:
+    def numpy_laws(self, joint: Joint, indentation: float) -> Laws:
         """The laws of a contact of Python numbers in those of NumPy, which become infinite or NaN where those raise."""
-        _, whole, d = prepared(joint, indentation)
+        _, whole, d = as_arrays(joint, indentation)
         with numpy.errstate(all="ignore"):
             return self._solve(whole, "indentation", d).laws
 
     @abstractmethod
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         """The answer to a load of one kind ("force", "indentation", "half_angle"), all numbers being arrays.
 
         Where the model is one `of_numbers` they may all be Python numbers instead, and then so is the answer.
         """
 
-    def law(self, joint: Joint) -> Law:
+    def law(self, joint: Joint) -> ForceLaw:
         """Force and tangent of a joint, bound to it once: for programs that ask at one indentation after the other.
 
         Parameters
@@ -166,10 +174,10 @@ class Model(Theory):
         if not all(map(arrays.is_plain, (*joint.numbers(), *self.parameters))):
             raise TypeError("a law is bound to one joint: its numbers, and those of the model, must be plain")
         whole = joint.with_floats()
-        inside((*self.fits, *self.domain), whole, self.name)
+        check_domain((*self.fits, *self.domain), whole, self.name)
         return self._law(whole)
 
-    def _law(self, joint: Joint) -> Law:
+    def _law(self, joint: Joint) -> ForceLaw:
         """The law of a joint of floats inside the domain."""
         return self.curve(joint)
 
@@ -180,7 +188,7 @@ class Model(Theory):
 
     def in_cup(self, cup: Cup) -> Model:
         """This model in a cup; one that takes the socket for a whole sphere is trusted away from the rim alone."""
-        return self if cup == Cup() else Covered(model=self, cup=cup)
+        return self if cup == Cup() else RimLimited(model=self, cup=cup)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Force in N on the ball when its centre sits at `displacement` (mm) from the centre of the socket.
@@ -201,11 +209,11 @@ class Model(Theory):
         ValueError
             A displacement whose last axis is not of length 3, or that is not finite.
         """
-        displacement = vectors("displacement", displacement, "x, y, z (mm)")
+        displacement = check_vectors("displacement", displacement, "x, y, z (mm)")
         require("displacement", displacement, arrays.isfinite(displacement), "a displacement (mm) is finite")
         xp = arrays.namespace(displacement)
         square = xp.sum(displacement * displacement, axis=-1)
-        length = arrays.sqrt(arrays.divisor(square))
+        length = arrays.sqrt(arrays.safe_divisor(square))
         depth = length - joint.clearance
         touching = (square > 0) & (depth > 0)
         force = where(touching, self.press(joint, indentation=where(touching, depth, 0.0)).force, 0.0)
@@ -218,7 +226,7 @@ def _passed_on(name: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wrapped(Model):
+class ModelWrapper(Model):
     """A model around another: whatever it does not say itself is what that one says.
 
     Parameters
@@ -245,15 +253,15 @@ class Wrapped(Model):
     contact_type = _passed_on("contact_type")
     of_numbers = _passed_on("of_numbers")
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         return self.model._solve(joint, kind, load)
 
-    def _law(self, joint: Joint) -> Law:
+    def _law(self, joint: Joint) -> ForceLaw:
         return self.model._law(joint)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Covered(Wrapped):
+class RimLimited(ModelWrapper):
     """A model in a cup that it knows nothing of: its own answers, with a validity that ends before the rim.
 
     Parameters
@@ -268,7 +276,7 @@ class Covered(Wrapped):
     @property
     def validity(self) -> tuple[Range, ...]:
         rim = Range(quantity=partial(_from_rim, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM)
-        slides = Nowhere(why="the liner slides on its backing, which this model knows as bonded: ask fem or sphere")
+        slides = NeverValid(why="the liner slides on its backing, which this model knows as bonded: ask fem or sphere")
         return (*self.model.validity, rim, *((slides,) if self.cup.interface is Interface.SLIDING else ()))
 
     def in_cup(self, cup: Cup) -> Model:

@@ -9,7 +9,7 @@ from ..core.sources import Source
 from ..core.validity import Promise, Range, Remark
 
 
-class Theory(ABC):
+class ModelInfo(ABC):
     """What can be listed, cited, and trusted inside of ranges; how it is asked is up to its kind.
 
     Attributes

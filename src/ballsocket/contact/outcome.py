@@ -12,7 +12,7 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array
-from ..core.validity import Range, Status, missing
+from ..core.validity import Range, Status, is_missing
 from ..problem import Joint
 
 
@@ -68,34 +68,34 @@ class Outcome(ABC):
         return tuple(notes)
 
     def _note(self, good: Array, sentence: str) -> list[str]:
-        if arrays.truth(good) is not False:
+        if arrays.all_true(good) is not False:
             return []
         good = arrays.to_numpy(good)
         return [sentence if good.size == 1 else f"{int((~good).sum())} of {good.size}: {sentence}"]
 
     @property
     def _failed(self) -> Array:
-        return missing(self.status)
+        return is_missing(self.status)
 
     @property
     def _is_plain(self) -> bool:
         return isinstance(self._load, float)
 
-    def _answer(self, law: Callable[[], Array]) -> Array:
+    def _mask_failed(self, law: Callable[[], Array]) -> Array:
         with numpy.errstate(all="ignore"):  # a point without an answer has a status, not a warning
             value = law()
-            return self._plain(arrays.where(self._failed, numpy.nan, value) if self._some_failed else value)
+            return self._match_load(arrays.where(self._failed, numpy.nan, value) if self._some_failed else value)
 
     @cached_property
     def _some_failed(self) -> bool:
-        return self.status.failed if self._is_plain else arrays.truth(arrays.false(self._failed)) is not True
+        return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
 
     @cached_property
     def _numbers(self) -> Joint:
         """The joint for formulas: NumPy numbers in place of plain ones, which raise where those become infinite."""
-        return self.joint.with_numbers(arrays.common(*self.joint.numbers())) if self._is_plain else self.joint
+        return self.joint.with_numbers(arrays.to_common_arrays(*self.joint.numbers())) if self._is_plain else self.joint
 
-    def _plain(self, value: Array) -> Array:
+    def _match_load(self, value: Array) -> Array:
         """The answer to plain numbers in plain numbers."""
         if type(value) is float:
             return value

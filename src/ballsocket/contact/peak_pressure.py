@@ -14,7 +14,7 @@ _PLACES = numpy.array([0.0, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 1.0])
 _ROUNDS, _FINER = 4, numpy.linspace(0.0, 1.0, 9)
 
 
-def largest_pressure(
+def find_peak_pressure(
     pressure: Callable[[numpy.ndarray], numpy.ndarray], pole: numpy.ndarray, edge: numpy.ndarray, noise: float
 ) -> tuple[numpy.ndarray, numpy.ndarray]:
     """The largest pressure of each contact and its polar angle, from the profiles alone.
@@ -49,7 +49,7 @@ def largest_pressure(
     return numpy.where(off, largest, pole), numpy.where(off, angle, 0.0)
 
 
-class Peaked(ABC):
+class PeakPressure(ABC):
     """What knows its largest pressure and where that is."""
 
     @property

@@ -33,7 +33,7 @@ QUANTITIES = (
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Piece:
+class JointContacts:
     """Contacts of one joint.
 
     `state` has those that are `touching` (a mask of the loads): `QUANTITIES`, `max_pressure_angle` and
@@ -54,11 +54,11 @@ class Piece:
         return whole
 
 
-Solve = Callable[..., Piece]
+Solve = Callable[..., JointContacts]
 """From a joint of plain numbers and its loads, and what else varies from load to load, to their contacts."""
 
 
-def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve, *others: Array) -> PiecedSolution:
+def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *others: Array) -> CombinedSolution:
     """The contacts of all joints that lie in the model's domain; every one is solved with all of its loads at once.
 
     `others` are arrays that broadcast against joint and load, handed to `solve` after the loads.
@@ -78,7 +78,7 @@ def taken_apart(model: Model, joint: Joint, load: Array, solve: Solve, *others: 
         one = joint.with_numbers(column)
         if place.size and all(limit.strictly_holds(SimpleNamespace(joint=one)) for limit in model.domain):
             pieces.append((place, solve(one, *(each[place] for each in loads))))
-    return PiecedSolution(like=load, shape=shape, pieces=tuple(pieces))
+    return CombinedSolution(like=load, shape=shape, pieces=tuple(pieces))
 
 
 def _columns(numbers: list[numpy.ndarray], shape: tuple[int, ...]) -> Iterator[tuple[list[float], numpy.ndarray]]:
@@ -101,7 +101,7 @@ def joint_at(joint: Joint, shape: tuple[int, ...], place: int) -> Joint:
 
 
 def _values(model: Model, number: Array) -> numpy.ndarray:
-    values = arrays.known(number)
+    values = arrays.concrete_values(number)
     if values is None:
         raise TypeError(f"{model.name} cannot be traced by JAX: tabulated and refined can")
     return values
@@ -110,7 +110,7 @@ def _values(model: Model, number: Array) -> numpy.ndarray:
 def _of_state(name: str) -> Any:
     """A quantity of all states, put together when it is first asked for."""
 
-    def quantity(self: PiecedSolution) -> Array:
+    def quantity(self: CombinedSolution) -> Array:
         return self.spread(lambda piece: getattr(piece.state, name))
 
     quantity.__name__ = name
@@ -118,22 +118,22 @@ def _of_state(name: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PiecedSolution:
+class CombinedSolution:
     """The contacts of all joints, as the `Laws` of the contact they belong to, in the caller's array library."""
 
     like: Array
     shape: tuple[int, ...]
-    pieces: tuple[tuple[numpy.ndarray, Piece], ...]
+    pieces: tuple[tuple[numpy.ndarray, JointContacts], ...]
 
-    def spread(self, quantity: Callable[[Piece], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
+    def spread(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
         """A quantity of every piece at its place, of the shape (*rows, *shape); NaN where there is none."""
         return self._own(self._flat(lambda place, piece: quantity(piece), prod(rows)), rows)
 
-    def located(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray]) -> Array:
+    def located(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
         """Values of a quantity that depends on the places of the piece's contacts too."""
         return self._own(self._flat(quantity))
 
-    def _flat(self, quantity: Callable[[numpy.ndarray, Piece], numpy.ndarray], rows: int = 1) -> numpy.ndarray:
+    def _flat(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: int = 1) -> numpy.ndarray:
         whole = numpy.full((rows, prod(self.shape)), numpy.nan)
         for place, piece in self.pieces:
             whole[:, place] = piece.spread(quantity(place, piece))
@@ -171,7 +171,7 @@ class PiecedSolution:
     @property
     def foundation_modulus(self) -> Array:
         d = self.indentation
-        return arrays.where(d == 0, inf, self.pole_pressure / arrays.divisor(d))
+        return arrays.where(d == 0, inf, self.pole_pressure / arrays.safe_divisor(d))
 
     def pressure(self, angle: Array) -> Array:
         """p(φ) at angles that broadcast against the contact's shape."""
@@ -188,35 +188,35 @@ class PiecedSolution:
 class SolvedContact(Contact):
     """A `Contact` whose model solved it joint by joint, and estimated how well."""
 
-    laws: PiecedSolution
+    laws: CombinedSolution
 
     _inside: ClassVar[str] = "displacements and stresses"
 
     @cached_property
     def error(self) -> dict[str, Array]:
         """Estimated relative error of each quantity, by name, from the solution itself."""
-        return {name: self._plain(error) for name, error in self.laws.error.items()}
+        return {name: self._match_load(error) for name, error in self.laws.error.items()}
 
     @property
-    def von_mises_between(self) -> tuple[Array, Array]:
+    def von_mises_bounds(self) -> tuple[Array, Array]:
         """What `von_mises` lies between, as far as that is known at once: about what other models say of it."""
-        least, most = strength.between(self, super()._largest_von_mises())
-        return self._plain(least), self._plain(most)
+        least, most = strength.von_mises_bounds(self, super()._compute_von_mises())
+        return self._match_load(least), self._match_load(most)
 
-    def _largest_von_mises(self) -> Array:
-        return self.laws.located(self._von_mises_of)
+    def _compute_von_mises(self) -> Array:
+        return self.laws.located(self._joint_von_mises)
 
-    def utilisation_where(self, asked: Array) -> Array:
+    def utilisation_at(self, asked: Array) -> Array:
         wanted = numpy.broadcast_to(arrays.to_numpy(asked), self.laws.shape).ravel()
 
-        def there(place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+        def there(place: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
             some = replace(piece, reached=piece.reached & wanted[place][piece.touching])
-            return self._von_mises_of(place, some)
+            return self._joint_von_mises(place, some)
 
-        return self._utilisation_of(self._plain(self.laws.located(there)))
+        return self._compute_utilisation(self._match_load(self.laws.located(there)))
 
     @abstractmethod
-    def _von_mises_of(self, place: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+    def _joint_von_mises(self, place: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
         """Largest von Mises stress in the liner of the touching contacts of one joint, which lie at these places."""
 
     @property

@@ -9,7 +9,7 @@ from typing import Any
 import array_api_compat
 import numpy
 
-from ..core.arrays import Array, divisor, false, frozen, namespace, truth, where
+from ..core.arrays import Array, all_true, logical_not, namespace, safe_divisor, stop_gradient, where
 
 Increasing = Callable[..., tuple[Array, Array]]
 """x, ... -> (value, slope), both of the shape of x."""
@@ -55,10 +55,10 @@ def increasing_root(
     x = _repeated(step, (start, low, high, start < high, start == start), steps)
     if namespace(x) is numpy:
         return x
-    x = frozen(x)
+    x = stop_gradient(x)
     for _ in range(2):  # each step at the root keeps its value and doubles the order of the derivatives that are right
         value, slope = law(x, *given)
-        x = x - where(slope > 0, (value - target) / divisor(slope), 0.0)
+        x = x - where(slope > 0, (value - target) / safe_divisor(slope), 0.0)
     return x
 
 
@@ -108,7 +108,7 @@ def bracketed(
     low = where(value <= target, x, low)
     high = where(value >= target, x, high)
     fresh = fresh & (x < high)
-    newton = x - (value - target) / divisor(slope)
+    newton = x - (value - target) / safe_divisor(slope)
     safe = (slope > 0) & (newton >= low) & (newton <= high)
     other = where(fresh & (newton > high), high, low + (high - low) / 2)
     after = where(safe, newton, other)
@@ -117,12 +117,12 @@ def bracketed(
 
 def _repeated(step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], times: int) -> Array:
     """The first part of `state` after `step` has been taken until its last part, a mask, is false everywhere."""
-    if truth(state[-1]) is None and array_api_compat.is_jax_array(state[0]):
+    if all_true(state[-1]) is None and array_api_compat.is_jax_array(state[0]):
         import jax  # a loop that is compiled once in place of one that is written out
 
         return jax.lax.fori_loop(0, times, lambda _, now: step(now), state)[0]
     for _ in range(times):
         state = step(state)
-        if truth(false(state[-1])):
+        if all_true(logical_not(state[-1])):
             break
     return state[0]

@@ -12,19 +12,19 @@ from typing import Any
 
 import numpy
 
-from ..core.arrays import Array, clip, false, isfinite, sin, to_numpy, truth, where
+from ..core.arrays import Array, all_true, clip, isfinite, logical_not, sin, to_numpy, where
 from ..core.quantities import LINEARITY, STRENGTH
-from ..core.validity import RIGID_BACKING, Range, missing
+from ..core.validity import RIGID_BACKING, Range, is_missing
 from ..problem import Joint, Material, larger
 
-ELASTIC = 1.38
+MAX_ELASTIC_UTILISATION = 1.38
 """The utilisation up to which a linear answer holds.
 
 A ball on an elastic, perfectly plastic flat keeps to Hertz' force up to 1.9 times the indentation at which its inside
 begins to yield (Jackson & Green 2005, doi 10.1115/1.1866166); the stress is then sqrt(1.9) times as large.
 """
 
-POWERS = tuple((i, j, k) for i in range(4) for j in range(4 - i) for k in range(4 - i - j))
+FIT_EXPONENTS = tuple((i, j, k) for i in range(4) for j in range(4 - i) for k in range(4 - i - j))
 """Of the places, in the terms of the share."""
 
 _THIN, _MASSIVE = 0.05, 1.5
@@ -41,7 +41,7 @@ _SAFE_STRAIN = 5e-4
 _BALL_UNCHECKED = "strength of the ball not checked: it has no yield stress, and its stress is above 0.05 % of its E"
 
 
-def places(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
+def fit_variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
     """What the share is a polynomial of: sin(ε/2), a/(L + a) with a = R2 sin ε, and ν."""
     angle = clip(half_angle, 0.0, _WIDEST)
     width = thickness_ratio * sin(angle)
@@ -54,22 +54,22 @@ def _terms() -> tuple[tuple[float, int, int, int], ...]:
     return tuple((number, *powers) for number, *powers in table["terms"])
 
 
-def share(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
+def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
     """Largest von Mises stress in a liner on a rigid backing over the largest pressure: a fit to the exact answer.
 
     Within 20 % of it, or 0.08 of the pressure where that is more; typically 6 %.
     """
-    x, y, nu = places(half_angle, poisson, thickness_ratio)
+    x, y, nu = fit_variables(half_angle, poisson, thickness_ratio)
     return clip(sum(number * x**i * y**j * nu**k for number, i, j, k in _terms()), _THIN, _MASSIVE)
 
 
-def share_of_ball(poisson: Array) -> Array:
+def ball_stress_ratio(poisson: Array) -> Array:
     """Share of the pressure in a ball, as in a half-space under Hertz' (Johnson 1985, section 4.2), within 2 %."""
     # 1.5/(1 + z²) - (1 + ν)(1 - z atan(1/z)) on the axis, at the depth z = 0.48 a
     return 1.2191 - 0.4608 * (1 + poisson)
 
 
-def between(contact: Any, von_mises: Array) -> tuple[Array, Array]:
+def von_mises_bounds(contact: Any, von_mises: Array) -> tuple[Array, Array]:
     """Least and most that the largest von Mises stress in the liner may be where the share says `von_mises`."""
     rigid, floor = contact.joint.backing_ratio <= RIGID_BACKING.high, _LEAST * contact.max_pressure
     least = where(rigid, (1 - _OFF) * von_mises - floor, 0.0 * von_mises)
@@ -78,7 +78,7 @@ def between(contact: Any, von_mises: Array) -> tuple[Array, Array]:
 
 def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
     """Von Mises stress over yield stress of liner or ball, whichever is more, for so much of it in the liner."""
-    shares = ((joint.liner, von_mises, 1.0), (joint.ball, pressure, ball_share(joint)))
+    shares = ((joint.liner, von_mises, 1.0), (joint.ball, pressure, joint_ball_stress_ratio(joint)))
     ratios = [
         stress * share / material.yield_stress
         for material, stress, share in shares
@@ -87,29 +87,29 @@ def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
     return reduce(larger, ratios) if ratios else nan * von_mises  # which may be infinite
 
 
-def ball_share(joint: Joint) -> Array:
+def joint_ball_stress_ratio(joint: Joint) -> Array:
     """Largest von Mises stress in the ball over the largest pressure; of a rigid ball 0."""
-    return 0.0 if joint.ball is None else share_of_ball(joint.ball.poisson)
+    return 0.0 if joint.ball is None else ball_stress_ratio(joint.ball.poisson)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Elastic(Range):
+class ElasticLimit(Range):
     """The utilisations at which a linear answer holds; it does where no yield stress is known."""
 
     quantity: str | Callable[[Any], Array] = "utilisation"
-    high: float = ELASTIC
+    high: float = MAX_ELASTIC_UTILISATION
     why: str = "the material flows, and linear elasticity ends"
 
     def holds(self, contact: Any) -> Array:
         """Inside the range; what takes long to know is only asked for where an estimate leaves it open."""
-        least, most = contact.utilisation_between
-        open_ = (most > self.high) & false(least > self.high)
-        if truth(false(open_)) is not False:
-            return false(least > self.high)
-        return false(where(open_, contact.utilisation_where(open_), least) > self.high)
+        least, most = contact.utilisation_bounds
+        open_ = (most > self.high) & logical_not(least > self.high)
+        if all_true(logical_not(open_)) is not False:
+            return logical_not(least > self.high)
+        return logical_not(where(open_, contact.utilisation_at(open_), least) > self.high)
 
 
-def unchecked_strength(joint: Joint) -> str:
+def unchecked_strength_reason(joint: Joint) -> str:
     """Return the reason for an unchecked strength of the liner; empty where it has a yield stress."""
     liner, ball = joint.liner, joint.ball
     if liner.yield_stress is not None:
@@ -125,21 +125,21 @@ def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
     if joint.liner.proportional_limit is not None:
         yield from _nonlinear("liner", joint.liner, _estimate(contact))
     if joint.liner.strengths:
-        yield from _told("liner", joint.liner, contact.von_mises_between[1], lambda: contact.von_mises, pressure)
+        yield from _told("liner", joint.liner, contact.von_mises_bounds[1], lambda: contact.von_mises, pressure)
     if joint.ball is not None:
-        stress = ball_share(joint) * pressure
+        stress = joint_ball_stress_ratio(joint) * pressure
         if joint.ball.proportional_limit is not None:
             yield from _nonlinear("ball", joint.ball, stress)
         yield from _told("ball", joint.ball, stress, lambda: stress, pressure)
         if not joint.ball.strengths:
-            yield false(stress > _SAFE_STRAIN * joint.ball.young), _BALL_UNCHECKED
+            yield logical_not(stress > _SAFE_STRAIN * joint.ball.young), _BALL_UNCHECKED
 
 
 def _estimate(contact: Any) -> Array:
     """Estimate the largest von Mises stress in the liner; compute it only where no estimate exists."""
-    least, most = contact.von_mises_between
+    least, most = contact.von_mises_bounds
     middle = (least + most) / 2
-    return middle if truth(isfinite(middle) | missing(contact.status)) is not False else contact.von_mises
+    return middle if all_true(isfinite(middle) | is_missing(contact.status)) is not False else contact.von_mises
 
 
 def _told(
@@ -148,20 +148,20 @@ def _told(
     """Remarks on one material, whose von Mises stress is `most` at most."""
     for name, strength in material.strengths.items():
         by_pressure = name == "allowable_pressure"
-        if truth(false((pressure if by_pressure else most) > strength)):
+        if all_true(logical_not((pressure if by_pressure else most) > strength)):
             continue
         ratio = (pressure if by_pressure else von_mises()) / strength
         what = "pressure" if by_pressure else "von Mises stress"
-        beyond = f": a linear answer holds up to {ELASTIC:g} times" if name == "yield_stress" else ""
-        yield false(ratio > 1), f"{what} {_times(ratio)} the {STRENGTH[name].title} of the {part}{beyond}"
+        beyond = f": a linear answer holds up to {MAX_ELASTIC_UTILISATION:g} times" if name == "yield_stress" else ""
+        yield logical_not(ratio > 1), f"{what} {_times(ratio)} the {STRENGTH[name].title} of the {part}{beyond}"
 
 
 def _nonlinear(part: str, material: Material, stress: Array) -> Iterator[tuple[Array, str]]:
     """Compare with the proportional limit; points beyond the yield stress have another note."""
     limit: Array = material.proportional_limit
     yields = material.yield_stress
-    good = false(stress > limit) if yields is None else false((stress > limit) & (stress <= yields))
-    if truth(good) is not False:
+    good = logical_not(stress > limit) if yields is None else logical_not((stress > limit) & (stress <= yields))
+    if all_true(good) is not False:
         return
     times = _times(where(good, nan, stress / limit))
     title = LINEARITY["proportional_limit"].title

@@ -109,12 +109,12 @@ def isfinite(x: Array) -> Array:
     return math.isfinite(x) if type(x) is float else namespace(x).isfinite(x)
 
 
-def false(condition: Array) -> Array:
+def logical_not(condition: Array) -> Array:
     """Where a condition does not hold."""
     return condition ^ True
 
 
-def divisor(x: Array) -> Array:
+def safe_divisor(x: Array) -> Array:
     """`x`, and 1 where it is not above zero: a divisor for quotients whose numerator is zero there."""
     return where(x > 0, x, 1.0)
 
@@ -124,14 +124,14 @@ def device(x: Array) -> Any:
     return array_api_compat.device(x)
 
 
-def rounding(x: Array) -> float:
+def machine_epsilon(x: Array) -> float:
     """The relative rounding error of `x`'s dtype."""
     if type(x) is float:
         return _ROUNDING
     return float(namespace(x).finfo(x.dtype).eps)
 
 
-def known(x: Array) -> numpy.ndarray | None:
+def concrete_values(x: Array) -> numpy.ndarray | None:
     """The values of `x` as a NumPy array; None where they cannot be known yet (inside `jax.jit`, `jax.grad`)."""
     try:
         return to_numpy(x)
@@ -139,7 +139,7 @@ def known(x: Array) -> numpy.ndarray | None:
         return None
 
 
-def truth(condition: Array) -> bool | None:
+def all_true(condition: Array) -> bool | None:
     """Whether all of `condition` holds; None where that cannot be known yet (inside `jax.jit`, `vmap`)."""
     try:
         return condition if isinstance(condition, bool) else bool(namespace(condition).all(condition))
@@ -147,7 +147,7 @@ def truth(condition: Array) -> bool | None:
         return None
 
 
-def frozen(x: Array) -> Array:
+def stop_gradient(x: Array) -> Array:
     """The values of `x`, cut off from automatic differentiation."""
     if array_api_compat.is_torch_array(x):
         return x.detach()
@@ -158,7 +158,7 @@ def frozen(x: Array) -> Array:
     return x
 
 
-def common(*values: Array) -> tuple[Array, ...]:
+def to_common_arrays(*values: Array) -> tuple[Array, ...]:
     """`values` as arrays of one library, floating dtype and device: those of the arrays among them.
 
     Lists and integers are taken as floats. Plain numbers alone become NumPy float64 scalars.

@@ -11,7 +11,7 @@ from unicodedata import category
 
 import numpy
 
-from .arrays import Array, common, is_plain, namespace, truth
+from .arrays import Array, all_true, is_plain, namespace, to_common_arrays
 
 Value = TypeVar("Value")
 
@@ -21,12 +21,12 @@ def require(name: str, value: Array, good: Array, allowed: str) -> None:
 
     Nothing is checked where the values are not known yet (inside `jax.jit`).
     """
-    if truth(good) is not False:
+    if all_true(good) is not False:
         return
     raise ValueError(f"{name}{_first_bad(value, good)} is not allowed: {allowed}")
 
 
-def first_bad(value: Array, good: Array) -> float:
+def first_invalid(value: Array, good: Array) -> float:
     """The first element of `value` for which `good` is false."""
     if not _shape(value):
         return value
@@ -43,7 +43,7 @@ def _first_bad(value: Array, good: Array) -> str:
         index.append(rest % size)
         rest //= size
     others = f" (and {count - 1} more)" if count > 1 else ""
-    return f"[{', '.join(map(str, reversed(index)))}] = {first_bad(value, good):g}{others}"
+    return f"[{', '.join(map(str, reversed(index)))}] = {first_invalid(value, good):g}{others}"
 
 
 def _shape(value: Array) -> tuple[int, ...]:
@@ -57,7 +57,7 @@ def _first(good: Array) -> tuple[int, int]:
     return int(xp.argmax(xp.astype(bad, xp.int32))), int(xp.sum(xp.astype(bad, xp.int32)))
 
 
-def numeric(name: str, value: Any) -> Array:
+def check_numeric(name: str, value: Any) -> Array:
     """`value` if it is a number or an array; TypeError with a way out if it is not."""
     if isinstance(value, list | tuple):
         value = _array_of(name, value)
@@ -65,24 +65,24 @@ def numeric(name: str, value: Any) -> Array:
         return _in_range(name, value)
     if not hasattr(value, "dtype") or isinstance(value, numpy.ma.MaskedArray | numpy.matrix) or not _is_real(value):
         raise TypeError(_refusal(name, value))
-    return common(value)[0]  # integers as floats, before they are added
+    return to_common_arrays(value)[0]  # integers as floats, before they are added
 
 
-def one_number(name: str, value: Any) -> float:
+def check_number(name: str, value: Any) -> float:
     """`value` as a float, where it is one number."""
-    number = numeric(name, value)
+    number = check_numeric(name, value)
     if _shape(number):
         raise TypeError(f"{name} must be one number, got {shown(value)}")
     return float(number)
 
 
-def vectors(name: str, value: Any, axes: str) -> Array:
+def check_vectors(name: str, value: Any, axes: str) -> Array:
     """`value` as an array whose last axis is that of `axes`, such as "x, y, z (mm)"."""
-    value = numeric(name, value)
+    value = check_numeric(name, value)
     shape = tuple(getattr(value, "shape", ()))
     if shape[-1:] != (3,):
         raise ValueError(f"{name} of shape {shape} is not allowed: its last axis holds {axes}")
-    return common(value)[0]
+    return to_common_arrays(value)[0]
 
 
 def _in_range(name: str, value: float) -> float:
@@ -123,19 +123,19 @@ def _refusal(name: str, value: Any) -> str:
 _OTHER_ARRAYS = {numpy.ma.MaskedArray: "a masked array", numpy.matrix: "a numpy.matrix: use numpy.asarray"}
 
 
-def refuse_unnamed(loads: tuple[Any, ...]) -> None:
+def reject_unnamed_loads(loads: tuple[Any, ...]) -> None:
     """Raise TypeError for loads without a name."""
     if loads:
         given = shown(loads[0])
         raise TypeError(f"a load needs its name: force={given} in N, indentation={given} in mm or half_angle={given}")
 
 
-def in_radians(value: float) -> str:
+def degrees_hint(value: float) -> str:
     """What somebody means who gives an angle in degrees."""
     return f"{value:g} degrees are {radians(value):.4g} radians"
 
 
-def one_load(**loads: Any) -> tuple[str, Any]:
+def select_load(**loads: Any) -> tuple[str, Any]:
     """The one load that was given, with its name."""
     given = {name: value for name, value in loads.items() if value is not None}
     if len(given) != 1:
@@ -160,8 +160,8 @@ def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
 
 def nearest(name: Any, known: Iterable[str]) -> str:
     """A hint: the nearest known name, or those that there are."""
-    text = plain_name((name if isinstance(name, str) else shown(name))[:_LONGEST])
-    known = {plain_name(each): each for each in known}
+    text = normalise_name((name if isinstance(name, str) else shown(name))[:_LONGEST])
+    known = {normalise_name(each): each for each in known}
     close = get_close_matches(text, known, n=1, cutoff=0.8)
     close = close or [each for each in known if len(text) > 2 and each.startswith(text)]
     close = close or get_close_matches(text, known, n=1, cutoff=0.5)
@@ -174,7 +174,7 @@ def _listed(names: list[str]) -> str:
     return text if len(text) <= _LISTED else f"{text[: text.rindex(', ', 0, _LISTED)]}, ..."
 
 
-def plain_name(text: str) -> str:
+def normalise_name(text: str) -> str:
     """A name in small letters with hyphens, as those of materials, joints and models are."""
     return text.strip().lower().replace(" ", "-").replace("_", "-")
 
@@ -188,13 +188,13 @@ def known_name(what: str, name: Any, known: Iterable[str]) -> str:
         None is, with the nearest one.
     """
     names = list(known)
-    for each in (name, plain_name(name)) if isinstance(name, str) else ():
+    for each in (name, normalise_name(name)) if isinstance(name, str) else ():
         if each in names:
             return each
     raise ValueError(f"{what} {shown(name)} is not known{nearest(name, names)}")
 
 
-class Named(dict[str, Value]):
+class NamedItems(dict[str, Value]):
     """Things by their names; one that is not known is told with the nearest.
 
     Examples

@@ -12,8 +12,8 @@ from math import inf, pi, radians
 from types import MappingProxyType
 from typing import Any
 
-from .arrays import Array, truth
-from .checks import first_bad, in_radians, numeric, require
+from .arrays import Array, all_true
+from .checks import check_numeric, degrees_hint, first_invalid, require
 from .kinds import Kind, Unit
 
 
@@ -143,17 +143,17 @@ class Quantity:
         TypeError
             What is neither a number nor an array.
         """
-        number = numeric(self.name, value)
+        number = check_numeric(self.name, value)
         good = self.allows(number)
-        if truth(good) is False:
-            require(self.name, number, good, self.allowed + self.meant(first_bad(number, good)))
+        if all_true(good) is False:
+            require(self.name, number, good, self.allowed + self.meant(first_invalid(number, good)))
         return number
 
     def meant(self, value: float) -> str:
         """What a refusal adds where a number is an angle in degrees: the number in radians."""
         if self.kind is not Kind.ANGLE or not self.allows(radians(value)):
             return ""
-        return f"; {in_radians(value)}"
+        return f"; {degrees_hint(value)}"
 
 
 def _table(*quantities: Quantity) -> Mapping[str, Quantity]:

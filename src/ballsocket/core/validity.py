@@ -11,7 +11,7 @@ from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
-from .arrays import Array, divisor, false, to_numpy, truth, where
+from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
 from .kinds import Unit
 from .quantities import QUANTITIES
 
@@ -51,7 +51,7 @@ _FAILED = frozenset(
 )
 
 
-def missing(status: Array) -> Array:
+def is_missing(status: Array) -> Array:
     """Where a status says that the numbers are missing, point by point."""
     bad = status != status
     for one in _FAILED:
@@ -169,7 +169,7 @@ def _symbol(name: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Nowhere(Range):
+class NeverValid(Range):
     """A range that nothing lies in: an answer for comparison, not to be trusted anywhere."""
 
     quantity: str | Callable[[Any], Array] = "indentation"
@@ -186,7 +186,7 @@ class Nowhere(Range):
         return f"not to be trusted anywhere: {self.why}"
 
 
-def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
+def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     """Where all of a model's (or modulus') domain holds for a joint; OutsideDomainError where it does nowhere.
 
     Of no joint at all it holds.
@@ -195,13 +195,13 @@ def inside(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     asked = SimpleNamespace(joint=joint)
     for limit in domain:
         holds = limit.strictly_holds(asked)
-        if truth(false(holds)) and 0 not in getattr(holds, "shape", ()):
+        if all_true(logical_not(holds)) and 0 not in getattr(holds, "shape", ()):
             raise OutsideDomainError(f"{name} has no answer for {limit.value_text(joint)}: {limit.why}")
         points = points & holds
     return points
 
 
-LOOSE = Range(
+NON_NEGATIVE_CLEARANCE = Range(
     quantity="joint.clearance",
     low=-5e-324,  # 0 is inside
     why="a preloaded joint (interference) presses at rest: ask sphere",
@@ -231,7 +231,7 @@ class Remark(Range):
         return self.why
 
 
-def far_share(contact: Any) -> Array:
+def infinite_layer_share(contact: Any) -> Array:
     """How much of d is the way that an infinite last layer gives as a whole; 0 without one.
 
     Half a space around a hemisphere gives α (1 + ν) F/(E b) more than a whole space around a closed sphere, E and the
@@ -244,11 +244,11 @@ def far_share(contact: Any) -> Array:
         inner, material, last = inner + last, layer.material, layer.thickness
     endless = last == inf
     radius, d = where(endless, 1.0 * inner, 1.0), contact.indentation
-    moved = 0.1 * (1 + material.poisson) * contact.force / (material.young * radius * divisor(d))
+    moved = 0.1 * (1 + material.poisson) * contact.force / (material.young * radius * safe_divisor(d))
     return where(endless & (d > 0), moved, 0.0 * d)
 
 
-def bodies(socket: str, ball: str) -> tuple[Remark, Remark]:
+def body_remarks(socket: str, ball: str) -> tuple[Remark, Remark]:
     """What a model says that takes an infinite layer and a soft ball for some body, where others take another."""
     spaces = (
         f"the infinite layer is {socket}; between a whole space around a closed sphere (exact) and half a space around "
@@ -260,6 +260,6 @@ def bodies(socket: str, ball: str) -> tuple[Remark, Remark]:
         "10 to 40 % and pmax by 1 to 10 % where the ball is as soft as its liner"
     )
     return (
-        Remark(quantity=far_share, symbol="share of the infinite layer in d", high=0.02, why=spaces),
+        Remark(quantity=infinite_layer_share, symbol="share of the infinite layer in d", high=0.02, why=spaces),
         Remark(quantity="joint.modulus_ratio", high=0.05, why=balls),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..core.arrays import Array, divisor, sqrt, where
+from ..core.arrays import Array, safe_divisor, sqrt, where
 from ..core.sources import Source
 from .friction import Coulomb, checked, coefficient_at, effective_slip, tilt_share
 from .reaction import Place, Sliding, versine
@@ -81,7 +81,7 @@ def bent(place: Place, slip: Sliding, deflection: Four, given: Bristles) -> tupl
     off = zx * place.x + zy * place.y + zz * place.z
     z = zx - off * place.x, zy - off * place.y, zz - off * place.z, zr
     speed, shares, least = _patch(g, place)
-    mu = divisor(coefficient_at(speed, given.coefficient, given.static, given.stribeck_speed))
+    mu = safe_divisor(coefficient_at(speed, given.coefficient, given.static, given.stribeck_speed))
     fall = given.stiffness * speed / mu
     damping = given.damping / (1.0 + given.damping * speed / (4.0 * mu * least))
     sinks = tuple(fall * bend / share for bend, share in zip(z, shares, strict=True))

@@ -15,7 +15,7 @@ from numba import njit
 from ..compiled import foundation as _foundation  # noqa: F401 - teaches the formulas of the springs
 from ..compiled.law import CompiledLaw
 from ..compiled.teaching import compilable, taught
-from ..contact.law import Law
+from ..contact.law import ForceLaw
 from ..core.arrays import Numbers
 from ..models import kinematics
 from ..models.kinematics import Kinematics
@@ -115,7 +115,7 @@ def compiled_potential(element: ForceElement) -> CompiledLaw:
     return CompiledLaw(function=_slopes(), numbers=(*ends, curve.pieces))
 
 
-def _curve_of(joint: Joint, law: Law) -> Any:
+def _curve_of(joint: Joint, law: ForceLaw) -> Any:
     return energy_curve(law, 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius)
 
 

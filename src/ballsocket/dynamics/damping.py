@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..core.checks import one_number, require
+from ..core.checks import check_number, require
 from ..core.sources import Source
 from . import restitution as relations
 from .restitution import Relation, restitution_of
@@ -57,7 +57,7 @@ class Damping:
 
 
 def _set(damping: Damping, name: str, allowed: str) -> None:
-    value = one_number(name, getattr(damping, name))
+    value = check_number(name, getattr(damping, name))
     require(name, value, 0.0 <= value < math.inf, allowed)
     object.__setattr__(damping, name, value)
 
@@ -79,9 +79,9 @@ def of_restitution(relation: Relation, restitution: float, impact_speed: float) 
     ValueError
         A number that is not allowed, named with its value.
     """
-    speed = one_number("impact_speed", impact_speed)
+    speed = check_number("impact_speed", impact_speed)
     require("impact_speed", speed, 0.0 < speed < math.inf, "a speed (mm/s) is above 0 and finite")
-    chi = relation.damping(one_number("restitution", restitution)) / speed
+    chi = relation.damping(check_number("restitution", restitution)) / speed
     return Damping(hysteresis=chi, sources=relation.sources)
 
 

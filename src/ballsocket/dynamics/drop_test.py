@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import one_number, require
+from ..core.checks import check_number, require
 from .damping import Damping
 from .restitution import restitution_of
 
@@ -78,7 +78,7 @@ def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None 
     require("speed", speeds, (speeds > 0) & (speeds < inf), "a speed (mm/s) is above 0 and finite")
     require("restitution", shares, (shares > 0) & (shares <= 1), "a coefficient of restitution is above 0, up to 1")
     if uncertainty is not None:
-        good = 0.0 < one_number("uncertainty", uncertainty) < inf
+        good = 0.0 < check_number("uncertainty", uncertainty) < inf
         require("uncertainty", uncertainty, good, "a standard deviation is above 0 and finite")
     chi = _fitted(speeds, shares)
     slope = _slope(chi, speeds)
@@ -113,7 +113,7 @@ def from_bounces(*, times: Any, gravity: float = GRAVITY, uncertainty: float | N
     require("the number of times", instants.size, instants.size >= 3, "two flights are needed to see what one lost")
     flights = numpy.diff(instants)
     require("a flight", flights, flights > 0, "each touch-down is later than the one before")
-    speed = one_number("gravity", gravity) * flights / 2
+    speed = check_number("gravity", gravity) * flights / 2
     return from_restitution(speed=speed[:-1], restitution=speed[1:] / speed[:-1], uncertainty=uncertainty)
 
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy
 
 from ..contact import Model
-from ..contact.answer import check_joint
+from ..contact.assembly import check_joint
 from ..contact.law import CurveLaw
 from ..core import arrays
-from ..core.arrays import Array, common, where
-from ..core.checks import one_number, require, shown, vectors
+from ..core.arrays import Array, to_common_arrays, where
+from ..core.checks import check_number, check_vectors, require, shown
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
@@ -89,7 +89,7 @@ class ForceElement:
             given = getattr(self, name)
             if not (isinstance(given, kind) or (given is None and name != "model")):
                 raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(given)}")
-        smoothing = one_number("smoothing", self.smoothing)
+        smoothing = check_number("smoothing", self.smoothing)
         potential = self._potential()
         clearance = float(self.joint.clearance)
         good = 0.0 <= smoothing <= clearance
@@ -194,9 +194,9 @@ class ForceElement:
     def _of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
-        position = vectors("position", position, axes[0])
-        checked = map(vectors, names, [_beside(position, each) for each in (position, velocity, spin)], axes)
-        r, v, w = (_components(each) for each in common(*checked))
+        position = check_vectors("position", position, axes[0])
+        checked = map(check_vectors, names, [_beside(position, each) for each in (position, velocity, spin)], axes)
+        r, v, w = (_components(each) for each in to_common_arrays(*checked))
         with numpy.errstate(all="ignore"):  # a state without an answer has a status
             place = self._held(place_of(*r, self.constants.clearance), attached)
             self._watch.look(place.indentation)
@@ -252,7 +252,7 @@ def _beside(position: Any, value: Any) -> Any:
     """A list as an array of the position's library."""
     if type(value) not in _LISTS:
         return value
-    place = common(position)[0]
+    place = to_common_arrays(position)[0]
     return arrays.namespace(place).asarray(value, dtype=place.dtype, device=arrays.device(place))
 
 

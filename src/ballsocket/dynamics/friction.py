@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 from ..core.arrays import Array, exp
-from ..core.checks import one_number, require
+from ..core.checks import check_number, require
 
 
 class Coulomb:
@@ -85,7 +85,7 @@ class Friction(Coulomb):
 
 def checked(friction: object, name: str, least: float, allowed: str) -> None:
     """Make a number of a frozen value a float, if it is allowed."""
-    value = one_number(name, getattr(friction, name))
+    value = check_number(name, getattr(friction, name))
     require(name, value, least <= value < math.inf, allowed)
     object.__setattr__(friction, name, value)
 

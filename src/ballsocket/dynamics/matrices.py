@@ -56,7 +56,7 @@ def _normal_rates(place: Place, contact: Elastic, velocity: Three, given: Consta
     force = contact.normal + lossy * _along(place, velocity)
     if given.smoothing > 0.0:
         width = ROUNDED * contact.damped_force
-        slope = ramp(force / arrays.divisor(width), 1.0)[1]
+        slope = ramp(force / arrays.safe_divisor(width), 1.0)[1]
     else:
         slope = where(force > 0.0, 0.0 * force + 1.0, 0.0 * force)
     return lossy * slope, given.time * contact.damped_force * place.over

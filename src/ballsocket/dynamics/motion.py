@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import one_number, require, shown
+from ..core.checks import check_number, require, shown
 from ..core.sources import Source
 from . import stepping
 from .carried import Carrier, pull_of
@@ -289,13 +289,13 @@ _MASSES = (1e-100, 1e100)
 
 
 def _inertial(name: str, value: Any) -> float:
-    number = one_number(name, value)
+    number = check_number(name, value)
     low, high = _MASSES
     require(name, number, low <= number <= high, f"{name} must lie between {low:g} and {high:g}")
     return number
 
 
 def _above_nothing(name: str, value: Any) -> float:
-    number = one_number(name, value)
+    number = check_number(name, value)
     require(name, number, 0.0 < number < inf, "it is above 0 and finite")
     return number

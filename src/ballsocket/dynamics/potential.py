@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy
 
 from ..contact import Model
-from ..contact.law import CurveLaw, Law, Pieces, curve_law
+from ..contact.law import CurveLaw, ForceLaw, PolynomialPieces, curve_law
 from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, exp, log, where
 from ..models.closed_form import ClosedForm, ClosedLaw
@@ -73,7 +73,7 @@ class CurvePotential:
         return self.curve.deepest
 
     @cached_property
-    def _pieces(self) -> Pieces:
+    def _pieces(self) -> PolynomialPieces:
         return tuple(map(tuple, self.curve.pieces.tolist()))
 
     def __call__(self, indentation: Array) -> Slopes:
@@ -85,7 +85,7 @@ class CurvePotential:
 
 
 def slopes_of_number(
-    indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: Pieces
+    indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float, float]:
     """A `CurvePotential` as a function of its numbers: U, F and k of one indentation."""
     if indentation <= 0.0:
@@ -120,7 +120,7 @@ def slopes_of_array(
     rows = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
     d = where(indentation == indentation, clip(indentation, _TINY, deepest), deepest)
     along = (log(clip(d, shallowest, deepest)) - first) * density
-    number = xp.astype(clip(xp.floor(arrays.frozen(along)), 0.0, rows.shape[0] - 1.0), xp.int64)
+    number = xp.astype(clip(xp.floor(arrays.stop_gradient(along)), 0.0, rows.shape[0] - 1.0), xp.int64)
     place = 2.0 * (along - xp.astype(number, d.dtype)) - 1.0
     flat = xp.reshape(number, (-1,))
     value, slope, bend = 0.0 * place, 0.0 * place, 0.0 * place
@@ -153,18 +153,18 @@ def potential_of(model: Model, joint: Joint) -> Potential:
     return CurvePotential(curve=energy_curve(law, *_ends(law, joint)))
 
 
-def _ends(law: Law, joint: Joint) -> tuple[float, float]:
+def _ends(law: ForceLaw, joint: Joint) -> tuple[float, float]:
     if isinstance(law, CurveLaw):
         return law.shallowest, law.deepest
     return 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius
 
 
-def energy_curve(law: Law, shallowest: float, deepest: float) -> CurveLaw:
+def energy_curve(law: ForceLaw, shallowest: float, deepest: float) -> CurveLaw:
     """ln U over ln d of a law, which is integrated."""
     return curve_law(lambda depths: _work(law, depths, shallowest), shallowest, deepest)
 
 
-def _work(law: Law, depths: Numbers, shallowest: float) -> Numbers:
+def _work(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbers:
     """∫ F dd up to each of some indentations that grow: of a power below the shallowest, then by Gauss over ln d."""
     force, stiffness = law(shallowest)
     begun = force * shallowest / (1.0 + stiffness * shallowest / force)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import nan
 from typing import NamedTuple
 
-from ..core.arrays import Array, atan2, divisor, sqrt, where
+from ..core.arrays import Array, atan2, safe_divisor, sqrt, where
 from . import friction
 from .rim import share
 from .smooth import positive, ramp
@@ -86,7 +86,7 @@ APART = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 def place_of(x: Array, y: Array, z: Array, clearance: float) -> Place:
     """The place of the ball's centre."""
     distance = sqrt(x * x + y * y + z * z)
-    over = 1.0 / divisor(distance)
+    over = 1.0 / safe_divisor(distance)
     return Place(distance, x * over, y * over, z * over, distance - clearance, over)
 
 
@@ -118,7 +118,7 @@ def covered(
     gamma = atan2(across, lean)
     touching = depth > 0.0
     # ε = acos(c/g), g = c + d: ε' = c/(g w), ε'' = -c (2 g² - c²)/(g² w³), w = sqrt(g² - c²)
-    c, g = given.clearance, divisor(given.clearance + depth)
+    c, g = given.clearance, safe_divisor(given.clearance + depth)
     w = where(touching, sqrt(where(touching, depth * (g + c), 1.0)), 1.0)
     epsilon = where(touching, atan2(w, c + 0.0 * w), 1.0)
     first, second = c / (g * w), -c * (2.0 * g * g - c * c) / (g * g * w * w * w)
@@ -130,7 +130,7 @@ def covered(
     by_depth = F * W + U * W1 * s1
     by_both = (U * W1 * first / epsilon - F * W1 - U * W2 * s1) / epsilon
     by_angle = -U * W1 / epsilon
-    over, nearer = 1.0 / divisor(across), place.over
+    over, nearer = 1.0 / safe_divisor(across), place.over
     return Elastic(
         energy=U * W,
         normal=by_depth * slope,

@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import NamedTuple
 
-from ..core.arrays import divisor, sqrt
+from ..core.arrays import safe_divisor, sqrt
 from .reaction import (
     Constants,
     Elastic,
@@ -175,16 +175,16 @@ def mean_contact(  # type: ignore[no-untyped-def]
     half = place_of(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, given.clearance)
     end = place_of(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, given.clearance)
     mean = 0.5 * (distance + end.distance)
-    nx, ny, nz, over = half.x, half.y, half.z, 1.0 / divisor(mean)
+    nx, ny, nz, over = half.x, half.y, half.z, 1.0 / safe_divisor(mean)
     shortening, depth = half.distance * over, mean - given.clearance
     place = Place(mean, nx, ny, nz, depth, over)
     if given.rim == 0.0:
         contact = elastic(potential, place, given)
         return MeanContact(place, end, contact, shortening, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     cosine, sine, px, py, pz = leaning(half, given)
-    lean, across = shortening * cosine, 1.0 / divisor(sine)
+    lean, across = shortening * cosine, 1.0 / safe_divisor(sine)
     level = sqrt(max(1.0 - lean * lean, 0.0))
-    stretch, steep = level * across, 1.0 / divisor(level)
+    stretch, steep = level * across, 1.0 / safe_divisor(level)
     gx, gy, gz = given.dome_x, given.dome_y, given.dome_z
     kx, ky, kz = lean * gx, lean * gy, lean * gz
     kx, ky, kz = kx + stretch * (nx - cosine * gx), ky + stretch * (ny - cosine * gy), kz + stretch * (nz - cosine * gz)
@@ -224,8 +224,8 @@ def missing(  # type: ignore[no-untyped-def]
         drift = ax * mean.ux + ay * mean.uy + az * mean.uz
         square = square + drift * drift
     way, depth = h * sqrt(square), abs(place.indentation)
-    sure = way * way * way / divisor(way * way * way + _UNSURE * depth * depth * depth)
-    along = sure * ((after.energy - before) / h - fall) / divisor(square)
+    sure = way * way * way / safe_divisor(way * way * way + _UNSURE * depth * depth * depth)
+    along = sure * ((after.energy - before) / h - fall) / safe_divisor(square)
     inward = normal - contact.normal + along * speed  # beyond the normal force that the reaction has
     fx, fy, fz = fx - inward * nx, fy - inward * ny, fz - inward * nz
     if given.rim > 0.0:

@@ -10,7 +10,7 @@ from math import inf
 import numpy
 
 from ..contact import Contact, Model
-from ..core.arrays import Array, known
+from ..core.arrays import Array, concrete_values
 from ..core.validity import Range
 from ..problem import Joint
 
@@ -36,7 +36,7 @@ class Watch:
 
     def look(self, indentation: Array) -> None:
         """At an array."""
-        depths = known(indentation) if self.limit < inf else None
+        depths = concrete_values(indentation) if self.limit < inf else None
         if depths is not None and depths.size:
             self.at(float(numpy.max(depths, initial=0.0, where=depths <= self.wall)))
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..problem import Material
-from ..problem.dimensions import DIAMETERS, OWN
+from ..problem.dimensions import DIAMETERS, STORED_LENGTHS
 from .question import Question
 
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat", "matplotlib", "pillow")
@@ -24,7 +24,7 @@ STATED = ("python", "system", *_LIBRARIES, "freetype", "zlib")
 def inputs(question: Question) -> list[dict[str, Any]]:
     """Every number that goes in, with unit, tolerance and source."""
     joint = question.file.joint
-    listed = [("joint", name, getattr(joint, name), JOINT[name].written.text, joint.source) for name in OWN]
+    listed = [("joint", name, getattr(joint, name), JOINT[name].written.text, joint.source) for name in STORED_LENGTHS]
     listed += _material("liner", joint.liner) + _material("ball", joint.ball)
     for number, layer in enumerate(joint.backing):
         listed.append(("backing", f"backing[{number}].thickness", layer.thickness, "mm", joint.source))

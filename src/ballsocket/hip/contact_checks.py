@@ -51,8 +51,8 @@ class GridContact(Contact):
     stress is within that error, the ratio is computed from the exact solution at the same half angle.
     """
 
-    def _largest_von_mises(self) -> Array:
-        estimate = super()._largest_von_mises()
+    def _compute_von_mises(self) -> Array:
+        estimate = super()._compute_von_mises()
         if not isinstance(self.max_pressure, float) or not self._may_yield(estimate):
             return estimate
         ratio = exact_stress_ratio(self.joint, self.half_angle)
@@ -61,11 +61,11 @@ class GridContact(Contact):
     def _may_yield(self, estimate: float) -> bool:
         """Check if yield or the end of linear elasticity is within the error of an estimate of the stress (MPa)."""
         yield_stress = self.joint.liner.yield_stress
-        low, high = strength.between(self, estimate)
+        low, high = strength.von_mises_bounds(self, estimate)
         return yield_stress is not None and any(low <= limit * yield_stress <= high for limit in _NOTED_UTILISATIONS)
 
 
-_NOTED_UTILISATIONS = 1.0, strength.ELASTIC
+_NOTED_UTILISATIONS = 1.0, strength.MAX_ELASTIC_UTILISATION
 """Utilisations at which a note appears."""
 
 

@@ -12,7 +12,7 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers, is_plain
 from ..core.checks import require, shown
-from ..core.validity import inside
+from ..core.validity import check_domain
 from ..elasticity.finite_elements.shapes import socket_shape
 from ..elasticity.off_axis.grid import Grid, even_grid, grid
 from ..elasticity.off_axis.model import Sphere
@@ -65,7 +65,7 @@ class SetUp(Placed):
         require("ring_width", self.ring_width, FINEST <= self.ring_width <= radians(10.0), "0.5 to 10 degrees")
         require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
         if not isinstance(self.surface, Springs):
-            inside(Sphere(cup=self._around).domain, self.joint, "full elasticity")
+            check_domain(Sphere(cup=self._around).domain, self.joint, "full elasticity")
         if self.creep is not None:
             thickness = float(self.joint.liner_thickness)
             require("liner_thickness", thickness, thickness < inf, "creep needs a liner that ends")

@@ -12,7 +12,7 @@ import numpy
 
 from ..contact import Contact
 from ..core.arrays import Numbers
-from ..core.checks import known_name, one_load, require, shown
+from ..core.checks import known_name, require, select_load, shown
 from ..core.kinds import Kind, Unit
 from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
 from ..problem import Joint
@@ -248,7 +248,7 @@ class Measured:
         return numpy.broadcast_to(row, values.shape)
 
     def _take_load(self, values: Numbers) -> None:
-        kind, given = one_load(**{name: getattr(self, name) for name in LOADS})
+        kind, given = select_load(**{name: getattr(self, name) for name in LOADS})
         if kind == self.quantity:
             raise ValueError(f"{self._called(kind)} is measured, and is the load too")
         row = self._beside(kind, given, values)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..contact import Model
-from ..contact.answer import check_joint
+from ..contact.assembly import check_joint
 from ..core.arrays import Numbers, is_plain
 from ..core.checks import shown
 from ..problem import Joint

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..core.checks import check_text, nearest, plain_name, shown
+from ..core.checks import check_text, nearest, normalise_name, shown
 from ..core.input_files import resolve_input
 from ..problem.presets import joints
 from .joint_file import JointFile, joint_of, read_joint
@@ -45,8 +45,8 @@ def joint_in(content: Mapping[str, Any], folder: Path) -> JointFile:
 def _called(name: Any, folder: Path) -> JointFile:
     if not check_text("joint", name):
         raise ValueError("joint is empty")
-    if plain_name(name) in joints:
-        return JointFile(joints[plain_name(name)], {})
+    if normalise_name(name) in joints:
+        return JointFile(joints[normalise_name(name)], {})
     if not resolve_input(folder / name).is_file():
         raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
     return read_joint(folder / name)

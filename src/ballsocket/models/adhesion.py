@@ -8,8 +8,8 @@ from math import inf, pi
 from typing import Any, ClassVar
 
 from ..contact.roots import increasing_root
-from ..core.arrays import Array, broadcast, clip, divisor, sqrt, where
-from ..core.checks import numeric, require
+from ..core.arrays import Array, broadcast, clip, safe_divisor, sqrt, where
+from ..core.checks import check_numeric, require
 from ..core.sources import Source
 from ..core.validity import SMALL_STRAIN, Range
 from ..problem import Joint
@@ -56,7 +56,7 @@ class AdhesiveSocket(ClosedForm):
     modulus: Modulus = hess_forsbach
 
     def __post_init__(self) -> None:
-        w = numeric("work_of_adhesion", self.work_of_adhesion)
+        w = check_numeric("work_of_adhesion", self.work_of_adhesion)
         require("work_of_adhesion", w, (w >= 0) & (w < inf), "a work of adhesion (N/mm) is 0 or more and finite")
         object.__setattr__(self, "work_of_adhesion", w)
 
@@ -94,7 +94,7 @@ class AdhesiveSocket(ClosedForm):
     def adhesion_number(self, joint: Joint) -> Array:
         """η = u_c/c."""
         c = joint.clearance
-        return where(c > 0, self.critical_stretch(joint) / divisor(c), inf)
+        return where(c > 0, self.critical_stretch(joint) / safe_divisor(c), inf)
 
     def pull_off(self, joint: Joint) -> Array:
         """Largest force in N that can pull the ball without freeing it, positive; NaN where η is 1 or more.
@@ -120,8 +120,8 @@ class AdhesiveSocket(ClosedForm):
     def energy(self, joint: Joint, indentation: Array) -> Array:
         # springs less surfaces, from d = 0 on
         c, d, u = joint.clearance, indentation, self.critical_stretch(joint)
-        e = divisor(c + d)
-        partial = d * d * (d / e) / 3 - u * u * (d / e) * (1 - 2 * u / (3 * divisor(c)))
+        e = safe_divisor(c + d)
+        partial = d * d * (d / e) / 3 - u * u * (d / e) * (1 - 2 * u / (3 * safe_divisor(c)))
         return self._factor(joint) / 2 * where(u < c, partial, d * (d - c) / 3)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
@@ -135,7 +135,7 @@ class AdhesiveSocket(ClosedForm):
         start = sqrt(low * low + stretch * stretch)
         ends = low, high, where(start < high, start, high)
         low, high, start = (broadcast(end, *ends) for end in ends)
-        return increasing_root(_force_and_stiffness, share, low, high, start, given=(c, stretch))
+        return increasing_root(_force_and_stiffness, share, low, high, start, arguments=(c, stretch))
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         return angle_of(_edge(indentation, joint.clearance, self.critical_stretch(joint))[1])
@@ -161,7 +161,7 @@ class AdhesiveSocket(ClosedForm):
 
 def _edge(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
     """k = cos ε, 0 where the hemisphere sticks, and m = 1 - k."""
-    e = divisor(c + d)
+    e = safe_divisor(c + d)
     return clip((c - stretch) / e, 0.0, 1.0), clip((d + stretch) / e, 0.0, 1.0)
 
 
@@ -174,7 +174,7 @@ def _force(d: Array, c: Array, stretch: Array) -> Array:
 def _stiffness(d: Array, c: Array, stretch: Array) -> Array:
     # the edge moves: dF/de + dF/dk dk/de
     k, m = _edge(d, c, stretch)
-    return m * (1 + k + k * k) / 3 - k * k * stretch / divisor(c + d)
+    return m * (1 + k + k * k) / 3 - k * k * stretch / safe_divisor(c + d)
 
 
 def _force_and_stiffness(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:

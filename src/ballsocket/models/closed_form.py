@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 import numpy
 
 from ..contact import Model
-from ..contact.answer import Answer
-from ..contact.law import Law, answered
+from ..contact.assembly import SolverResult
+from ..contact.law import ForceLaw, finite_or_nan
 from ..contact.roots import increasing_root
 from ..core import arrays
 from ..core.arrays import Array, where
@@ -28,7 +28,7 @@ class ClosedForm(Model):
     high. All laws take a joint of arrays, or of Python numbers, and d > 0 or d = 0.
     """
 
-    of_numbers: ClassVar[bool] = True
+    accepts_floats: ClassVar[bool] = True
 
     @abstractmethod
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -68,7 +68,7 @@ class ClosedForm(Model):
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
         """K = p0/d in MPa/mm, Eq. (16) of the paper."""
-        quotient = self.pole_pressure(joint, indentation) / arrays.divisor(indentation)
+        quotient = self.pole_pressure(joint, indentation) / arrays.safe_divisor(indentation)
         return where(indentation == 0, numpy.inf, quotient)  # a point contact: p0 ~ d^(1/2n), n >= 1
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
@@ -89,7 +89,7 @@ class ClosedForm(Model):
         """
         scale = joint.clearance + 1e-3 * joint.socket_radius
         known = arrays.log(self.force(joint, scale))
-        goal = arrays.log(arrays.divisor(force)) - known
+        goal = arrays.log(arrays.safe_divisor(force)) - known
         steep, flat = goal / 2.5, goal / 0.4
 
         def law(log_ratio: Array) -> tuple[Array, Array]:
@@ -103,7 +103,7 @@ class ClosedForm(Model):
         root = increasing_root(law, arrays.broadcast(goal, *shape), low, high, low + (high - low) / 4)
         return where(force > 0, scale * arrays.exp(root), 0.0 * root)
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         if kind == "force":
             d = self.indentation(joint, load)
             F = load
@@ -115,18 +115,18 @@ class ClosedForm(Model):
         safe = where(arrays.isfinite(d), d, 0.0)
         # an error of rounding in d: F alone is no measure where it is a small difference of large parts (adhesion)
         scale = abs(F) + safe * self.stiffness(joint, safe)
-        near = abs(self.force(joint, safe) - F) <= 1e3 * arrays.rounding(safe) * scale
-        return Answer(
+        near = abs(self.force(joint, safe) - F) <= 1e3 * arrays.machine_epsilon(safe) * scale
+        return SolverResult(
             laws=Bound(model=self, joint=joint, indentation=d),
             force=F,
             indentation=d,
             failures={
-                Status.NOT_CONVERGED: arrays.false(near),
+                Status.NOT_CONVERGED: arrays.logical_not(near),
                 Status.BEYOND_EQUATOR: self.half_angle(joint, safe) > pi / 2 * (1 + 1e-6),
             },
         )
 
-    def _law(self, joint: Joint) -> Law:
+    def _law(self, joint: Joint) -> ForceLaw:
         return ClosedLaw(model=self, joint=joint)
 
 
@@ -145,7 +145,7 @@ class ClosedLaw:
         except ArithmeticError:
             contact = self.model.press(self.joint, indentation=indentation)
             F, stiffness = contact.force, contact.stiffness
-        return answered(F, stiffness)
+        return finite_or_nan(F, stiffness)
 
 
 def _bound(law: str) -> Any:

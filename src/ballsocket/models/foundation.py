@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import nan
 
-from ..contact.law import Law, answered
+from ..contact.law import ForceLaw, finite_or_nan
 from ..core.arrays import Array, cos, where
 from ..core.sources import Source
 from ..core.validity import SMALL_STRAIN, Promise, Range
@@ -100,7 +100,7 @@ class RadialFoundation(ClosedForm):
         inside = (u > 0) & (cos(angle) > 0)
         return where(inside, self.modulus.of(joint) * u, 0.0)
 
-    def _law(self, joint: Joint) -> Law:
+    def _law(self, joint: Joint) -> ForceLaw:
         R2, c, K = joint.socket_radius, joint.clearance, float(self.modulus.of(joint))
         return Springs(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=K)
 
@@ -119,7 +119,7 @@ class Springs:
             return 0.0, 0.0
         R2, c, K, motion = self.socket_radius, self.clearance, self.modulus, self.kinematics
         try:
-            return answered(motion.force(R2, c, K, indentation), motion.stiffness(R2, c, K, indentation))
+            return finite_or_nan(motion.force(R2, c, K, indentation), motion.stiffness(R2, c, K, indentation))
         except ArithmeticError:  # where Python's numbers raise, others become infinite
             return nan, nan
 

@@ -13,7 +13,7 @@ from numpy.polynomial import Polynomial
 
 from ..core.arrays import Array, clip, power, sqrt, where
 from ..core.sources import Source
-from ..core.validity import SMALL_STRAIN, Nowhere, Promise, Range
+from ..core.validity import SMALL_STRAIN, NeverValid, Promise, Range
 from ..problem import Joint
 from .closed_form import ClosedForm
 
@@ -185,7 +185,7 @@ class Steuermann(HalfSpace):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        other = Nowhere(why=f"a gap that grows like r^{2 * self.exponent} is not the gap of two spheres")
+        other = NeverValid(why=f"a gap that grows like r^{2 * self.exponent} is not the gap of two spheres")
         return super().validity if self.exponent == 1 else (other, *super().validity)
 
     @property

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, nan, pi
 
-from ..core.arrays import Array, asin, clip, divisor, integral, sin, sqrt, where
+from ..core.arrays import Array, asin, clip, integral, safe_divisor, sin, sqrt, where
 from ..core.sources import Source
 from ..core.validity import Range
 
@@ -33,12 +33,12 @@ def angle_of(versine: Array) -> Array:
 
 def linear_versine(R2: Array, c: Array, d: Array) -> Array:
     # Eq. (8): cos ε = c/(c + d)
-    return d / divisor(c + d)
+    return d / safe_divisor(c + d)
 
 
 def linear_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
     # Eq. (8) solved for d; without clearance every load has the same half angle
-    return where(c > 0, c * versine / divisor(1 - versine), nan)
+    return where(c > 0, c * versine / safe_divisor(1 - versine), nan)
 
 
 def linear_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
@@ -48,25 +48,25 @@ def linear_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
 
 def linear_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
     # Eq. (13): F = π R2² K/3 [2d - c + c (c/(c + d))²]
-    e = divisor(c + d)
+    e = safe_divisor(c + d)
     return (pi / 3) * K * R2**2 * (d * d * (3 * c + 2 * d) / (e * e))
 
 
 def linear_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
     # slope of Eq. (13)
-    e = divisor(c + d)
+    e = safe_divisor(c + d)
     x = c / e
     return (2 * pi / 3) * K * R2**2 * (d / e) * (1 + x + x * x)
 
 
 def linear_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
     # integral of Eq. (13), which is also the energy of the springs
-    return (pi / 3) * K * R2**2 * d * d * (d / divisor(c + d))
+    return (pi / 3) * K * R2**2 * d * d * (d / safe_divisor(c + d))
 
 
 def linear_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
     # ∫ p dA = 2π R2² K ∫ u sin φ dφ
-    return pi * K * R2**2 * d * (d / divisor(c + d))
+    return pi * K * R2**2 * d * (d / safe_divisor(c + d))
 
 
 def linear_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
@@ -78,7 +78,7 @@ def linear_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
         e = c + d
         N = d * d * (3 * c + 2 * d) - 2 * s * e * e
         M = d * (3 * c * (c + d) + d * d)
-        d = d - 2 * N * M * e / divisor(4 * M * M - 3 * N * c * c * c)
+        d = d - 2 * N * M * e / safe_divisor(4 * M * M - 3 * N * c * c * c)
     return d
 
 
@@ -118,13 +118,13 @@ def cosine_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
 
 def circular_versine(R2: Array, c: Array, d: Array) -> Array:
     # Eq. (5) with u = 0: cos ε = (e² + R2² - R1²)/(2 e R2)
-    return d * (2 * (R2 - c) - d) / divisor(2 * R2 * (c + d))
+    return d * (2 * (R2 - c) - d) / safe_divisor(2 * R2 * (c + d))
 
 
 def circular_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
     # smaller root of e² - 2 e R2 cos ε + R2² - R1² = 0, written for d = e - c; NaN beyond the largest half angle
     b = R2 - c - R2 * versine
-    d = 2 * R2 * c * versine / divisor(b + sqrt(b * b - 2 * R2 * c * versine))
+    d = 2 * R2 * c * versine / safe_divisor(b + sqrt(b * b - 2 * R2 * c * versine))
     return where(c > 0, d, nan)
 
 
@@ -139,21 +139,21 @@ def circular_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
 def circular_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
     # Eq. (11) with Eq. (5): F = 2π R2² K {e (1 - k³)/3 + [R1³ - (R2 - e k)³]/(3 e²) - R2 (1 - k²)/2}, k = cos ε,
     # which is a Laurent polynomial in e with a double root at first touch. The ball's centre stays inside the socket.
-    e = divisor(c + d)
+    e = safe_divisor(c + d)
     force = (pi / 12) * K * R2 * (d * d * (4 * R2 * (2 * e + c) - 3 * (e + c) ** 2) / (e * e))
     return where(e <= R2, force, nan)
 
 
 def circular_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
     # slope of the force
-    e = divisor(c + d)
+    e = safe_divisor(c + d)
     x = c / e
     return (pi / 6) * K * R2 * (d / e) * (4 * R2 * (1 + x + x * x) - 3 * (e + c) * (1 + x * x))
 
 
 def circular_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
     # integral of the force
-    return (pi / 12) * K * R2 * d * d * (d / divisor(c + d)) * (4 * (R2 - c) - d)
+    return (pi / 12) * K * R2 * d * d * (d / safe_divisor(c + d)) * (4 * (R2 - c) - d)
 
 
 def circular_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
@@ -167,7 +167,7 @@ def circular_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
     # in d there and Newton's method climbs from that side. NaN where the ball's centre would leave the socket.
     d = linear_indentation(R2, c, K, F)
     for _ in range(6):
-        d = d - (circular_force(R2, c, K, d) - F) / divisor(circular_stiffness(R2, c, K, d))
+        d = d - (circular_force(R2, c, K, d) - F) / safe_divisor(circular_stiffness(R2, c, K, d))
     return d
 
 

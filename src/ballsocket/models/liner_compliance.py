@@ -94,7 +94,7 @@ def log_compliance_anywhere(k: Array, liner: Liner) -> Pair:
     """ln(c E/R2) and its slope by ln k, near q = 1 (k² = 3/4) too."""
     away = k * k - 0.75
     near = (away > -0.05) & (away < 0.05)
-    if arrays.truth(arrays.false(near)):
+    if arrays.all_true(arrays.logical_not(near)):
         return log_compliance(k, liner)
     value, slope = log_compliance(where(near, 2.0, k), liner)
     value_near, slope_near = _log_compliance_near(k, liner)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from math import inf, pi
 from typing import ClassVar
 
-from ..core.arrays import Array, clip, divisor, integral, log, sin, sqrt, where
+from ..core.arrays import Array, clip, integral, log, safe_divisor, sin, sqrt, where
 from ..core.checks import require
 from ..core.sources import Source
-from ..core.validity import SMALL_STRAIN, Nowhere, Range
+from ..core.validity import SMALL_STRAIN, NeverValid, Range
 from ..problem import Joint
 from .closed_form import ClosedForm
 from .kinematics import angle_of, linear_indentation_of_versine, linear_versine, versine_of
@@ -52,7 +52,7 @@ class LiuReconstruction(ClosedForm):
         same = "made for ball and socket of one material"
         massive = "made for a massive socket: the liner's thickness does not enter"
         return (
-            Nowhere(why="a reconstruction with a coefficient that was fitted to nothing"),
+            NeverValid(why="a reconstruction with a coefficient that was fitted to nothing"),
             Range(quantity="joint.modulus_ratio", low=0.5, high=2.0, why=same),
             Range(quantity="joint.thickness_ratio", high=1.0, why=massive),
             SMALL_STRAIN,
@@ -62,17 +62,17 @@ class LiuReconstruction(ClosedForm):
         return 4 * pi * self.coefficient / 3 * joint.effective_modulus * joint.socket_radius
 
     def force(self, joint: Joint, indentation: Array) -> Array:
-        return self._factor(joint) * indentation * (indentation / divisor(joint.clearance + indentation))
+        return self._factor(joint) * indentation * (indentation / safe_divisor(joint.clearance + indentation))
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        e = divisor(joint.clearance + indentation)
+        e = safe_divisor(joint.clearance + indentation)
         return self._factor(joint) * (indentation / e) * (1 + joint.clearance / e)
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
         # ∫ s²/(c + s) ds: by quadrature where the closed form cancels
         c, d = joint.clearance, indentation
-        closed = d * d / 2 - c * d + c * c * log(1 + d / divisor(c))
-        series = integral(lambda x: x * x / divisor(c + d * x), 24)
+        closed = d * d / 2 - c * d + c * c * log(1 + d / safe_divisor(c))
+        series = integral(lambda x: x * x / safe_divisor(c + d * x), 24)
         return self._factor(joint) * where(d < c, d * d * d * series, closed)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
@@ -88,7 +88,7 @@ class LiuReconstruction(ClosedForm):
 
     def _square_sine(self, joint: Joint, indentation: Array) -> Array:
         # sin² ε = d (2c + d)/(c + d)²
-        e = divisor(joint.clearance + indentation)
+        e = safe_divisor(joint.clearance + indentation)
         return indentation / e * (1 + joint.clearance / e)
 
     def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
@@ -97,10 +97,10 @@ class LiuReconstruction(ClosedForm):
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
         # F = (2/3) π a² p0; F and a² share the factor d/(c + d)
         c, d = joint.clearance, indentation
-        share = where(c + d > 0, (c + d) / divisor(2 * c + d), 1.0)
+        share = where(c + d > 0, (c + d) / safe_divisor(2 * c + d), 1.0)
         return 1.5 * self._factor(joint) * share / (pi * joint.socket_radius**2)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        square = sin(angle) ** 2 / divisor(self._square_sine(joint, indentation))
+        square = sin(angle) ** 2 / safe_divisor(self._square_sine(joint, indentation))
         inside = (square < 1) & (angle < pi / 2) & (indentation > 0)
         return where(inside, self.pole_pressure(joint, indentation) * sqrt(clip(1 - square, 0.0, 1.0)), 0.0)

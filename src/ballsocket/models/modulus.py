@@ -11,9 +11,9 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Array, clip
-from ..core.checks import numeric, require
+from ..core.checks import check_numeric, require
 from ..core.sources import Source
-from ..core.validity import RIGID_BACKING, RIGID_BALL, Promise, Range, inside
+from ..core.validity import RIGID_BACKING, RIGID_BALL, Promise, Range, check_domain
 from ..problem import Joint
 from .table_3 import eq_18, table_formula
 
@@ -57,7 +57,7 @@ class Modulus:
 
     def __call__(self, joint: Joint) -> Array:
         """K in MPa/mm; OutsideDomainError (a ValueError) where there is no formula for any point of the joint."""
-        inside(self.domain, joint, self.name)
+        check_domain(self.domain, joint, self.name)
         with numpy.errstate(all="ignore"):
             return self.of(joint)
 
@@ -179,7 +179,7 @@ def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
     ValueError
         A constant that is negative, infinite or NaN; all of them zero.
     """
-    constants = tuple(numeric(name, value) for name, value in (("c1", c1), ("c2", c2), ("c3", c3)))
+    constants = tuple(check_numeric(name, value) for name, value in (("c1", c1), ("c2", c2), ("c3", c3)))
     for name, value in zip(("c1", "c2", "c3"), constants, strict=True):
         require(name, value, (value >= 0) & (value < inf), "a constant of Eq. (18) is 0 or more and finite")
     total = sum(constants)
@@ -206,7 +206,7 @@ def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Mo
     ValueError
         A constant that is not finite; a factor that is not above 0 for all κ from 0 to 1.
     """
-    constants = tuple(numeric(name, value) for name, value in (("a0", a0), ("a1", a1), ("a2", a2)))
+    constants = tuple(check_numeric(name, value) for name, value in (("a0", a0), ("a1", a1), ("a2", a2)))
     for name, value in zip(("a0", "a1", "a2"), constants, strict=True):
         require(name, value, abs(value) < inf, "a constant of the factor is finite")
     for kappa in (i / 20 for i in range(21)):
@@ -237,7 +237,7 @@ def constant(modulus: Array) -> Modulus:
     ValueError
         A modulus that is not positive and finite.
     """
-    value = numeric("modulus", modulus)
+    value = check_numeric("modulus", modulus)
     require("modulus", value, (value > 0) & (value < inf), "a foundation modulus (MPa/mm) is above 0 and finite")
 
     return Modulus(name="constant", title=f"{modulus} MPa/mm", formula=constant_formula, constants=(value,))

@@ -9,20 +9,20 @@ from typing import Any, ClassVar
 
 import numpy
 
-from ..contact.answer import check_joint, prepared
-from ..contact.model_info import Theory
+from ..contact.assembly import as_arrays, check_joint
+from ..contact.model_info import ModelInfo
 from ..contact.outcome import Outcome
 from ..contact.roots import increasing_root
 from ..core import arrays
-from ..core.arrays import Array, asinh, atan, broadcast, clip, divisor, log, sqrt, tan, where
-from ..core.checks import numeric, one_load, require
+from ..core.arrays import Array, asinh, atan, broadcast, clip, log, safe_divisor, sqrt, tan, where
+from ..core.checks import check_numeric, require, select_load
 from ..core.sources import Source
 from ..core.validity import Range, Status
 from ..problem import Joint
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinInHole(Theory):
+class PinInHole(ModelInfo):
     """Persson 1964: a pin in a hole of nearly its radius in an infinite plate of the same material, plane strain.
 
     With β = tan(ε/2) and E1 = E/(1 - ν²), the line load Q obeys
@@ -75,14 +75,14 @@ class PinInHole(Theory):
         if unnamed:
             raise TypeError("a load needs its name: line_load in N/mm or half_angle in rad")
         check_joint(joint)
-        kind, given = one_load(line_load=line_load, half_angle=half_angle)
-        load = numeric(kind, given)
+        kind, given = select_load(line_load=line_load, half_angle=half_angle)
+        load = check_numeric(kind, given)
         if kind == "line_load":
             require(kind, load, (load >= 0) & (load < numpy.inf), "a line load (N/mm) is 0 or more and finite")
         else:
             limit = f"a half angle (rad) is 0 or more and below {PERFECT_FIT:.6f} (perfect fit)"
             require(kind, load, (load >= 0) & (load < PERFECT_FIT), limit)
-        plain, joint, load = prepared(joint, load)
+        plain, joint, load = as_arrays(joint, load)
         with numpy.errstate(all="ignore"):
             stiffness = joint.liner.young / (1 - joint.liner.poisson**2) * joint.clearance
             if kind == "line_load":
@@ -119,7 +119,7 @@ class LineContact(Outcome):
 
     def pressure(self, angle: Array) -> Array:
         """p(φ) in MPa, 0 outside the contact; `angle` in rad broadcasts against the contact's shape."""
-        return self._answer(lambda: self.line_load / self._numbers.socket_radius * self._profile(angle))
+        return self._mask_failed(lambda: self.line_load / self._numbers.socket_radius * self._profile(angle))
 
     def _profile(self, angle: Array) -> Array:
         """p R2/Q."""
@@ -128,7 +128,7 @@ class LineContact(Outcome):
         rest = clip(square - y, 0.0, inf)
         ends = 1 + square
         smooth = 2 / pi * sqrt(rest / ends) / (1 + y)
-        peak = asinh(sqrt(rest / (1 + y))) / (pi * divisor(square) * ends)
+        peak = asinh(sqrt(rest / (1 + y))) / (pi * safe_divisor(square) * ends)
         return where((y < square) & (abs(angle) < pi), smooth + peak, 0.0)
 
     def __repr__(self) -> str:
@@ -140,12 +140,12 @@ class LineContact(Outcome):
 
 def _flexibility(s: Array) -> Array:
     """E1 c/Q at s = β²."""
-    return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * divisor(s))
+    return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * safe_divisor(s))
 
 
 def _squared_tangent(stiffness: Array, load: Array) -> Array:
     """β² that belongs to a line load, E1 c = stiffness."""
-    ratio = stiffness / divisor(load)
+    ratio = stiffness / safe_divisor(load)
 
     def law(s: Array) -> tuple[Array, Array]:
         value = log(1 + s) + 2 * s * s - 2 + pi * (s + s * s) * ratio

@@ -10,10 +10,23 @@ from typing import ClassVar
 import numpy
 
 from ..contact import Model
-from ..contact.answer import Answer
+from ..contact.assembly import SolverResult
 from ..contact.roots import increasing_root
 from ..core import arrays
-from ..core.arrays import Array, broadcast, clip, cos, divisor, exp, gauss_legendre, integral, log, sin, sqrt, where
+from ..core.arrays import (
+    Array,
+    broadcast,
+    clip,
+    cos,
+    exp,
+    gauss_legendre,
+    integral,
+    log,
+    safe_divisor,
+    sin,
+    sqrt,
+    where,
+)
 from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
 from ..problem import Joint
@@ -79,16 +92,16 @@ class PlaneLayer(Model):
 
     promise: ClassVar[Promise] = Promise(within=0.15)
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         solution = _solution(joint, kind, load)
         force, indentation = solution.values
         given = indentation if kind == "indentation" else force
         miss = 0.0 * given if kind == "half_angle" else arrays.namespace(given).abs(given - load)
-        return Answer(
+        return SolverResult(
             laws=solution,
             force=force,
             indentation=indentation,
-            failures={Status.NOT_CONVERGED: ~(miss <= 1e5 * arrays.rounding(given) * load)},
+            failures={Status.NOT_CONVERGED: ~(miss <= 1e5 * arrays.machine_epsilon(given) * load)},
         )
 
 
@@ -179,7 +192,7 @@ class LayerSolution:
         kernel, k, transform = self._kernel, self._points[2], self._parts[0]
         wave = k * self.width[..., None]
         turn = wave * x[..., None]
-        sinc = where(turn > 1e-4, sin(turn) / divisor(turn), 1 - turn * turn / 6)
+        sinc = where(turn > 1e-4, sin(turn) / safe_divisor(turn), 1 - turn * turn / 6)
         mix = transform[..., 1] - self._scaled_indentation[..., None] * transform[..., 0]
         total = xp.sum(kernel * wave * wave * sinc * mix, axis=-1)
         return (2 / pi) * (2 + self.width * total)
@@ -230,7 +243,7 @@ class LayerSolution:
     @property
     def foundation_modulus(self) -> Array:
         d = self.values[1]
-        return where(self.width == 0, inf, self.pole_pressure / divisor(d))
+        return where(self.width == 0, inf, self.pole_pressure / safe_divisor(d))
 
     @property
     def pressure_integral(self) -> Array:
@@ -238,7 +251,7 @@ class LayerSolution:
 
     def pressure(self, angle: Array) -> Array:
         # ∫ -H'(s)/sqrt(s² - r²) ds over r..a, with s² = r² + (a² - r²) y²
-        share = angle * self.joint.socket_radius / divisor(self._radius)
+        share = angle * self.joint.socket_radius / safe_divisor(self._radius)
         rest = clip(1 - share * share, 0.0, 1.0)
         total = integral(lambda y: self._steepness(sqrt(share * share + rest * y * y)), 32)
         scale = self._radius / (self._effective_radius * self._compliance)
@@ -268,7 +281,7 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
     """The solution at the width that belongs to the load (NaN where none below a half angle of π/2 does)."""
     shape = (load, *joint.numbers())
     widest = broadcast(pi / 2 * clip(joint.thickness_ratio, 0.0, THINNEST), *shape)
-    if arrays.known(widest) is None:
+    if arrays.concrete_values(widest) is None:
         widest = clip(widest, 0.0, TRACED_WIDTH)
     reach = _reach(widest)
     if kind == "half_angle":
@@ -276,7 +289,7 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
         width = where(width <= widest, width, float("nan"))
         return LayerSolution(joint=joint, width=width, widest=reach)
     which = 0 if kind == "force" else 1
-    goal = log(broadcast(divisor(load), *shape))
+    goal = log(broadcast(safe_divisor(load), *shape))
 
     def law(narrowing: Array, reach: float) -> tuple[Array, Array]:
         """ln(load), negative, and its slope, of how much narrower than the widest a contact is, in logarithms."""
@@ -295,5 +308,5 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
 
 def _reach(width: Array) -> float:
     """The width for which a quadrature serves all of these; that of a traced call where they are not known yet."""
-    widths = arrays.known(width)
+    widths = arrays.concrete_values(width)
     return TRACED_WIDTH if widths is None else float(ceil(numpy.max(widths, initial=0.0, where=numpy.isfinite(widths))))

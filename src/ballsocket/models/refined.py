@@ -8,10 +8,10 @@ from math import inf, nan, pi, radians
 from typing import ClassVar
 
 from ..contact import Model
-from ..contact.answer import Answer
+from ..contact.assembly import SolverResult
 from ..contact.closed_sphere import HEMISPHERE_NOTE
 from ..core import arrays
-from ..core.arrays import Array, broadcast, clip, divisor, integral, sin, where
+from ..core.arrays import Array, broadcast, clip, integral, safe_divisor, sin, where
 from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
 from ..problem import Joint
@@ -35,7 +35,7 @@ class Refined(Model):
     """
 
     seconds_a_press: ClassVar[float] = 4e-6
-    of_numbers: ClassVar[bool] = True
+    accepts_floats: ClassVar[bool] = True
     name: ClassVar[str] = "refined"
     title: ClassVar[str] = "closed form from the liner's own compliance, 23 coefficients"
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(8), (16)"),)
@@ -73,7 +73,7 @@ class Refined(Model):
 
     promise: ClassVar[Promise] = Promise(within=0.02)
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         edge = _given(joint, load) if kind == "half_angle" else _found(joint, kind, load)
         return answer_of(RefinedSolution(joint=joint, edge=edge), kind, load)
 
@@ -91,7 +91,7 @@ class RefinedSolution:
 
     @cached_property
     def _state(self) -> State:
-        return state(divisor(self.edge), self._liner)
+        return state(safe_divisor(self.edge), self._liner)
 
     def _or_zero(self, value: Array) -> Array:
         return where(self.edge > 0, value, 0.0 * self.edge)
@@ -131,7 +131,7 @@ class RefinedSolution:
     @cached_property
     def energy(self) -> Array:
         # ∫ F (dd/dε) dε; the points crowd towards the edge as fast as d grows there
-        edge = divisor(self.edge)
+        edge = safe_divisor(self.edge)
         rate = self._state.indentation_rate / edge
         width = arrays.log(1 + rate * edge)
 
@@ -174,7 +174,7 @@ class RefinedSolution:
     @property
     def _edge_share(self) -> Array:
         """sin²(ε/2)."""
-        return sin(divisor(self.edge) / 2) ** 2
+        return sin(safe_divisor(self.edge) / 2) ** 2
 
     @cached_property
     def _fullness(self) -> Array:
@@ -213,17 +213,19 @@ def _found(joint: Joint, kind: str, given: Array) -> Array:
 def scaled(joint: Joint, kind: str, given: Array) -> Array:
     """F/(E R2 c) or d/c, and something above zero where there is no load."""
     scale = joint.clearance * (joint.liner.young * joint.socket_radius if kind == "force" else 1.0)
-    return broadcast(divisor(given) / scale, given, *joint.numbers())
+    return broadcast(safe_divisor(given) / scale, given, *joint.numbers())
 
 
-def answer_of(solution: RefinedSolution, kind: str, load: Array) -> Answer:
+def answer_of(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
     """What a solution says of the loads of one kind that it was found for."""
     force, indentation = solution.loads(kind, load)
-    return Answer(
+    return SolverResult(
         laws=solution,
         force=force,
         indentation=indentation,
-        failures={Status.NOT_CONVERGED: arrays.false(solution.miss(indentation) <= 1e5 * arrays.rounding(load))},
+        failures={
+            Status.NOT_CONVERGED: arrays.logical_not(solution.miss(indentation) <= 1e5 * arrays.machine_epsilon(load))
+        },
     )
 
 

@@ -211,7 +211,7 @@ def _edge_of(miss: Increasing, load: Array, start: Array, liner: Liner) -> Array
     """By Newton's method from ln ε = `start`, which is near: F ~ ε³ and d ~ ε² as in Hertz, but never wide."""
     start = start + (_END - ln(WIDEST))
     end = 0.0 * start + (_END + 1e-12)  # the widest contact itself is answered
-    root = increasing_root(miss, 0.0 * start, start - 6.0, end, start, given=(load, liner))
+    root = increasing_root(miss, 0.0 * start, start - 6.0, end, start, arguments=(load, liner))
     return where(root < end, exp(root - _END) * WIDEST, nan)
 
 

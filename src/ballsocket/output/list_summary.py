@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from ..contact.model_info import Theory
+from ..contact.model_info import ModelInfo
 from ..core.sources import Source
 from ..core.validity import Range
 from ..problem import Joint, Material
 
 
-def model_summary(model: Theory) -> dict[str, Any]:
+def model_summary(model: ModelInfo) -> dict[str, Any]:
     """A model: what it promises, and where; angles of ranges are in rad, an open end is null."""
     promise = model.promise
     return {

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from rich.table import Table
 from rich.text import Text
 
-from ..contact.model_info import Theory
+from ..contact.model_info import ModelInfo
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS, Quantity
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
@@ -16,13 +16,13 @@ from .terminal import console, print_folded
 _NARROW = 72  # columns: lists are paragraphs below
 
 
-def print_models(models: Iterable[Theory]) -> None:
+def print_models(models: Iterable[ModelInfo]) -> None:
     """The catalogue with validity and sources."""
     rows = [(model.name, model.title, _trust(model), _sources(model)) for model in models]
     _print_rows(("model", "what it is", "trusted for", "source"), rows, gap=1)
 
 
-def _trust(model: Theory) -> str:
+def _trust(model: ModelInfo) -> str:
     """What the model promises, and where."""
     promised = [] if model.promise is None else [f"{model.promise}:"]
     return "\n".join([*promised, *map(str, model.validity)])
@@ -36,7 +36,7 @@ def print_presets() -> None:
         console().print()
 
 
-def print_model(model: Theory) -> None:
+def print_model(model: ModelInfo) -> None:
     """One model: what it is, what it promises, where and why only there, and where it comes from."""
     terminal = console()
     print_folded(terminal, f"{model.name}: {model.title}", "bold")
@@ -77,7 +77,7 @@ def _quantities(thing: Material | Joint, named: Mapping[str, Quantity]) -> list[
     ]
 
 
-def _sources(model: Theory) -> str:
+def _sources(model: ModelInfo) -> str:
     """A line for each publication, with all its places."""
     places: dict[str, list[str]] = {}
     for source in model.sources:

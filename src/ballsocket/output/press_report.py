@@ -5,10 +5,10 @@ from __future__ import annotations
 from datetime import date
 from html import escape
 
-from ..compare import Comparison, answered
+from ..compare import Comparison, successful_contacts
 from ..contact import Contact
 from ..contact.describe import number_text
-from ..contact.verdict import verdict
+from ..contact.verdict import assess_strength
 from ..core.quantities import CONTACT
 from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
@@ -59,7 +59,7 @@ def press_report(
 
 def press_lede(contact: Contact, units: Units = Units.SI) -> str:
     """The first number of a contact with the verdict in words, as HTML."""
-    said = verdict(contact)
+    said = assess_strength(contact)
     pressure, load = (escape(_number(contact, name, units)) for name in ("max_pressure", "force"))
     told = f"<strong>{pressure}</strong> largest pressure under {load}, by {escape(contact.model.name)}"
     return f"<p>{told}: <span class='{_CLASSES[said.bears]}'>{escape(said.words)}.</span></p>"
@@ -95,7 +95,7 @@ def _answers(comparison: Comparison, units: Units) -> str:
 
 def _curves(comparison: Comparison, leading: Contact) -> str:
     """The curves; the cup seen from its opening for a contact beside its axis."""
-    shown = {leading.model.name: leading} if isinstance(leading, OffAxisContact) else answered(comparison)
+    shown = {leading.model.name: leading} if isinstance(leading, OffAxisContact) else successful_contacts(comparison)
     if not shown or leading.status.failed:
         return "<p>There is nothing to draw.</p>"
     return html.picture(html.drawn(quick_plot.plot(shown), "svg"), "pressure and force", form="svg+xml")

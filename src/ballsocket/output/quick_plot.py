@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..catalogue import reference
-from ..compare import answered, force_curves
+from ..compare import force_curves, successful_contacts
 from ..contact import Contact
 from ..elasticity.off_axis.contact import OffAxisContact
 from .cup_plot import cup_figure
@@ -36,7 +36,7 @@ def plot(contacts: Mapping[str, Contact]) -> Figure:
         if shape:
             many = " x ".join(map(str, shape))
             raise ValueError(f"a plot shows one contact of a model, and here are {many}: a study draws many")
-    shown = answered(contacts)
+    shown = successful_contacts(contacts)
     if not shown:
         raise ValueError("there is nothing to draw: no model has an answer")
     alone = next(iter(shown.values())) if len(shown) == 1 else None

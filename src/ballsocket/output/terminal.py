@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..catalogue import reference
-from ..compare import Comparison, relative
+from ..compare import Comparison, relative_deviation
 from ..contact import Contact
 from ..contact.describe import COLUMNS, UTILISATION, Column, number_text
 from ..core.quantities import CONTACT, HEADLINE
@@ -109,7 +109,7 @@ def _pole(comparison: Comparison) -> tuple[str, ...]:
 
 def _rest(comparison: Comparison) -> tuple[str, ...]:
     """The utilisation, where no model comes near to it, or nothing is known of it."""
-    near = (contact for contact in comparison.values() if contact.utilisation_between[1] > _NEAR)
+    near = (contact for contact in comparison.values() if contact.utilisation_bounds[1] > _NEAR)
     return () if any(contact.utilisation > _NEAR for contact in near) else (UTILISATION.attribute,)
 
 
@@ -137,7 +137,7 @@ def _press_table(comparison: Comparison, columns: Sequence[Column], bars: str) -
 
 def _percents(contact: Contact, exact: Contact, columns: Sequence[Column]) -> list[str]:
     """How far a contact is from the exact one; nothing where they are equal, or there is nothing to measure by."""
-    shares = [100 * float(relative(column.of(contact), column.of(exact))) for column in columns]
+    shares = [100 * float(relative_deviation(column.of(contact), column.of(exact))) for column in columns]
     return ["" if share != share or share == 0 else f"{share:+.1f}".replace("-0.0", "+0.0") for share in shares]
 
 

@@ -6,6 +6,6 @@ what they are made of.
 
 from .joint import Joint, Support
 from .material import Layer, Material
-from .values import larger, unchecked
+from .values import larger, make_unchecked
 
 __all__ = ["Joint", "Layer", "Material", "Support", "larger", "unchecked"]

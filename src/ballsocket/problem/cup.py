@@ -11,7 +11,7 @@ from math import cos, pi, sin
 
 from ..core import arrays
 from ..core.arrays import Array, is_plain
-from ..core.checks import numeric, require, shown
+from ..core.checks import check_numeric, require, shown
 from ..core.quantities import CUP
 
 Direction = tuple[float, float, float]
@@ -34,11 +34,11 @@ class Side(Enum):
     LEFT = "left"
 
 
-class NotGiven(float):
+class UnsetAngle(float):
     """Default angle of a cup without an orientation: 0, which the standard of a cycle may replace."""
 
 
-_NOT_GIVEN = NotGiven(0.0)
+_NOT_GIVEN = UnsetAngle(0.0)
 
 _CHOICES = {"interface": Interface, "side": Side}
 
@@ -113,7 +113,7 @@ class Cup:
     @property
     def oriented(self) -> bool:
         """True where an inclination or an anteversion was set, 0 included."""
-        return not (isinstance(self.inclination, NotGiven) and isinstance(self.anteversion, NotGiven))
+        return not (isinstance(self.inclination, UnsetAngle) and isinstance(self.anteversion, UnsetAngle))
 
     @property
     def opening(self) -> Direction:
@@ -162,7 +162,7 @@ class Cup:
         ValueError
             Not three components, or a direction without a length.
         """
-        vector = numeric("direction", direction)
+        vector = check_numeric("direction", direction)
         if tuple(getattr(vector, "shape", ()))[-1:] != (3,):
             raise ValueError(f"a direction has three components, x, y and z, got {direction!r:.60}")
         (x, y, z), (a, b, c) = (vector[..., axis] for axis in range(3)), self.dome

@@ -26,7 +26,7 @@ _SAME = MappingProxyType({**DIAMETERS, "interference": "clearance"})
 _TIGHTEST = 0.1
 """Of the ball's radius: an interference that is no larger."""
 
-OWN = ("ball_radius", "clearance", "liner_thickness")
+STORED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")
 """What a joint holds; every other length follows."""
 
 _ACROSS = ("ball_radius", "socket_radius", "clearance")
@@ -90,7 +90,7 @@ class Dimensions:
         return 2 * self.outer_radius
 
 
-def made_of(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Array) -> dict[str, Array]:
+def resolve_lengths(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Array) -> dict[str, Array]:
     """Radius, clearance and thickness of a joint of given lengths; what is not given stands, if it can.
 
     Parameters
@@ -111,10 +111,10 @@ def made_of(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Ar
     """
     check_names(given, LENGTHS, "among the lengths of a joint")
     numbers = {name: LENGTHS[name].checked(value) for name, value in given.items()}
-    check_once(numbers)
+    check_unique_lengths(numbers)
     if not standing:
         _check_enough(numbers)
-    made = resolved(numbers, standing, shell)
+    made = derive_lengths(numbers, standing, shell)
     for name in ("outer_radius", "outer_diameter"):
         if name in numbers:
             require(name, numbers[name], made["liner_thickness"] > 0, "it leaves no liner between socket and backing")
@@ -122,10 +122,12 @@ def made_of(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Ar
         tight = numbers["interference"] <= _TIGHTEST * made["ball_radius"]
         require("interference", numbers["interference"], tight, "it is at most a tenth of the ball's radius")
     loose = not {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers)
-    return {name: JOINT[name].checked(made[name]) if name != "clearance" or loose else made[name] for name in OWN}
+    return {
+        name: JOINT[name].checked(made[name]) if name != "clearance" or loose else made[name] for name in STORED_LENGTHS
+    }
 
 
-def resolved(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Array) -> dict[str, Array]:
+def derive_lengths(given: Mapping[str, Array], standing: Mapping[str, Array], shell: Array) -> dict[str, Array]:
     """`made_of`, with nothing checked: a liner may be thinner than nothing.
 
     Two of radius, socket radius and clearance fix the third; of those that are not given the ball stands, and else the
@@ -143,10 +145,10 @@ def resolved(given: Mapping[str, Array], standing: Mapping[str, Array], shell: A
     if "outer_radius" in radii:
         socket = radii.get("socket_radius", known["ball_radius"] + known["clearance"])
         known["liner_thickness"] = _less(radii["outer_radius"], socket + shell)
-    return {name: known[name] for name in OWN}
+    return {name: known[name] for name in STORED_LENGTHS}
 
 
-def check_once(names: Iterable[str]) -> None:
+def check_unique_lengths(names: Iterable[str]) -> None:
     """Raise ValueError for lengths that say the same in two ways."""
     said = {_SAME.get(name, name): name for name in names}
     for name in names:

@@ -41,7 +41,7 @@ class LinearGap:
         turn = 2 * numpy.cos(t) * numpy.sin(half) + numpy.sin(t) * numpy.cos(half)
         return -1.5 * d * numpy.sin(1.5 * t) - self.clearance * turn
 
-    def deepening(self, t: Numbers, d: Numbers) -> Numbers:
+    def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
         """A[∂u/∂d](t)."""
         return numpy.cos(1.5 * t) + 0.0 * d
 
@@ -67,7 +67,7 @@ class CircularGap:
         """d A[u]/dt."""
         return _transform_slope(t, lambda w: self._parts(w, d))
 
-    def deepening(self, t: Numbers, d: Numbers) -> Numbers:
+    def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
         """A[∂u/∂d](t)."""
         return _transform(t, lambda w: self._deepening(w, d))
 

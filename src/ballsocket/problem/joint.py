@@ -12,9 +12,9 @@ from typing import Any, Unpack
 
 from ..core.arrays import Array, is_plain, to_list, where
 from ..core.checks import check_names, require, shown
-from .dimensions import LENGTHS, OWN, Dimensions, Lengths, made_of
+from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
 from .material import Layer, Material
-from .values import larger, set_fields, short_text, unchecked
+from .values import larger, make_unchecked, set_fields, short_text
 
 
 class Support(Enum):
@@ -104,7 +104,7 @@ class Joint(Dimensions):
         if not isinstance(support, Support):
             raise TypeError(f"support must be Support.FIXED or Support.FREE, got {shown(support)}")
         layers = _checked_backing(backing)
-        set_fields(self, **made_of(lengths, {}, _shell(layers)))
+        set_fields(self, **resolve_lengths(lengths, {}, _shell(layers)))
         set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
         for name, inner in self._thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
@@ -175,14 +175,14 @@ class Joint(Dimensions):
             "ball": None if self.ball is None else self.ball.without_strengths(),
             "backing": tuple(layer.without_strengths() for layer in self.backing),
         }
-        return unchecked(Joint, **{**vars(self), **parts})
+        return make_unchecked(Joint, **{**vars(self), **parts})
 
     def with_numbers(self, numbers: Any) -> Joint:
         """A joint like this one with other numbers, in the order of `numbers()`. Nothing is checked."""
         radius, clearance, thickness, young, poisson, *others = numbers
         behind = others if self.ball is None else others[2:]
         triples = zip(self.backing, behind[::3], behind[1::3], behind[2::3], strict=True)
-        return unchecked(
+        return make_unchecked(
             Joint,
             ball_radius=radius,
             clearance=clearance,
@@ -219,12 +219,12 @@ class Joint(Dimensions):
         >>> print(bs.joints["hip-36"].replace(liner=bs.UHMWPE, head_diameter=32.0).dimensions)
         R1 16 mm, clearance 0.1 mm, liner 5 mm
         """
-        known = [each.name for each in fields(self) if each.name not in OWN]
+        known = [each.name for each in fields(self) if each.name not in STORED_LENGTHS]
         check_names(changes, (*LENGTHS, *known), "in a joint")
         lengths = {name: value for name, value in changes.items() if name in LENGTHS}
         others = {name: value for name, value in changes.items() if name not in LENGTHS}
-        standing = {name: getattr(self, name) for name in OWN}
-        made = made_of(lengths, standing, _shell(_checked_backing(others.get("backing", self.backing))))
+        standing = {name: getattr(self, name) for name in STORED_LENGTHS}
+        made = resolve_lengths(lengths, standing, _shell(_checked_backing(others.get("backing", self.backing))))
         if is_plain(made["clearance"]) and made["clearance"] < 0:
             made["interference"] = -made.pop("clearance")
         called = {"name": f"{self.name.removesuffix(_VARIED)}{_VARIED}", "source": ""} if changes and self.name else {}

@@ -8,7 +8,7 @@ from typing import Any
 from ..core.arrays import Array, to_list
 from ..core.checks import shown
 from ..core.quantities import LAYER, MATERIAL, STRENGTH, STRESS_LIMITS
-from .values import set_fields, short_text, unchecked
+from .values import make_unchecked, set_fields, short_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,11 +68,11 @@ class Material:
 
     def without_strengths(self) -> Material:
         """Return this material without strengths and proportional limit."""
-        return unchecked(Material, **{**vars(self), **dict.fromkeys(STRESS_LIMITS)})
+        return make_unchecked(Material, **{**vars(self), **dict.fromkeys(STRESS_LIMITS)})
 
     def with_numbers(self, young: Array, poisson: Array) -> Material:
         """A material like this one with other elastic numbers. Nothing is checked."""
-        return unchecked(Material, **{**vars(self), "young": young, "poisson": poisson})
+        return make_unchecked(Material, **{**vars(self), "young": young, "poisson": poisson})
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""
@@ -119,11 +119,11 @@ class Layer:
 
     def without_strengths(self) -> Layer:
         """This layer of a material whose strengths are not known."""
-        return unchecked(Layer, thickness=self.thickness, material=self.material.without_strengths())
+        return make_unchecked(Layer, thickness=self.thickness, material=self.material.without_strengths())
 
     def with_numbers(self, thickness: Array, young: Array, poisson: Array) -> Layer:
         """A layer like this one with other numbers. Nothing is checked."""
-        return unchecked(Layer, thickness=thickness, material=self.material.with_numbers(young, poisson))
+        return make_unchecked(Layer, thickness=thickness, material=self.material.with_numbers(young, poisson))
 
     def summary(self) -> dict[str, Any]:
         """One dictionary for JSON."""

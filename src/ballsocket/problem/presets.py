@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import inf
 
-from ..core.checks import Named
+from ..core.checks import NamedItems
 from .joint import Joint
 from .material import Material
 
@@ -83,7 +83,7 @@ CANCELLOUS_BONE = Material(
     young=500.0, poisson=0.2, name="cancellous bone", source="representative; varies widely with its density"
 )
 
-materials: dict[str, Material] = Named(
+materials: dict[str, Material] = NamedItems(
     "material",
     {
         "uhmwpe": UHMWPE,
@@ -144,5 +144,5 @@ _ALL_JOINTS = (
     ),
 )
 
-joints: dict[str, Joint] = Named("joint", {joint.name: joint for joint in _ALL_JOINTS})
+joints: dict[str, Joint] = NamedItems("joint", {joint.name: joint for joint in _ALL_JOINTS})
 """Joints by name: common hips, reverse shoulder, suspension ball joint, tilting-pad pivot."""

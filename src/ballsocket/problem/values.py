@@ -7,7 +7,7 @@ from typing import Any
 from ..core.arrays import Array, is_plain, where
 
 
-def unchecked(cls: Any, **fields: Any) -> Any:
+def make_unchecked(cls: Any, **fields: Any) -> Any:
     """A material, layer or joint from numbers that have been checked before, or are not known yet."""
     made = object.__new__(cls)
     set_fields(made, **fields)

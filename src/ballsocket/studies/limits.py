@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..core.checks import check_names, in_radians, require
+from ..core.checks import check_names, degrees_hint, require
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, JOINT
 from ..core.validity import Status
 from ..problem.cup import UP, Cup, Direction
-from ..problem.dimensions import OWN, Dimensions, resolved
+from ..problem.dimensions import STORED_LENGTHS, Dimensions, derive_lengths
 from .parameters import PARAMETERS
 from .task import EDGE_DISTANCE, QUANTITIES
 
@@ -59,7 +59,7 @@ class Limit:
         if self.name in _ANGLES:
             for end in (self.low, self.high):
                 good = (abs(end) <= pi) | (abs(end) == inf)
-                require(self.name, end, good, f"it is in radians; {in_radians(end)}")
+                require(self.name, end, good, f"it is in radians; {degrees_hint(end)}")
         require(
             self.name, self.low, self.low <= self.high, f"the lower limit is not above the upper one, {self.high:g}"
         )
@@ -121,7 +121,7 @@ def _lengths(study: xarray.Dataset, joint: Mapping[str, Any]) -> _Lengths:
     given = {str(name): study[name] for name in study.coords if name in JOINT}
     thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
     shell = thickness if thickness < inf else 0.0
-    return _Lengths(**resolved(given, {name: float(joint[name]) for name in OWN}, shell), behind=shell)
+    return _Lengths(**derive_lengths(given, {name: float(joint[name]) for name in STORED_LENGTHS}, shell), behind=shell)
 
 
 def margin_over(study: xarray.Dataset, limit: Limit, across: str, up: str) -> numpy.ndarray:

@@ -11,7 +11,7 @@ from ..core import quantities
 from ..core.arrays import Array, where
 from ..core.quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
 from ..problem import Joint, Material
-from ..problem.dimensions import DIAMETERS, OWN, check_once, resolved
+from ..problem.dimensions import DIAMETERS, STORED_LENGTHS, check_unique_lengths, derive_lengths
 
 AIMS: Mapping[str, Quantity] = MappingProxyType(
     {**quantities.AIM, **{name: quantities.CUP[name] for name in ("inclination", "anteversion")}}
@@ -53,8 +53,8 @@ def varied(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
         raise ValueError(f"the ball of this joint is rigid: it has no {given_of_ball[0]}")
     given = {name: value for name, value in values.items() if name in JOINT}
     said = {DIAMETERS.get(name, name) for name in given}
-    lengths = resolved(given, {name: getattr(joint, name) for name in OWN}, joint.shell)
-    radius, clearance, thickness = (lengths[name] for name in OWN)
+    lengths = derive_lengths(given, {name: getattr(joint, name) for name in STORED_LENGTHS}, joint.shell)
+    radius, clearance, thickness = (lengths[name] for name in STORED_LENGTHS)
     possible = (clearance > -_ROUNDING * radius) & (thickness > _ROUNDING * radius)
     made = replace(
         joint,
@@ -96,7 +96,7 @@ _ROUNDING = 1e-12  # of a radius
 
 def contradiction(names: Mapping[str, object]) -> None:
     """Raise ValueError for names that cannot vary together."""
-    check_once([name for name in names if name in JOINT])
+    check_unique_lengths([name for name in names if name in JOINT])
     loads = [name for name in LOADS if name in names]
     if len(loads) > 1:
         raise ValueError(f"one load is needed, got {', '.join(loads)}")

@@ -13,7 +13,7 @@ import numpy
 
 from ..catalogue import catalogue
 from ..contact import Model
-from ..contact.answer import check_joint
+from ..contact.assembly import check_joint
 from ..core.checks import check_names, needs, shown
 from ..core.executors.local import Engine, Serial
 from ..problem import Joint

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..catalogue import reference
 from ..contact import Model
-from ..core.validity import OutsideDomainError, inside
+from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint
@@ -36,7 +36,7 @@ def usual(joint: Joint, ends: Mapping[str, Any]) -> Model:
 
 def check_known(model: Model, joint: Joint, ends: Mapping[str, Any]) -> None:
     """Raise OutsideDomainError, with the reason, where a model has no answer for any of the joints of `usual`."""
-    inside((*model.fits, *model.domain), joints_of(joint, ends), model.name)
+    check_domain((*model.fits, *model.domain), joints_of(joint, ends), model.name)
 
 
 def joints_of(joint: Joint, ends: Mapping[str, Any]) -> Joint:

@@ -10,7 +10,7 @@ from typing import Any
 import panel as pn
 
 from ...catalogue import catalogue
-from ...compare import answered, relative
+from ...compare import relative_deviation, successful_contacts
 from ...contact import Contact
 from ...core.quantities import JOINT
 from ...io.joint_file import JointFile
@@ -160,7 +160,7 @@ def _lines(files: Mapping[str, JointFile]) -> dict[str, Line]:
 
 def answers(files: Mapping[str, JointFile], model: str) -> dict[str, Contact]:
     """Answers of a model to the joints for which it has one, by their names."""
-    found = {name: answered(pressed(file, (model,))) for name, file in files.items()}
+    found = {name: successful_contacts(pressed(file, (model,))) for name, file in files.items()}
     return {name: contacts[model] for name, contacts in found.items() if model in contacts}
 
 
@@ -190,7 +190,11 @@ def _text_table(
                 row.append("no answer")
                 continue
             number = float(each.of(contact))
-            share = "" if first is None or contact is first else percent(relative(number, float(each.of(first))), "+")
+            share = (
+                ""
+                if first is None or contact is first
+                else percent(relative_deviation(number, float(each.of(first))), "+")
+            )
             apart = f" ({share})" if share else ""
             row.append(f"{number_text(number)}{apart}")
         rows.append(row)

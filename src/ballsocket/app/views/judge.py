@@ -10,7 +10,7 @@ from typing import Any
 
 import panel as pn
 
-from ...compare import relative
+from ...compare import relative_deviation
 from ...core.quantities import CONTACT, CUP
 from ...io.joint_file import JointFile, read_cup
 from ...io.joint_toml import cup_table
@@ -184,7 +184,7 @@ def _numbers(judged: Judged, screen: Screen) -> str:
             row += ["–", "–"]
         else:
             exact = judged.exact[each.name] * turn
-            row += [number_text(exact), percent(float(relative(value, exact)), "+")]
+            row += [number_text(exact), percent(float(relative_deviation(value, exact)), "+")]
         rows.append(row)
     heads = ["", "finite elements", "error of the mesh", "exact, a whole shell", "difference"]
     return (

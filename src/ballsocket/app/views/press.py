@@ -11,7 +11,7 @@ from typing import Any
 import panel as pn
 
 from ...catalogue import catalogue, reference
-from ...compare import Comparison, answered
+from ...compare import Comparison, successful_contacts
 from ...contact import Contact
 from ...core.quantities import BEARING, FIELD
 from ...io.joint_file import JointFile
@@ -55,7 +55,7 @@ class Press:
         names = tuple(dict.fromkeys((screen.answered_by, *screen.shown)))
         found = pressed(screen.file, names)
         by = found.contacts.get(screen.answered_by)
-        drawn = {name: found[name] for name in screen.shown if name in answered(found)}
+        drawn = {name: found[name] for name in screen.shown if name in successful_contacts(found)}
         lines = {name: line_of(name) for name in drawn}
         if by is None:
             self._channel.put(
@@ -123,7 +123,7 @@ class Press:
     def _fill(self, screen: Screen) -> None:
         found = pressed(screen.file, _EVERY)
         self._channel.put("#press-table", models_table(found, screen.reading))
-        by = answered(found).get(screen.answered_by)
+        by = successful_contacts(found).get(screen.answered_by)
         if by is not None:
             beside(lambda: float(by.von_mises) if screen is self._screen else 0.0, partial(self._sure, screen, found))
 
@@ -137,7 +137,7 @@ class Press:
     def document(self, screen: Screen) -> Document:
         found, units = pressed(screen.file, _EVERY), screen.reading.units
         by = found.contacts.get(screen.answered_by)
-        drawn = {name: found[name] for name in screen.shown if name in answered(found)}
+        drawn = {name: found[name] for name in screen.shown if name in successful_contacts(found)}
         return Document(
             picture=(lambda form: page.drawn(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
             if drawn

@@ -22,7 +22,7 @@ from math import ceil, pi
 
 import numpy
 
-from ...contact.peak_pressure import Peaked, largest_pressure
+from ...contact.peak_pressure import PeakPressure, find_peak_pressure
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem.gaps import Gap
 from .grid import QuadratureGrid
@@ -31,7 +31,7 @@ from .kernel import Kernel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class AbelState(Peaked):
+class AbelState(PeakPressure):
     """Solved contacts of one joint at positive half angles ε; every quantity has the shape (loads,).
 
     Arrays over the points of the grid have one more axis. H and G are stored in units of 1/C: they are in mm.
@@ -94,7 +94,7 @@ class AbelState(Peaked):
         """Indentation d in mm: the root of H(ε) = 0, by Newton's method."""
         d = numpy.zeros_like(self.half_angle)[:, None]
         for _ in range(self.gap.steps):
-            residual, slope = (side(self._targets, d) for side in (self.gap.transform, self.gap.deepening))
+            residual, slope = (side(self._targets, d) for side in (self.gap.transform, self.gap.indentation_derivative))
             step = (self._edge_value(residual) / self._edge_value(slope))[:, None]
             d = d - step
             if not numpy.any(abs(step) > 1e-13 * abs(d)):
@@ -104,7 +104,7 @@ class AbelState(Peaked):
     @cached_property
     def _deepening(self) -> Numbers:
         """Transform A[∂u/∂d] at the targets."""
-        return self.gap.deepening(self._targets, self.indentation[:, None])
+        return self.gap.indentation_derivative(self._targets, self.indentation[:, None])
 
     @cached_property
     def _G(self) -> tuple[Numbers, Numbers]:  # noqa: N802
@@ -157,7 +157,7 @@ class AbelState(Peaked):
         """The largest pressure of each contact in MPa, and its polar angle in rad."""
         if self.decreases.all():
             return self.pole_pressure, 0.0 * self.half_angle
-        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, ROUNDING)
+        return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, ROUNDING)
 
     @cached_property
     def pressure_integral(self) -> Numbers:

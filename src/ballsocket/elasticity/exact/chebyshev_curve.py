@@ -14,8 +14,8 @@ from math import inf
 
 import numpy
 
-from ...contact.peak_pressure import Peaked, largest_pressure
-from ...contact.per_joint import Piece
+from ...contact.peak_pressure import PeakPressure, find_peak_pressure
+from ...contact.per_joint import JointContacts
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .abel import ROUNDING, AbelState, pressure_of
@@ -65,7 +65,7 @@ class ChebyshevCurve:
     curve: LoadCurve
     knots: AbelState
 
-    def press(self, kind: str, load: Numbers) -> Piece:
+    def press(self, kind: str, load: Numbers) -> JointContacts:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         positive_load = load[touching]
@@ -76,7 +76,9 @@ class ChebyshevCurve:
         )
         reached = angle <= self.curve.widest
         state = ChebyshevState(series=self, half_angle=numpy.where(reached, angle, self.curve.widest))
-        return Piece(load=load, touching=touching, state=state, reached=reached, error=self._errors(kind, state))
+        return JointContacts(
+            load=load, touching=touching, state=state, reached=reached, error=self._errors(kind, state)
+        )
 
     def _errors(self, kind: str, state: ChebyshevState) -> dict[str, Numbers]:
         """Estimate the relative error of each quantity at the applied load."""
@@ -166,7 +168,7 @@ class ChebyshevCurve:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ChebyshevState(Peaked):
+class ChebyshevState(PeakPressure):
     """Contacts at half angles ε (contacts,) above 0, interpolated, with the quantities of an `AbelState`."""
 
     series: ChebyshevCurve
@@ -265,7 +267,7 @@ class ChebyshevState(Peaked):
         """Largest pressure of each contact in MPa, and its polar angle in rad."""
         if self.series.knots.decreases.all():
             return self.pole_pressure, 0.0 * self.half_angle
-        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_RIPPLE)
+        return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_RIPPLE)
 
     def largest_von_mises(self, reached: Numbers) -> Numbers:
         """Interpolate the largest von Mises stress in the liner for each contact in the mask, NaN for the others."""

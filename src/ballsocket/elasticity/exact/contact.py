@@ -19,10 +19,10 @@ from ...contact.closed_sphere import (
     indentation_change,
     largest_change,
 )
-from ...contact.per_joint import Piece, SolvedContact
+from ...contact.per_joint import JointContacts, SolvedContact
 from ...core import arrays
 from ...core.arrays import Array
-from ...core.checks import numeric, require
+from ...core.checks import check_numeric, require
 from ...core.quantities import QUANTITIES
 from ...core.stress import Peak, Stress
 from ...core.validity import Range
@@ -104,7 +104,8 @@ class ElasticContact(SolvedContact):
             outermost layer.
         """
         angles, depths = (
-            numpy.asarray(value, dtype=float) for value in (QUANTITIES["angle"].checked(angle), numeric("depth", depth))
+            numpy.asarray(value, dtype=float)
+            for value in (QUANTITIES["angle"].checked(angle), check_numeric("depth", depth))
         )
         thickness = sum(shell.thickness for shell in self._single.kernel.socket.shells)
         inside = (depths >= 0) & (depths <= thickness * (1 + 1e-9))
@@ -126,7 +127,7 @@ class ElasticContact(SolvedContact):
         where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
         """
         changes = self.laws.spread(_hemisphere_of, rows=(len(CHANGES),))
-        return {name: self._plain(changes[number, ...]) for number, name in enumerate(CHANGES)}
+        return {name: self._match_load(changes[number, ...]) for number, name in enumerate(CHANGES)}
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -160,7 +161,7 @@ class ElasticContact(SolvedContact):
     def hemisphere_at_most(self, name: str) -> float:
         """Estimate an upper bound of the "indentation" or "largest" change; infinite without a formula."""
         has_formula = not self.joint.backing and self.joint.support is Support.FIXED
-        if not has_formula or not all(arrays.truth(limit.holds(self)) for limit in _FITTED_RANGES):
+        if not has_formula or not all(arrays.all_true(limit.holds(self)) for limit in _FITTED_RANGES):
             return inf
         estimate = indentation_change(self) if name == "indentation" else largest_change(self)
         return _SAFETY * float(numpy.max(arrays.to_numpy(estimate), where=~arrays.to_numpy(self._failed), initial=0.0))
@@ -177,18 +178,18 @@ class ElasticContact(SolvedContact):
         return peak(self._single, float(self.joint.liner_thickness))
 
     @cached_property
-    def von_mises_between(self) -> tuple[Array, Array]:
+    def von_mises_bounds(self) -> tuple[Array, Array]:
         """Lower and upper bound of the largest von Mises stress in MPa, from a coarse sum of modes."""
-        lower, upper = super().von_mises_between
-        if arrays.truth(arrays.isfinite(upper) | self._failed) is not False:
+        lower, upper = super().von_mises_bounds
+        if arrays.all_true(arrays.isfinite(upper) | self._failed) is not False:
             return lower, upper
-        estimate = self._answer(lambda: self.laws.located(lambda position, piece: self._estimate_von_mises(piece)))
+        estimate = self._mask_failed(lambda: self.laws.located(lambda position, piece: self._estimate_von_mises(piece)))
         return (1 - VON_MISES_TOLERANCE) * estimate, (1 + VON_MISES_TOLERANCE) * estimate
 
-    def _estimate_von_mises(self, piece: Piece) -> numpy.ndarray:
+    def _estimate_von_mises(self, piece: JointContacts) -> numpy.ndarray:
         return estimate_von_mises(piece.state)
 
-    def _von_mises_of(self, position: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+    def _joint_von_mises(self, position: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
         return largest_von_mises(piece.state, piece.reached)
 
     def summary(self) -> dict[str, Any]:
@@ -214,16 +215,16 @@ class ElasticContact(SolvedContact):
 class CurveContact(ElasticContact):
     """`ElasticContact` whose largest stress in the liner is interpolated on a curve of its joint, to about 1e-3."""
 
-    def _estimate_von_mises(self, piece: Piece) -> numpy.ndarray:
-        return self._von_mises_of(numpy.empty(0), piece)
+    def _estimate_von_mises(self, piece: JointContacts) -> numpy.ndarray:
+        return self._joint_von_mises(numpy.empty(0), piece)
 
-    def _von_mises_of(self, position: numpy.ndarray, piece: Piece) -> numpy.ndarray:
+    def _joint_von_mises(self, position: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
         if isinstance(piece.state, ChebyshevState):
             return piece.state.largest_von_mises(piece.reached)
-        return super()._von_mises_of(position, piece)
+        return super()._joint_von_mises(position, piece)
 
 
-def _hemisphere_of(piece: Piece) -> numpy.ndarray:
+def _hemisphere_of(piece: JointContacts) -> numpy.ndarray:
     """Compute the changes of the touching contacts of one joint: (quantities, contacts)."""
     changes = hemisphere_of(piece.state.kernel).changes(piece.state.half_angle)
     return numpy.stack([changes[name] for name in CHANGES])

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import ClassVar
 
-from ...contact import Contact, Wrapped
-from ...contact.answer import Answer
-from ...contact.per_joint import taken_apart
+from ...contact import Contact, ModelWrapper
+from ...contact.assembly import SolverResult
+from ...contact.per_joint import solve_per_joint
 from ...core.arrays import Array
 from ...core.checks import shown
 from ...problem import Joint
@@ -20,7 +20,7 @@ from .model import Exact, curve_of, make_answer
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExactCurve(Wrapped):
+class ExactCurve(ModelWrapper):
     """`Exact` for many loads on few joints: about a millionth of a second a load.
 
     The first load on a joint costs 32 to 72 exact solutions, a hundredth of a second for most joints. Chebyshev series
@@ -61,8 +61,8 @@ class ExactCurve(Wrapped):
         if self.model.gap is not LinearGap:
             raise ValueError("ExactCurve needs gap=LinearGap, got a circular gap: use Exact")
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        solution = taken_apart(
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: chebyshev_curve_of(self.model, plain_joint).press(kind, loads)
         )
         return make_answer(solution, self.model.tolerance, load)

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy
 
-from ...contact.per_joint import Piece
+from ...contact.per_joint import JointContacts
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .abel import AbelState
@@ -60,7 +60,7 @@ class LoadCurve:
     gap: Gap
     tolerance: float
 
-    def press(self, kind: str, load: Numbers) -> Piece:
+    def press(self, kind: str, load: Numbers) -> JointContacts:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         positive_load = load[touching]
@@ -77,7 +77,7 @@ class LoadCurve:
             if not any(numpy.any(values[reached] > self.tolerance) for values in error.values()):
                 break
             angle = numpy.where(angle <= self._widest_computed, state.half_angle, angle)
-        return Piece(load=load, touching=touching, state=state, reached=reached, error=error)
+        return JointContacts(load=load, touching=touching, state=state, reached=reached, error=error)
 
     def state(self, angle: Numbers, points: int) -> AbelState:
         """Make the contacts of half angles, on a grid with this number of points."""

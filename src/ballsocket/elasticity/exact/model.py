@@ -8,11 +8,11 @@ from math import inf
 from typing import Any, ClassVar
 
 from ...contact import Contact, Model
-from ...contact.answer import Answer
-from ...contact.per_joint import PiecedSolution, taken_apart
+from ...contact.assembly import SolverResult
+from ...contact.per_joint import CombinedSolution, solve_per_joint
 from ...core import arrays
 from ...core.arrays import Array
-from ...core.checks import numeric, require, shown
+from ...core.checks import check_numeric, require, shown
 from ...core.sources import Source
 from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from ...problem import Joint, Support
@@ -63,7 +63,7 @@ class Exact(Model):
     gap: type[LinearGap] | type[CircularGap] = LinearGap
 
     def __post_init__(self) -> None:
-        tolerance = numeric("tolerance", self.tolerance)
+        tolerance = check_numeric("tolerance", self.tolerance)
         if not arrays.is_plain(tolerance):
             raise TypeError(f"tolerance must be one number, got {shown(self.tolerance)}")
         good = 1e-10 <= tolerance <= 1e-2
@@ -109,8 +109,8 @@ class Exact(Model):
 
     reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
-        solution = taken_apart(
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: curve_of(self, plain_joint).press(kind, loads)
         )
         return make_answer(solution, self.tolerance, load)
@@ -119,13 +119,13 @@ class Exact(Model):
 _NEAR_HEMISPHERE = NearHemisphere()
 
 
-def make_answer(solution: PiecedSolution, tolerance: float, load: Array) -> Answer:
+def make_answer(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
     """Make the answer of a solution; errors beyond the tolerance count as not converged."""
-    return Answer(
+    return SolverResult(
         laws=solution,
         force=solution.force,
         indentation=solution.indentation,
-        failures={Status.NOT_CONVERGED: ~(solution.worst <= max(tolerance, 10 * arrays.rounding(load)))},
+        failures={Status.NOT_CONVERGED: ~(solution.worst <= max(tolerance, 10 * arrays.machine_epsilon(load)))},
     )
 
 

@@ -9,7 +9,7 @@ from math import inf, log1p, radians
 
 import numpy
 
-from ...contact.strength import share_of_ball
+from ...contact.strength import ball_stress_ratio
 from ...core.arrays import Numbers
 from ...core.stress import Peak, Stress
 from .abel import AbelState
@@ -86,7 +86,7 @@ def estimate_von_mises(state: AbelState) -> Numbers:
 
     The estimate differs from `largest_von_mises` by at most `VON_MISES_TOLERANCE`.
     """
-    values = state.max_pressure * share_of_ball(state.kernel.socket.shells[0].poisson)
+    values = state.max_pressure * ball_stress_ratio(state.kernel.socket.shells[0].poisson)
     for number in numpy.flatnonzero(state.half_angle >= MIN_HALF_ANGLE):
         contact = state.single(int(number))
         angles, depths = _search_grid(contact, contact.kernel.socket.shells[0].thickness)
@@ -132,7 +132,7 @@ def largest_von_mises(state: AbelState, reached: Numbers) -> Numbers:
     values = numpy.full(len(state.half_angle), numpy.nan)
     for number in numpy.flatnonzero(reached):
         if state.half_angle[number] < MIN_HALF_ANGLE:  # a half-space
-            values[number] = state.max_pressure[number] * share_of_ball(liner.poisson)
+            values[number] = state.max_pressure[number] * ball_stress_ratio(liner.poisson)
         else:
             values[number] = peak(state.single(int(number)), liner.thickness).von_mises
     return values

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ...contact.per_joint import Piece, SolvedContact, joint_at
+from ...contact.per_joint import JointContacts, SolvedContact, joint_at
 from ...core.arrays import Array, Numbers, to_numpy
 from ...core.stress import Peak
 from ...core.validity import Status
@@ -48,12 +48,12 @@ class MeshedContact(SolvedContact):
         return section(self._plain_joint, self.model.cup, self._solved)
 
     @property
-    def von_mises_between(self) -> tuple[Array, Array]:
+    def von_mises_bounds(self) -> tuple[Array, Array]:
         """Bounds of `von_mises` without a section; near a rim there are none."""
-        lower, upper = super().von_mises_between
+        lower, upper = super().von_mises_bounds
         return (lower, upper) if self.model.cup == Cup() else (0.0 * lower, upper + inf)
 
-    def _von_mises_of(self, index: Numbers, piece: Piece) -> Numbers:
+    def _joint_von_mises(self, index: Numbers, piece: JointContacts) -> Numbers:
         from .section import section
 
         values = [

@@ -9,8 +9,8 @@ from operator import attrgetter
 
 import numpy
 
-from ...contact.peak_pressure import Peaked, largest_pressure
-from ...contact.per_joint import QUANTITIES, Piece
+from ...contact.peak_pressure import PeakPressure, find_peak_pressure
+from ...contact.per_joint import QUANTITIES, JointContacts
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .full_contact import FullContact
@@ -55,7 +55,7 @@ class MeshedLoadCurve:
     meshes: int
     order: int
 
-    def press(self, kind: str, load: Numbers) -> Piece:
+    def press(self, kind: str, load: Numbers) -> JointContacts:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         loads = load[touching].tolist()
@@ -68,7 +68,7 @@ class MeshedLoadCurve:
         error = dict.fromkeys(QUANTITIES, numpy.full(len(loads), numpy.nan))
         if coarse:
             error = estimate_errors(kind, fine, coarse[0], self.order)
-        return Piece(load=load, touching=touching, state=fine, reached=reached, error=error)
+        return JointContacts(load=load, touching=touching, state=fine, reached=reached, error=error)
 
     def _class(self, kind: str, load: float) -> int:
         """Return the class of a load by its estimated half angle on the coarse mesh of a nearby class."""
@@ -140,7 +140,7 @@ _LAWS: dict[str, Callable[[Solved], float]] = {"stiffness": stiffness, "energy":
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class MeshedStates(Peaked):
+class MeshedStates(PeakPressure):
     """Solved contacts; each quantity has one number a contact, NaN for missing ones (None)."""
 
     solved: tuple[Solved | None, ...]
@@ -172,7 +172,7 @@ class MeshedStates(Peaked):
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
         """Largest pressure of each contact in MPa, and its polar angle in rad."""
-        return largest_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_NOISE)
+        return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_NOISE)
 
     def pressure(self, angle: Numbers) -> Numbers:
         """Compute p(φ) in MPa at angles (any, loads)."""

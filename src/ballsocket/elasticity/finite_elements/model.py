@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from ...contact import Contact, Model
-from ...contact.answer import Answer
-from ...contact.law import Law
-from ...contact.per_joint import taken_apart
+from ...contact.assembly import SolverResult
+from ...contact.law import ForceLaw
+from ...contact.per_joint import solve_per_joint
 from ...core import arrays
 from ...core.arrays import Array
 from ...core.checks import needs, require
 from ...core.sources import Source
-from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, bodies
+from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, body_remarks
 from ...problem import Joint
 from ...problem.cup import Cup
 from ...problem.gaps import CircularGap, LinearGap, check_gap
@@ -114,7 +114,7 @@ class FiniteElement(Model):
         ),
         Range(quantity="joint.thickness_ratio", high=200.0, why="the liner is too thin to be meshed"),
     )
-    remarks: ClassVar[tuple[Remark, ...]] = bodies(
+    remarks: ClassVar[tuple[Remark, ...]] = body_remarks(
         "cut off at the plane of the socket's rim", "half a one on its equator"
     )
     reach: ClassVar[str] = (
@@ -127,14 +127,14 @@ class FiniteElement(Model):
         """Validity ranges; a circular gap needs no close fit."""
         return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
 
-    def _law(self, joint: Joint) -> Law:
+    def _law(self, joint: Joint) -> ForceLaw:
         raise TypeError("finite elements are too noisy for a law, because each load has its own mesh: use exact")
 
     def in_cup(self, cup: Cup) -> FiniteElement:
         """Return the same model with another cup."""
         return replace(self, cup=cup)
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")
         from .solver import Settings, load_curve_of  # slow to import
 
@@ -146,10 +146,10 @@ class FiniteElement(Model):
             meshes=self.meshes,
             gap=self.gap,
         )
-        solution = taken_apart(
+        solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: load_curve_of(settings, plain_joint).press(kind, loads)
         )
-        return Answer(
+        return SolverResult(
             laws=solution,
             force=solution.force,
             indentation=solution.indentation,

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 
 import numpy
 
-from ...contact.per_joint import Piece, SolvedContact, joint_at
-from ...contact.strength import share
+from ...contact.per_joint import JointContacts, SolvedContact, joint_at
+from ...contact.strength import von_mises_ratio
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.validity import Status
@@ -32,14 +32,14 @@ class OffAxisContact(SolvedContact):
 
     _inside: ClassVar[str] = "pressure maps"
 
-    def _von_mises_of(self, place: Numbers, piece: Piece) -> Numbers:
+    def _joint_von_mises(self, place: Numbers, piece: JointContacts) -> Numbers:
         """An estimate as of a closed form, from half angle and largest pressure: only the surface is solved."""
         joint, state = joint_at(self.joint, self.laws.shape, int(place[0])), piece.state
-        estimate = share(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
+        estimate = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         return numpy.asarray(estimate * state.max_pressure)
 
     @property
-    def von_mises_between(self) -> tuple[Array, Array]:
+    def von_mises_bounds(self) -> tuple[Array, Array]:
         """What `von_mises` lies between, which is quickly told."""
         return self.von_mises, self.von_mises
 
@@ -92,12 +92,12 @@ class OffAxisContact(SolvedContact):
     @property
     def rim_distance(self) -> Array:
         """The arc in mm from where the load points to the end of the bore (contact patch centre to rim)."""
-        return self._plain((self.model.reach_of(self.joint) - self.tilt) * self.joint.socket_radius)
+        return self._match_load((self.model.reach_of(self.joint) - self.tilt) * self.joint.socket_radius)
 
     @property
     def tilt(self) -> Array:
         """The angle in rad from the dome's pole to where the load points."""
-        return self._plain(self.laws.spread(lambda piece: polar_angle(piece.state.axes.T)))
+        return self._match_load(self.laws.spread(lambda piece: polar_angle(piece.state.axes.T)))
 
     @property
     def outline(self) -> Numbers:
@@ -151,7 +151,7 @@ class OffAxisContact(SolvedContact):
         return f"the ball's centre went {far:.3g} mm from the bore's, {swung:.1f}° from the dome's pole"
 
     def _scalar(self, name: str) -> Array:
-        return self._answer(lambda: self.laws.spread(lambda piece: getattr(piece.state, name)))
+        return self._mask_failed(lambda: self.laws.spread(lambda piece: getattr(piece.state, name)))
 
     def _vector(self, name: str) -> Array:
         """A vector of every contact (..., 3); NaN where there is no answer."""

@@ -12,7 +12,7 @@ import numpy
 
 from ...core import arrays
 from ...core.arrays import Array, Numbers
-from ...core.checks import require, vectors
+from ...core.checks import check_vectors, require
 from ...core.quantities import AIM, CUP
 from ...problem.cup import Cup
 
@@ -21,7 +21,7 @@ _SMALL = 1e-100  # a component that small, and its inverse, need not have a squa
 
 def checked_direction(direction: Any) -> Numbers:
     """Directions (..., 3) that point somewhere, of lengths that have a square."""
-    found = arrays.to_numpy(vectors("direction", direction, "x, y, z of a direction")).astype(float)
+    found = arrays.to_numpy(check_vectors("direction", direction, "x, y, z of a direction")).astype(float)
     largest = abs(found).max(axis=-1)
     require("length of direction", largest, (largest > 0) & (largest < numpy.inf), "a direction points somewhere")
     squared_well = (largest > _SMALL) & (largest < 1 / _SMALL)

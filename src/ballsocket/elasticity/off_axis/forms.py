@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy
 
 from ...core.arrays import Numbers
-from ...core.checks import in_radians, one_number, require
+from ...core.checks import check_number, degrees_hint, require
 from .directions import polar_angle
 from .worn import Measured
 
@@ -49,9 +49,9 @@ class Pinched:
     direction: float = 0.0
 
     def __post_init__(self) -> None:
-        squeeze, turned = (one_number(name, getattr(self, name)) for name in ("squeeze", "direction"))
+        squeeze, turned = (check_number(name, getattr(self, name)) for name in ("squeeze", "direction"))
         require("squeeze", squeeze, abs(squeeze) < inf, "a squeeze (mm) is finite")
-        meant = f"; {in_radians(turned)}"
+        meant = f"; {degrees_hint(turned)}"
         require("direction", turned, abs(turned) <= 2 * pi, f"a direction is in radians, at most 6.283{meant}")
 
     def depth(self, directions: Numbers) -> Numbers:

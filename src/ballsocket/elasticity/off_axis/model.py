@@ -9,12 +9,21 @@ from typing import Any, ClassVar
 import numpy
 
 from ...contact import Contact, Model
-from ...contact.answer import Answer
-from ...contact.law import Law
-from ...contact.per_joint import Piece, taken_apart
+from ...contact.assembly import SolverResult
+from ...contact.law import ForceLaw
+from ...contact.per_joint import JointContacts, solve_per_joint
 from ...core import arrays
 from ...core.arrays import Array, Numbers
-from ...core.checks import needs, numeric, one_load, one_number, refuse_unnamed, require, shown, vectors
+from ...core.checks import (
+    check_number,
+    check_numeric,
+    check_vectors,
+    needs,
+    reject_unnamed_loads,
+    require,
+    select_load,
+    shown,
+)
 from ...core.sources import Source
 from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from ...problem import Joint
@@ -96,7 +105,7 @@ class Sphere(Model):
                 known = " or ".join(kind.__name__ for kind in kinds)
                 raise TypeError(f"{name} must be {known}, got {getattr(self, name)!r}")
         check_gap(self.gap)
-        width = one_number("ring_width", self.ring_width)
+        width = check_number("ring_width", self.ring_width)
         good = _FINEST <= width <= _WIDEST
         require("ring_width", width, good, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
         if self.worn is not None and (isinstance(self.worn, type) or not hasattr(self.worn, "depth")):
@@ -130,7 +139,7 @@ class Sphere(Model):
         parts = (self.direction[..., axis] for axis in range(3))
         return tuple(float(part) if part.ndim == 0 else part for part in parts)
 
-    def _law(self, joint: Joint) -> Law:
+    def _law(self, joint: Joint) -> ForceLaw:
         raise TypeError("rings about the cup's axis are too coarse for a law from first touch on: ask exact")
 
     def in_cup(self, cup: Cup) -> Sphere:
@@ -186,20 +195,20 @@ class Sphere(Model):
         TypeError
             What is no joint; a load without its name.
         """
-        refuse_unnamed(unnamed)
+        reject_unnamed_loads(unnamed)
         load = {"force": force, "indentation": indentation, "half_angle": half_angle}
         if inclination is not None or anteversion is not None:
             return self.along(direction, tilt, azimuth).facing(inclination, anteversion)._pressed(joint, **load)
         if displacement is None:
             return self.along(direction, tilt, azimuth)._pressed(joint, **load)
-        one_load(**load, displacement=displacement)
+        select_load(**load, displacement=displacement)
         if direction is not None or tilt is not None or azimuth is not None:
             raise ValueError("a displacement has a direction of its own: neither direction nor tilt goes with it")
         return self._displaced(joint, displacement)
 
     def _displaced(self, joint: Joint, displacement: Array) -> Contact:
         """A displacement as how far it goes and where to; within the clearance nothing touches."""
-        place = arrays.to_numpy(vectors("displacement", displacement, "x, y, z (mm)")).astype(float)
+        place = arrays.to_numpy(check_vectors("displacement", displacement, "x, y, z (mm)")).astype(float)
         require("displacement", place, numpy.isfinite(place), "a displacement (mm) is finite")
         length = numpy.linalg.norm(place, axis=-1)
         way = numpy.where(length[..., None] > 0, place, numpy.array(self.cup.dome))
@@ -231,15 +240,15 @@ class Sphere(Model):
         """Where the bore ends, in rad from the dome's pole."""
         return self.cup.rim - self.cup.chamfer / joint.socket_radius
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "scipy")
         inside = self.direction @ numpy.array(self.cup.frame).T
         inside = inside / numpy.linalg.norm(inside, axis=-1, keepdims=True)
         axes = [inside[..., axis] for axis in range(3)]
-        solution = taken_apart(
+        solution = solve_per_joint(
             self, joint, load, lambda one, loads, *along: self._piece(one, kind, loads, along), *axes
         )
-        return Answer(
+        return SolverResult(
             laws=solution,
             force=solution.force,
             indentation=solution.indentation,
@@ -249,7 +258,7 @@ class Sphere(Model):
             },
         )
 
-    def _piece(self, joint: Joint, kind: str, loads: Numbers, along: tuple[Numbers, ...]) -> Piece:
+    def _piece(self, joint: Joint, kind: str, loads: Numbers, along: tuple[Numbers, ...]) -> JointContacts:
         """Contacts of one joint of plain numbers."""
         from .compliance import compliance  # takes its time to import
         from .gap import Separation
@@ -268,7 +277,7 @@ class Sphere(Model):
         axes = numpy.stack(along, axis=-1)[touching]
         edges = self.surface.edges(joint, self.cup, soft.grid)
         state = LOADED[kind](Bed(compliance=soft, separation=separation), loads[touching], axes, edges)
-        return Piece(
+        return JointContacts(
             load=loads,
             touching=touching,
             state=state,
@@ -282,7 +291,7 @@ class Sphere(Model):
         radius = float(getattr(self.worn, "radius", socket_radius))
         near = abs(radius - socket_radius) < socket_radius / 2
         require("radius of the worn bore", radius, near, f"the socket's is {socket_radius:.4g} mm; a scan is in mm")
-        depth = arrays.to_numpy(numeric("worn depth", self.worn.depth(directions)))
+        depth = arrays.to_numpy(check_numeric("worn depth", self.worn.depth(directions)))
         if depth.shape not in ((), directions.shape[1:]):
             raise ValueError(f"worn depth of shape {depth.shape} is not allowed: a depth (mm) for each direction")
         require("worn depth", depth, numpy.isfinite(depth), "a depth (mm) is finite")

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy
 
-from ...contact.answer import check_joint
+from ...contact.assembly import check_joint
 from ...core import arrays
 from ...core.arrays import Array, Numbers
-from ...core.checks import one_number, require
+from ...core.checks import check_number, require
 from ...core.quantities import CUP
-from ...core.validity import Status, missing
+from ...core.validity import Status, is_missing
 from ...problem import Joint
 from ...version import __version__
 from ..finite_elements.progress import report_progress
@@ -94,7 +94,7 @@ class Orientations:
     @cached_property
     def held(self) -> Numbers:
         """Where there is an answer."""
-        return ~numpy.asarray(missing(self.status))
+        return ~numpy.asarray(is_missing(self.status))
 
     def best(self, of: Numbers) -> tuple[float, float, int]:
         """Inclination and anteversion in rad where a field is largest, and its place in the flat field."""
@@ -205,7 +205,7 @@ def _check_alone(joint: Any, load: Mapping[str, Any]) -> None:
         raise TypeError("joint must be one joint, of plain numbers: a cup is turned around one")
     for name, value in load.items():
         if value is not None:
-            one_number(name, value)
+            check_number(name, value)
 
 
 def _angles(name: str, values: Array) -> Numbers:

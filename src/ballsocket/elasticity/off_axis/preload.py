@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ...contact.answer import check_joint
+from ...contact.assembly import check_joint
 from ...core.arrays import Array, Numbers
-from ...core.checks import one_number, require
+from ...core.checks import check_number, require
 from ...problem import Joint
 from .directions import checked_direction
 from .model import Sphere, check_sphere
@@ -61,7 +61,7 @@ class Preload:
     def __post_init__(self) -> None:
         check_sphere(self.model)
         check_joint(self.joint)
-        interference = one_number("interference", self.joint.interference)
+        interference = check_number("interference", self.joint.interference)
         require("interference", interference, interference > 0, "a preloaded joint has an interference above 0")
         arc = self.model.cup.arc_of_cover
         require("arc_of_cover", arc, arc > numpy.pi, "a preloaded socket reaches beyond the equator, above pi radians")

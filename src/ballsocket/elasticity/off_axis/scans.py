@@ -13,7 +13,7 @@ from typing import Any
 import numpy
 
 from ...core.arrays import Numbers
-from ...core.checks import needs, one_number, require
+from ...core.checks import check_number, needs, require
 from ...core.input_files import open_input, resolve_input
 from ...core.quantities import AIM
 from .worn import Measured
@@ -132,9 +132,9 @@ _HEAD = 2**16
 
 def scan_of(points: Numbers, name: str = "the scan", finest: float = _FINEST, azimuth: float = 0.0) -> Scan:
     """A scan from its points (points, 3) in mm; see `read_scan`."""
-    size = one_number("finest", finest)
+    size = check_number("finest", finest)
     require("finest", size, 0 < size <= _COARSEST, "what is averaged is above 0 and at most 0.35 radians (20°)")
-    turned = one_number("azimuth", AIM["azimuth"].checked(azimuth))
+    turned = check_number("azimuth", AIM["azimuth"].checked(azimuth))
     require(f"points of {name}", len(points), len(points) >= _FEWEST, f"a scan has {_FEWEST} points and more")
     require(f"points of {name}", points, numpy.isfinite(points), "a point is finite")
     near = abs(points) <= _FURTHEST

@@ -112,7 +112,7 @@ def _solve_angle(residual: Increasing, load: Array, start: Array, curve: CurveCo
     """Solve for ε by Newton's method from the close estimate ln ε = `start`."""
     start = start + (_LOG_OFFSET - math.log(LIMIT))
     end = 0.0 * start + (_LOG_OFFSET + 1e-12)  # includes the widest contact itself
-    root = increasing_root(residual, 0.0 * start, start - 6.0, end, start, given=(load, curve), steps=16)
+    root = increasing_root(residual, 0.0 * start, start - 6.0, end, start, arguments=(load, curve), steps=16)
     return where(root < end, exp(root - _LOG_OFFSET) * LIMIT, math.nan)
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from ....contact import Model
-from ....contact.answer import Answer
+from ....contact.assembly import SolverResult
 from ....contact.closed_sphere import HEMISPHERE_NOTE, LIKE_HEMISPHERE
 from ....core import arrays
-from ....core.arrays import Array, broadcast, divisor
+from ....core.arrays import Array, broadcast, safe_divisor
 from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
 from ....problem import Joint
@@ -51,7 +51,7 @@ class Tabulated(Model):
     file: str = ""
 
     seconds_a_press: ClassVar[float] = 4e-6
-    of_numbers: ClassVar[bool] = True
+    accepts_floats: ClassVar[bool] = True
     name: ClassVar[str] = "tabulated"
     title: ClassVar[str] = "elastic ball and bonded liner, from tables of the exact answer"
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(6)"), Source("goodman1965"))
@@ -79,19 +79,19 @@ class Tabulated(Model):
 
     promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 
-    def _solve(self, joint: Joint, kind: str, load: Array) -> Answer:
+    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         return self.answer(joint, kind, load, curve_reader(kind))
 
-    def answer(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> Answer:
+    def answer(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
         """Solve loads of one kind; `read` finds the contacts on their joints' curves."""
         solution = solution_of(self.file, joint, load, read)
         d, F, _, _ = solution.values
-        return Answer(
+        return SolverResult(
             laws=solution,
             force=F,
             indentation=d,
             failures={
-                Status.NOT_CONVERGED: arrays.false(
+                Status.NOT_CONVERGED: arrays.logical_not(
                     _relative_residual(kind, load, d, F) <= _rounding_error(load, d / joint.clearance)
                 )
             },
@@ -100,7 +100,7 @@ class Tabulated(Model):
 
 def _rounding_error(load: Array, depth: Array) -> Array:
     """Return the relative rounding error of a load, which grows near the perfect fit (d/c = `depth` to infinity)."""
-    return arrays.rounding(load) * (1e4 + 1e2 * depth)
+    return arrays.machine_epsilon(load) * (1e4 + 1e2 * depth)
 
 
 def _relative_residual(kind: str, load: Array, d: Array, F: Array) -> Array:
@@ -108,4 +108,4 @@ def _relative_residual(kind: str, load: Array, d: Array, F: Array) -> Array:
     if kind == "half_angle":
         return 0.0 * F
     target = broadcast(load, F)
-    return abs((F if kind == "force" else d) - target) / divisor(target)
+    return abs((F if kind == "force" else d) - target) / safe_divisor(target)

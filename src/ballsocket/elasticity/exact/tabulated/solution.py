@@ -11,7 +11,7 @@ from math import inf, pi, prod
 import numpy
 
 from ....core import arrays
-from ....core.arrays import Array, broadcast, clip, divisor, gauss_legendre, sin, sqrt, where
+from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
 from ....problem import Joint
 from .chebyshev import LIMIT, angle_coordinate, chebyshev_polynomials, chebyshev_values
 from .curves import SMALL_LOAD, JointCurves, curves_of_one
@@ -60,7 +60,7 @@ class TableSolution:
     @property
     def foundation_modulus(self) -> Array:
         """Foundation modulus p0/d in MPa/mm."""
-        return where(self.values[0] == 0, inf, self.values[2] / divisor(self.values[0]))
+        return where(self.values[0] == 0, inf, self.values[2] / safe_divisor(self.values[0]))
 
     @cached_property
     def energy(self) -> Array:
@@ -85,11 +85,11 @@ class TableSolution:
         """Corrections a, b of the profile, for 1 at the pole and force F: p = p0 sqrt(1 - v) [q(v) + a + b v]."""
         q = [self._profile[k, ...] for k in range(self._profile.shape[0])]
         _, F, p0, _ = self.values
-        height = sin(divisor(self.angle) / 2) ** 2
+        height = sin(safe_divisor(self.angle) / 2) ** 2
         plain, tilted = _moments(len(q))
         carries = [even - 2 * height * odd for even, odd in zip(plain, tilted, strict=True)]
         lift = 1 - arrays.weighted_sum(q, [(-1.0) ** k for k in range(len(q))])
-        target = F / divisor(4 * pi * self.joint.socket_radius**2 * p0 * height)
+        target = F / safe_divisor(4 * pi * self.joint.socket_radius**2 * p0 * height)
         carried = sum(
             (coefficient * moment for coefficient, moment in zip(q, carries, strict=False)), lift * carries[0]
         )
@@ -98,7 +98,7 @@ class TableSolution:
     def pressure(self, angle: Array) -> Array:
         """Compute p(φ) in MPa at angles (rad); 0 outside the contact."""
         lift, tilt = self._profile_correction
-        half, height = sin(angle / 2), sin(divisor(self.angle) / 2) ** 2
+        half, height = sin(angle / 2), sin(safe_divisor(self.angle) / 2) ** 2
         v = half * half / height
         total = _clenshaw(self._profile, clip(2 * v - 1, -1.0, 1.0)) + lift + tilt * v
         inside = (v < 1) & (abs(angle) < pi) & (self.angle > 0)
@@ -147,7 +147,7 @@ CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
 def solution_of(file: str, joint: Joint, load: Array, read: CurveReader) -> TableSolution:
     """Solve the contacts for loads, NaN beyond the tables; `read` returns ε, d, F, p0 and dF/dd."""
     values = _read_in_blocks(file, joint, load, read)
-    fits = arrays.false(values[1] < 0)  # a negative indentation is wider than the perfect fit
+    fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
     angle, d, F, p0, stiffness = (
         where(broadcast(load, value) > 0, where(fits, value, float("nan")), 0.0) for value in values
     )

@@ -10,16 +10,16 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array, where
-from ..core.checks import one_load, plain_name, shown
+from ..core.checks import normalise_name, select_load, shown
 from ..core.quantities import LOADS
-from ..core.validity import Status, missing
+from ..core.validity import Status, is_missing
 from ..problem import Joint
 from ..problem.presets import joints
 from .contact import Contact, Laws, Pressed
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Answer:
+class SolverResult:
     """What a solver hands back: force and indentation, where the further quantities come from, and what went wrong.
 
     `failures` are masks by the status that they mean; a point without force or indentation needs none.
@@ -42,32 +42,32 @@ def check_joint(joint: Any) -> None:
     """Raise TypeError for what is no joint, the name of a preset among them."""
     if isinstance(joint, Joint):
         return
-    preset = isinstance(joint, str) and plain_name(joint) in joints
-    hint = f"; bs.joints[{plain_name(joint)!r}] is one" if preset else ""
+    preset = isinstance(joint, str) and normalise_name(joint) in joints
+    hint = f"; bs.joints[{normalise_name(joint)!r}] is one" if preset else ""
     raise TypeError(f"joint must be a Joint, got {shown(joint)}{hint}")
 
 
-def checked_load(**loads: Array | None) -> tuple[str, Array]:
+def check_load(**loads: Array | None) -> tuple[str, Array]:
     """The one load that was given, checked, with its name."""
-    kind, given = one_load(**loads)
+    kind, given = select_load(**loads)
     return kind, LOADS[kind].checked(given)
 
 
-def spread(load: Array, strengths: tuple[Array, ...]) -> Array:
+def broadcast_load(load: Array, strengths: tuple[Array, ...]) -> Array:
     """The load in the shape that it and the strengths broadcast to, so that contacts can be told how near they are."""
     if all(map(arrays.is_plain, strengths)):
         return load
-    return arrays.broadcast(*arrays.common(load, *strengths))
+    return arrays.broadcast(*arrays.to_common_arrays(load, *strengths))
 
 
-def prepared(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
+def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
     """Whether only plain numbers came in, and joint and load as arrays of one library and dtype.
 
     A model's own `parameters` count for the library; they stay where they are.
     """
     numbers = (*joint.numbers(), load)
     plain = all(arrays.is_plain(number) for number in (*numbers, *parameters))
-    joint_numbers = arrays.common(*numbers, *parameters)[: len(numbers)]
+    joint_numbers = arrays.to_common_arrays(*numbers, *parameters)[: len(numbers)]
     return plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
 
 
@@ -83,7 +83,9 @@ _GRAVER = (
 """Where a point has several failures it is told the last of these."""
 
 
-def finished(model: Asked, joint: Joint, kind: str, load: Array, points: Array, answer: Answer, plain: bool) -> Contact:
+def make_contact(
+    model: Asked, joint: Joint, kind: str, load: Array, points: Array, answer: SolverResult, plain: bool
+) -> Contact:
     """The contact with its status: NaN where there is no answer."""
     xp = arrays.namespace(load)
     shape = (load, answer.force, answer.indentation, *joint.numbers())
@@ -95,14 +97,14 @@ def finished(model: Asked, joint: Joint, kind: str, load: Array, points: Array, 
     for code in _GRAVER:
         if code in failures:
             status = where(failures[code], xp.asarray(int(code), dtype=xp.int8), status)
-    answered = ~missing(status)
+    answered = ~is_missing(status)
     F, d = where(answered | (kind == "force"), F, xp.nan), where(answered | (kind == "indentation"), d, xp.nan)
     if plain:
         F, d, status = float(F), float(d), Status(int(status))
     return model.contact_type(model=model, laws=answer.laws, joint=joint, force=F, indentation=d, status=status)
 
 
-def finished_number(model: Asked, joint: Joint, kind: str, load: float, answer: Answer) -> Contact:
+def make_scalar_contact(model: Asked, joint: Joint, kind: str, load: float, answer: SolverResult) -> Contact:
     """`finished` of Python numbers, inside the domain."""
     F, d, status = answer.force, answer.indentation, Status.OK
     failures = {**answer.failures, Status.NOT_REACHED: not (arrays.isfinite(F) and arrays.isfinite(d))}
