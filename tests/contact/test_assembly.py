@@ -215,7 +215,7 @@ def test_estimated_change_on_a_hemisphere_is_that_of_the_exact_solution(ball, lo
         contact.hemisphere["indentation"], rel=0.3, abs=1e-4
     )
     largest = max(abs(value) for value in contact.hemisphere.values())
-    assert closed_sphere.largest_change(contact) == pytest.approx(largest, rel=0.4)
+    assert closed_sphere.largest_change(contact) == pytest.approx(largest, rel=0.4, abs=2e-4)
     softer = replace(joint, ball=bs.Material(young=50e3, poisson=0.3))
     soft = bs.Exact().press(softer, force=load)
     per_ratio = (closed_sphere.indentation_change(soft) - closed_sphere.indentation_change(contact)) / 0.02
