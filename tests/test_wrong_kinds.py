@@ -13,7 +13,7 @@ from ballsocket.core.storage.npz import read_arrays, write_arrays
 from ballsocket.elasticity.off_axis import read_scan
 from ballsocket.hip import InUse
 from ballsocket.hip.gait import iso_14242_1
-from ballsocket.hip.laws import Archard
+from ballsocket.hip.wear_laws import Archard
 
 HIP = bs.joints["hip-28"]
 ELEMENT = bs.ForceElement(bs.HessForsbach(), HIP)

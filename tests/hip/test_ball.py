@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Archard, Cycle, OwnLaw, flexion, iso_14242_1, logarithmic
+from ballsocket.hip import Archard, CustomWearLaw, Cycle, flexion, iso_14242_1, logarithmic
 from ballsocket.hip.facing import facing
 from ballsocket.hip.spots import ball_directions, ball_grid
 from ballsocket.output.hip_report import write_hip_report
@@ -81,7 +81,7 @@ def test_a_ball_that_wears_is_on_springs_that_do_not_creep(words):
 
 
 def test_a_law_of_ones_own_for_the_ball_cannot_be_kept(tmp_path):
-    use = hip(ball_wear=OwnLaw(of=lambda cycle: 1e-9 * cycle.work))
+    use = hip(ball_wear=CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work))
     with pytest.raises(ValueError, match="a run with a law of one's own cannot be kept"):
         use.after(1e4, store=tmp_path)
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Archard, InUse, Ladder, constrained_share, iso_14242_1, logarithmic
+from ballsocket.hip import Archard, InUse, KelvinVoigtChain, constrained_share, iso_14242_1, logarithmic
 
 from .test_wear import TILTED, K, hip
 
-LADDER = Ladder(compliances=(1e-3, 5e-4, 2e-3), times=(30.0, 4e3, 7e5))
+LADDER = KelvinVoigtChain(compliances=(1e-3, 5e-4, 2e-3), times=(30.0, 4e3, 7e5))
 
 
 @pytest.mark.parametrize("steps", [1, 3, 1000])
@@ -18,7 +18,7 @@ LADDER = Ladder(compliances=(1e-3, 5e-4, 2e-3), times=(30.0, 4e3, 7e5))
 def test_a_step_of_pressure_is_met_exactly_whatever_the_steps(steps, last):
     rng = np.random.default_rng(steps)
     ends = np.sort(np.append(rng.uniform(0.0, last, steps - 1), last))
-    pressure, strain = np.array([0.0, 3.0, 11.0]), LADDER.rested(3)
+    pressure, strain = np.array([0.0, 3.0, 11.0]), LADDER.initial_strain(3)
     for seconds in np.diff(ends, prepend=0.0):
         strain = LADDER.advanced(strain, pressure, seconds)
     assert strain.sum(axis=0) == pytest.approx(LADDER.response(last) * pressure, rel=1e-10)
@@ -27,7 +27,7 @@ def test_a_step_of_pressure_is_met_exactly_whatever_the_steps(steps, last):
 
 
 def test_what_is_unloaded_comes_back():
-    strain = LADDER.advanced(LADDER.rested(1), np.array([5.0]), 1e9)
+    strain = LADDER.advanced(LADDER.initial_strain(1), np.array([5.0]), 1e9)
     assert strain.sum() == pytest.approx(5 * sum(LADDER.compliances), rel=1e-10)
     assert LADDER.advanced(strain, np.zeros(1), 1e9).sum() == pytest.approx(0.0, abs=1e-15)
 
@@ -35,7 +35,7 @@ def test_what_is_unloaded_comes_back():
 def test_the_two_parts_of_an_advance_are_the_advance():
     rng = np.random.default_rng(4)
     strain, pressure = rng.uniform(size=(3, 5)), rng.uniform(size=5)
-    stays, adds = LADDER.linear(strain, 500.0)
+    stays, adds = LADDER.linear_response(strain, 500.0)
     assert stays + adds * pressure == pytest.approx(LADDER.advanced(strain, pressure, 500.0).sum(axis=0), rel=1e-12)
 
 
@@ -54,13 +54,13 @@ def test_the_ladder_of_the_logarithm_is_within_two_percent_of_it():
             "as many compliances as times, .* got 1 .* and 2",
         ),
         ({"compliances": (), "times": ()}, "at least one, got 0"),
-        ({"compliances": (-1e-3,), "times": (1.0,)}, "compliance = -0.001 is not allowed"),
-        ({"compliances": (1e-3,), "times": (0.0,)}, "time = 0 is not allowed"),
+        ({"compliances": (-1e-3,), "times": (1.0,)}, "compliances = -0.001 is not allowed"),
+        ({"compliances": (1e-3,), "times": (0.0,)}, "times = 0 is not allowed"),
     ],
 )
 def test_ladders_that_are_none(words, refused):
     with pytest.raises(ValueError, match=refused):
-        Ladder(**words)
+        KelvinVoigtChain(**words)
 
 
 def test_without_wear_the_ball_beds_in_and_the_load_stays_balanced():
@@ -104,7 +104,7 @@ def test_a_confined_ladder_strains_by_its_share_and_the_default_is_that_of_a_bar
     for seconds in (1.0, 1e4, 1e8):
         assert confined.response(seconds) == pytest.approx(share * LADDER.response(seconds), rel=1e-15)
         pressure = np.array([1.0, 10.0])
-        after = [one.advanced(one.rested(2), pressure, seconds) for one in (LADDER, confined)]
+        after = [one.advanced(one.initial_strain(2), pressure, seconds) for one in (LADDER, confined)]
         assert after[1] == pytest.approx(share * after[0], rel=1e-14)
     assert (replace(LADDER, confinement=1.0).response(1e4) == LADDER.response(1e4)).all()
     with pytest.raises(ValueError, match="confinement = 1.5 is not allowed"):
@@ -140,7 +140,7 @@ def test_a_liner_that_creeps_a_little_is_a_softer_spring():
     """A fast element of compliance J adds J L to 1/K under the mean pressure of a constant load."""
     walk = replace(iso_14242_1(72), force=lambda t: 2000.0 + 0 * t)
     joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
-    fast = Ladder(compliances=(1e-4,), times=(1.0,))
+    fast = KelvinVoigtChain(compliances=(1e-4,), times=(1.0,))
     use = InUse(joint=joint, cup=TILTED, cycle=walk, wear=Archard(coefficient=0.0), creep=fast)
     softer = 1 / (1 / use.bed.modulus + 8.0 * 1e-4)
     expected = replace(use.bed, modulus=softer).rest(use.loads, np.zeros(len(use.bed.areas))).pressure.max()

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from ballsocket.cli.root import app
-from ballsocket.hip import Activity, Archard, Mix, OwnLaw, logarithmic
+from ballsocket.hip import Activity, Archard, CustomWearLaw, Mix, logarithmic
 from ballsocket.output.hip_report import write_hip_report
 
 from ..cli.command import run
@@ -73,8 +73,8 @@ def test_another_run_and_what_is_none_are_refused(tmp_path):
 
 
 def test_a_law_of_ones_own_is_not_kept(tmp_path):
-    with pytest.raises(ValueError, match="a law of one's own cannot be kept"):
-        hip(wear=OwnLaw(of=lambda cycle: 1e-9 * cycle.work)).after(1e4, store=tmp_path)
+    with pytest.raises(ValueError, match="runs with a CustomWearLaw cannot be stored"):
+        hip(wear=CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)).after(1e4, store=tmp_path)
 
 
 def test_the_page_of_a_run(tmp_path):

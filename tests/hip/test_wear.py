@@ -10,7 +10,17 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Archard, AreaLaw, CrossShear, Cycle, EnergyLaw, InUse, OwnLaw, flexion, iso_14242_1
+from ballsocket.hip import (
+    Archard,
+    ContactAreaWear,
+    CrossShear,
+    CustomWearLaw,
+    Cycle,
+    FrictionEnergyWear,
+    InUse,
+    flexion,
+    iso_14242_1,
+)
 
 from ..extent import some
 from ..places import DATA
@@ -125,7 +135,7 @@ def test_a_left_hip_wears_as_a_right_one():
 
 
 def test_the_area_law_counts_the_share_of_each_cell_that_touches():
-    use = hip(wear=AreaLaw(coefficient=1e-9))
+    use = hip(wear=ContactAreaWear(coefficient=1e-9))
     done = use.passed(use.unworn)
     expected = 1e6 * 1e-9 * float((done.contact * done.sliding.steps).sum(axis=0) @ use.bed.areas)
     assert use.first.volume == pytest.approx(expected, rel=1e-12)
@@ -157,7 +167,7 @@ def test_the_area_law_is_right_where_the_contact_stands_still_and_states_its_err
         angles=lambda t: amplitude * np.outer(axis, np.cos(2 * np.pi * t)),
         instants=16,
     )
-    use = hip(cycle=cycle, wear=AreaLaw(coefficient=coefficient), cup=bs.Cup(), ring_width=radians(width))
+    use = hip(cycle=cycle, wear=ContactAreaWear(coefficient=coefficient), cup=bs.Cup(), ring_width=radians(width))
     joint, cap = use.joint, bs.HessForsbach().press(use.joint, force=force).half_angle
     slides = joint.ball_radius * joint.socket_radius**2 * cap_slide(cap, np.array(axis)[:, None, None])
     expected = 1e6 * coefficient * 4 * amplitude * slides
@@ -190,27 +200,27 @@ def test_where_a_straight_track_does_not_wear_flexion_alone_wears_nothing():
 
 
 def test_the_energy_law_wears_by_the_work_of_friction():
-    first = hip(wear=EnergyLaw(coefficient=2e-5, friction=0.05)).first
+    first = hip(wear=FrictionEnergyWear(coefficient=2e-5, friction=0.05)).first
     assert first.volume == pytest.approx(1e6 * 2e-5 * 0.05 * first.work, rel=1e-12)
     assert first.volume == pytest.approx(hip(wear=Archard(coefficient=1e-6)).first.volume, rel=1e-12)
 
 
 def test_a_law_of_ones_own():
-    law = OwnLaw(of=lambda cycle: 1e-3 * K * cycle.work)
+    law = CustomWearLaw(function=lambda cycle: 1e-3 * K * cycle.work)
     assert hip(wear=law).after(1e6).last.volume == pytest.approx(hip().after(1e6).last.volume, rel=1e-12)
 
 
 @pytest.mark.parametrize(
     ("law", "refused"),
     [
-        (lambda done: np.nan * done.work, "gave a depth of nan mm"),
-        (lambda done: -1e-9 * done.work - 1e-9, "gave a depth of -.* mm: it is at least 0, and finite"),
-        (lambda done: 1e-9, r"gave depths of shape \(\), and the points have \(\d+,\)"),
+        (lambda done: np.nan * done.work, "returned a depth of nan mm"),
+        (lambda done: -1e-9 * done.work - 1e-9, "returned a depth of -.* mm: a depth is at least 0, and finite"),
+        (lambda done: 1e-9, r"returned depths of shape \(\); the points need \(\d+,\)"),
     ],
 )
 def test_laws_of_ones_own_that_are_none(law, refused):
     with pytest.raises(ValueError, match=refused):
-        hip(wear=OwnLaw(of=law)).after(1e4)
+        hip(wear=CustomWearLaw(function=law)).after(1e4)
 
 
 def test_the_exponent_of_the_pressure_is_one_of_the_mean_pressure():

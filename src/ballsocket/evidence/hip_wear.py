@@ -9,14 +9,15 @@ from math import radians
 import numpy
 
 from ..core.arrays import Numbers
-from ..hip.creep import logarithmic
+from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.gait import iso_14242_1, iso_14242_4, rocking
-from ..hip.laws import Archard, AreaLaw, Law
 from ..hip.named_cycles import named_cycle
 from ..hip.patients import ANSWERS, Scatter
 from ..hip.uncertainty import LEVEL, population
 from ..hip.use import InUse
+from ..hip.wear_law import WearLaw
+from ..hip.wear_laws import Archard, ContactAreaWear
 from ..problem import Joint, Material
 from ..problem.cup import Cup
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
@@ -46,7 +47,7 @@ _CLEARANCE = Rectangular(low=0.05, high=0.2)
 PATIENTS = 64
 
 
-def in_use(diameter: float, cycle: Cycle, tilt_deg: float = 30.0, wear: Law | None = None) -> InUse:
+def in_use(diameter: float, cycle: Cycle, tilt_deg: float = 30.0, wear: WearLaw | None = None) -> InUse:
     """A hip of a head of this diameter in mm, with the rest of `INPUTS`."""
     joint = Joint(
         ball_radius=diameter / 2,
@@ -97,7 +98,7 @@ class Ratio:
 def ratios() -> Iterator[Ratio]:
     """The ratios of rates of unworn bores."""
     walk, off = iso_14242_1(), iso_14242_4()
-    area = AreaLaw(coefficient=1e-6)
+    area = ContactAreaWear(coefficient=1e-6)
     rocked = [in_use(28.0, rocking(), 0.0), in_use(22.225, rocking(), 0.0)]
     yield Ratio(
         one="clarke-28",

@@ -13,11 +13,11 @@ import numpy
 
 from ..core.arrays import Numbers
 from .chebyshev import Step, longest, stages_of, step
-from .creep import Ladder
-from .laws import Pass, steepest
+from .creep_law import CreepLaw
 from .near import near_cells
 from .set_up import SetUp
 from .springs import Rest
+from .wear_law import CycleExposure, max_wear_sensitivity
 
 _FIRST = 1e-2  # of the time in which what wears fastest would be worn in
 _SAFE, _LEAST, _MOST = 0.8, 0.2, 4.0
@@ -70,7 +70,8 @@ class Run:
     def __post_init__(self) -> None:
         self.depth = numpy.zeros(len(self.use.bed.areas))
         self.ball = numpy.zeros(0 if self.use.ball_wear is None else len(self.use.ball_areas))
-        self.strain = self.use.creep.rested(len(self.depth)) if self.use.creep else numpy.zeros((1, len(self.depth)))
+        creep, count = self.use.creep, len(self.depth)
+        self.strain = numpy.zeros((1, count)) if creep is None else creep.initial_strain(count)
         self.rest = self.use.unworn
         self._look()
         if self._fastest > 0:
@@ -121,7 +122,7 @@ class Run:
         self.rest = rest
         self.settled = self.settled and rest.settled
         shares = partial(near.bed.contact_shares, rest, depth)
-        self._pass = Pass(pressure=rest.pressure, sliding=near.sliding, shares=shares)
+        self._pass = CycleExposure(pressure=rest.pressure, sliding=near.sliding, contact_shares=shares)
         worn = near.bed.smoothed(self.use.wear.depth(self._pass))
         return numpy.concatenate([worn, self._ball_rate, [float(self._pass.work @ near.bed.areas)]])
 
@@ -134,9 +135,9 @@ class Run:
     @property
     def _fastest(self) -> float:
         """How fast a wave of the worn depth can decay, per cycle: what a law adds for a pressure, times a stiffness."""
-        slope = steepest(self.use.wear, self._pass)
+        slope = max_wear_sensitivity(self.use.wear, self._pass)
         if self._near.facing is not None and self.use.ball_wear is not None:
-            slope += steepest(self.use.ball_wear, self._near.facing.passed(self._pass))
+            slope += max_wear_sensitivity(self.use.ball_wear, self._near.facing.passed(self._pass))
         return _SURE * slope * self.use.bed.stiffest
 
     @property
@@ -153,7 +154,7 @@ class Run:
         self._creep = self.crept[state["cells"]]
         self._slope = state["slope"]
         self.rest = _rest_of(state)
-        self._pass = Pass(pressure=self.rest.pressure, sliding=self._near.sliding)
+        self._pass = CycleExposure(pressure=self.rest.pressure, sliding=self._near.sliding)
 
     def until(self, count: float, listen: Callable[[float], None]) -> Run:
         """This run, gone on until so many cycles are done."""
@@ -195,10 +196,10 @@ class Run:
         """Cycles in which little creeps: a share of those that there were."""
         return max(_GROWTH * self.cycles, _SOON / self.use.seconds) if self.use.creep else inf
 
-    def _advance_creep(self, creep: Ladder, seconds: float) -> None:
+    def _advance_creep(self, creep: CreepLaw, seconds: float) -> None:
         """Creep under the pressure that there is at the end, which falls where it creeps: a few sweeps to meet it."""
         near, shares = self._near, self.use.cycle.seconds[self.use.loaded] / self.use.cycle.duration
-        stays, adds = creep.linear(self.strain[:, near.cells], seconds)
+        stays, adds = creep.linear_response(self.strain[:, near.cells], seconds)
         thickness = float(self.use.joint.liner_thickness)
         mean = shares @ self._pass.pressure
         stiff = near.bed.stiffest * (shares @ (self._pass.pressure > 0))

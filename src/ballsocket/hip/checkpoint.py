@@ -13,7 +13,6 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.storage.npz import read_arrays, write_arrays
 from .history import Report
-from .laws import OwnLaw
 from .set_up import SetUp
 
 _VERSION = 5
@@ -84,10 +83,11 @@ def checkpoint(use: SetUp, folder: Path) -> Checkpoint:
     Raises
     ------
     ValueError
-        A law of one's own, of which nothing tells whether it is still the same.
+        A wear law by a function, which cannot be identified.
     """
-    if isinstance(use.wear, OwnLaw) or isinstance(use.ball_wear, OwnLaw):
-        raise ValueError("a run with a law of one's own cannot be kept: nothing tells whether it is still the same")
+    for law in (use.wear, use.ball_wear):
+        if not getattr(law, "storable", True):
+            raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function cannot be identified")
     cycle = sha256(b"".join(each.tobytes() for each in (use.loads, use.tether, use.turns, use.loaded))).hexdigest()
     parts = (
         use.joint,

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy
 
 from ..core.arrays import Numbers
-from .laws import Pass
 from .set_up import SetUp
 from .sliding import Sliding
 from .spots import Spots, ball_directions, ball_grid, spots_of
+from .wear_law import CycleExposure
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,14 +51,14 @@ class Facing:
         field[0, self.cells] = depth
         return self.on_socket.of(field)
 
-    def passed(self, done: Pass) -> Pass:
+    def passed(self, done: CycleExposure) -> CycleExposure:
         """What the points of the ball go through, with the work of each instant as the socket has it."""
         pressure = self._on_ball(done.pressure)
         given = (done.pressure * done.sliding.steps) @ self.socket_areas
         found = (pressure * self.sliding.steps) @ self.areas
         share = numpy.divide(given, found, out=numpy.zeros_like(given), where=found > 0)
-        return Pass(
-            pressure=pressure * share[:, None], sliding=self.sliding, shares=lambda: self._on_ball(done.contact)
+        return CycleExposure(
+            pressure=pressure * share[:, None], sliding=self.sliding, contact_shares=lambda: self._on_ball(done.contact)
         )
 
     def _on_ball(self, values: Numbers) -> Numbers:

@@ -18,13 +18,14 @@ from ..problem.cup import Cup
 from .film import Lubricant
 from .given_cycle import KEYS as CYCLE_KEYS
 from .given_cycle import given_cycle
+from .given_laws import CREEP_KEYS, given_creep, given_lubricant, given_seconds, given_surface
 from .given_laws import KEYS as WEAR_KEYS
-from .given_laws import given_ball_law, given_creep, given_law, given_lubricant, given_seconds, given_surface
 from .looks import check_cycles
 from .mix import Mix
 from .scatter_file import KEYS as SCATTER_KEYS
 from .scatter_file import Uncertain, uncertain
 from .use import InUse
+from .wear_laws import read_ball_law, read_wear_law
 
 _TABLES: Mapping[str, tuple[str, ...]] = {
     "": (
@@ -33,7 +34,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
     ),
     "cup": (*KEYS["cup"], "tilt"),
     "cycle": CYCLE_KEYS,
-    "creep": ("law", "compliances", "times", "confinement", "seconds_per_cycle"),
+    "creep": CREEP_KEYS,
     "film": ("viscosity", "ball_roughness", "cup_roughness", "friction"),
     "wear": WEAR_KEYS,
     "uncertainty": SCATTER_KEYS,
@@ -96,8 +97,8 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         joint=given.joint,
         cup=given.cup,
         cycle=cycle,
-        wear=given_law(wear),
-        ball_wear=given_ball_law(wear),
+        wear=read_wear_law(wear),
+        ball_wear=read_ball_law(wear),
         surface=given_surface(wear),
         creep=given_creep(content, float(given.joint.liner.poisson)),
         seconds_per_cycle=given_seconds(table_of(content, "creep")),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..core.arrays import Numbers
-from .laws import Law, Pass
+from .wear_law import AnyWearLaw, CycleExposure
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +35,7 @@ class First:
     max_force: float
 
 
-def first_of(wear: Law, done: Pass, areas: Numbers, *, slide: float, max_force: float) -> First:
+def first_of(wear: AnyWearLaw, done: CycleExposure, areas: Numbers, *, slide: float, max_force: float) -> First:
     """What a law makes of the first cycle, on cells of these areas in mm²."""
     depth, work = wear.depth(done), done.work * areas
     whole = float(work.sum())

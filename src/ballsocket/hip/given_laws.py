@@ -2,104 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
 from ..catalogue import catalogue
-from ..core.checks import known_name, shown
+from ..core.checks import known_name
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..io.toml import table_of
 from ..io.units import parse
 from ..models.foundation import RadialFoundation
-from .coefficients import share_of_slide, wear_factor, wear_per_energy
-from .creep import Ladder, constrained_share, logarithmic
+from .creep_law import CreepLaw
+from .creep_laws import CREEP_LAWS, read_creep_law
 from .film import Lubricant
-from .laws import Archard, AreaLaw, CrossShear, EnergyLaw, Law
+from .law_fields import law_keys
+from .wear_laws import BALL_COEFFICIENT, WEAR_LAWS
 
-_LAWS = ("archard", "energy", "area", "cross-shear")
-_BELONGS = MappingProxyType(
-    {**dict.fromkeys(("circular", "exponent", "reference"), "cross-shear"), "friction": "energy"}
-)
-KEYS = ("law", "coefficient", "ball_coefficient", *_BELONGS, "contact", "model", "ring_width")
-"""Of [wear]."""
+KEYS = ("law", *law_keys(WEAR_LAWS), BALL_COEFFICIENT, "contact", "model", "ring_width")
+"""Keys of the table [wear]."""
 
-
-def given_law(table: Mapping[str, Any]) -> Law:
-    """The law of [wear]."""
-    name = known_name("law", table.get("law", "archard"), _LAWS)
-    if "coefficient" not in table:
-        raise ValueError("[wear] needs a coefficient, such as '1.066e-6 mm^3/(N m)'")
-    for each, law in _BELONGS.items():
-        if each in table and law != name:
-            raise ValueError(f"{each} belongs to the law {law!r}, and the law is {name!r}")
-    return _cross_shear(table) if name == "cross-shear" else _plain(table, name, "coefficient")
+CREEP_KEYS = ("law", *law_keys(CREEP_LAWS), "confinement", "seconds_per_cycle")
+"""Keys of the table [creep]."""
 
 
-def given_ball_law(table: Mapping[str, Any]) -> Law | None:
-    """The law by which the ball wears too; none without its coefficient."""
-    name = known_name("law", table.get("law", "archard"), _LAWS)
-    if "ball_coefficient" not in table:
-        return None
-    if name == "cross-shear":
-        raise ValueError("ball_coefficient belongs to the laws 'archard', 'energy' and 'area', not to 'cross-shear'")
-    return _plain(table, name, "ball_coefficient")
-
-
-def _plain(table: Mapping[str, Any], name: str, key: str) -> Law:
-    """A law of one coefficient."""
-    if name == "area":
-        return AreaLaw(coefficient=share_of_slide(key, table[key]))
-    if name == "archard":
-        return Archard(coefficient=wear_factor(key, table[key]))
-    if "friction" not in table:
-        raise ValueError("the law 'energy' needs a friction, the coefficient whose work wears")
-    return EnergyLaw(
-        coefficient=wear_per_energy(key, table[key]), friction=parse("friction", table["friction"], Kind.NUMBER)
-    )
-
-
-def _cross_shear(table: Mapping[str, Any]) -> Law:
-    if "circular" not in table:
-        raise ValueError("the law 'cross-shear' needs circular, its coefficient on a circle, beside that on a line")
-    return CrossShear(
-        straight=wear_factor("coefficient", table["coefficient"]),
-        circular=wear_factor("circular", table["circular"]),
-        exponent=parse("exponent", table.get("exponent", 0.0), Kind.NUMBER),
-        reference=parse("reference", table.get("reference", 1.0), Kind.MODULUS),
-    )
-
-
-_CREEPS = ("logarithmic", "kelvin-voigt")
-_ELEMENTS = ("compliances", "times")
-_CONFINEMENTS: Mapping[str, Callable[[float], float]] = MappingProxyType(
-    {"unconfined": lambda poisson: 1.0, "constrained": constrained_share}
-)
-"""Functions from Poisson's ratio to the strain of the liner over that of a bar, by their names in files."""
-
-
-def given_creep(content: Mapping[str, Any], poisson: float) -> Ladder | None:
-    """Return the creep law of the table [creep] for a liner of this Poisson's ratio; None without that table."""
-    if "creep" not in content:
-        return None
-    table = table_of(content, "creep")
-    given = [name for name in _ELEMENTS if name in table]
-    name = known_name("creep law", table.get("law", "kelvin-voigt" if given else "logarithmic"), _CREEPS)
-    confined = known_name("confinement", table.get("confinement", "unconfined"), _CONFINEMENTS)
-    confinement = _CONFINEMENTS[confined](poisson)
-    if name == "logarithmic":
-        if given:
-            raise ValueError(f"{given[0]} belongs to the law 'kelvin-voigt', and the law is {name!r}")
-        return logarithmic(confinement)
-    compliances, times = (_numbers(each, table.get(each)) for each in _ELEMENTS)
-    return Ladder(compliances=compliances, times=times, confinement=confinement)
-
-
-def _numbers(name: str, value: Any) -> tuple[float, ...]:
-    if not isinstance(value, list) or not value:
-        raise ValueError(f"{name} = {shown(value)} must be a list of numbers, in 1/MPa and in s")
-    return tuple(parse(name, each, Kind.NUMBER) for each in value)
+def given_creep(content: Mapping[str, Any], poisson: float) -> CreepLaw | None:
+    """Read the creep law of a file for a liner of this Poisson's ratio; None without a table [creep]."""
+    return read_creep_law(table_of(content, "creep"), poisson) if "creep" in content else None
 
 
 def given_seconds(table: Mapping[str, Any]) -> float | None:

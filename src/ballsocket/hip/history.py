@@ -15,6 +15,7 @@ from ..core.arrays import Numbers
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_notes
 from .edge import Edge, Worst
 from .film import Lubricant
+from .law_fields import law_summary
 from .mix import Mix
 from .set_up import SetUp
 
@@ -229,6 +230,11 @@ class History:
                 "valid": self.contact_valid,
                 "utilisation": self.utilisation,
                 "unworn": [check.summary() for check in self.use.unworn_checks],
+            },
+            "laws": {
+                "wear": law_summary(self.use.wear),
+                "ball_wear": law_summary(self.use.ball_wear),
+                "creep": law_summary(self.use.creep),
             },
             "film": self.use.film(self.lubricant).summary(),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},

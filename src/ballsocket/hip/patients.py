@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, radians
 from typing import Any
@@ -18,10 +18,10 @@ from .blocks import Run
 from .contact_checks import utilisation_and_validity
 from .cycle import Cycle
 from .history import Report
-from .laws import CrossShear, Law
 from .looks import check_meant, report_of
 from .mix import Mix
 from .use import InUse
+from .wear_law import with_coefficient
 
 SCATTERS = ("coefficient", "clearance", "inclination", "anteversion", "tilt", "body_weight", "cycles_per_year")
 """What may differ between patients: mm³/(N m), mm, rad, rad, rad, N, and a number."""
@@ -87,7 +87,7 @@ class Scatter:
                 if name in self.distributions:
                     raise ValueError(f"tilt and {name} are one too many: either says where the cup faces")
         if "coefficient" in self.distributions:
-            _with_coefficient(self.use.wear, 0.0)
+            with_coefficient(self.use.wear, 0.0)
         for name in ("body_weight", "cycles_per_year"):
             if name in self.distributions:
                 middle = float(self.distributions[name].frozen.median())
@@ -131,7 +131,7 @@ class Scatter:
         wear = use.wear
         if "coefficient" in values:
             require("coefficient", values["coefficient"], values["coefficient"] >= 0, "it is at least 0")
-            wear = _with_coefficient(wear, values["coefficient"])
+            wear = with_coefficient(wear, values["coefficient"])
         seconds = use.seconds_per_cycle
         return Patient(
             use=replace(
@@ -199,18 +199,6 @@ def contact_over(use: InUse, reports: Sequence[Report]) -> Numbers:
 def _answer(report: Report, name: str) -> float:
     value = getattr(report, name)
     return float(value.min(initial=inf)) if name == "edge_distance" else float(value)
-
-
-def _with_coefficient(wear: Law, value: float) -> Law:
-    """A law with another coefficient; where it has two, that on a straight track, and the other in its ratio."""
-    law: Any = wear
-    if isinstance(law, CrossShear):
-        require("coefficient", law.straight, law.straight > 0, "one that scatters is positive, on a straight track too")
-        return replace(law, straight=value, circular=law.circular * (value / law.straight))
-    if not any(each.name == "coefficient" for each in fields(law)):
-        raise ValueError("coefficient cannot scatter: the law of wear has none")
-    scaled: Law = replace(law, coefficient=value)
-    return scaled
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,18 +21,18 @@ from ..models.foundation import RadialFoundation
 from ..problem import Joint
 from ..problem.cup import Cup
 from .contact_checks import ContactCheck, check_contact, half_angles
-from .creep import Ladder, creep_note
+from .creep_law import CreepLaw, confinement_note
 from .cycle import Cycle
 from .edge import Edge, edge_of
 from .elastic_bed import elastic_bed
 from .film import Film, Lubricant, film
 from .first import First, first_of
-from .laws import Law, Pass
 from .mix import Mix
 from .placing import Placed
 from .sliding import Sliding
 from .spots import ball_grid
 from .springs import CycleBed, Rest, spring_bed
+from .wear_law import AnyWearLaw, CycleExposure
 
 FINEST = radians(0.5)
 """The narrowest rings."""
@@ -44,11 +44,11 @@ _DIAMETERS = 1.0, 1000.0  # mm, of the head and of the bore
 class SetUp(Placed):
     """A hip before it is used, with what can be said of any cycle of it; the fields are told at `InUse`."""
 
-    wear: Law
+    wear: AnyWearLaw
     surface: Springs | ClosedShell | RealCup = Springs()  # noqa: RUF009 (frozen)
     ring_width: float = radians(3.0)
-    ball_wear: Law | None = None
-    creep: Ladder | None = None
+    ball_wear: AnyWearLaw | None = None
+    creep: CreepLaw | None = None
     seconds_per_cycle: float | None = None
     tolerance: float = 4e-3
 
@@ -93,7 +93,7 @@ class SetUp(Placed):
     def _creep_notes(self) -> tuple[str, ...]:
         if self.creep is None:
             return ()
-        confinement = creep_note(self.creep, float(self.joint.liner.poisson))
+        confinement = confinement_note(self.creep, float(self.joint.liner.poisson))
         return (*self.creep.notes, *([confinement] if confinement else []))
 
     @cached_property
@@ -202,10 +202,10 @@ class SetUp(Placed):
         """Checks of the contact model in the first cycle."""
         return self.contact_checks(self.unworn_worst)
 
-    def passed(self, rest: Rest, depth: Numbers | float = 0.0) -> Pass:
+    def passed(self, rest: Rest, depth: Numbers | float = 0.0) -> CycleExposure:
         """Collect pressures and slides of the socket's points under these contacts, on a bore worn by a depth in mm."""
         shares = partial(self.bed.contact_shares, rest, self._everywhere(depth))
-        return Pass(pressure=rest.pressure, sliding=self.sliding, shares=shares)
+        return CycleExposure(pressure=rest.pressure, sliding=self.sliding, contact_shares=shares)
 
     @cached_property
     def unworn(self) -> Rest:

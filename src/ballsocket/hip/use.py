@@ -26,7 +26,7 @@ class InUse(SetUp):
     cycle : Cycle or Mix
         In the body's frame, as the cup's orientation is. On a left cup it is mirrored.
     wear : Law
-        `Archard`, `AreaLaw`, `CrossShear` or `OwnLaw`.
+        `Archard`, `ContactAreaWear`, `CrossShear` or `CustomWearLaw`.
     cup : Cup
         Arc of cover and orientation. A cup without a given orientation takes the tilt of the cycle's standard.
     surface : Springs, ClosedShell or RealCup
@@ -35,7 +35,7 @@ class InUse(SetUp):
         Of the rings of the wear map in rad, 3° by default.
     ball_wear : Law, optional
         How the ball wears too, as hard ones do, in its own frame; not at all by default.
-    creep : Ladder, optional
+    creep : KelvinVoigtChain, optional
         How the liner creeps; not at all by default.
     seconds_per_cycle : float, optional
         In which creep goes on; those that the cycle lasts by default.
