@@ -18,8 +18,8 @@ from ballsocket.core.kinds import Kind
 from ballsocket.core.storage.npz import read_arrays
 from ballsocket.elasticity.off_axis.scans import read_scan
 from ballsocket.evidence.question import read_question
+from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import Reading, read_cycle
-from ballsocket.hip.file import read_hip
 from ballsocket.hip.law_fields import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.identify.file import read_identify
 from ballsocket.io.units import parse

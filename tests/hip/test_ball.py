@@ -7,8 +7,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.hip import Archard, CustomWearLaw, Cycle, flexion, iso_14242_1, logarithmic
-from ballsocket.hip.facing import facing
-from ballsocket.hip.spots import ball_directions, ball_grid
+from ballsocket.hip.ball_wear import ball_directions, map_counterface
 from ballsocket.output.hip_report import write_hip_report
 
 from .test_wear import K, hip
@@ -52,17 +51,19 @@ def test_flexion_spreads_what_the_ball_loses_over_its_track():
     report = use.after(1e6).last
     assert report.ball_volume == pytest.approx(report.volume, rel=1e-9)
     assert report.ball_depth < 0.95 * report.depth
-    to_front = ball_directions(ball_grid(use.ring_width))[1]
+    to_front = ball_directions(use.ball_grid)[1]
     share = report.ball_wear * use.ball_areas
     reach = np.sqrt((share * to_front**2).sum() / share.sum())
-    assert reach > 1.08 * np.sqrt(((report.wear.ravel() * use.bed.areas) @ use.bed.directions[1] ** 2) / report.volume)
+    assert reach > 1.08 * np.sqrt(
+        ((report.wear.ravel() * use.foundation.areas) @ use.foundation.directions[1] ** 2) / report.volume
+    )
 
 
 def test_the_work_of_each_instant_is_that_of_the_socket():
     use = hip(cycle=iso_14242_1(40), **BOTH)
-    ours = facing(use, np.arange(len(use.bed.areas)))
-    given = (use.unworn.pressure * use.sliding.steps) @ use.bed.areas
-    found = ours.passed(use.passed(use.unworn))
+    ours = map_counterface(use, np.arange(len(use.foundation.areas)))
+    given = (use.unworn.pressure * use.sliding.steps) @ use.foundation.areas
+    found = ours.ball_exposure(use.exposure(use.unworn))
     assert (found.pressure * found.sliding.steps) @ ours.areas == pytest.approx(given, rel=1e-9)
     smaller = (use.joint.socket_radius / use.joint.ball_radius) ** 2  # is the ball, under the same force
     assert found.pressure.max() == pytest.approx(smaller * use.unworn.pressure.max(), rel=2e-3)
@@ -76,13 +77,13 @@ def test_a_run_with_a_ball_goes_on_from_where_it_stopped(tmp_path):
 
 @pytest.mark.parametrize("words", [{"surface": bs.ClosedShell()}, {"creep": logarithmic()}])
 def test_a_ball_that_wears_is_on_springs_that_do_not_creep(words):
-    with pytest.raises(ValueError, match="a ball that wears is on springs, in a socket that does not creep"):
+    with pytest.raises(ValueError, match="ball_wear needs surface=Springs.. and no creep law"):
         hip(**words, **BOTH)
 
 
 def test_a_law_of_ones_own_for_the_ball_cannot_be_kept(tmp_path):
     use = hip(ball_wear=CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work))
-    with pytest.raises(ValueError, match="a run with a law of one's own cannot be kept"):
+    with pytest.raises(ValueError, match="runs with a CustomWearLaw cannot be stored"):
         use.after(1e4, store=tmp_path)
 
 

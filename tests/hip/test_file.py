@@ -5,7 +5,7 @@ import json
 import pytest
 
 from ballsocket.hip import constrained_share
-from ballsocket.hip.file import read_hip
+from ballsocket.hip.config import read_hip
 from ballsocket.hip.law_fields import wear_factor, wear_per_slide
 
 from ..cli.command import run
@@ -62,14 +62,14 @@ def test_where_the_cup_faces(tmp_path):
     tilted = read_hip(told(tmp_path)).use
     inclined = read_hip(told(tmp_path, ('tilt = "30 deg"', 'inclination = "30 deg"'))).use
     assert tilted.placed == inclined.placed
-    with pytest.raises(ValueError, match="tilt and inclination are one too many"):
+    with pytest.raises(ValueError, match="tilt and inclination exclude each other"):
         read_hip(told(tmp_path, ('tilt = "30 deg"', 'tilt = "30 deg"\ninclination = "30 deg"')))
 
 
 def test_springs_of_another_model(tmp_path):
     given = read_hip(told(tmp_path, ('contact = "springs"', 'contact = "springs"\nmodel = "vessel"')))
     assert given.use.first.max_pressure > 1.01 * read_hip(told(tmp_path)).use.first.max_pressure
-    with pytest.raises(ValueError, match="the model 'hertz' has no radial springs; those that have: hess-forsbach"):
+    with pytest.raises(ValueError, match="the model 'hertz' has no radial springs; models with springs: hess-forsbach"):
         read_hip(told(tmp_path, ('contact = "springs"', 'model = "hertz"')))
 
 

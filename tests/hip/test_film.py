@@ -54,7 +54,7 @@ def test_the_moment_lies_between_those_of_force_and_pressure():
     use = hip()
     film, size = use.film(Lubricant(friction=0.05)), use.cycle.sizes
     moment = np.linalg.norm(film.moment, axis=1)
-    whole = (use.unworn.pressure @ use.bed.areas) * 0.05 * 14.0
+    whole = (use.unworn.pressure @ use.foundation.areas) * 0.05 * 14.0
     assert (moment < whole).all()
     assert (moment > 0.5 * 0.05 * 14.0 * size).all()
 

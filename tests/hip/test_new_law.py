@@ -58,7 +58,7 @@ from ballsocket.app.views.wear import _fields
 from ballsocket.io.joint_file import JointFile
 settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "power", "creep_exponent": "0.1"})
 assert use_of({name.partition(".")[2]: text for name, text in pairs_of(settings)}) == settings
-screen = Screen(file=JointFile(joint=bs.joints["hip-28"], load={}), use=settings)
+screen = Screen(file=JointFile(joint=bs.joints["hip-28"], load={"force": 1000.0}), use=settings)
 worn = hip_of(screen.file, settings)
 assert (worn.wear.threshold, worn.creep.exponent, worn.creep.factor) == (0.25, 0.1, 1e-3)
 hidden = {name: field.get("hidden", False) for name, field in _fields(screen).items()}

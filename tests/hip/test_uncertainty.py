@@ -28,8 +28,8 @@ from ballsocket.hip import (
     rocking,
     uncertainty,
 )
+from ballsocket.hip.config import read_hip
 from ballsocket.hip.creep_laws import UNVERIFIED_NOTE
-from ballsocket.hip.file import read_hip
 from ballsocket.hip.lives import kept
 from ballsocket.hip.patients import Patient
 from ballsocket.output.hip_bands import band_sections, print_bands

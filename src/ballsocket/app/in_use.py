@@ -10,10 +10,10 @@ from typing import Any
 
 from ..core.checks import check_names, require, shown
 from ..core.kinds import Kind
-from ..hip import Cycle, InUse, named_cycle
+from ..hip import Cycle, HipSimulation, named_cycle
+from ..hip.config import parse_creep, parse_surface
 from ..hip.creep_laws import CREEP_LAWS
 from ..hip.cycle_file import read_cycle
-from ..hip.given_laws import given_creep, given_surface
 from ..hip.in_vivo import IN_VIVO, check_weight
 from ..hip.law_fields import Law, LawField
 from ..hip.named_cycles import CYCLES
@@ -221,20 +221,20 @@ class Own:
             return read_cycle(path, body_weight=body_weight if "%BW" in self.text else None)
 
 
-def hip_of(file: JointFile, use: Use, own: Own | None = None) -> InUse:
+def hip_of(file: JointFile, use: Use, own: Own | None = None) -> HipSimulation:
     """A hip in use: the joint and cup of a file, through a cycle.
 
     Raises
     ------
     ValueError
-        A cycle that pushes the ball over the rim; what `InUse` refuses.
+        A cycle that pushes the ball over the rim; what `HipSimulation` refuses.
     """
     weight = use.body_weight if use.cycle in IN_VIVO else None
-    return InUse(
+    return HipSimulation(
         joint=file.joint,
         cup=file.cup,
         cycle=own.cycle(use.body_weight) if own is not None else named_cycle(use.cycle, body_weight=weight),
         wear=read_wear_law(use.wear_table),
-        surface=given_surface({"contact": use.contact}),
-        creep=given_creep(use.creep_tables, float(file.joint.liner.poisson)),
+        surface=parse_surface({"contact": use.contact}),
+        creep=parse_creep(use.creep_tables, float(file.joint.liner.poisson)),
     )

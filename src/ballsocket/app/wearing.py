@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 
 from ..elasticity.off_axis.grid import Grid
-from ..hip import History, InUse, Scatter, population
+from ..hip import HipSimulation, History, Scatter, population
 from ..hip.in_vivo import IN_VIVO
 from ..io.joint_file import JointFile
 from ..output.hip_plots import penetration_curve
@@ -98,7 +98,7 @@ def worn(files: Sequence[JointFile], use: Use, told: Told) -> list[Worn]:
     return found
 
 
-def _life(hip: InUse, use: Use, reached: Any) -> Worn:
+def _life(hip: HipSimulation, use: Use, reached: Any) -> Worn:
     cycles = 1e6 * use.millions
     looks = [share * cycles / _LOOKS for share in range(1, _LOOKS + 1)]
     history = hip.after(
@@ -114,7 +114,7 @@ def _life(hip: InUse, use: Use, reached: Any) -> Worn:
     return _plain(hip, history, bands)
 
 
-def _plain(hip: InUse, history: History, bands: Any) -> Worn:
+def _plain(hip: HipSimulation, history: History, bands: Any) -> Worn:
     reports = history.reports
     courses = {
         name: numpy.array([0.0, *(getattr(report, name) for report in reports)])

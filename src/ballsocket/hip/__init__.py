@@ -1,4 +1,4 @@
-"""The hip in use: gait, sliding, wear and creep over millions of cycles, film and friction."""
+"""Wear simulation of hip joints: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
 from .creep_law import constrained_share
 from .creep_laws import KelvinVoigtChain, LogarithmicCreep, logarithmic
@@ -10,12 +10,12 @@ from .in_vivo import in_vivo
 from .mix import Activity, Mix
 from .named_cycles import named_cycle
 from .patients import Scatter
+from .simulation import HipSimulation
 from .uncertainty import Bands, population, uncertainty
-from .use import InUse
 from .wear_laws import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 
 AreaLaw, EnergyLaw, OwnLaw = ContactAreaWear, FrictionEnergyWear, CustomWearLaw
-Ladder = KelvinVoigtChain
+InUse, Ladder = HipSimulation, KelvinVoigtChain
 
 __all__ = [
     "Activity",
@@ -30,6 +30,7 @@ __all__ = [
     "Film",
     "Frame",
     "FrictionEnergyWear",
+    "HipSimulation",
     "History",
     "InUse",
     "KelvinVoigtChain",

@@ -12,8 +12,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.storage.npz import read_arrays, write_arrays
+from .hip_setup import HipSetup
 from .history import Report
-from .set_up import SetUp
 
 _VERSION = 5
 _NAME = "hip_in_use.npz"
@@ -77,7 +77,7 @@ def _report(found: Mapping[str, Numbers], prefix: str) -> Report:
     return Report(**values)
 
 
-def checkpoint(use: SetUp, folder: Path) -> Checkpoint:
+def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
     """Where the run of a hip is kept.
 
     Raises
@@ -88,7 +88,9 @@ def checkpoint(use: SetUp, folder: Path) -> Checkpoint:
     for law in (use.wear, use.ball_wear):
         if not getattr(law, "storable", True):
             raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function cannot be identified")
-    cycle = sha256(b"".join(each.tobytes() for each in (use.loads, use.tether, use.turns, use.loaded))).hexdigest()
+    cycle = sha256(
+        b"".join(each.tobytes() for each in (use.loads, use.lateral_stiffness, use.turns, use.loaded))
+    ).hexdigest()
     parts = (
         use.joint,
         use.placed,

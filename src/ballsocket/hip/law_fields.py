@@ -239,8 +239,9 @@ class LawField:
             if not isinstance(number, Real) or isinstance(number, bool):
                 wanted = "a tuple of numbers" if self.listed else "one number"
                 raise TypeError(f"{self.name} must be {wanted}, got {value!r:.60}")
-            inside = (self.low <= number if self.low_included else self.low < number) and number < self.high
-            require(self.name, number, inside, self.allowed)
+            real = float(number)
+            above_low = self.low <= real if self.low_included else self.low < real
+            require(self.name, number, above_low and real < self.high, self.allowed)
 
 
 def law_field(
