@@ -8,7 +8,7 @@ from math import log
 from types import MappingProxyType
 from typing import Any, ClassVar
 
-from ..core.checks import Named, known_name
+from ..core.checks import NamedItems, known_name
 from ..core.deprecation import renamed_names
 from .creep_law import CreepLaw, constrained_share
 from .law_fields import chosen_law, law_field, list_unit, read_law
@@ -125,7 +125,7 @@ _CREEP_LAWS: tuple[type[CreepLaw], ...] = (
     KelvinVoigtChain,
 )
 
-CREEP_LAWS: Mapping[str, type[CreepLaw]] = Named("creep law", {law.name: law for law in _CREEP_LAWS})
+CREEP_LAWS: Mapping[str, type[CreepLaw]] = NamedItems("creep law", {law.name: law for law in _CREEP_LAWS})
 """Registry of the creep laws by their names in files; the first one is the default."""
 
 _CONFINEMENTS: Mapping[str, Callable[[float], float]] = MappingProxyType(

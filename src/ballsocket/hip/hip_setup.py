@@ -263,8 +263,8 @@ class HipSetup(CupFrame):
 
     def exposure(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> CycleExposure:
         """Collect pressures and slides of the socket's points for these contacts, on a bore worn by a depth in mm."""
-        shares = partial(self.foundation.contact_shares, equilibrium, self._depth_field(depth))
-        return CycleExposure(pressure=equilibrium.pressure, sliding=self.sliding, contact_shares=shares)
+        contact_shares = partial(self.foundation.contact_shares, equilibrium, self._depth_field(depth))
+        return CycleExposure(pressure=equilibrium.pressure, sliding=self.sliding, contact_shares=contact_shares)
 
     @cached_property
     def unworn(self) -> CycleEquilibrium:

@@ -379,13 +379,13 @@ def _owners(key: str, laws: Mapping[str, type[AnyLaw]]) -> str:
     return f"the law {names[0]}" if len(names) == 1 else f"the laws {', '.join(names)}"
 
 
-def chosen_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], what: str) -> type[AnyLaw]:
+def chosen_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:
     """Return the law that a table names; else the first law with a key in the table that no other law has.
 
     Without such a key the first law of the registry is the default.
     """
     if "law" in table:
-        return laws[known_name(what, table["law"], laws)]
+        return laws[known_name(noun, table["law"], laws)]
     return next(_laws_by_key(table, laws), next(iter(laws.values())))
 
 

@@ -175,8 +175,8 @@ class SpringFoundation:
         The margin is relative to the largest overlap.
         """
         overlap = (equilibrium.displacement @ self.normals).max(axis=0, initial=0.0) - self.clearance - depth
-        near: Numbers = overlap > -margin * float(overlap.max())
-        return near
+        mask: Numbers = overlap > -margin * float(overlap.max())
+        return mask
 
     def smoothed(self, depth: Numbers) -> Numbers:
         """Return the depth unchanged: springs resolve every wave of the grid."""

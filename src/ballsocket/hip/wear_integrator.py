@@ -123,8 +123,8 @@ class WearIntegrator:
 
     def _update_active_cells(self) -> None:
         """Select the cells near the contacts, and compute their wear per cycle."""
-        near = self.setup.foundation.cells_near_contact(self.equilibrium, self.depth + self.creep_depth, self.margin)
-        cells = numpy.flatnonzero(near)
+        mask = self.setup.foundation.cells_near_contact(self.equilibrium, self.depth + self.creep_depth, self.margin)
+        cells = numpy.flatnonzero(mask)
         self._active = select_active_cells(self.setup, cells)
         self._active_creep = self.creep_depth[cells]
         self._rate = self._compute_rate(self._values)
@@ -146,8 +146,10 @@ class WearIntegrator:
         )
         self.equilibrium = equilibrium
         self.converged = self.converged and equilibrium.converged
-        shares = partial(active.foundation.contact_shares, equilibrium, depth)
-        self._exposure = CycleExposure(pressure=equilibrium.pressure, sliding=active.sliding, contact_shares=shares)
+        contact_shares = partial(active.foundation.contact_shares, equilibrium, depth)
+        self._exposure = CycleExposure(
+            pressure=equilibrium.pressure, sliding=active.sliding, contact_shares=contact_shares
+        )
         worn = active.foundation.smoothed(self.setup.wear.depth(self._exposure))
         work = float(self._exposure.work @ active.foundation.areas)
         return numpy.concatenate([worn, self._ball_rate, [work]])
@@ -259,17 +261,17 @@ class WearIntegrator:
         depth = self.creep_depth
         depth += self.depth
         depth[self._active.cells] = block.values[: len(self._active.cells)] + self._active_creep
-        near = self.setup.foundation.cells_near_contact(self.equilibrium, depth, 0.0)
-        near[self._active.cells] = False
-        return bool(near.any())
+        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, 0.0)
+        mask[self._active.cells] = False
+        return bool(mask.any())
 
     @property
     def _contact_spreads(self) -> bool:
         """True if the contact comes near to inactive cells."""
         depth = self.depth + self.creep_depth
-        near = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)
-        near[self._active.cells] = False
-        return bool(near.any())
+        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)
+        mask[self._active.cells] = False
+        return bool(mask.any())
 
 
 _STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import Named, require
+from ..core.checks import NamedItems, require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from .law_fields import (
     NUMBER,
@@ -186,7 +186,7 @@ _WEAR_LAWS: tuple[type[WearLaw], ...] = (
     CrossShear,
 )
 
-WEAR_LAWS: Mapping[str, type[WearLaw]] = Named("wear law", {law.name: law for law in _WEAR_LAWS})
+WEAR_LAWS: Mapping[str, type[WearLaw]] = NamedItems("wear law", {law.name: law for law in _WEAR_LAWS})
 """Registry of the wear laws by their names in files; the first one is the default."""
 
 BALL_COEFFICIENT = "ball_coefficient"
