@@ -10,8 +10,8 @@ from time import process_time
 
 import numpy
 
-from ballsocket.hip import InUse, Scatter, logarithmic, population
-from ballsocket.hip.file import read_hip
+from ballsocket.hip import HipSimulation, Scatter, logarithmic, population
+from ballsocket.hip.config import read_hip
 from ballsocket.hip.lives import drawn
 from ballsocket.hip.patients import ANSWERS, Patient, answers_of
 
@@ -59,5 +59,5 @@ def _off(scatter: Scatter) -> dict[str, numpy.ndarray]:
 
 def _whole(scatter: Scatter, quick: Patient, values: dict[str, float]) -> Patient:
     heavier = values["body_weight"] / float(scatter.distributions["body_weight"].frozen.median())
-    use: InUse = replace(quick.use, ring_width=radians(3.0), cycle=scatter.use.cycle.scaled(heavier))
+    use: HipSimulation = replace(quick.use, ring_width=radians(3.0), cycle=scatter.use.cycle.scaled(heavier))
     return replace(quick, use=use)

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from ballsocket.cli.root import app
-from ballsocket.hip import Activity, Archard, Mix, OwnLaw, logarithmic
+from ballsocket.hip import Activity, Archard, CustomWearLaw, Mix, logarithmic
 from ballsocket.output.hip_report import write_hip_report
 
 from ..cli.command import run
@@ -37,9 +37,9 @@ def test_a_run_that_is_killed_goes_on_and_ends_the_same(tmp_path, creep):
     use, at = hip(creep=creep), [1e5, 3e5]
     whole = use.after(4e5, at)
     with pytest.raises(KilledError):
-        use.after(4e5, at, listen=killed_after(6), store=tmp_path)
+        use.after(4e5, at, progress=killed_after(6), store=tmp_path)
     seen = []
-    again = use.after(4e5, at, listen=seen.append, store=tmp_path)
+    again = use.after(4e5, at, progress=seen.append, store=tmp_path)
     assert len(seen) == whole.steps - 6  # no block is lost
     assert again.steps == whole.steps
     for one, other in zip(whole.reports, again.reports, strict=True):
@@ -54,12 +54,12 @@ def test_what_is_done_is_not_done_again_and_more_is_added(tmp_path):
     use = hip()
     first = use.after(2e5, store=tmp_path)
     seen = []
-    assert use.after(2e5, listen=seen.append, store=tmp_path).last.volume == first.last.volume
+    assert use.after(2e5, progress=seen.append, store=tmp_path).last.volume == first.last.volume
     assert not seen
     longer = use.after(4e5, [2e5], store=tmp_path)
     assert longer.reports[0].volume == first.last.volume
     assert longer.last.volume == pytest.approx(use.after(4e5).last.volume, rel=1e-3)
-    with pytest.raises(ValueError, match="the store is 400000 cycles on and has not seen 100000"):
+    with pytest.raises(ValueError, match="the store has reached 400000 cycles without a report at 100000"):
         use.after(4e5, [1e5], store=tmp_path)
 
 
@@ -73,8 +73,8 @@ def test_another_run_and_what_is_none_are_refused(tmp_path):
 
 
 def test_a_law_of_ones_own_is_not_kept(tmp_path):
-    with pytest.raises(ValueError, match="a law of one's own cannot be kept"):
-        hip(wear=OwnLaw(of=lambda cycle: 1e-9 * cycle.work)).after(1e4, store=tmp_path)
+    with pytest.raises(ValueError, match="runs with a CustomWearLaw cannot be stored"):
+        hip(wear=CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)).after(1e4, store=tmp_path)
 
 
 def test_the_page_of_a_run(tmp_path):

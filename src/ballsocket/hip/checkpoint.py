@@ -12,11 +12,10 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.storage.npz import read_arrays, write_arrays
+from .hip_setup import HipSetup
 from .history import Report
-from .laws import OwnLaw
-from .set_up import SetUp
 
-_VERSION = 5
+_VERSION = 6
 _NAME = "hip_in_use.npz"
 
 
@@ -78,17 +77,20 @@ def _report(found: Mapping[str, Numbers], prefix: str) -> Report:
     return Report(**values)
 
 
-def checkpoint(use: SetUp, folder: Path) -> Checkpoint:
+def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
     """Where the run of a hip is kept.
 
     Raises
     ------
     ValueError
-        A law of one's own, of which nothing tells whether it is still the same.
+        A wear law by a function, which cannot be identified.
     """
-    if isinstance(use.wear, OwnLaw) or isinstance(use.ball_wear, OwnLaw):
-        raise ValueError("a run with a law of one's own cannot be kept: nothing tells whether it is still the same")
-    cycle = sha256(b"".join(each.tobytes() for each in (use.loads, use.tether, use.turns, use.loaded))).hexdigest()
+    for law in (use.wear, use.ball_wear):
+        if not getattr(law, "storable", True):
+            raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function cannot be identified")
+    cycle = sha256(
+        b"".join(each.tobytes() for each in (use.loads, use.lateral_stiffness, use.turns, use.loaded))
+    ).hexdigest()
     parts = (
         use.joint,
         use.placed,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, radians
 from typing import Any
@@ -14,14 +14,13 @@ from ..core.arrays import Numbers
 from ..core.checks import check_names, require
 from ..elasticity.off_axis.surfaces import Springs
 from ..studies.distributions import Distribution
-from .blocks import Run
 from .contact_checks import utilisation_and_validity
 from .cycle import Cycle
 from .history import Report
-from .laws import CrossShear, Law
-from .looks import check_meant, report_of
 from .mix import Mix
-from .use import InUse
+from .simulation import HipSimulation, check_total_wear, make_report
+from .wear_integrator import WearIntegrator
+from .wear_law import with_coefficient
 
 SCATTERS = ("coefficient", "clearance", "inclination", "anteversion", "tilt", "body_weight", "cycles_per_year")
 """What may differ between patients: mm³/(N m), mm, rad, rad, rad, N, and a number."""
@@ -48,7 +47,7 @@ class Scatter:
 
     Parameters
     ----------
-    use : InUse
+    use : HipSimulation
         The usual patient's. Contact of the others is on radial springs, of rings of 8° and 32 instants a cycle.
     distributions : mapping of str to Rectangular, Normal or LogNormal
         By name of `SCATTERS`. Forces grow with `body_weight`, cycles in a time with `cycles_per_year`; `coefficient` is
@@ -64,17 +63,17 @@ class Scatter:
     Examples
     --------
     >>> import ballsocket as bs
-    >>> from ballsocket.hip import Archard, InUse, Scatter, iso_14242_1
+    >>> from ballsocket.hip import Archard, HipSimulation, Scatter, iso_14242_1
     >>> from ballsocket.studies import LogNormal
     >>> joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
-    >>> use = InUse(joint=joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6))
+    >>> use = HipSimulation(joint=joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6))
     >>> scatter = Scatter(use=use, distributions={"coefficient": LogNormal(median=1e-6, factor=1.5)})
     >>> seen = scatter.patient({"coefficient": 2e-6}).seen([1e6])
     >>> round(seen[0].volume / scatter.patient({}).seen([1e6])[0].volume, 1)
     2.1
     """
 
-    use: InUse
+    use: HipSimulation
     distributions: Mapping[str, Distribution]
     body_weight: float | None = None
 
@@ -87,7 +86,7 @@ class Scatter:
                 if name in self.distributions:
                     raise ValueError(f"tilt and {name} are one too many: either says where the cup faces")
         if "coefficient" in self.distributions:
-            _with_coefficient(self.use.wear, 0.0)
+            with_coefficient(self.use.wear, 0.0)
         for name in ("body_weight", "cycles_per_year"):
             if name in self.distributions:
                 middle = float(self.distributions[name].frozen.median())
@@ -104,7 +103,7 @@ class Scatter:
         return cycle.per_year if isinstance(cycle, Mix) else self._medians.get("cycles_per_year")
 
     @cached_property
-    def quick(self) -> InUse:
+    def quick(self) -> HipSimulation:
         """The usual patient's as those of the others are: springs, wide rings and few instants."""
         use = self.use
         return replace(
@@ -131,7 +130,7 @@ class Scatter:
         wear = use.wear
         if "coefficient" in values:
             require("coefficient", values["coefficient"], values["coefficient"] >= 0, "it is at least 0")
-            wear = _with_coefficient(wear, values["coefficient"])
+            wear = with_coefficient(wear, values["coefficient"])
         seconds = use.seconds_per_cycle
         return Patient(
             use=replace(
@@ -160,12 +159,12 @@ class Patient:
 
     Attributes
     ----------
-    use : InUse
+    use : HipSimulation
     pace : float
         Cycles in a time, over those of the usual patient.
     """
 
-    use: InUse
+    use: HipSimulation
     pace: float
 
     def seen(self, counts: Sequence[float]) -> tuple[Report, ...]:
@@ -176,10 +175,10 @@ class Patient:
         ValueError
             A contact that did not balance its load; a liner that would be worn through many times over.
         """
-        check_meant(self.use, self.pace * counts[-1])
-        run = Run(use=self.use)
-        found = tuple(report_of(run.until(self.pace * count, lambda done: None)) for count in counts)
-        if not all(report.settled for report in found):
+        check_total_wear(self.use, self.pace * counts[-1])
+        run = WearIntegrator(setup=self.use)
+        found = tuple(make_report(run.run_until(self.pace * count, lambda done: None)) for count in counts)
+        if not all(report.converged for report in found):
             raise ValueError(_UNSETTLED)
         return found
 
@@ -189,7 +188,7 @@ def answers_of(reports: Sequence[Report]) -> Numbers:
     return numpy.array([[_answer(report, name) for name in ANSWERS] for report in reports])
 
 
-def contact_over(use: InUse, reports: Sequence[Report]) -> Numbers:
+def contact_over(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
     """Compute utilisation and validity of the contact, unworn and at each report."""
     return utilisation_and_validity(
         use.contact_model, use.joint, [use.unworn_worst, *(report.worst_contacts for report in reports)]
@@ -199,18 +198,6 @@ def contact_over(use: InUse, reports: Sequence[Report]) -> Numbers:
 def _answer(report: Report, name: str) -> float:
     value = getattr(report, name)
     return float(value.min(initial=inf)) if name == "edge_distance" else float(value)
-
-
-def _with_coefficient(wear: Law, value: float) -> Law:
-    """A law with another coefficient; where it has two, that on a straight track, and the other in its ratio."""
-    law: Any = wear
-    if isinstance(law, CrossShear):
-        require("coefficient", law.straight, law.straight > 0, "one that scatters is positive, on a straight track too")
-        return replace(law, straight=value, circular=law.circular * (value / law.straight))
-    if not any(each.name == "coefficient" for each in fields(law)):
-        raise ValueError("coefficient cannot scatter: the law of wear has none")
-    scaled: Law = replace(law, coefficient=value)
-    return scaled
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,11 +13,11 @@ from ..io.toml import table_of
 from ..io.units import parse
 from ..studies.distributions import check_nominal
 from ..studies.scatter import Read, distribution_of
-from .coefficients import share_of_slide, wear_factor, wear_per_energy
-from .laws import AreaLaw, EnergyLaw
+from .law_fields import wear_factor
 from .patients import SCATTERS, Scatter
+from .simulation import HipSimulation
 from .uncertainty import COUNT
-from .use import InUse
+from .wear_law import coefficient_field
 
 KEYS = ("count", "seed", *SCATTERS)
 _KINDS: Mapping[str, Kind] = MappingProxyType(
@@ -40,7 +40,7 @@ class Uncertain:
     seed: int
 
 
-def uncertain(content: Mapping[str, Any], use: InUse) -> Uncertain:
+def uncertain(content: Mapping[str, Any], use: HipSimulation) -> Uncertain:
     """What the table [uncertainty] of a file says.
 
     Parameters
@@ -48,7 +48,7 @@ def uncertain(content: Mapping[str, Any], use: InUse) -> Uncertain:
     content : mapping
         Of the whole file. The table has by name of `SCATTERS` a distribution, as in study files; `count`, a power of
         two, and `seed`.
-    use : InUse
+    use : HipSimulation
         The usual patient's.
 
     Raises
@@ -69,13 +69,11 @@ def uncertain(content: Mapping[str, Any], use: InUse) -> Uncertain:
     return Uncertain(scatter=scatter, count=count, seed=seed)
 
 
-def _nominal(use: InUse) -> dict[str, float]:
+def _nominal(use: HipSimulation) -> dict[str, float]:
     """Return the nominal values of the quantities that may differ between patients."""
-    wear: Any = use.wear
-    coefficient = getattr(wear, "straight", getattr(wear, "coefficient", None))
-    cup = use.placed
+    coefficient, cup = coefficient_field(use.wear), use.placed
     values = {"clearance": use.joint.clearance, "inclination": cup.inclination, "anteversion": cup.anteversion}
-    known = values if coefficient is None else {**values, "coefficient": coefficient}
+    known = values if coefficient is None else {**values, "coefficient": getattr(use.wear, coefficient.name)}
     return {name: float(value) for name, value in known.items()}
 
 
@@ -88,11 +86,11 @@ def _weight(content: Mapping[str, Any]) -> float | None:
     return given.pop() if given else None
 
 
-def _read(name: str, use: InUse) -> Read:
+def _read(name: str, use: HipSimulation) -> Read:
     if name != "coefficient":
         return lambda key, value: parse(key, value, _KINDS[name])
-    readers: dict[type, Read] = {AreaLaw: share_of_slide, EnergyLaw: wear_per_energy}
-    return readers.get(type(use.wear), wear_factor)
+    coefficient = coefficient_field(use.wear)
+    return wear_factor if coefficient is None else coefficient.unit.read
 
 
 def _whole(name: str, value: Any) -> int:

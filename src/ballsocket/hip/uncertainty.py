@@ -18,9 +18,9 @@ from ..studies.sobol import sobol
 from .coefficient_response import COEFFICIENT, CONVERTED, SharedCoefficient, share_coefficient
 from .contact_checks import list_notes
 from .history import History, Report
-from .laws import AreaLaw
 from .lives import Kept, Listener, Lived, Lives, drawn, joined, summary_of
 from .patients import ANSWERS, Patient, Scatter, answers_of
+from .wear_law import coefficient_field
 
 LEVEL = 0.95
 COUNT = 64
@@ -136,8 +136,9 @@ class Bands:
             return ()
         rest = (1 - self.level) / 2
         low, high = self.scatter.distributions[COEFFICIENT].frozen.ppf([rest, 1 - rest])
-        unit = "" if isinstance(self.scatter.use.wear, AreaLaw) else " mm³/(N m)"
-        band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g}{unit}"
+        coefficient = coefficient_field(self.scatter.use.wear)
+        unit = "" if coefficient is None else coefficient.unit.text
+        band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
         return (f"the wear coefficient is unknown, but the same for all patients: {band}",)
 
     @property
