@@ -5,8 +5,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.identify import HeavyTailed, Machine, Measured
-from ballsocket.identify.experiment import usual
-from ballsocket.identify.sensitivity import SIZES
+from ballsocket.identify.experiment import standard_candidates
+from ballsocket.identify import MACHINE_ERRORS
 from ballsocket.studies import Normal
 
 from ..extent import some
@@ -48,8 +48,8 @@ def test_half_angles_and_pressures_identify_the_product_wherever_the_best_point_
     fit = identified(*angles_and_pressures(seed), free=free)
     assert fit.information.unidentifiable == ("clearance", "liner_young")
     assert fit.information.rank == 1
-    assert not fit.told
-    assert fit.information.untold == fit.information.unidentifiable
+    assert not fit.identifiable
+    assert fit.information.unidentifiable == fit.information.unidentifiable
     (product,) = fit.information.products
     assert product.exponents == {"clearance": 1.0, "liner_young": 1.0}
     assert product.low < 93.6 < product.high
@@ -125,18 +125,18 @@ def test_the_factor_on_the_uncertainties_is_birges_ratio():
 ERRORS = {"offset": 1.0, "compliance": PRESS, "drift": np.arange(12.0)}
 
 
-@pytest.mark.parametrize("part", SIZES)
+@pytest.mark.parametrize("part", MACHINE_ERRORS)
 def test_the_sensitivity_is_the_shift_by_an_error_of_the_machine(part):
     fit = identified(indentations(), *angles_and_pressures(3))
     (error,) = (error for error in fit.sensitivity if error.part == part)
     share = 0.02
-    moved = identified(indentations(DEPTH + share * SIZES[part] * ERRORS[part]), *angles_and_pressures(3))
+    moved = identified(indentations(DEPTH + share * MACHINE_ERRORS[part].assumed * ERRORS[part]), *angles_and_pressures(3))
     for name in VALUES:
         shift = moved[name].value - fit[name].value
         assert shift == pytest.approx(share * error.shifts[name], rel=0.05)
 
 
-@pytest.mark.parametrize("part", SIZES)
+@pytest.mark.parametrize("part", MACHINE_ERRORS)
 def test_an_error_of_the_machine_that_moves_a_result_beyond_its_band_is_reported(part):
     (note,) = (note for note in identified(indentations()).notes if f"make {part} an unknown" in note)
     assert "times half its band" in note
@@ -167,7 +167,7 @@ def test_drift_is_an_unknown_of_the_machine(order):
     assert fit["machine.drift"].value == pytest.approx(2e-4, rel=0.1)
     for name, value in VALUES.items():
         assert fit[name].low < value < fit[name].high
-    following = next(candidate for candidate in usual(fit) if candidate.quantity == "indentation")
+    following = next(candidate for candidate in standard_candidates(fit) if candidate.quantity == "indentation")
     assert following.order == 12.0
 
 

@@ -157,7 +157,7 @@ def test_a_mass_that_swings_tells_the_stiffness(question):
     frequency = (1e3 * CONTACT.stiffness[4] / 2.0) ** 0.5 / (2 * np.pi)
     question.write_text(question.read_text("utf-8") + SWING.format(frequency=frequency), "utf-8")
     given = read_identify(question)
-    assert given.data[2].own.described.unit == "Hz"
+    assert given.data[2].observable.described.unit == "Hz"
     truth = {"clearance": HIP.clearance, "liner_young": HIP.liner.young, "frame.compliance": 5e-6}
     assert given.identified().point == pytest.approx(truth, rel=2e-3)
 

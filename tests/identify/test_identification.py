@@ -7,7 +7,7 @@ import ballsocket as bs
 from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
 from ballsocket.identify.experiment import Candidate, experiment
 from ballsocket.identify.synthetic import drawn, trials
-from ballsocket.identify.tracing import by_tracing
+from ballsocket.identify.jax_derivatives import by_tracing
 from ballsocket.output.identify_plots import fit_figure
 from ballsocket.studies import LogNormal, Normal
 
@@ -47,7 +47,7 @@ def identified(*data, free=FREE, model=MODEL, **words):
 def test_data_without_error_give_the_truth(data):
     found = identified(*data)
     assert found.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
-    assert found.told
+    assert found.identifiable
     assert found.spread == pytest.approx(0.0, abs=1e-4)
     assert found.joint.clearance == pytest.approx(0.1, rel=1e-5)
 
@@ -98,7 +98,7 @@ def test_areas_and_pressures_tell_the_product_alone(quantities):
     found = identified(*data, free={"clearance": (0.05, 0.2), "liner.young": (400.0, 2000.0)})
     assert found.information.rank == 1
     assert found.information.condition > 1e3
-    assert not found.told
+    assert not found.identifiable
     assert np.isnan(found["clearance"].value)
     assert np.isnan(found["liner.young"].value)
     (product,) = found.information.products
@@ -122,22 +122,22 @@ def test_the_next_measurement_tells_as_much_as_it_was_expected_to():
         - np.linalg.slogdet(found.information.matrix + np.eye(2))[1]
     )
     assert gain.bits == pytest.approx(grown / np.log(4.0), rel=0.1)
-    assert more.told
-    assert gain.settles == ("clearance", "liner_young")
-    assert "area" not in found.next.settling
+    assert more.identifiable
+    assert gain.identifies == ("clearance", "liner_young")
+    assert "area" not in found.next.sufficient_quantities
 
 
 def test_a_candidate_that_tells_nothing_new_gains_nothing():
     found = identified(measured("indentation", share=1e-4))
     (gain,) = experiment(found, [Candidate("max_pressure", 1e6, 1000.0)]).gains
     assert gain.bits < 1e-6
-    assert gain.left["clearance"] == pytest.approx(1.0, abs=1e-6)
+    assert gain.uncertainty_ratio["clearance"] == pytest.approx(1.0, abs=1e-6)
 
 
 def test_what_was_known_before_counts():
     known = {"clearance": Normal(mean=0.1, deviation=0.01), "liner.young": (400.0, 2000.0)}
     found = identified(measured("area"), free=known)
-    assert found.told
+    assert found.identifiable
     assert found["clearance"].value == pytest.approx(0.1, abs=1e-3)
     assert found["clearance"].high - found["clearance"].low == pytest.approx(2 * 1.96 * 0.01, rel=0.02)
     assert found["liner.young"].value == pytest.approx(1000.0, rel=0.01)
@@ -259,7 +259,7 @@ def test_what_is_no_question_is_refused(model, joint, data, said):
 def test_a_liner_whose_two_elastic_numbers_are_free_is_not_told_by_a_press():
     """Poisson's ratio and the modulus make one stiffness: each value of the one has its own of the other."""
     found = identified(measured("indentation"), free={**FREE, "liner.poisson": (0.3, 0.48)})
-    assert found.information.untold == ("liner_young", "liner_poisson")
+    assert found.information.unidentifiable == ("liner_young", "liner_poisson")
     assert found.information.rank == 2
     assert found.notes[0].startswith(
         "liner_young and liner_poisson are not identifiable from these data; of the usual measurements "
@@ -295,7 +295,7 @@ def test_ones_own_quantity_is_read_from_contacts():
     """The frequency of a small vibration about a load tells the stiffness there."""
     own = oscillation(mass=1.0)
     swings = own.read(TRUTH)
-    vibrations = Measured(quantity="frequency", own=own, values=swings, uncertainty=1.0, force=FORCE)
+    vibrations = Measured(quantity="frequency", observable=own, values=swings, uncertainty=1.0, force=FORCE)
     found = identified(vibrations, measured("area"))
     assert found.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
     assert drawn(found, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
