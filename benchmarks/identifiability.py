@@ -160,7 +160,7 @@ def _coverage(case: Case) -> list[str]:
 
 
 def _is_remark(note: str) -> bool:
-    words = ("uncertainties from the answer", "data scatter", "half its band", "as wide as the stated", "identifiable")
+    words = ("uncertainties from the result", "data scatter", "half its band", "as wide as the stated", "identifiable")
     return any(word in note for word in words)
 
 

@@ -74,5 +74,5 @@ def test_one_sentence_for_what_is_wrong(folder):
     done = run("identify", "area.toml", folder=folder)
     assert done.returncode == 2
     assert (
-        done.stderr == "ballsocket: area.toml: area.csv: column 'force' has no unit: write force_N, or another unit\n"
+        done.stderr == "ballsocket: area.toml: area.csv: column 'force' has no unit: use force_N, or another unit\n"
     )

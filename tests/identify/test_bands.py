@@ -179,7 +179,7 @@ def test_a_known_drift_is_taken_off_indentations_that_are_the_load():
 
 
 def test_the_order_of_readings_is_checked():
-    with pytest.raises(ValueError, match="order has 3 numbers beside 12 values"):
+    with pytest.raises(ValueError, match="order must have 1 or 12 numbers, got 3"):
         indentations(order=[1, 2, 3])
 
 

@@ -56,21 +56,21 @@ def test_a_file_holds_several_quantities(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("force,indentation_um\n1,2\n", "press.csv: column 'force' has no unit: write force_N, or another unit"),
+        ("force,indentation_um\n1,2\n", "press.csv: column 'force' has no unit: use force_N, or another unit"),
         ("force_N,indentation_N\n1,2\n", "press.csv: the unit of indentation_N = '1 N' is not a length"),
-        ("force_N,depth_mm\n1,2\n", "press.csv: column 'depth_mm' is not known: heads are names and units"),
-        ("force_N,force_kN\n1,2\n", "press.csv has two columns of one name"),
-        ("force_N\n1\n", "press.csv has no column of something measured beside force"),
+        ("force_N,depth_mm\n1,2\n", "press.csv: column 'depth_mm' is not known: a head is a name and a unit"),
+        ("force_N,force_kN\n1,2\n", "press.csv has two columns with the same name"),
+        ("force_N\n1\n", "press.csv has no column of a measured quantity besides force"),
         (
             "force_N,indentation_um\n100,2\n200,\nx,4\n",
-            "press.csv: no number for force, indentation in row 2, 3; give it",
+            "press.csv: no number for force, indentation in row 2, 3; add it, or omit such rows",
         ),
         ("force_N,indentation_um\n", "press.csv has no row"),
         (
             "force_N,indentation_um,indentation_uncertainty_um\n9,2,-1\n",
             r"press.csv: indentation_uncertainty\[0\] = -0.001",
         ),
-        ("force_N,indentation_um\n0,2\n9,3\n", r"press.csv: force\[0\] = 0 is not allowed: at first touch there is no"),
+        ("force_N,indentation_um\n0,2\n9,3\n", r"press.csv: force\[0\] = 0 is not allowed: at first touch the indentation is 0"),
     ],
 )
 def test_files_that_do_not_say_what_they_hold_are_refused(text, said, tmp_path):
@@ -79,7 +79,7 @@ def test_files_that_do_not_say_what_they_hold_are_refused(text, said, tmp_path):
 
 
 def test_a_file_needs_an_uncertainty(tmp_path):
-    with pytest.raises(ValueError, match="press.csv: how uncertain is indentation"):
+    with pytest.raises(ValueError, match="press.csv: the uncertainty of indentation is missing"):
         read_measured(csv(tmp_path, "force_N,indentation_um\n100,2\n"))
 
 
@@ -181,7 +181,7 @@ def test_a_mass_that_swings_tells_the_stiffness(question):
             'uncertainty = "1 %"\nmass = "2 kg"',
             "of a frequency needs its mass",
         ),
-        ('file = "press.csv"', "", "data.toml: [[data]] needs a file, or a quantity with its values, and not both"),
+        ('file = "press.csv"', "", "data.toml: [[data]] needs either a file, or a quantity with its values"),
         ('model = "tabulated"', 'scatter = "cauchy"', "data.toml: scatter 'cauchy' is not known; known: normal"),
     ],
 )

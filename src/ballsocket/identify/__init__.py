@@ -3,9 +3,9 @@
 `ballsocket.identify` itself is the function that fits measurements; this package has its data and results.
 """
 
-from .fit import Estimate
+from .estimates import Estimate, Product
 from .identification import identify
-from .information import Information, Product
+from .information import Information
 from .machine import Machine
 from .machine_errors import MachineError
 from .measured import MEASURED, Measured

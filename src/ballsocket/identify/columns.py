@@ -97,7 +97,7 @@ def read_measured(
     ----------
     path : str or Path
     quantities : sequence of str
-        Measured columns; by default all that are no load.
+        Measured columns; by default all columns except loads.
     load : str
         Column of the load; by default the force if there is one.
     uncertainty : float or str

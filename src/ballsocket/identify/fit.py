@@ -14,58 +14,12 @@ from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..problem import Joint
 from ..studies.parameters import varied
+from .estimates import Estimate
 from .forward_model import insert_numbers, split_numbers
 from .information import Information
 from .measured import Measured
 from .misfit import FitResult, Misfit
 from .unknowns import ParameterTransform, Unknown
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """Estimate of one unknown with its band.
-
-    Attributes
-    ----------
-    name, unit : str
-    value : float
-        NaN for an unidentifiable unknown without a stated distribution.
-    low, high : float
-        Band of 95 % from the profile likelihood within the ranges of all unknowns.
-    width_ratio : float
-        Width of the band over the prior range.
-    limited_by : tuple of str
-        Unknowns whose ranges limit the band, its own name included. Empty where the data alone limit it.
-    """
-
-    name: str
-    unit: str
-    value: float
-    low: float
-    high: float
-    width_ratio: float
-    limited_by: tuple[str, ...] = ()
-    left = RenamedAttribute("width_ratio")
-    told = RenamedAttribute("identifiable")
-
-    @property
-    def identifiable(self) -> bool:
-        """True for an identifiable unknown, or one with a stated distribution."""
-        return self.value == self.value
-
-    def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON; an unidentifiable value is None."""
-        value = self.value if self.identifiable else None
-        return {
-            "name": self.name,
-            "unit": self.unit,
-            "value": value,
-            "low": self.low,
-            "high": self.high,
-            "identifiable": self.identifiable,
-            "told": self.identifiable,
-            "limited_by": list(self.limited_by),
-        }
 
 
 @dataclass(frozen=True, eq=False, repr=False)

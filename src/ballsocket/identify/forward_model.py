@@ -71,13 +71,13 @@ class ForwardModel:
         columns = {name: values[:, index : index + 1] for index, name in enumerate(self.names)}
         of_joint, of_model = split_numbers(columns)
         joint, possible = varied(self.joint, of_joint)
-        pressed = _Pressed(insert_numbers(self.model, of_model), joint, self._known_errors | columns)
+        pressed = _PressedPoints(insert_numbers(self.model, of_model), joint, self._known_errors | columns)
         rows = self._rows(pressed, 1 + load_perturbation)
         xp = arrays.namespace(values)
         rows = [xp.broadcast_to(xp.asarray(row), (len(values), row.shape[-1])) for row in rows]
         return arrays.where(possible, xp.concat(rows, axis=1), float("nan"))
 
-    def _rows(self, pressed: _Pressed, factor: float) -> list[Array]:
+    def _rows(self, pressed: _PressedPoints, factor: float) -> list[Array]:
         """Compute the results of each data set; sets with the same kind of load share one press."""
         rows: dict[int, Array] = {}
         for kind in dict.fromkeys(measured.load for measured in self.data):
@@ -92,7 +92,9 @@ class ForwardModel:
                 rows[index] = pressed.at_read_indentation(self.data[index], factor)
         return [rows[index] for index in range(len(self.data))]
 
-    def _rows_of_one_press(self, pressed: _Pressed, kind: str, indices: list[int], factor: float) -> dict[int, Array]:
+    def _rows_of_one_press(
+        self, pressed: _PressedPoints, kind: str, indices: list[int], factor: float
+    ) -> dict[int, Array]:
         loads = factor * numpy.concatenate([self.data[index].loads for index in indices])
         contact, rows, start = pressed.press(kind, loads), {}, 0
         for index in indices:
@@ -104,7 +106,7 @@ class ForwardModel:
 
 
 @dataclass(frozen=True, eq=False)
-class _Pressed:
+class _PressedPoints:
     """Joints, model and errors of machines at many values of the unknowns."""
 
     model: Model

@@ -153,5 +153,5 @@ def _check(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) 
 
 __getattr__ = renamed_names(
     __name__,
-    {"Identified": "IdentificationResult", "Estimate": "ballsocket.identify.fit.Estimate"},
+    {"Identified": "IdentificationResult", "Estimate": "ballsocket.identify.estimates.Estimate"},
 )

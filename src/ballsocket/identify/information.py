@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import exp, inf, log, sqrt
-from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_names
+from .estimates import Product
 from .unknowns import ParameterTransform, Unknown
 
 MAX_WIDTH_RATIO = 0.5
@@ -47,42 +47,6 @@ class ProfileEnd:
     theta: Numbers
     closed: bool
     limited_by: tuple[int, ...]
-
-
-@dataclass(frozen=True)
-class Product:
-    """An identifiable product of powers of unknowns that are not identifiable separately.
-
-    Attributes
-    ----------
-    exponents : dict of str to float
-        Power of each unknown.
-    unit : str
-    value, low, high : float
-        Value of the product, and its band of 95 %.
-    """
-
-    exponents: dict[str, float]
-    unit: str
-    value: float
-    low: float
-    high: float
-
-    @property
-    def name(self) -> str:
-        """Name of the product, "clearance · liner_young"."""
-        return " · ".join(name if power == 1 else f"{name}^{power:.3g}" for name, power in self.exponents.items())
-
-    def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
-        return {
-            "name": self.name,
-            "exponents": self.exponents,
-            "unit": self.unit,
-            "value": self.value,
-            "low": self.low,
-            "high": self.high,
-        }
 
 
 @dataclass(frozen=True, eq=False)

@@ -145,12 +145,7 @@ class Measured:
         if self.observable is not None:
             return
         if not self.described.allowed:
-            require(
-                self._label(self.quantity),
-                values,
-                (values >= 0) & (values < inf),
-                _NOT_NEGATIVE,
-            )
+            require(self._label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
         elif self.machine is IDEAL_MACHINE:  # a machine with an offset may read less than 0
             allowed = self.described.allows(values)
             require(self._label(self.quantity), values, allowed, self.described.allowed)
@@ -174,12 +169,7 @@ class Measured:
         self._set("load", kind)
         self._set(kind, row)
         sigma = self._broadcast("load_uncertainty", self.load_uncertainty, values)
-        require(
-            self._label("load_uncertainty"),
-            sigma,
-            (sigma >= 0) & (sigma < inf),
-            _NOT_NEGATIVE,
-        )
+        require(self._label("load_uncertainty"), sigma, (sigma >= 0) & (sigma < inf), _NOT_NEGATIVE)
         self._set("load_uncertainty", sigma)
         self._check_unloaded(row, values)
 

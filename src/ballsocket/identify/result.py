@@ -10,8 +10,9 @@ from typing import Any
 import numpy
 
 from ..core.deprecation import RenamedAttribute
+from .estimates import Estimate
 from .experiment import Experiment, experiment
-from .fit import Estimate, FittedModel
+from .fit import FittedModel
 from .measured import MEASURED
 from .posterior import Posterior, posterior
 from .sensitivity import Sensitivity, sensitivities

@@ -18,6 +18,7 @@ from ..core.kinds import Kind
 from ..core.quantities import Quantity
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 from .machine import Machine
+from .model_numbers import ModelNumber
 from .registry import FREE_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS
 
 Prior = Any
@@ -115,17 +116,17 @@ def unknowns_of(free: Mapping[str, Prior], machines: Iterable[Machine], model: M
         raise ValueError(f"an unknown is stated twice: {', '.join(free)}")
     check_names(priors, FREE_NUMBERS, "among the unknowns")
     for name in priors:
-        _check_model_has(name, model)
+        if name in MODEL_NUMBERS:
+            _check_model(MODEL_NUMBERS[name], model)
     numbers = [_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
     return (*numbers, *_unknown_errors(machines))
 
 
-def _check_model_has(name: str, model: Model) -> None:
-    """Raise ValueError for a number of a model that this model does not have."""
-    number = MODEL_NUMBERS.get(name)
-    if number is not None and not number.belongs_to(model):
-        models = [title for title, candidate in catalogue.items() if number.belongs_to(candidate)]
-        raise ValueError(f"{name} is not a number of the model {model.name}; models that have it: {', '.join(models)}")
+def _check_model(number: ModelNumber, model: Model) -> None:
+    """Raise ValueError if the model does not have this number."""
+    if not number.belongs_to(model):
+        models = ", ".join(name for name, candidate in catalogue.items() if number.belongs_to(candidate))
+        raise ValueError(f"{number.name} is not a number of the model {model.name}; models that have it: {models}")
 
 
 def _unknown_errors(machines: Iterable[Machine]) -> list[Unknown]:
