@@ -130,7 +130,9 @@ def test_the_sensitivity_is_the_shift_by_an_error_of_the_machine(part):
     fit = identified(indentations(), *angles_and_pressures(3))
     (error,) = (error for error in fit.sensitivity if error.part == part)
     share = 0.02
-    moved = identified(indentations(DEPTH + share * MACHINE_ERRORS[part].assumed * ERRORS[part]), *angles_and_pressures(3))
+    moved = identified(
+        indentations(DEPTH + share * MACHINE_ERRORS[part].assumed * ERRORS[part]), *angles_and_pressures(3)
+    )
     for name in VALUES:
         shift = moved[name].value - fit[name].value
         assert shift == pytest.approx(share * error.shifts[name], rel=0.05)

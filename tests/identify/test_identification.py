@@ -211,7 +211,10 @@ def test_the_posterior_of_what_is_not_told_runs_along_the_product():
         ({"force": [-1.0, 100.0]}, r"force\[0\] = -1 is not allowed"),
         ({"indentation": 0.1}, "exactly one of force, indentation, half_angle is needed, got force, indentation"),
         ({"quantity": "indentations"}, "quantity 'indentations' is not known; did you mean 'indentation'?"),
-        ({"quantity": "area", "values": [10.0, 5000.0]}, r"area\[1\] = 5000 is not allowed: a contact area is below half of the ball, 2π"),
+        (
+            {"quantity": "area", "values": [10.0, 5000.0]},
+            r"area\[1\] = 5000 is not allowed: a contact area is below half of the ball, 2π",
+        ),
         ({"quantity": "half_angle", "values": [0.1, 30.0]}, r"half_angle\[1\] = 30 is not allowed: a half angle"),
         ({"quantity": "area", "machine": Machine()}, "area has a machine, but only indentations are read by one"),
         ({"quantity": "pressure"}, "pressure needs an angle"),
