@@ -1,4 +1,4 @@
-"""Measurements from files: heads with units, uncertainties, gaps, and the command."""
+"""Measurements from files: heads with units, uncertainties and gaps."""
 
 import numpy as np
 import pytest
@@ -56,7 +56,7 @@ def test_a_file_holds_several_quantities(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("force,indentation_um\n1,2\n", "press.csv: column 'force' has no unit: use force_N, or another unit"),
         ("force_N,indentation_N\n1,2\n", "press.csv: the unit of indentation_N = '1 N' is not a length"),
@@ -78,8 +78,8 @@ def test_a_file_holds_several_quantities(tmp_path):
         ),
     ],
 )
-def test_files_that_do_not_say_what_they_hold_are_refused(text, said, tmp_path):
-    with pytest.raises(ValueError, match=said):
+def test_incomplete_columns_are_refused(text, message, tmp_path):
+    with pytest.raises(ValueError, match=message):
         read_measured(csv(tmp_path, text), uncertainty="1 um")
 
 
@@ -88,7 +88,7 @@ def test_a_file_needs_an_uncertainty(tmp_path):
         read_measured(csv(tmp_path, "force_N,indentation_um\n100,2\n"))
 
 
-def test_gaps_are_left_out_on_request(tmp_path):
+def test_rows_with_gaps_are_omitted_on_request(tmp_path):
     path = csv(tmp_path, "force_N,indentation_um\n100,2\n200,\n300,4\n")
     (kept,) = read_measured(path, uncertainty="1 um", gaps=Gaps.LEAVE_OUT)
     np.testing.assert_allclose(kept.force, [100.0, 300.0])
@@ -128,7 +128,7 @@ def question(tmp_path):
     return csv(tmp_path, QUESTION.replace("{areas}", areas), "data.toml")
 
 
-def test_a_file_is_read_and_answered(question):
+def test_a_file_is_identified(question):
     given = read_identify(question)
     assert [each.quantity for each in given.data] == ["indentation", "area"]
     assert given.free == {"clearance": (0.02, 0.3), "liner_young": (400.0, 2000.0)}
@@ -158,7 +158,7 @@ uncertainty = "0.1 %"
 """
 
 
-def test_a_mass_that_swings_tells_the_stiffness(question):
+def test_the_frequency_of_a_mass_measures_the_stiffness(question):
     frequency = (1e3 * CONTACT.stiffness[4] / 2.0) ** 0.5 / (2 * np.pi)
     question.write_text(question.read_text("utf-8") + SWING.format(frequency=frequency), "utf-8")
     given = read_identify(question)
@@ -168,7 +168,7 @@ def test_a_mass_that_swings_tells_the_stiffness(question):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("clearance =", "clearence =", "data.toml: 'clearence' in [free] is not known; did you mean 'clearance'?"),
         ('"0.02..0.3 mm"', "0.1", "data.toml: clearance = 0.1 must be two ends, such as '0.02..0.3 mm'"),
@@ -190,13 +190,13 @@ def test_a_mass_that_swings_tells_the_stiffness(question):
         ('model = "tabulated"', 'scatter = "cauchy"', "data.toml: scatter 'cauchy' is not known; known: normal"),
     ],
 )
-def test_files_about_measurements_are_read_strictly(question, old, new, said):
+def test_wrong_names_and_units_in_a_file_are_refused(question, old, new, message):
     text = question.read_text("utf-8")
     assert old in text
     question.write_text(text.replace(old, new, 1), "utf-8")
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         read_identify(question)
-    assert said in str(refused.value)
+    assert message in str(refused.value)
 
 
 def numbers(folder, text, **settings):

@@ -226,7 +226,8 @@ def test_the_log_posterior_is_prior_plus_likelihood_within_the_ranges():
     residuals = problem.residuals(problem.forward.at(TRANSFORM.values(THETA)))
     expected = log_prior(TRANSFORM, THETA) - np.sum(residuals**2, axis=1) / 2
     np.testing.assert_allclose(problem.log_posterior(THETA), expected, rtol=1e-12)
-    outside = np.stack([TRANSFORM.high + [0.1, 0.0], TRANSFORM.low - [0.0, 0.1]])
+    shift = np.array([0.1, 0.0])
+    outside = np.stack([TRANSFORM.high + shift, TRANSFORM.low - shift])
     assert problem.log_posterior(outside).tolist() == [-np.inf] * 2
 
 

@@ -1,4 +1,4 @@
-"""From a reference to a foundation modulus."""
+"""Calibration of a foundation modulus to a reference."""
 
 import json
 
@@ -28,7 +28,7 @@ def test_calibrating_a_family_to_eq_18_returns_eq_18():
     np.testing.assert_allclose(fit.residual, 0.0, atol=1e-10)
 
 
-def test_the_vessel_corrected_as_imado_did():
+def test_the_corrected_vessel_agrees_with_imados_factor():
     """Exact K/K_B at ν 0.46 (R1 16, c 0.1, 2500 N) falls and rises again with κ."""
     kappa = np.array([0.50, 0.55, 0.60, 0.65, 0.70, 0.75, 0.80, 0.85])
     joint = bs.Joint(
@@ -45,7 +45,7 @@ def test_the_vessel_corrected_as_imado_did():
     assert "this project's fit" in contact.model.title
 
 
-def test_table_3():
+def test_the_fit_of_table_3_agrees_with_the_paper():
     """The paper's K agrees within 3.5 % with the exact one up to R2/L 4; ours, relative, within 2 % everywhere."""
     columns = refit_table_3()
     assert [column.poisson for column in columns] == [0.30, 0.35, 0.40, 0.45, 0.49]
@@ -66,7 +66,7 @@ def test_errors_are_those_of_the_closed_form():
     assert fit.error["max_pressure"] == pytest.approx(abs(own.max_pressure / exact.max_pressure - 1))
 
 
-def test_what_cannot_be_calibrated_is_refused():
+def test_impossible_calibrations_are_refused():
     with pytest.raises(ValueError, match="a calibration needs loads .N. above 0"):
         bs.calibrate(HIP, force=[0.0, 1000.0])
     with pytest.raises(ValueError, match="exact has no result for some joints or loads: .* does not reach this load"):
@@ -75,7 +75,7 @@ def test_what_cannot_be_calibrated_is_refused():
         bs.corrected_vessel(1.0, -3.0, 0.0)
 
 
-def test_the_command():
+def test_the_command_prints_table_and_json():
     table = run("calibrate").stdout
     for text in ("C1, paper", "1.14", "off by", "spread"):
         assert text in table

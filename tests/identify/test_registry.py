@@ -106,7 +106,7 @@ uncertainty = "1 nm"
 
 
 def test_a_machine_has_every_registered_error():
-    machine = Machine(**{name: 1e-6 for name in MACHINE_ERRORS}, name="press")
+    machine = Machine(**dict.fromkeys(MACHINE_ERRORS, 1e-06), name="press")
     assert machine.known() == {f"press.{name}": 1e-6 for name in MACHINE_ERRORS}
     assert Machine().known() == {f"machine.{name}": 0.0 for name in MACHINE_ERRORS}
     assert Machine(offset=(-1.0, 2.0)).unknowns == {"machine.offset": (-1.0, 2.0)}
@@ -139,16 +139,19 @@ from ballsocket.identify.file import read_identify
 hip, force = bs.joints["hess-forsbach"], np.linspace(50.0, 3000.0, 15)
 model = bs.RadialFoundation(modulus=bs.constant(300.0))
 depth = np.asarray(model.press(hip, force=force).indentation) + 0.005 * force / (force + 100.0)
-press = Measured(quantity="indentation", values=depth, uncertainty=1e-5, force=force, machine=Machine(seating=(0.0, 0.02)))
-by_depth = Measured(quantity="force", values=force, uncertainty=0.1, indentation=depth, machine=Machine(seating=(0.0, 0.02)))
+depths = {"quantity": "indentation", "values": depth, "uncertainty": 1e-5, "force": force}
+machine = Machine(seating=(0.0, 0.02))
+press = Measured(**depths, machine=machine)
+by_depth = Measured(quantity="force", values=force, uncertainty=0.1, indentation=depth, machine=machine)
 free = {"foundation_modulus": (100.0, 800.0)}
 points = [bs.identify(bs.HessForsbach(), hip, data, free).point for data in (press, by_depth)]
-known = bs.identify(bs.HessForsbach(), hip, Measured(quantity="indentation", values=depth, uncertainty=1e-4, force=force), free)
+known = bs.identify(bs.HessForsbach(), hip, Measured(**{**depths, "uncertainty": 1e-4}), free)
 rows = "\\n".join(f"{load!r},{value!r}" for load, value in zip(force.tolist(), depth.tolist()))
 open("press.csv", "w").write("force_N,indentation_mm\\n" + rows + "\\n")
 open("data.toml", "w").write(
     'model = "hess-forsbach"\\njoint = "hess-forsbach"\\n[free]\\nfoundation_modulus = "100..800 MPa/mm"\\n'
-    '[machine.frame]\\nseating = "0..20 um"\\n[[data]]\\nfile = "press.csv"\\nuncertainty = "0.01 um"\\nmachine = "frame"\\n'
+    '[machine.frame]\\nseating = "0..20 um"\\n'
+    '[[data]]\\nfile = "press.csv"\\nuncertainty = "0.01 um"\\nmachine = "frame"\\n'
 )
 points.append(read_identify("data.toml").identified().point)
 print(json.dumps({"points": points, "notes": known.notes}))

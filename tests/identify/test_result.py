@@ -229,14 +229,14 @@ def test_earlier_names_warn():
 
 
 def test_earlier_modules_have_their_names():
-    from ballsocket.identify import IdentificationResult, Identified, Own, observables
     from ballsocket.identify.oscillation import oscillation
     from ballsocket.identify.tracing import by_tracing
+
+    from ballsocket.identify import IdentificationResult, Identified, Own, observables, parameters
 
     assert Identified is IdentificationResult
     assert Own is observables.CustomObservable
     assert oscillation is observables.oscillation
     assert by_tracing.__module__ == "ballsocket.identify.jax_derivatives"
     with pytest.warns(DeprecationWarning, match="Identified is deprecated"):
-        from ballsocket.identify.parameters import Identified as earlier
-    assert earlier is IdentificationResult
+        assert parameters.Identified is IdentificationResult

@@ -176,8 +176,8 @@ def test_bands_use_the_normal_quantile_for_a_probable_scatter():
     assert information.quantile == QUANTILE_95
     assert misfit.widening < 1.5
     np.testing.assert_allclose(information.matrix, np.linalg.inv(scaled_covariance(misfit)) / misfit.widening**2)
-    assert QUANTILE_95 == pytest.approx(stats.norm.ppf(0.975), rel=1e-15)
-    assert QUANTILE_99 == pytest.approx(stats.norm.ppf(0.995), rel=1e-15)
+    assert pytest.approx(stats.norm.ppf(0.975), rel=1e-15) == QUANTILE_95
+    assert pytest.approx(stats.norm.ppf(0.995), rel=1e-15) == QUANTILE_99
 
 
 def _fit(misfit):

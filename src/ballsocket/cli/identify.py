@@ -10,8 +10,8 @@ import typer
 import ballsocket as bs
 
 from ..identify.file import read_identify
-from ..identify.result import IdentificationResult
 from ..identify.posterior import Posterior
+from ..identify.result import IdentificationResult
 from ..output import identify_plots
 from ..output.identify_terminal import print_identified
 from ..output.save import check_format, save

@@ -9,8 +9,8 @@ import numpy
 from ..core.quantities import FIELD, LOADS, Quantity
 from ..identify.experiment import Experiment
 from ..identify.measured import MEASURED, Measured
-from ..identify.result import IdentificationResult
 from ..identify.posterior import Posterior
+from ..identify.result import IdentificationResult
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from rich.table import Table
 
 from ..core.kinds import Unit
 from ..identify.measured import MEASURED
-from ..identify.result import IdentificationResult
 from ..identify.posterior import CONVERGED, Posterior
+from ..identify.result import IdentificationResult
 from ..identify.sensitivity import Sensitivity
 from .terminal import console, print_folded
 
