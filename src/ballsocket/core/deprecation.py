@@ -57,6 +57,12 @@ MOVED = {
     "ballsocket.fem": "ballsocket.elasticity.finite_elements",
     "ballsocket.fem.export": "ballsocket.elasticity.finite_elements.decks",
     "ballsocket.sphere": "ballsocket.elasticity.off_axis",
+    "ballsocket.identify.answers": "ballsocket.identify.forward_model",
+    "ballsocket.identify.oscillation": "ballsocket.identify.observables",
+    "ballsocket.identify.parameters": "ballsocket.identify.identification",
+    "ballsocket.identify.profile": "ballsocket.identify.bands",
+    "ballsocket.identify.remarks": "ballsocket.identify.result",
+    "ballsocket.identify.tracing": "ballsocket.identify.jax_derivatives",
 }
 """New path of each package or module that moved; the modules of a package move with it."""
 
