@@ -96,7 +96,7 @@ def test_the_worn_bore_is_pressed_alike_by_the_springs_of_sphere():
     def depth(n):
         return between((np.arctan2(np.hypot(n[0], n[1]), n[2]), np.arctan2(n[1], n[0]) % (2 * np.pi)))
 
-    sphere = bs.Sphere(cup=TILTED, surface=bs.Springs(), worn=bs.Worn(of=depth))
+    sphere = bs.Sphere(cup=TILTED, surface=bs.Springs(), worn=bs.BoreDeviation(of=depth))
     largest = int(use.cycle.sizes.argmax())
     contact = sphere.press(use.joint, force=use.cycle.sizes[largest])
     mine = use.rest(report.wear.ravel())

@@ -9,14 +9,14 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..elasticity.finite_elements.shapes import socket_shape
-from ..elasticity.off_axis.compliance import Compliance, compliance_on
-from ..elasticity.off_axis.directions import sized
-from ..elasticity.off_axis.edges import Edges
-from ..elasticity.off_axis.gap import Separation, sunk
+from ..elasticity.off_axis.bore_contact import BoreContact
+from ..elasticity.off_axis.bore_contact import EquilibriumBatch as BedRest
+from ..elasticity.off_axis.compliance import Compliance, make_compliance
+from ..elasticity.off_axis.directions import magnitudes_and_directions
+from ..elasticity.off_axis.equilibrium import solve_force
+from ..elasticity.off_axis.gap import GapField, initial_displacement
 from ..elasticity.off_axis.grid import Grid, even_grid
-from ..elasticity.off_axis.search import Bed
-from ..elasticity.off_axis.search import Rest as BedRest
-from ..elasticity.off_axis.surfaces import ClosedShell, RealCup
+from ..elasticity.off_axis.surfaces import ClosedShell, EdgeRelation, RealCup
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..problem.gaps import LinearGap
@@ -39,14 +39,14 @@ class ElasticBed:
     compliance : Compliance
     clearance, socket_radius : float
         In mm.
-    edges : Edges
+    edges : EdgeRelation
         Relation of pressure and gap at the edge of a contact.
     """
 
     compliance: Compliance
     clearance: float
     socket_radius: float
-    edges: Edges
+    edges: EdgeRelation
 
     @property
     def grid(self) -> Grid:
@@ -122,35 +122,40 @@ class ElasticBed:
         """
         levels = levels_of(loads) if not tether.any() else each_of(loads)
         shape = (len(levels.loads), self.grid.rings, self.grid.meridians)
-        separation = Separation(
+        gap = GapField(
             grid=self.grid,
             clearance=self.clearance,
             socket_radius=self.socket_radius,
             depth=depth.reshape(shape[1:]),
             kind=LinearGap,
         )
-        bed = Bed(compliance=self.compliance, separation=separation, tether=tether)
+        bed = BoreContact(compliance=self.compliance, gap=gap, tether=tether)
         found = self._settled(bed, levels, depth, start)
         flat = found.pressure.reshape(shape[0], -1)
         return Rest(
             displacement=levels.between(found.displacement),
             pressure=levels.between(flat),
-            settled=bool(found.found.all()),
+            settled=bool(found.converged.all()),
             levels=(found.displacement, found.pressure),
         )
 
-    def _settled(self, bed: Bed, levels: Levels, depth: Numbers, start: Rest | None) -> BedRest:
+    def _settled(self, bed: BoreContact, levels: Levels, depth: Numbers, start: Rest | None) -> BedRest:
         """Balls at rest, from where they were before; those that do not settle begin again, pressed in deeper."""
-        count, deep = len(levels.loads), sunk(self, self.compliance.evenly, depth, *sized(levels.loads))
+        count, deep = (
+            len(levels.loads),
+            initial_displacement(
+                self, self.compliance.uniform_stiffness, depth, *magnitudes_and_directions(levels.loads)
+            ),
+        )
         kept = None if start is None else start.levels
         begin, pressure = kept if kept is not None and len(kept[0]) == count else (deep, None)
-        found = bed.under(levels.loads, begin, numpy.ones(count, dtype=bool), pressure)
+        found = solve_force(bed, levels.loads, begin, numpy.ones(count, dtype=bool), pressure)
         for more in _DEEPER:
-            if found.found.all():
+            if found.converged.all():
                 break
-            again = bed.under(levels.loads, more * deep, ~found.found)
-            missed = ~found.found
-            for name in ("displacement", "pressure", "found"):
+            again = solve_force(bed, levels.loads, more * deep, ~found.converged)
+            missed = ~found.converged
+            for name in ("displacement", "pressure", "converged"):
                 getattr(found, name)[missed] = getattr(again, name)[missed]
         return found
 
@@ -160,7 +165,7 @@ def elastic_bed(surface: RealCup | ClosedShell, joint: Joint, cup: Cup, width: f
     """The bore of a joint in rings of one width (rad); the last few are kept."""
     cells = even_grid(socket_shape(joint, cup).reach, width)
     return ElasticBed(
-        compliance=compliance_on(surface, joint, cup, cells),
+        compliance=make_compliance(surface, joint, cup, cells),
         clearance=float(joint.clearance),
         socket_radius=float(joint.socket_radius),
         edges=surface.edges(joint, cup, cells),

@@ -32,7 +32,7 @@ class Smoothing:
         """Factors of the harmonics about the axis: (rings, harmonics)."""
         # cos²(π m / 2M') is [1 2 1]/4 on M' cells a half turn
         wide = numpy.maximum(self.grid.meridians / 2 * numpy.sin(self.grid.polar), 1.0)[:, None]
-        m = numpy.arange(self.grid.degrees + 1)
+        m = numpy.arange(self.grid.max_harmonic + 1)
         return numpy.where(m < wide, numpy.cos(numpy.pi * m / (2 * wide)) ** 2, 0.0)
 
     @cached_property

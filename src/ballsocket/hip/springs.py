@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy
 
 from ..core.arrays import Numbers
-from ..elasticity.off_axis.directions import sized
-from ..elasticity.off_axis.gap import sunk
+from ..elasticity.off_axis.directions import magnitudes_and_directions
+from ..elasticity.off_axis.gap import initial_displacement
 from ..elasticity.off_axis.grid import Grid
 from .contact_shares import contact_shares, grid_neighbours, subset_neighbours
 
@@ -169,7 +169,11 @@ class SpringBed:
         tether : array (3, 3)
             In N/mm: so much less of the loads is left by where the ball has moved.
         """
-        e = sunk(self, self.modulus, depth, *sized(loads)) if start is None else start.displacement
+        e = (
+            initial_displacement(self, self.modulus, depth, *magnitudes_and_directions(loads))
+            if start is None
+            else start.displacement
+        )
         allowed = TOLERANCE * numpy.linalg.norm(loads, axis=1)
         lost = numpy.inf
         for _ in range(_ROUNDS):
