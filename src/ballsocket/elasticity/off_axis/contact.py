@@ -37,9 +37,9 @@ class OffAxisContact(SolvedContact):
 
     _inside: ClassVar[str] = "pressure maps"
 
-    def _joint_von_mises(self, place: Numbers, piece: JointContacts) -> Numbers:
+    def _joint_von_mises(self, indices: Numbers, piece: JointContacts) -> Numbers:
         """Estimate the stress in MPa from half angle and largest pressure: only the surface is solved."""
-        joint, state = joint_at(self.joint, self.laws.shape, int(place[0])), piece.state
+        joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), piece.state
         estimate = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         return numpy.asarray(estimate * state.max_pressure)
 
