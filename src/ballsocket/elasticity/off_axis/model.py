@@ -106,8 +106,8 @@ class Sphere(Model):
                 raise TypeError(f"{name} must be {allowed}, got {getattr(self, name)!r}")
         check_gap(self.gap)
         width = check_number("ring_width", self.ring_width)
-        allowed = _MIN_RING_WIDTH <= width <= _MAX_RING_WIDTH
-        require("ring_width", width, allowed, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
+        in_range = _MIN_RING_WIDTH <= width <= _MAX_RING_WIDTH
+        require("ring_width", width, in_range, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
         if self.worn is not None and (isinstance(self.worn, type) or not hasattr(self.worn, "depth")):
             raise TypeError(f"worn must have a method depth(directions), got {shown(self.worn)}")
         object.__setattr__(self, "direction", check_direction(self.direction))
