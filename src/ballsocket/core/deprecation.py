@@ -37,6 +37,9 @@ MOVED = {
     "ballsocket.fem": "ballsocket.elasticity.finite_elements",
     "ballsocket.fem.export": "ballsocket.elasticity.finite_elements.decks",
     "ballsocket.sphere": "ballsocket.elasticity.off_axis",
+    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.load" for name in ("brushed", "touch")},
+    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.reaction" for name in ("rim", "smooth")},
+    "ballsocket.dynamics.side_curves": "ballsocket.dynamics.element",
 }
 """New path of each package or module that moved; the modules of a package move with it."""
 

@@ -10,9 +10,9 @@ from typing import Any
 from ..contact.law import CurveLaw
 from ..core.arrays import isfinite, where
 from ..dynamics import ForceElement, reaction
+from ..dynamics.load import status_of
 from ..dynamics.potential import CurvePotential, energy_curve
 from ..dynamics.reaction import Constants, Elastic, Place, Three
-from ..dynamics.touch import status_of
 from .recorder import Part, Recorded, Tape
 from .slopes import slopes_of
 from .tunable import TUNABLES
