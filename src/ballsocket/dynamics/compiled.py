@@ -63,7 +63,7 @@ class CompiledElement:
 
     def __post_init__(self) -> None:
         if self.element.remembers:
-            raise ValueError(f"{self.element.remembers}, and what is compiled has none: ask the element itself")
+            raise ValueError(f"{self.element.remembers}; compiled elements have no state, use the element itself")
 
     def __call__(self, position: Any, velocity: Any = (0.0, 0.0, 0.0), spin: Any = (0.0, 0.0, 0.0)) -> Load:
         """The load at a state as the element itself has it."""
