@@ -12,7 +12,7 @@ import ballsocket as bs
 from ballsocket.dynamics import Damping, ForceElement, Friction
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.fmu import Fmu, write_cross_check
-from ballsocket.export.fmu.cross_check import reference_loads, in_si, trajectory
+from ballsocket.export.fmu.cross_check import in_si, reference_loads, trajectory
 
 from ..cli.command import run
 from ..joints import HIP
@@ -64,7 +64,10 @@ def test_a_compiler_that_is_not_there_is_a_sentence_and_the_sources_are_written(
     monkeypatch.setenv("CC", "no-such-compiler")
     done = run("fmu", str(EXAMPLES / "hip.toml"), "--out", str(tmp_path / "my-hip.fmu"), "--fmi", str(version))
     assert done.returncode == 0
-    assert "CC is 'no-such-compiler', which is not installed; the archive contains the sources without a binary" in done.stderr
+    assert (
+        "CC is 'no-such-compiler', which is not installed; the archive contains the sources without a binary"
+        in done.stderr
+    )
     with zipfile.ZipFile(tmp_path / "my-hip.fmu") as archive:
         assert "sources/my_hip.c" in archive.namelist()
         assert not any(name.startswith("binaries") for name in archive.namelist())

@@ -1,7 +1,8 @@
 """Force elements for other programs: C sources, FMUs, and files for multibody codes."""
 
 from .c_element import CElement
-from .targets import TARGETS, ExportJob, Target
+from .target import ExportJob, Target
+from .targets import TARGETS
 
 Job = ExportJob
 """Name of `ExportJob` in version 1.0."""
