@@ -78,6 +78,13 @@ MOVED = {
     "ballsocket.identify.remarks": "ballsocket.identify.result",
     "ballsocket.identify.tracing": "ballsocket.identify.jax_derivatives",
     **{f"ballsocket.sphere.{old}": f"ballsocket.elasticity.off_axis.{new}" for old, new in _OFF_AXIS_MODULES.items()},
+    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.load" for name in ("brushed", "touch")},
+    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.reaction" for name in ("rim", "smooth")},
+    "ballsocket.dynamics.side_curves": "ballsocket.dynamics.element",
+    "ballsocket.export.recording": "ballsocket.export.c_element",
+    "ballsocket.export.slopes": "ballsocket.export.recorder",
+    "ballsocket.export.tables": "ballsocket.export.targets",
+    "ballsocket.export.trusted": "ballsocket.export.validity_depth",
 }
 """New path of each package or module that moved; the modules of a package move with it."""
 
