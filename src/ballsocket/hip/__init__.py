@@ -14,8 +14,11 @@ from .simulation import HipSimulation
 from .uncertainty import Bands, population, uncertainty
 from .wear_laws import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 
-AreaLaw, EnergyLaw, OwnLaw = ContactAreaWear, FrictionEnergyWear, CustomWearLaw
-InUse, Ladder = HipSimulation, KelvinVoigtChain
+AreaLaw = ContactAreaWear
+EnergyLaw = FrictionEnergyWear
+OwnLaw = CustomWearLaw
+InUse = HipSimulation
+Ladder = KelvinVoigtChain
 
 __all__ = [
     "Activity",
