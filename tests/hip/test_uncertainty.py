@@ -1,4 +1,4 @@
-"""Patients who differ: bands, what matters, many of them, kept and gone on with."""
+"""Patients who differ: bands, what matters, many of them, cohort_store and gone on with."""
 
 import json
 import os
@@ -20,7 +20,7 @@ from ballsocket.hip import (
     CrossShear,
     Mix,
     OwnLaw,
-    Scatter,
+    PatientVariability,
     iso_14242_1,
     iso_14242_4,
     logarithmic,
@@ -28,10 +28,10 @@ from ballsocket.hip import (
     rocking,
     uncertainty,
 )
+from ballsocket.hip.cohort import cohort_store
 from ballsocket.hip.creep import UNVERIFIED
 from ballsocket.hip.file import read_hip
-from ballsocket.hip.lives import kept
-from ballsocket.hip.patients import Patient
+from ballsocket.hip.variability import Patient
 from ballsocket.output.hip_bands import band_sections, print_bands
 from ballsocket.output.hip_plots import penetration_curve
 from ballsocket.problem.cup import Side
@@ -51,7 +51,7 @@ clearance = { low = "0.05 mm", high = "0.2 mm" }
 
 
 def scatter(use=None, **distributions):
-    return Scatter(use=use or hip(), distributions=distributions)
+    return PatientVariability(use=use or hip(), distributions=distributions)
 
 
 def short(path, *changes, extra=SCATTER):
@@ -88,7 +88,7 @@ def test_the_same_seed_gives_the_same_bands_and_another_does_not():
 
 def test_the_numbers_of_a_patient_are_those_of_its_hip():
     use = hip(seconds_per_cycle=20.0)
-    some = Scatter(
+    some = PatientVariability(
         use=use,
         distributions={
             "body_weight": Normal(mean=800.0, deviation=100.0),
@@ -290,7 +290,7 @@ def test_patients_without_what_scatters_and_their_report_are_refused(tmp_path):
 
 def many(patients, store=None, **words):
     one = scatter(coefficient=LogNormal(median=K, factor=1.5), clearance=Rectangular(low=0.05, high=0.2))
-    where = None if store is None else kept(store, one, [FEW], 0)
+    where = None if store is None else cohort_store(store, one, [FEW], 0)
     return population(one, [FEW], patients=patients, store=where, **words)
 
 
@@ -304,7 +304,7 @@ def test_patients_are_kept_and_more_are_added(tmp_path):
     assert many(40, tmp_path, listen=told.append)[1].lived.table[-1] == pytest.approx(bands.lived.table[-1], rel=0)
     assert told[4:] == [40]
     with pytest.raises(ValueError, match="keeps other patients"):
-        kept(tmp_path, scatter(coefficient=LogNormal(median=K, factor=2.0)), [FEW], 0)
+        cohort_store(tmp_path, scatter(coefficient=LogNormal(median=K, factor=2.0)), [FEW], 0)
 
 
 def test_the_command_prints_bands_of_patients_uncut_and_why_their_contacts_are_not_valid(tmp_path):

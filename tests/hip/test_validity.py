@@ -8,7 +8,17 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Activity, Archard, InUse, Mix, Scatter, constant_load, in_vivo, iso_14242_1, population
+from ballsocket.hip import (
+    Activity,
+    Archard,
+    InUse,
+    Mix,
+    PatientVariability,
+    constant_load,
+    in_vivo,
+    iso_14242_1,
+    population,
+)
 from ballsocket.hip.contact_checks import half_angles
 from ballsocket.studies import LogNormal
 
@@ -166,7 +176,7 @@ def test_a_stored_run_keeps_its_checks(tmp_path):
 
 
 def test_patients_have_their_validity():
-    scatter = Scatter(
+    scatter = PatientVariability(
         use=use_of(HIP, iso_14242_1(24)), distributions={"body_weight": LogNormal(median=800.0, factor=3.0)}
     )
     cohort, bands = population(scatter, [1e5, 1e6], patients=32)

@@ -11,7 +11,7 @@ from string import Template
 
 from ..contact.law import CurveLaw
 from ..core.arrays import Numbers
-from ..core.storage.atomic import write_text
+from ..core.storage.atomic_files import write_text
 from ..dynamics import ForceElement, Touch
 from ..version import __version__
 from .c_text import c_number, c_statements

@@ -8,7 +8,7 @@ from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..core.storage.atomic import write_text
+from ..core.storage.atomic_files import write_text
 from ..dynamics import ForceElement, Touch
 from ..dynamics.reaction import Constants
 from ..version import __version__

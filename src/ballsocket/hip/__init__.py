@@ -1,5 +1,6 @@
 """The hip in use: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
+from .bands import Bands
 from .creep import Ladder, constrained_share, logarithmic
 from .cycle import Cycle, Frame, Spring
 from .film import Film, Lubricant
@@ -9,9 +10,12 @@ from .in_vivo import in_vivo
 from .laws import Archard, AreaLaw, CrossShear, EnergyLaw, OwnLaw
 from .mix import Activity, Mix
 from .named_cycles import named_cycle
-from .patients import Scatter
-from .uncertainty import Bands, population, uncertainty
+from .uncertainty import population, uncertainty
 from .use import InUse
+from .variability import PatientVariability
+
+Scatter = PatientVariability
+"""Name of `PatientVariability` in version 1.0."""
 
 __all__ = [
     "Activity",
@@ -29,6 +33,7 @@ __all__ = [
     "Lubricant",
     "Mix",
     "OwnLaw",
+    "PatientVariability",
     "Scatter",
     "Spring",
     "constant_load",

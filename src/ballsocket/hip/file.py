@@ -22,8 +22,7 @@ from .given_laws import KEYS as WEAR_KEYS
 from .given_laws import given_ball_law, given_creep, given_law, given_lubricant, given_seconds, given_surface
 from .looks import check_cycles
 from .mix import Mix
-from .scatter_file import KEYS as SCATTER_KEYS
-from .scatter_file import Uncertain, uncertain
+from .uncertainty_config import UNCERTAINTY_KEYS, UncertaintySettings, read_uncertainty
 from .use import InUse
 
 _TABLES: Mapping[str, tuple[str, ...]] = {
@@ -36,7 +35,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
     "creep": ("law", "compliances", "times", "confinement", "seconds_per_cycle"),
     "film": ("viscosity", "ball_roughness", "cup_roughness", "friction"),
     "wear": WEAR_KEYS,
-    "uncertainty": SCATTER_KEYS,
+    "uncertainty": UNCERTAINTY_KEYS,
 }
 FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
 _MILLION = 1e6
@@ -53,7 +52,7 @@ class HipFile:
     cycles: float
     report_at: tuple[float, ...]
     lubricant: Lubricant
-    uncertain: Uncertain | None = None
+    uncertain: UncertaintySettings | None = None
 
 
 def read_hip(path: str | Path) -> HipFile:
@@ -110,7 +109,7 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         cycles=cycles,
         report_at=at,
         lubricant=given_lubricant(table_of(content, "film")),
-        uncertain=uncertain(content, use) if "uncertainty" in content else None,
+        uncertain=read_uncertainty(content, use) if "uncertainty" in content else None,
     )
 
 

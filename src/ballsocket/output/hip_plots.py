@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..hip.bands import Bands
 from ..hip.history import History, Report
 from ..hip.mix import Mix
 from ..hip.sliding import tracks
 from ..hip.spots import ball_directions, ball_grid
-from ..hip.uncertainty import Bands
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,10 +8,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ..core.storage.atomic import write_text
+from ..core.storage.atomic_files import write_text
+from ..hip.bands import Bands
 from ..hip.film import CONFORMING
 from ..hip.history import History
-from ..hip.uncertainty import Bands
 from . import hip_plots
 from .hip_bands import band_sections
 from .hip_contact import HEADS, contact_line, contact_rows

@@ -1,4 +1,4 @@
-"""Rings and harmonics: their areas, what lies between those that are computed, and what is kept on disk."""
+"""Rings and harmonics: their areas, and what lies between those that are computed."""
 
 from math import pi, radians
 
@@ -9,7 +9,6 @@ import ballsocket as bs
 from ballsocket.elasticity.exact.modes import Ball, socket_of
 from ballsocket.elasticity.finite_elements.harmonics import socket_harmonics
 from ballsocket.elasticity.finite_elements.shapes import socket_shape
-from ballsocket.elasticity.off_axis import kept
 from ballsocket.elasticity.off_axis.grid import Turning, grid
 from ballsocket.elasticity.off_axis.harmonics import every_harmonic
 from ballsocket.elasticity.off_axis.rings_of_modes import modal_rings, ring_shares
@@ -89,31 +88,3 @@ def test_a_ball_translates_freely():
     cosine = np.broadcast_to(np.cos(whole.polar)[:, None], (1, whole.rings, whole.meridians))
     moved = Turning(matrices=whole.averaged(rings))(cosine)
     assert abs(moved).max() < 1e-2 * 18.0 / 1000.0
-
-
-def test_what_is_kept_is_read_again_and_what_is_damaged_made_anew(tmp_path, monkeypatch):
-    monkeypatch.setenv("BALLSOCKET_CACHE", str(tmp_path))
-    made = []
-
-    def make():
-        made.append(1)
-        return np.arange(24.0).reshape(2, 3, 4)
-
-    first = kept.kept("key", make)
-    again = kept.kept("key", make)
-    assert len(made) == 1
-    assert (first == again).all()
-    assert again.shape == (2, 3, 4)
-    (file,) = tmp_path.glob("cup-*")
-    sound = file.read_bytes()
-    for damaged in (sound[:200] + b"?" + sound[201:], sound.replace(b"(2, 3, 4)", b"(1, 3, 4)"), b"short", b""):
-        file.write_bytes(damaged)
-        before = len(made)
-        assert (kept.kept("key", make) == first).all()
-        assert len(made) == before + 1
-
-
-def test_where_nothing_can_be_written_it_is_made_each_time(tmp_path, monkeypatch):
-    (tmp_path / "file").write_text("", encoding="utf-8")
-    monkeypatch.setenv("BALLSOCKET_CACHE", str(tmp_path / "file" / "folder"))
-    assert (kept.kept("key", lambda: np.zeros((1, 1, 1))) == 0).all()

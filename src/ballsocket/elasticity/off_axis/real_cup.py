@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy
 
 from ...core.arrays import Numbers
+from ...core.storage.array_files import cached_array
 from ...problem import Joint
 from ...problem.cup import Cup
 from ..finite_elements.harmonics import socket_harmonics
@@ -14,7 +15,6 @@ from ..finite_elements.shapes import SocketShape, socket_shape
 from ..finite_elements.solver import check_cup
 from .grid import Grid
 from .harmonics import every_harmonic
-from .kept import kept
 
 
 def cup_rings(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
@@ -39,4 +39,4 @@ def _unit_rings(shape: SocketShape, edges: tuple[float, ...], degrees: int) -> N
         meridian = socket_harmonics(shape, rings)
         return every_harmonic(lambda some: meridian.ring_compliance(rings, some), degrees)
 
-    return kept((shape, edges, degrees), made)
+    return cached_array((shape, edges, degrees), made)

@@ -9,7 +9,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import needs
-from ...core.storage.atomic import at_once
+from ...core.storage.atomic_files import write_atomically
 from ..finite_elements.decks.vtk import check_suffix
 from .contact import OffAxisContact
 from .directions import unit_vectors
@@ -59,7 +59,7 @@ def write_vtk(contact: OffAxisContact, path: Path) -> None:
     data = {name: [values.ravel(), *(numpy.zeros(size) for size in sizes[1:])] for name, values in fields.items()}
     parts = [numpy.full(size, part) for size, part in zip(sizes, (BORE, BALL, EDGE), strict=True)]
     mesh = meshio.Mesh(numpy.concatenate(places), blocks, cell_data={"part": parts, **data})
-    with at_once(path) as draft:
+    with write_atomically(path) as draft:
         mesh.write(draft)
 
 
