@@ -291,6 +291,7 @@ def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable(monkeypatc
     with local_cluster(3, retries=2):
         assert (started["n_workers"], started["threads_per_worker"], started["host"]) == (3, 1, "127.0.0.1")
         assert (started["failures"], started["trim"], started["dashboard_address"]) == (2, None, "127.0.0.1:0")
+        assert started["silence_logs"] == 40  # errors only
     assert started["stopped"]
 
 

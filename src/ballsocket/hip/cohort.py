@@ -235,7 +235,7 @@ class CohortStore(PieceStore):
         OSError
             The folder is not writable or the disk is full.
         """
-        arrays = {each.name: getattr(result, each.name) for each in fields(result)}
+        arrays = {array.name: getattr(result, array.name) for array in fields(result)}
         write_arrays(self._piece_path(number), identity=self.identity, **arrays)
         return result
 
@@ -325,7 +325,7 @@ def summarize_distributions(variability: PatientVariability) -> dict[str, Any]:
 
 def _summarize(name: str, distribution: Distribution) -> dict[str, Any]:
     factor = degrees(1.0) if name in _ANGLES else 1.0
-    parameters = {each.name: getattr(distribution, each.name) for each in fields(distribution)}
+    parameters = {parameter.name: getattr(distribution, parameter.name) for parameter in fields(distribution)}
     shown = {key: factor * value for key, value in parameters.items() if isfinite(value)}
     return {"distribution": type(distribution).__name__, **shown}
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ..core.storage.atomic_files import write_text
+from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..hip.bands import Bands
 from ..hip.film import CONFORMING
 from ..hip.history import History
@@ -61,8 +61,7 @@ def check_page(path: Path) -> None:
     """Raise ValueError unless a page can be written there."""
     if path.suffix.lower() != ".html":
         raise ValueError(f"report {str(path)!r} must end in .html")
-    if not path.parent.is_dir():
-        raise ValueError(f"{str(path.parent)!r} is no folder to write {path.name} into")
+    check_parent_folder(path)
 
 
 def write_hip_report(history: History, path: Path, bands: Bands | None = None) -> Path:

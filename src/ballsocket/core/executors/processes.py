@@ -38,6 +38,9 @@ _PARENT_CHECK_INTERVAL = 0.5
 _STDIN = 0
 """File descriptor of the standard input."""
 
+_PARENT_ENDED = 1
+"""Exit status of a process whose parent process has ended."""
+
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 """Environment variables that limit the threads of linear algebra."""
 
@@ -203,7 +206,7 @@ def exit_with_parent() -> None:
         fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
         fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
         if _is_closed(pipe):
-            os._exit(1)  # the parent ended before the signal was set
+            os._exit(_PARENT_ENDED)  # the parent ended before the signal was set
 
 
 def _is_closed(pipe: int) -> bool:
@@ -217,4 +220,4 @@ def _watch_parent(parent: int) -> None:
     """End this process after its parent process has ended."""
     while os.getppid() == parent:
         time.sleep(_PARENT_CHECK_INTERVAL)
-    os._exit(1)
+    os._exit(_PARENT_ENDED)
