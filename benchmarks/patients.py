@@ -12,8 +12,9 @@ import numpy
 
 from ballsocket.hip import InUse, PatientVariability, logarithmic, population
 from ballsocket.hip.cohort import sample_patients
+from ballsocket.hip.cohort_results import RESULT_UNITS, result_table
 from ballsocket.hip.file import read_hip
-from ballsocket.hip.variability import RESULT_UNITS, Patient, result_table
+from ballsocket.hip.variability import Patient
 
 from .report import Report, Rows
 from .timing import Work, interleaved, one_core

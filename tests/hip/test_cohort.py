@@ -15,15 +15,13 @@ import pytest
 from ballsocket.core.executors import Distributed, Processes, Serial
 from ballsocket.hip import population
 from ballsocket.hip.cohort import (
-    CohortResult,
     CohortRun,
     cohort_store,
-    join_results,
     sample_patients,
     table_columns,
     write_csv,
 )
-from ballsocket.hip.variability import RESULT_UNITS
+from ballsocket.hip.cohort_results import RESULT_UNITS, CohortResult, join_results
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run

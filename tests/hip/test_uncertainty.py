@@ -9,7 +9,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.hip import logarithmic, population, uncertainty
 from ballsocket.hip.file import read_hip
-from ballsocket.hip.shared_coefficient import share_coefficient
+from ballsocket.hip.uncertainty import share_coefficient
 from ballsocket.output.hip_bands import band_sections, print_bands
 from ballsocket.output.hip_plots import penetration_curve
 from ballsocket.studies import LogNormal, Normal, Rectangular

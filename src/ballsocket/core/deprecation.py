@@ -28,7 +28,7 @@ MOVED = {
     "ballsocket.engines": "ballsocket.core.executors",
     "ballsocket.engines.local": "ballsocket.core.executors.processes",
     "ballsocket.sphere.kept": "ballsocket.core.storage.array_files",
-    "ballsocket.hip.coefficient_response": "ballsocket.hip.shared_coefficient",
+    "ballsocket.hip.coefficient_response": "ballsocket.hip.uncertainty",
     "ballsocket.hip.lives": "ballsocket.hip.cohort",
     "ballsocket.hip.patients": "ballsocket.hip.variability",
     "ballsocket.hip.scatter_file": "ballsocket.hip.uncertainty_config",

@@ -10,6 +10,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..hip.bands import DEFAULT_LEVEL
+from ..hip.cohort_results import RESULT_UNITS
 from ..hip.creep import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.gait import iso_14242_1, iso_14242_4, rocking
@@ -17,7 +18,7 @@ from ..hip.laws import Archard, AreaLaw, Law
 from ..hip.named_cycles import named_cycle
 from ..hip.uncertainty import population
 from ..hip.use import InUse
-from ..hip.variability import RESULT_UNITS, PatientVariability
+from ..hip.variability import PatientVariability
 from ..problem import Joint, Material
 from ..problem.cup import Cup
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular

@@ -12,17 +12,42 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute
 from ..elasticity.off_axis.surfaces import Springs
-from .cohort import CohortResult, summarize_distributions
+from .cohort_results import RESULT_UNITS, CohortResult
 from .contact_checks import list_notes
 from .laws import AreaLaw
-from .shared_coefficient import COEFFICIENT, CONVERTED, SharedCoefficient
-from .variability import RESULT_UNITS, PatientVariability
+from .variability import PatientVariability, summarize_distributions
 
 DEFAULT_LEVEL = 0.95
 """Default fraction of the predictions within a band."""
 
+COEFFICIENT = "coefficient"
+"""Name of the wear coefficient among the sampled quantities."""
+
+CONVERTED = ("volume", "depth", "penetration")
+"""Results that are converted to shared coefficients."""
+
 INFLUENCED_RESULTS = ("volume", "depth", "penetration")
 """Results whose variance is divided among the sampled quantities."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SharedCoefficient:
+    """Results of all patients with one shared wear coefficient, for three coefficients.
+
+    Attributes
+    ----------
+    values : mapping of str to float
+        Coefficients at the lower end, the middle and the upper end of the band of the coefficient.
+    results : mapping of str to array (patients, reports, results)
+        Results of `CONVERTED`, by the names in `values`.
+    """
+
+    values: Mapping[str, float]
+    results: Mapping[str, Numbers]
+
+    def quantile(self, coefficient: str, name: str, fraction: float) -> Numbers:
+        """Compute the quantile of a result of `CONVERTED` over the patients at each report, for one coefficient."""
+        return numpy.nanquantile(self.results[coefficient][:, :, CONVERTED.index(name)], fraction, axis=0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

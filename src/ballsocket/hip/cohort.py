@@ -5,9 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from math import ceil, degrees, isfinite
+from math import ceil
 from pathlib import Path
-from typing import Any
 
 import numpy
 
@@ -20,9 +19,9 @@ from ..core.storage.atomic_files import write_text
 from ..core.storage.fingerprint import check_worker_code, digest_of, fingerprint
 from ..core.storage.pieces import PieceRun, PieceStore
 from ..studies.axes import SampleAxis
-from ..studies.distributions import Distribution
 from .checkpoint import checkpoint
-from .variability import RESULT_UNITS, PatientVariability, contact_table, result_table
+from .cohort_results import RESULT_UNITS, CohortResult, contact_table, join_results, result_table
+from .variability import ANGLES, PatientVariability
 
 PATIENTS_PER_PIECE = 16
 """Patients of one piece of work: about half a second."""
@@ -34,52 +33,11 @@ _LABEL_NAME = "patients.json"
 
 _SERIAL = Serial()
 
-_ANGLES = ("inclination", "anteversion", "tilt")
-"""Quantities that tables show in degrees."""
-
-_SUFFIXES = {"clearance": "_mm", "body_weight": "_N", **dict.fromkeys(_ANGLES, "_deg")}
+_SUFFIXES = {"clearance": "_mm", "body_weight": "_N", **dict.fromkeys(ANGLES, "_deg")}
 """Unit suffixes of the table's columns."""
 
 ProgressCallback = Callable[[int], None]
 """Function that is called with the number of finished patients."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CohortResult:
-    """Results of several patients.
-
-    Attributes
-    ----------
-    table : array (patients, reports, results)
-        Results by `RESULT_UNITS`; NaN for a patient without a result.
-    refused : array of str (patients,)
-        Error messages of the patients without a result; empty for the others.
-    contact : array (patients, 1 + reports, 2)
-        Utilisation and validity (1 or 0) of the contact, unworn and at each report.
-    """
-
-    table: Numbers
-    refused: Numbers
-    contact: Numbers
-
-    @property
-    def peak_utilisation(self) -> Numbers:
-        """Largest utilisation from the first cycle to each report: (patients, reports), NaN if unknown."""
-        return numpy.maximum.accumulate(self.contact[:, :, 0], axis=1)[:, 1:]
-
-    @property
-    def valid(self) -> Numbers:
-        """Validity from the first cycle to each report, 1 or 0: (patients, reports)."""
-        return numpy.minimum.accumulate(self.contact[:, :, 1], axis=1)[:, 1:]
-
-
-def join_results(results: Sequence[CohortResult]) -> CohortResult:
-    """Join the results of consecutive groups of patients."""
-    return CohortResult(
-        table=numpy.concatenate([result.table for result in results]),
-        refused=numpy.concatenate([result.refused for result in results]),
-        contact=numpy.concatenate([result.contact for result in results]),
-    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -295,7 +253,7 @@ def sample_patients(variability: PatientVariability, count: int, seed: int) -> M
 def table_columns(run: CohortRun, result: CohortResult) -> Iterator[tuple[str, Numbers]]:
     """Yield name and values of each column of the table of patients; angles are in degrees."""
     for name, values in run.values.items():
-        yield f"{name}{_SUFFIXES.get(name, '')}", numpy.degrees(values) if name in _ANGLES else values
+        yield f"{name}{_SUFFIXES.get(name, '')}", numpy.degrees(values) if name in ANGLES else values
     for report, count in enumerate(run.counts):
         for column, (name, unit) in enumerate(RESULT_UNITS.items()):
             yield f"{name}_{unit}_at_{count:g}", result.table[:, report, column]
@@ -318,27 +276,15 @@ def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
     return write_text(path, "\n".join([",".join(names), *rows]) + "\n")
 
 
-def summarize_distributions(variability: PatientVariability) -> dict[str, Any]:
-    """Return the distributions of the patients as plain data in mm, N and degrees."""
-    return {name: _summarize(name, distribution) for name, distribution in variability.distributions.items()}
-
-
-def _summarize(name: str, distribution: Distribution) -> dict[str, Any]:
-    factor = degrees(1.0) if name in _ANGLES else 1.0
-    parameters = {parameter.name: getattr(distribution, parameter.name) for parameter in fields(distribution)}
-    shown = {key: factor * value for key, value in parameters.items() if isfinite(value)}
-    return {"distribution": type(distribution).__name__, **shown}
-
-
 __getattr__ = renamed_names(
     __name__,
     {
         "kept": "cohort_store",
         "drawn": "sample_patients",
         "Lives": "CohortRun",
-        "Lived": "CohortResult",
+        "Lived": "ballsocket.hip.cohort_results.CohortResult",
         "Kept": "CohortStore",
-        "joined": "join_results",
+        "joined": "ballsocket.hip.cohort_results.join_results",
         "columns": "table_columns",
     },
 )

@@ -16,9 +16,8 @@ from ..studies.distributions import check_nominal
 from ..studies.scatter import Read, distribution_of
 from .coefficients import share_of_slide, wear_factor, wear_per_energy
 from .laws import AreaLaw, EnergyLaw
-from .uncertainty import DEFAULT_COUNT
 from .use import InUse
-from .variability import SAMPLED_QUANTITIES, PatientVariability
+from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
 
 UNCERTAINTY_KEYS = ("count", "seed", *SAMPLED_QUANTITIES)
 """Keys of the table."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from math import inf, radians
+from math import degrees, inf, isfinite, radians
 from typing import Any
 
 import numpy
@@ -16,7 +16,6 @@ from ..core.deprecation import RenamedAttribute, renamed_names
 from ..elasticity.off_axis.surfaces import Springs
 from ..studies.distributions import Distribution
 from .blocks import Run
-from .contact_checks import utilisation_and_validity
 from .cycle import Cycle
 from .history import Report
 from .laws import CrossShear, Law
@@ -35,21 +34,17 @@ SAMPLED_QUANTITIES = (
 )
 """Quantities that may differ between patients: mm³/(N m), mm, rad, rad, rad, N, and a number."""
 
-RESULT_UNITS: Mapping[str, str] = {
-    "volume": "mm3",
-    "depth": "mm",
-    "penetration": "mm",
-    "max_pressure": "MPa",
-    "creep_depth": "mm",
-    "edge_distance": "mm",
-}
-"""Results of each patient with their units; see `Report`."""
+DEFAULT_COUNT = 64
+"""Default number of samples in each sample set of an uncertainty analysis."""
 
 _COARSE_RINGS = radians(8.0)
 """Least ring width in a patient's simulation, which is quick: its error is below the variability."""
 
 _COARSE_INSTANTS = 32
 """Largest number of instants of a cycle in a patient's simulation."""
+
+ANGLES = ("inclination", "anteversion", "tilt")
+"""Quantities that summaries and tables show in degrees."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -205,24 +200,6 @@ class Patient:
     seen = RenamedAttribute("simulate")
 
 
-def result_table(reports: Sequence[Report]) -> Numbers:
-    """Return the results of `RESULT_UNITS` as an array (reports, results)."""
-    return numpy.array([[_result(report, name) for name in RESULT_UNITS] for report in reports])
-
-
-def contact_table(use: InUse, reports: Sequence[Report]) -> Numbers:
-    """Compute utilisation and validity of the contact, unworn and at each report: (1 + reports, 2)."""
-    return utilisation_and_validity(
-        use.contact_model, use.joint, [use.unworn_worst, *(report.worst_contacts for report in reports)]
-    )
-
-
-def _result(report: Report, name: str) -> float:
-    """Return a result of a report as one number; the edge distance is the least one of the cycle."""
-    value = getattr(report, name)
-    return float(value.min(initial=inf)) if name == "edge_distance" else float(value)
-
-
 def _with_coefficient(wear: Law, value: float) -> Law:
     """A law with another coefficient; where it has two, that on a straight track, and the other in its ratio."""
     law: Any = wear
@@ -275,13 +252,25 @@ def _tabulate_one(cycle: Cycle) -> Cycle:
     return replace(coarse, force=_CycleTable(midpoints, force), angles=_CycleTable(starts, angles))
 
 
+def summarize_distributions(variability: PatientVariability) -> dict[str, Any]:
+    """Return the distributions of the patients as plain data in mm, N and degrees."""
+    return {name: _summarize(name, distribution) for name, distribution in variability.distributions.items()}
+
+
+def _summarize(name: str, distribution: Distribution) -> dict[str, Any]:
+    factor = degrees(1.0) if name in ANGLES else 1.0
+    parameters = {parameter.name: getattr(distribution, parameter.name) for parameter in fields(distribution)}
+    shown = {key: factor * value for key, value in parameters.items() if isfinite(value)}
+    return {"distribution": type(distribution).__name__, **shown}
+
+
 __getattr__ = renamed_names(
     __name__,
     {
         "Scatter": "PatientVariability",
         "SCATTERS": "SAMPLED_QUANTITIES",
-        "ANSWERS": "RESULT_UNITS",
-        "answers_of": "result_table",
-        "contact_over": "contact_table",
+        "ANSWERS": "ballsocket.hip.cohort_results.RESULT_UNITS",
+        "answers_of": "ballsocket.hip.cohort_results.result_table",
+        "contact_over": "ballsocket.hip.cohort_results.contact_table",
     },
 )
