@@ -103,6 +103,14 @@ def test_the_coarse_simulation_differs_little_from_the_full_one():
     assert errors["volume"] == pytest.approx(expected, rel=1e-9)
 
 
+def test_a_cohort_has_the_errors_of_the_coarse_simulation():
+    one = variability(clearance=TIGHT)
+    bands = population(one, [2e6, 1e6], patients=1)[1]
+    assert bands.counts == (1e6, 2e6)
+    full = one.use.after(2e6, [1e6])
+    assert bands.quick_run_errors == pytest.approx(uncertainty(one, full, count=2).quick_run_errors, rel=1e-6)
+
+
 def test_dislocated_patients_are_counted_and_left_out():
     loose = variability(tilt=Rectangular(low=0.0, high=2.0))
     bands = uncertainty(loose, loose.use.after(FEW_CYCLES), count=8)
