@@ -16,7 +16,7 @@ from time import perf_counter
 from typing import Any
 
 import ballsocket as bs
-from ballsocket.hip import Archard, InUse, iso_14242_1
+from ballsocket.hip import Archard, HipSimulation, iso_14242_1
 
 K = 1.066e-6
 LOOKS = (1e4, 3e4, 1e5, 2e5, 5e5, 1e6, 2e6, 5e6)
@@ -35,7 +35,7 @@ CASES: Mapping[str, Mapping[str, float]] = {
 def worn(surface: Any, case: Mapping[str, float]) -> dict[str, list[float]]:
     """Volume, depth, penetration and largest pressure at the looks; the first cycle's rates before them."""
     sizes = {**USUAL, **case}
-    use = InUse(
+    use = HipSimulation(
         joint=bs.Joint(
             head_diameter=sizes["diameter"],
             clearance=sizes["clearance"],

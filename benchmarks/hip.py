@@ -15,7 +15,7 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.hip import Archard, Cycle, InUse, iso_14242_1
+from ballsocket.hip import Archard, Cycle, HipSimulation, iso_14242_1
 
 from .report import Report, Rows
 from .timing import Work, interleaved, one_core
@@ -35,7 +35,9 @@ def swinging(cycle: Cycle) -> Cycle:
 
 
 JOINT = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.Material(young=1000.0, poisson=0.4))
-SPRINGS = InUse(joint=JOINT, cup=bs.Cup(inclination=radians(30.0)), cycle=iso_14242_1(100), wear=Archard(coefficient=K))
+SPRINGS = HipSimulation(
+    joint=JOINT, cup=bs.Cup(inclination=radians(30.0)), cycle=iso_14242_1(100), wear=Archard(coefficient=K)
+)
 CUP = replace(SPRINGS, surface=bs.RealCup())
 SWINGING = replace(CUP, cycle=swinging(iso_14242_1(50)))
 
@@ -54,8 +56,8 @@ def measure() -> Report:
         ),
     }
     rows = Rows("Seconds of a core", ("what", "takes", "aim"))
-    assert SWINGING.unworn.settled
-    assert CUP.unworn.settled  # the rings of the cup are made once, and kept
+    assert SWINGING.unworn.converged
+    assert CUP.unworn.converged  # the rings of the cup are made once, and kept
     with one_core() as pinned:
         _, seconds = interleaved(REPEATS, {name: work for name, (work, _) in quick.items()}, process_time)
     for name, (_, aim) in quick.items():
@@ -67,10 +69,10 @@ def measure() -> Report:
 def _cycle() -> object:
     """All of a first cycle, with nothing kept from others."""
     use = replace(SPRINGS)
-    return use.wear.depth(use.passed(use.unworn))
+    return use.wear.depth(use.exposure(use.unworn))
 
 
-def _worn(volumes: dict[str, float], name: str, use: InUse, cycles: float) -> Callable[[], object]:
+def _worn(volumes: dict[str, float], name: str, use: HipSimulation, cycles: float) -> Callable[[], object]:
     def work() -> None:
         volumes[name] = use.after(cycles).last.volume
 
@@ -78,7 +80,7 @@ def _worn(volumes: dict[str, float], name: str, use: InUse, cycles: float) -> Ca
 
 
 def _by_hand(volumes: dict[str, float]) -> Callable[[], object]:
-    bed: Any = SPRINGS.bed
+    bed: Any = SPRINGS.foundation
     loads = SPRINGS.loads
     steps, outward = SPRINGS.sliding.steps, (bed.normals * bed.areas).T
 

@@ -10,10 +10,10 @@ from time import process_time
 
 import numpy
 
-from ballsocket.hip import InUse, PatientVariability, logarithmic, population
+from ballsocket.hip import HipSimulation, PatientVariability, logarithmic, population
 from ballsocket.hip.cohort import sample_patients
 from ballsocket.hip.cohort_results import RESULT_UNITS, result_table
-from ballsocket.hip.file import read_hip
+from ballsocket.hip.config import read_hip
 from ballsocket.hip.variability import Patient
 
 from .report import Report, Rows
@@ -60,5 +60,5 @@ def _off(scatter: PatientVariability) -> dict[str, numpy.ndarray]:
 
 def _whole(scatter: PatientVariability, quick: Patient, values: dict[str, float]) -> Patient:
     heavier = values["body_weight"] / float(scatter.distributions["body_weight"].frozen.median())
-    use: InUse = replace(quick.use, ring_width=radians(3.0), cycle=scatter.use.cycle.scaled(heavier))
+    use: HipSimulation = replace(quick.use, ring_width=radians(3.0), cycle=scatter.use.cycle.scaled(heavier))
     return replace(quick, use=use)

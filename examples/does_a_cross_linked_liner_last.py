@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import ballsocket as bs
-from ballsocket.hip import Archard, InUse, iso_14242_1, logarithmic
+from ballsocket.hip import Archard, HipSimulation, iso_14242_1, logarithmic
 
 JOINT = bs.Joint(head_diameter=28.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
 FACTORS = {"conventional": (1.066e-6, "#D55E00"), "cross-linked": (2.1e-7, "#0072B2")}
@@ -26,7 +26,7 @@ YEARS = np.array([0.02, 0.1, 0.25, 1.0, 2.0, 4.0, 7.0, 10.0])
 figure = Figure(figsize=(9.0, 3.9), layout="constrained")
 penetration, volume = figure.subplots(1, 2)
 for name, (factor, colour) in FACTORS.items():
-    use = InUse(
+    use = HipSimulation(
         joint=JOINT,
         cup=bs.Cup(inclination=radians(30.0)),
         cycle=iso_14242_1(40),
@@ -37,7 +37,7 @@ for name, (factor, colour) in FACTORS.items():
     )
     reports = use.after(1e7, list(1e6 * YEARS)).reports
     seen = np.array([report.penetration for report in reports])
-    worn = np.array([np.linalg.norm(report.worn_in) for report in reports])
+    worn = np.array([np.linalg.norm(report.wear_displacement) for report in reports])
     late = (seen[-1] - seen[-3]) / (YEARS[-1] - YEARS[-3])
     print(
         f"{name}: {seen[2]:.3f} mm in the first three months, {late:.3f} mm a year from the fourth to the tenth, "

@@ -18,7 +18,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import ballsocket as bs
-from ballsocket.hip import Archard, InUse, iso_14242_1
+from ballsocket.hip import Archard, HipSimulation, iso_14242_1
 
 JOINT = bs.Joint(head_diameter=36.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
 INCLINATIONS = {35: "#009E73", 45: "#0072B2", 55: "#E69F00", 65: "#D55E00"}
@@ -29,7 +29,7 @@ CYCLE = replace(WALK, force=lambda phases: LEAN * WALK.force(phases), cup_tilt=N
 figure = Figure(figsize=(9.0, 3.9), layout="constrained")
 depth, rim = figure.subplots(1, 2)
 for inclination, colour in INCLINATIONS.items():
-    use = InUse(
+    use = HipSimulation(
         joint=JOINT,
         cup=bs.Cup(inclination=radians(inclination)),
         cycle=CYCLE,

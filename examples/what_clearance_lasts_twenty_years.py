@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import ballsocket as bs
-from ballsocket.hip import Activity, Archard, InUse, Mix, in_vivo
+from ballsocket.hip import Activity, Archard, HipSimulation, Mix, in_vivo
 
 WEIGHT = 80.0 * 9.81
 DAYS = {"walking": 1.2e6, "stairs-up": 3e4, "stand-up": 2e4}
@@ -32,7 +32,7 @@ panels = dict(
 )
 for clearance, colour in CLEARANCES.items():
     joint = bs.Joint(head_diameter=36.0, clearance=clearance, liner_thickness=6.0, liner=bs.UHMWPE)
-    use = InUse(
+    use = HipSimulation(
         joint=joint,
         cup=bs.Cup(inclination=radians(30.0)),
         cycle=PATIENT,

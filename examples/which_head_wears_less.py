@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import ballsocket as bs
-from ballsocket.hip import Archard, InUse, iso_14242_1
+from ballsocket.hip import Archard, HipSimulation, iso_14242_1
 
 OUTER_RADIUS = 24.1
 DIAMETERS = {22.2: "#009E73", 28.0: "#0072B2", 32.0: "#E69F00", 36.0: "#D55E00"}
@@ -30,7 +30,7 @@ def worn(diameter: float) -> tuple[np.ndarray, np.ndarray]:
         outer_radius=OUTER_RADIUS,
         liner=bs.UHMWPE,
     )
-    use = InUse(
+    use = HipSimulation(
         joint=joint,
         cup=bs.Cup(inclination=radians(30.0)),
         cycle=iso_14242_1(50),

@@ -11,9 +11,9 @@ import ballsocket as bs
 from ballsocket.core.executors.processes import Serial
 from ballsocket.core.storage.array_files import read_arrays, write_arrays
 from ballsocket.elasticity.off_axis import read_scan
-from ballsocket.hip import InUse
+from ballsocket.hip import HipSimulation
 from ballsocket.hip.gait import iso_14242_1
-from ballsocket.hip.laws import Archard
+from ballsocket.hip.wear_laws import Archard
 
 HIP = bs.joints["hip-28"]
 ELEMENT = bs.ForceElement(bs.HessForsbach(), HIP)
@@ -89,7 +89,7 @@ def test_an_engine_of_another_kind_is_refused(engine):
 def test_a_hip_of_other_parts_is_refused(name, value):
     words = {"joint": HIP, "cycle": iso_14242_1(), "wear": Archard(coefficient=1e-6), name: value}
     with pytest.raises(TypeError, match=f"{name} must be a {name.capitalize()}, got"):
-        InUse(**words)
+        HipSimulation(**words)
 
 
 def test_a_scan_beyond_all_bounds_is_refused_by_its_points(tmp_path, capfd):

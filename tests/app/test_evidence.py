@@ -10,7 +10,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.evidence.question import read_question
-from ballsocket.hip.file import read_hip
+from ballsocket.hip.config import read_hip
 from ballsocket.io.joint_file import JointFile
 
 from .asking import edits, saved, trouble

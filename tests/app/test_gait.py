@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Archard, InUse, Lubricant, iso_14242_1, named_cycle
+from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
 
 from .asking import does, edits, saved, trouble
 
@@ -52,7 +52,7 @@ def told(page, name):
 def test_a_cycle_is_that_of_python():
     page = opened()
     found = gaited(page.screen.file, WHOLE, None, lambda news: None)
-    hip = InUse(joint=page.screen.file.joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6), cup=CUP)
+    hip = HipSimulation(joint=page.screen.file.joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6), cup=CUP)
     film = hip.film(Lubricant())
     assert found.force == pytest.approx(hip.cycle.sizes)
     assert found.pressure == pytest.approx(hip.unworn.pressure.max(axis=1))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Archard, InUse, iso_14242_1
+from ballsocket.hip import Archard, HipSimulation, iso_14242_1
 
 from .asking import does, edits, saved, trouble
 
@@ -67,7 +67,7 @@ def test_a_life_is_that_of_python(at_once):
     assert "has not been run yet" in trouble(page)
     edits(page, "wear.run", True)
     cup = bs.Cup(inclination=radians(40.0), anteversion=radians(15.0))
-    use = InUse(joint=bs.joints["hip-36"], cycle=iso_14242_1(), wear=Archard(coefficient=1e-7), cup=cup)
+    use = HipSimulation(joint=bs.joints["hip-36"], cycle=iso_14242_1(), wear=Archard(coefficient=1e-7), cup=cup)
     last = use.after(1e5, report_at=[1e4 * each for each in range(1, 10)]).last
     assert f"<td>{last.volume:.4g}</td>" in told(page, "numbers")
     rows = [line.split(",") for line in saved(page, "CSV").decode().splitlines()]

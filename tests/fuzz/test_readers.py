@@ -18,9 +18,9 @@ from ballsocket.core.kinds import Kind
 from ballsocket.core.storage.array_files import read_arrays
 from ballsocket.elasticity.off_axis.scans import read_scan
 from ballsocket.evidence.question import read_question
-from ballsocket.hip.coefficients import share_of_slide, wear_factor, wear_per_energy
+from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import Reading, read_cycle
-from ballsocket.hip.file import read_hip
+from ballsocket.hip.law_fields import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.identify.file import read_identify
 from ballsocket.io.units import parse
 
@@ -94,7 +94,7 @@ QUESTIONS = ((EXAMPLES / "evidence.toml").read_bytes(),)
 
 
 @inputs(14)
-@given(text=damage.coefficient | quantity, read=st.sampled_from((wear_factor, wear_per_energy, share_of_slide)))
+@given(text=damage.coefficient | quantity, read=st.sampled_from((wear_factor, wear_per_energy, wear_per_slide)))
 def test_coefficients(text, read):
     with refused_in_a_sentence():
         assert read("coefficient", text) >= 0

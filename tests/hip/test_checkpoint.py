@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ballsocket.core.storage.array_files import read_arrays, write_arrays
-from ballsocket.hip import Archard, OwnLaw, logarithmic
-from ballsocket.hip.blocks import Run
+from ballsocket.hip import Archard, CustomWearLaw, logarithmic
 from ballsocket.hip.checkpoint import checkpoint
-from ballsocket.hip.looks import report_of
+from ballsocket.hip.simulation import make_report
+from ballsocket.hip.wear_integrator import WearIntegrator
 
 from .test_wear import K, hip
 
@@ -35,9 +35,9 @@ def test_a_killed_run_resumes_and_ends_the_same(tmp_path, creep):
     use, report_at = hip(creep=creep), [1e5, 3e5]
     uninterrupted = use.after(4e5, report_at)
     with pytest.raises(KilledError):
-        use.after(4e5, report_at, listen=killed_after(6), store=tmp_path)
+        use.after(4e5, report_at, progress=killed_after(6), store=tmp_path)
     blocks = []
-    resumed = use.after(4e5, report_at, listen=blocks.append, store=tmp_path)
+    resumed = use.after(4e5, report_at, progress=blocks.append, store=tmp_path)
     assert len(blocks) == uninterrupted.steps - 6  # no block is lost
     assert resumed.steps == uninterrupted.steps
     for expected, report in zip(uninterrupted.reports, resumed.reports, strict=True):
@@ -52,7 +52,7 @@ def test_a_finished_run_is_not_repeated_and_can_be_continued(tmp_path):
     use = hip()
     first = use.after(2e5, store=tmp_path)
     blocks = []
-    assert use.after(2e5, listen=blocks.append, store=tmp_path).last.volume == first.last.volume
+    assert use.after(2e5, progress=blocks.append, store=tmp_path).last.volume == first.last.volume
     assert not blocks
     longer = use.after(4e5, [2e5], store=tmp_path)
     assert longer.reports[0].volume == first.last.volume
@@ -85,14 +85,14 @@ def test_a_checkpoint_without_a_report_field_is_refused(tmp_path):
 
 
 def test_a_custom_wear_law_cannot_be_stored(tmp_path):
-    with pytest.raises(ValueError, match="a custom wear law cannot be stored"):
-        hip(wear=OwnLaw(of=lambda cycle: 1e-9 * cycle.work)).after(1e4, store=tmp_path)
+    with pytest.raises(ValueError, match="runs with a CustomWearLaw cannot be stored"):
+        hip(wear=CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)).after(1e4, store=tmp_path)
 
 
 def test_state_and_reports_are_read_as_they_were_written(tmp_path):
     use = hip()
-    run = Run(use=use)
-    reports = [report_of(run.until(cycles, lambda cycles: None)) for cycles in (1e4, 2e4)]
+    run = WearIntegrator(setup=use)
+    reports = [make_report(run.run_until(cycles, lambda cycles: None)) for cycles in (1e4, 2e4)]
     stored = checkpoint(use, tmp_path / "new" / "folder")
     assert stored.read() is None
     stored.write(run.state, tuple(reports))
@@ -104,9 +104,10 @@ def test_state_and_reports_are_read_as_they_were_written(tmp_path):
         for field in fields(report):
             np.testing.assert_array_equal(getattr(report, field.name), getattr(expected, field.name))
             assert (
-                isinstance(getattr(report, field.name), type(getattr(expected, field.name))) or field.name == "settled"
+                isinstance(getattr(report, field.name), type(getattr(expected, field.name)))
+                or field.name == "converged"
             )
-        assert type(report.settled) is bool
+        assert type(report.converged) is bool
         assert type(report.volume) is float
 
 

@@ -14,8 +14,8 @@ from ballsocket.app.gaiting import gait_of
 from ballsocket.app.in_use import Use, hip_of
 from ballsocket.app.screen import START, link_of, read_link
 from ballsocket.app.wearing import life_of
-from ballsocket.hip import Archard, InUse, PatientVariability, iso_14242_1
-from ballsocket.hip.file import read_hip
+from ballsocket.hip import Archard, HipSimulation, PatientVariability, iso_14242_1
+from ballsocket.hip.config import read_hip
 from ballsocket.io.joint_file import JointFile
 from ballsocket.io.joint_toml import cup_table, tables_of
 from ballsocket.studies import Normal
@@ -35,7 +35,7 @@ def tilt_of(use):
 def test_an_explicit_zero_is_worn_upright(words):
     use = hip(cup=bs.Cup(**words))
     assert tilt_of(use) == 0
-    assert not any("standard has it" in note for note in use.notes)
+    assert not any("standard requires" in note for note in use.notes)
     assert tilt_of(hip(cup=bs.Cup(arc_of_cover=2.8))) == 30
 
 
@@ -76,7 +76,7 @@ def test_a_cup_remembers_that_an_angle_was_given():
 
 
 def test_patients_with_a_tilt_of_zero():
-    use = InUse(joint=bs.joints["hip-28"], cycle=iso_14242_1(24), wear=Archard(coefficient=1e-6), cup=bs.Cup())
+    use = HipSimulation(joint=bs.joints["hip-28"], cycle=iso_14242_1(24), wear=Archard(coefficient=1e-6), cup=bs.Cup())
     scatter = PatientVariability(use=use, distributions={"tilt": Normal(mean=0.2, deviation=0.05)})
     assert tilt_of(scatter.patient({"tilt": 0.0}).use) == 0
     assert tilt_of(scatter.patient({}).use) == 30

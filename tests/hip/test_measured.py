@@ -8,8 +8,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.hip import Frame, Mix, iso_14242_1, named_cycle
+from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import Reading, read_cycle
-from ballsocket.hip.file import read_hip
 from ballsocket.hip.sliding import rotation_matrices, slide
 
 from ..cli.command import run

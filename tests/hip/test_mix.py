@@ -135,7 +135,7 @@ def test_whichever_way_the_cup_faces_a_ball_is_in_its_bore_or_on_the_rim():
     seen = [replace(use, cup=bs.Cup().tilted(radians(tilt))) for tilt in np.arange(40.0, 46.0, 0.2)]
     for one in seen:
         assert len(one.loaded) + len(one.separation.instants) == 100
-        assert one.unworn.settled
+        assert one.unworn.converged
         assert np.linalg.norm(one.unworn.displacement, axis=1).max() < 0.6  # it had been metres
     volumes = np.array([one.first.volume for one in seen])
     assert abs(np.diff(volumes) / volumes[:-1]).max() < 0.01
@@ -147,7 +147,7 @@ def test_a_bore_carries_what_the_spring_leaves(surface):
     cup = bs.Cup(inclination=radians(40.0), anteversion=radians(8.0))
     use = hip(36.0, 6.0, cycle=iso_14242_4(50), cup=cup, ring_width=radians(6.0), surface=surface)
     rest, side = use.unworn, np.array(use.placed.frame)[:, 0]
-    carried = np.einsum("tp,kp,p->tk", rest.pressure, use.bed.normals, use.bed.areas)
+    carried = np.einsum("tp,kp,p->tk", rest.pressure, use.foundation.normals, use.foundation.areas)
     expected = use.loads - 100.0 * (rest.displacement @ side)[:, None] * side
     assert np.linalg.norm(expected - use.loads, axis=1).max() > 5.0
     assert carried == pytest.approx(expected, rel=2e-6, abs=2e-6 * np.linalg.norm(use.loads, axis=1).max())

@@ -63,7 +63,7 @@ def interrupted(use, store, blocks):
                 raise KilledError
 
         try:
-            return replace(use).after(CYCLES, REPORTS, listen=listen, store=store)
+            return replace(use).after(CYCLES, REPORTS, progress=listen, store=store)
         except KilledError:
             pass
     raise AssertionError("the run did not end")

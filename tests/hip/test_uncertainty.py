@@ -8,7 +8,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.hip import logarithmic, population, uncertainty
-from ballsocket.hip.file import read_hip
+from ballsocket.hip.config import read_hip
 from ballsocket.hip.uncertainty import share_coefficient
 from ballsocket.output.hip_bands import band_sections, print_bands
 from ballsocket.output.hip_plots import penetration_curve

@@ -11,7 +11,7 @@ import ballsocket as bs
 from ballsocket.hip import (
     Activity,
     Archard,
-    InUse,
+    HipSimulation,
     Mix,
     PatientVariability,
     constant_load,
@@ -37,7 +37,7 @@ WIDE = bs.Joint(
 
 
 def use_of(joint, cycle, **words):
-    return InUse(joint=joint, cycle=cycle, **QUICK | words)
+    return HipSimulation(joint=joint, cycle=cycle, **QUICK | words)
 
 
 def test_a_liner_that_yields_is_not_valid():
@@ -47,7 +47,7 @@ def test_a_liner_that_yields_is_not_valid():
     (check,) = use.unworn_checks
     assert not press.valid
     assert not history.valid
-    assert history.settled
+    assert history.converged
     assert check.max_pressure == pytest.approx(204.0, rel=1e-2)
     assert check.utilisation == pytest.approx(press.utilisation, rel=1e-2)
     assert history.utilisation == check.utilisation
@@ -130,7 +130,7 @@ def test_half_angles_of_round_patches():
     use = use_of(HIP, iso_14242_1(8))
     axis = np.array([np.sin(0.4), 0.0, np.cos(0.4)])
     for angle in (0.2, 0.5, 0.9):
-        field = (axis @ use.bed.directions - np.cos(angle))[None]
+        field = (axis @ use.foundation.directions - np.cos(angle))[None]
         assert half_angles(use.grid, use.reach, field)[0] == pytest.approx(angle, abs=4e-3)
         assert half_angles(use.grid, use.reach, (field > 0) * 1.0)[0] == pytest.approx(angle, abs=3e-2)
 

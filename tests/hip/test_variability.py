@@ -11,8 +11,8 @@ import ballsocket as bs
 from ballsocket.hip import (
     Activity,
     CrossShear,
+    CustomWearLaw,
     Mix,
-    OwnLaw,
     PatientVariability,
     iso_14242_1,
     iso_14242_4,
@@ -106,7 +106,7 @@ def test_a_law_of_two_coefficients_keeps_their_ratio():
 
 def test_a_law_without_a_coefficient_has_no_variable_coefficient():
     with pytest.raises(ValueError, match="coefficient"):
-        variability(hip(wear=OwnLaw(of=lambda cycle: 1e-9 * cycle.work)), coefficient=COEFFICIENT)
+        variability(hip(wear=CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)), coefficient=COEFFICIENT)
 
 
 @pytest.mark.parametrize(
@@ -209,7 +209,7 @@ def test_a_contact_that_does_not_balance_its_load_is_refused(monkeypatch):
 
     patient = variability(clearance=TIGHT).patient({})
     report = patient.simulate([FEW_CYCLES])[0]
-    monkeypatch.setattr(module, "report_of", lambda run: replace(report, settled=False))
+    monkeypatch.setattr(module, "make_report", lambda run: replace(report, converged=False))
     with pytest.raises(ValueError, match="a contact did not balance its load"):
         patient.simulate([FEW_CYCLES])
 

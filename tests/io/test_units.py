@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from ballsocket.hip.coefficients import share_of_slide, wear_factor, wear_per_energy
+from ballsocket.hip.law_fields import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.io.units import LONGEST, convert, parse, parse_units
 
 ENDLESS = [
@@ -20,7 +20,7 @@ ENDLESS = [
 
 
 @pytest.mark.parametrize("text", ENDLESS)
-@pytest.mark.parametrize("read", [wear_factor, wear_per_energy, share_of_slide])
+@pytest.mark.parametrize("read", [wear_factor, wear_per_energy, wear_per_slide])
 def test_a_coefficient_is_not_evaluated(text, read):
     start = time.process_time()
     with pytest.raises(ValueError, match=r"coefficient = .* is not a coefficient, such as '1e-6 mm"):
@@ -63,7 +63,7 @@ def test_anything_else_is_no_product_of_units(text):
 @pytest.mark.parametrize("text", ["2e31 dB", "1 dBm", "1 degC", "1 Np"])
 def test_units_of_another_scale_than_a_factor_are_refused(text):
     with pytest.raises(ValueError, match=r"is not a coefficient, such as '1e-6 mm/m'"):
-        share_of_slide("coefficient", text)
+        wear_per_slide("coefficient", text)
 
 
 def test_a_quantity_has_at_most_a_hundred_characters():

@@ -118,14 +118,13 @@ def _tables(asked: Asked, file: JointFile) -> Tables:
 
 def _hip(file: JointFile, use: Use) -> Tables:
     """The file of a hip in use: what the view of wear shows."""
-    wear = {"law": use.law, "coefficient": use.coefficient, "contact": use.contact}
     return {
         **_joint(file),
         **({"body_weight": use.body_weight} if use.cycle in IN_VIVO else {}),
         "cycles": 1e6 * use.millions,
         "cycle": {"name": use.cycle},
-        "wear": wear | ({"circular": use.circular} if use.law == "cross-shear" else {}),
-        **({"creep": {}} if use.creep == "yes" else {}),
+        "wear": {**use.wear_table, "contact": use.contact},
+        **use.creep_tables,
     }
 
 

@@ -12,7 +12,7 @@ import numpy
 from ..core.quantities import DERIVED, FIELD
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.grid import Grid
-from ..hip.spots import spots_of
+from ..hip.ball_wear import interpolation_at
 from ..output.cup_map import drawn, from_page, highest, on_page
 from ..problem.cup import Cup
 from . import svg
@@ -87,8 +87,8 @@ def cells_of(grid: Grid, values: numpy.ndarray) -> Callable[[numpy.ndarray], num
     """Values of the cells of a grid, (rings, meridians), as a function of directions (..., 3)."""
 
     def at(directions: numpy.ndarray) -> numpy.ndarray:
-        spots = spots_of(grid, numpy.moveaxis(directions, -1, 0).reshape(3, 1, -1))
-        return spots.of(values.reshape(1, -1)).reshape(directions.shape[:-1])
+        spots = interpolation_at(grid, numpy.moveaxis(directions, -1, 0).reshape(3, 1, -1))
+        return spots.interpolate(values.reshape(1, -1)).reshape(directions.shape[:-1])
 
     return at
 

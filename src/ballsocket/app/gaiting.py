@@ -11,10 +11,10 @@ import numpy
 
 from ..elasticity.off_axis.directions import unit_vectors
 from ..hip import Lubricant
+from ..hip.ball_wear import interpolation_at
 from ..hip.contact_checks import largest_utilisation, list_notes
 from ..hip.film import film
 from ..hip.in_vivo import IN_VIVO
-from ..hip.spots import spots_of
 from ..io.joint_file import JointFile
 from .in_use import Own, Use, hip_of
 from .running import Reached, Told
@@ -96,7 +96,7 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
     told(Reached(share=0.3, words="pressing through the cycle"))
     rest, lubricant = hip.unworn, Lubricant()
     told(Reached(share=0.7, words="film and edge"))
-    found, edge = film(hip, hip.bed, hip.sliding, rest, lubricant), hip.edge(rest)
+    found, edge = film(hip, hip.foundation, hip.sliding, rest, lubricant), hip.edge(rest)
     worst, first = edge.worst(hip), hip.first
     checks = hip.unworn_checks
     utilisation, valid = largest_utilisation(checks), all(check.valid for check in checks)
@@ -137,10 +137,10 @@ def _cells(hip: Any, polar: numpy.ndarray) -> bytes:
     """Pressures of the cells of the moving bore over the largest, as bytes: instant by instant."""
     around = 2 * pi * (numpy.arange(MERIDIANS) + 0.5) / MERIDIANS
     middles = unit_vectors(((polar[1:] + polar[:-1]) / 2)[:, None], around)
-    spots = spots_of(hip.grid, numpy.asarray(middles).reshape(3, 1, -1))
+    spots = interpolation_at(hip.grid, numpy.asarray(middles).reshape(3, 1, -1))
     pressure = hip.unworn.pressure
     most = float(pressure.max(initial=0.0)) or 1.0
     frames = numpy.zeros((hip.cycle.instants, RINGS * MERIDIANS), dtype=numpy.uint8)
     for instant, field in zip(hip.loaded, pressure, strict=True):
-        frames[instant] = numpy.rint(_LEVELS * spots.of(field[None])[0] / most)
+        frames[instant] = numpy.rint(_LEVELS * spots.interpolate(field[None])[0] / most)
     return frames.tobytes()

@@ -4,26 +4,55 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from ..core.checks import check_names, require, shown
 from ..core.kinds import Kind
-from ..hip import Cycle, InUse, named_cycle
-from ..hip.coefficients import share_of_slide, wear_factor
+from ..hip import Cycle, HipSimulation, named_cycle
+from ..hip.config import parse_creep, parse_surface
+from ..hip.creep_laws import CREEP_LAWS
 from ..hip.cycle_file import read_cycle
-from ..hip.given_laws import given_creep, given_law, given_surface
 from ..hip.in_vivo import IN_VIVO, check_weight
+from ..hip.law_fields import Law, LawField
 from ..hip.named_cycles import CYCLES
+from ..hip.wear_law import COEFFICIENT
+from ..hip.wear_laws import WEAR_LAWS, read_wear_law
 from ..io.joint_file import JointFile
 from ..io.units import parse
 
 CONTACTS = ("springs", "shell", "cup")
-LAWS = ("archard", "cross-shear", "area")
+LAWS = tuple(WEAR_LAWS)
 _TABLES = (".csv", ".txt", ".dat", ".mot", ".sto")
 _MOST = 50.0
 """Million cycles of a run."""
+
+_NO_CREEP, _DEFAULT_CREEP = "no", "yes"
+_CREEP_PREFIX = "creep_"
+
+
+def _inputs(laws: Mapping[str, type[Law]], prefix: str = "") -> dict[str, LawField]:
+    """Return the required numbers of laws by the names of their inputs."""
+    parts = (part for law in reversed(laws.values()) for part in law.law_fields())
+    return {prefix + part.key: part for part in parts if part.required and not part.listed}
+
+
+def _creep_choices() -> tuple[str, ...]:
+    """Return "no", "yes" for the default law, and the other laws whose required fields are numbers."""
+    _, *others = CREEP_LAWS.items()
+    names = (name for name, law in others if not any(part.listed and part.required for part in law.law_fields()))
+    return (_NO_CREEP, _DEFAULT_CREEP, *names)
+
+
+WEAR_INPUTS = {key: part for key, part in _inputs(WEAR_LAWS).items() if key != COEFFICIENT}
+"""Numbers of wear laws beside the coefficient, by input."""
+
+CREEP_INPUTS = _inputs(CREEP_LAWS, _CREEP_PREFIX)
+"""Numbers of creep laws, by input."""
+
+LAW_INPUTS = WEAR_INPUTS | CREEP_INPUTS
+"""Numbers of all laws beside the wear coefficient, by input."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,12 +71,14 @@ class Use:
         One of CONTACTS.
     law : str
         One of LAWS.
-    coefficient, circular : float
-        In mm³/(N m); of the area law in mm/m. On a circle, where the law is cross-shear.
+    coefficient : float
+        Wear coefficient in the unit of the law.
+    law_numbers : tuple of pairs
+        Other numbers of the laws by the names of `LAW_INPUTS`; the example of the field for others.
     millions : float
         Of cycles.
     creep : str
-        "no" or "yes".
+        "no", "yes" for the default law, or the name of another law.
     spread : float
         Factor of one standard deviation of the coefficient; 1 is a coefficient that is known exactly.
     """
@@ -58,10 +89,10 @@ class Use:
     contact: str = "springs"
     law: str = "archard"
     coefficient: float = 1e-6
-    circular: float = 2e-6
     millions: float = 5.0
     creep: str = "no"
     spread: float = 1.5
+    law_numbers: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         for name, known in CHOICES.items():
@@ -69,18 +100,63 @@ class Use:
         check_weight(self.body_weight)
         if self.instant is not None:
             require("instant", self.instant, 0 <= self.instant < 10_000, "an instant of a cycle counts from 0")
-        coefficient = share_of_slide if self.law == "area" else wear_factor
-        for name in ("coefficient", "circular"):
-            coefficient(name, getattr(self, name))
+        if self.coefficient_field is not None:
+            self.coefficient_field.unit.read(COEFFICIENT, self.coefficient)
+        for name, value in self.law_numbers:
+            LAW_INPUTS[name].check(LAW_INPUTS[name].unit.read(name, value))
         require("spread", self.spread, 1 <= self.spread <= 5, "a factor of 1 (no scatter) to 5")
         require("millions", self.millions, 0 < self.millions <= _MOST, f"above 0, at most {_MOST:g} million cycles")
+
+    @property
+    def coefficient_field(self) -> LawField | None:
+        """Field of the wear coefficient of the law; None for a law without one."""
+        return next((part for part in WEAR_LAWS[self.law].law_fields() if part.key == COEFFICIENT), None)
+
+    @property
+    def used_inputs(self) -> tuple[str, ...]:
+        """Names of `LAW_INPUTS` that the chosen laws have."""
+        creep = self.creep_law
+        wear_keys = [part.key for part in WEAR_LAWS[self.law].law_fields()]
+        creep_keys = [] if creep is None else [_CREEP_PREFIX + part.key for part in creep.law_fields()]
+        return tuple(name for name in LAW_INPUTS if name in (*wear_keys, *creep_keys))
+
+    @property
+    def creep_law(self) -> type[Law] | None:
+        """Chosen creep law; None without creep."""
+        if self.creep == _NO_CREEP:
+            return None
+        return next(iter(CREEP_LAWS.values())) if self.creep == _DEFAULT_CREEP else CREEP_LAWS[self.creep]
+
+    def law_number(self, name: str) -> float:
+        """Return the value of an input of `LAW_INPUTS`."""
+        return dict(self.law_numbers).get(name, LAW_INPUTS[name].example)
+
+    def with_law_number(self, name: str, value: float) -> Use:
+        """Return these settings with another value of an input of `LAW_INPUTS`."""
+        return replace(self, law_numbers=tuple(sorted({**dict(self.law_numbers), name: value}.items())))
+
+    @property
+    def wear_table(self) -> dict[str, Any]:
+        """Table [wear] of a file with the wear law."""
+        numbers = {name: self.law_number(name) for name in self.used_inputs if name in WEAR_INPUTS}
+        coefficient = {} if self.coefficient_field is None else {COEFFICIENT: self.coefficient}
+        return {"law": self.law, **coefficient, **numbers}
+
+    @property
+    def creep_tables(self) -> dict[str, Any]:
+        """Table [creep] of a file, in a mapping by its name; empty without creep."""
+        if self.creep_law is None:
+            return {}
+        numbers = {name: self.law_number(name) for name in self.used_inputs if name in CREEP_INPUTS}
+        law = {} if self.creep == _DEFAULT_CREEP else {"law": self.creep}
+        return {"creep": {**law, **{name.removeprefix(_CREEP_PREFIX): value for name, value in numbers.items()}}}
 
 
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "cycle": CYCLES,
     "contact": CONTACTS,
     "law": LAWS,
-    "creep": ("no", "yes"),
+    "creep": _creep_choices(),
 }
 """What can be chosen, by name."""
 
@@ -91,7 +167,6 @@ _NUMBERS: Mapping[str, Callable[[Any], Any]] = {
     "body_weight": lambda text: parse("body_weight", text, Kind.FORCE),
     "instant": lambda text: _instant(parse("instant", text, Kind.NUMBER)),
     "coefficient": lambda text: parse("coefficient", text, Kind.NUMBER),
-    "circular": lambda text: parse("circular", text, Kind.NUMBER),
     "spread": lambda text: parse("spread", text, Kind.NUMBER),
     "millions": lambda text: parse("millions", text, Kind.NUMBER),
 }
@@ -104,8 +179,12 @@ def _instant(number: float) -> int:
 
 def pairs_of(use: Use) -> list[tuple[str, str]]:
     """What differs from `WHOLE`, as pairs of a link."""
-    names = [each.name for each in fields(use) if getattr(use, each.name) != getattr(WHOLE, each.name)]
-    return [(f"use.{name}", str(getattr(use, name))) for name in names]
+    names = [name for name in _PLAIN_FIELDS if getattr(use, name) != getattr(WHOLE, name)]
+    numbers = [(name, value) for name, value in use.law_numbers if value != LAW_INPUTS[name].example]
+    return [(f"use.{name}", str(value)) for name, value in (*((name, getattr(use, name)) for name in names), *numbers)]
+
+
+_PLAIN_FIELDS = tuple(part.name for part in fields(Use) if part.name != "law_numbers")
 
 
 def use_of(pairs: Mapping[str, str]) -> Use:
@@ -116,9 +195,11 @@ def use_of(pairs: Mapping[str, str]) -> Use:
     ValueError
         One sentence: what is wrong.
     """
-    check_names(pairs, [each.name for each in fields(Use)], "of a hip in use in the link")
-    words: dict[str, Any] = {name: _NUMBERS[name](text) if name in _NUMBERS else text for name, text in pairs.items()}
-    return Use(**words)
+    check_names(pairs, [*_PLAIN_FIELDS, *LAW_INPUTS], "of a hip in use in the link")
+    plain = {name: text for name, text in pairs.items() if name in _PLAIN_FIELDS}
+    words: dict[str, Any] = {name: _NUMBERS[name](text) if name in _NUMBERS else text for name, text in plain.items()}
+    numbers = {name: parse(name, text, Kind.NUMBER) for name, text in pairs.items() if name in LAW_INPUTS}
+    return Use(**words, law_numbers=tuple(sorted(numbers.items())))
 
 
 @dataclass(frozen=True)
@@ -140,21 +221,20 @@ class Own:
             return read_cycle(path, body_weight=body_weight if "%BW" in self.text else None)
 
 
-def hip_of(file: JointFile, use: Use, own: Own | None = None) -> InUse:
+def hip_of(file: JointFile, use: Use, own: Own | None = None) -> HipSimulation:
     """A hip in use: the joint and cup of a file, through a cycle.
 
     Raises
     ------
     ValueError
-        A cycle that pushes the ball over the rim; what `InUse` refuses.
+        A cycle that pushes the ball over the rim; what `HipSimulation` refuses.
     """
     weight = use.body_weight if use.cycle in IN_VIVO else None
-    wear = {"law": use.law, "coefficient": use.coefficient}
-    return InUse(
+    return HipSimulation(
         joint=file.joint,
         cup=file.cup,
         cycle=own.cycle(use.body_weight) if own is not None else named_cycle(use.cycle, body_weight=weight),
-        wear=given_law(wear | ({"circular": use.circular} if use.law == "cross-shear" else {})),
-        surface=given_surface({"contact": use.contact}),
-        creep=given_creep({"creep": {}} if use.creep == "yes" else {}, float(file.joint.liner.poisson)),
+        wear=read_wear_law(use.wear_table),
+        surface=parse_surface({"contact": use.contact}),
+        creep=parse_creep(use.creep_tables, float(file.joint.liner.poisson)),
     )

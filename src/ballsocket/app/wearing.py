@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 
 from ..elasticity.off_axis.grid import Grid
-from ..hip import History, InUse, PatientVariability, population
+from ..hip import HipSimulation, History, PatientVariability, population
 from ..hip.in_vivo import IN_VIVO
 from ..io.joint_file import JointFile
 from ..output.hip_plots import penetration_curve
@@ -72,9 +72,9 @@ class Worn:
 def life_of(file: JointFile, use: Use) -> Hashable:
     """What the years of a design depend on."""
     weight = use.body_weight if use.cycle in IN_VIVO else 0.0
-    circular = use.circular if use.law == "cross-shear" else 0.0
-    plain = replace(use, instant=None)
-    return file.joint, file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0, circular=circular)
+    numbers = tuple((name, use.law_number(name)) for name in use.used_inputs)
+    plain = replace(use, instant=None, law_numbers=numbers)
+    return file.joint, file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0)
 
 
 def worn(files: Sequence[JointFile], use: Use, told: Told) -> list[Worn]:
@@ -98,14 +98,14 @@ def worn(files: Sequence[JointFile], use: Use, told: Told) -> list[Worn]:
     return found
 
 
-def _life(hip: InUse, use: Use, reached: Any) -> Worn:
+def _life(hip: HipSimulation, use: Use, reached: Any) -> Worn:
     cycles = 1e6 * use.millions
     looks = [share * cycles / _LOOKS for share in range(1, _LOOKS + 1)]
     history = hip.after(
         cycles, looks, lambda done: reached(0.05 + 0.65 * done / cycles, f"{done / 1e6:.3g} million cycles")
     )
     bands = None
-    if use.spread > 1 and use.coefficient > 0 and use.law == "archard":
+    if use.spread > 1 and use.coefficient > 0 and use.coefficient_field is not None:
         reached(0.72, "the band of the wear coefficient")
         wear = {"coefficient": LogNormal(median=use.coefficient, factor=use.spread)}
         counts = [report.cycles for report in history.reports]
@@ -114,7 +114,7 @@ def _life(hip: InUse, use: Use, reached: Any) -> Worn:
     return _plain(hip, history, bands)
 
 
-def _plain(hip: InUse, history: History, bands: Any) -> Worn:
+def _plain(hip: HipSimulation, history: History, bands: Any) -> Worn:
     reports = history.reports
     courses = {
         name: numpy.array([0.0, *(getattr(report, name) for report in reports)])

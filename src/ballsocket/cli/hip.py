@@ -14,10 +14,11 @@ from rich.progress import BarColumn, Progress, TextColumn
 import ballsocket as bs
 
 from ..core.executors.processes import Engine, Serial
+from ..hip.bands import Bands
 from ..hip.cohort import cohort_store, write_csv
-from ..hip.file import HipFile, read_hip
+from ..hip.config import HipFile, read_hip
 from ..hip.history import History
-from ..hip.uncertainty import Bands, population, uncertainty
+from ..hip.uncertainty import population, uncertainty
 from ..output.hip_bands import print_bands, print_notes
 from ..output.hip_report import check_page, write_hip_report
 from ..output.hip_terminal import print_hip
@@ -62,14 +63,14 @@ def hip(
             print_bands(bands)
     if report is not None:  # last: what was computed is told, should the page not be written
         write_hip_report(history, report, bands)
-    if not history.settled:
+    if not history.converged:
         typer.echo("ballsocket: a contact did not balance its load (see the notes)", err=True)
         raise typer.Exit(FAILURE)
 
 
 def _worn(given: HipFile, store: Path | None) -> History:
     with _bar("wearing", given.cycles, "cycles") as listen:
-        return given.use.after(given.cycles, given.report_at, listen=listen, lubricant=given.lubricant, store=store)
+        return given.use.after(given.cycles, given.report_at, progress=listen, lubricant=given.lubricant, store=store)
 
 
 def _bands(given: HipFile, history: History, engine: Engine) -> Bands | None:

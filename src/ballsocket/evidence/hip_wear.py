@@ -11,14 +11,15 @@ import numpy
 from ..core.arrays import Numbers
 from ..hip.bands import DEFAULT_LEVEL
 from ..hip.cohort_results import RESULT_UNITS
-from ..hip.creep import logarithmic
+from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.gait import iso_14242_1, iso_14242_4, rocking
-from ..hip.laws import Archard, AreaLaw, Law
 from ..hip.named_cycles import named_cycle
+from ..hip.simulation import HipSimulation
 from ..hip.uncertainty import population
-from ..hip.use import InUse
 from ..hip.variability import PatientVariability
+from ..hip.wear_law import WearLaw
+from ..hip.wear_laws import Archard, ContactAreaWear
 from ..problem import Joint, Material
 from ..problem.cup import Cup
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
@@ -48,7 +49,7 @@ _CLEARANCE = Rectangular(low=0.05, high=0.2)
 PATIENTS = 64
 
 
-def in_use(diameter: float, cycle: Cycle, tilt_deg: float = 30.0, wear: Law | None = None) -> InUse:
+def in_use(diameter: float, cycle: Cycle, tilt_deg: float = 30.0, wear: WearLaw | None = None) -> HipSimulation:
     """A hip of a head of this diameter in mm, with the rest of `INPUTS`."""
     joint = Joint(
         ball_radius=diameter / 2,
@@ -57,7 +58,7 @@ def in_use(diameter: float, cycle: Cycle, tilt_deg: float = 30.0, wear: Law | No
         liner=Material(young=1000.0, poisson=0.4),
     )
     law = wear or Archard(coefficient=CONVENTIONAL)
-    return InUse(joint=joint, cycle=cycle, wear=law, cup=Cup(inclination=radians(tilt_deg)))
+    return HipSimulation(joint=joint, cycle=cycle, wear=law, cup=Cup(inclination=radians(tilt_deg)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,7 +100,7 @@ class Ratio:
 def ratios() -> Iterator[Ratio]:
     """The ratios of rates of unworn bores."""
     walk, off = iso_14242_1(), iso_14242_4()
-    area = AreaLaw(coefficient=1e-6)
+    area = ContactAreaWear(coefficient=1e-6)
     rocked = [in_use(28.0, rocking(), 0.0), in_use(22.225, rocking(), 0.0)]
     yield Ratio(
         one="clarke-28",
@@ -118,7 +119,7 @@ def ratios() -> Iterator[Ratio]:
         yield Ratio(one=one, other=other, archard=_rate(hips[0]) / _rate(hips[1]))
 
 
-def _rate(use: InUse) -> float:
+def _rate(use: HipSimulation) -> float:
     """The rate of the first cycle, in mm³ a million."""
     return use.first.volume
 
@@ -175,7 +176,7 @@ def _of(k: float) -> LogNormal:
     return LogNormal(median=k * _K.median, factor=_K.factor)
 
 
-def _table(use: InUse, distributions: dict[str, Distribution], counts: list[float], count: int) -> Numbers:
+def _table(use: HipSimulation, distributions: dict[str, Distribution], counts: list[float], count: int) -> Numbers:
     return population(PatientVariability(use=use, distributions=distributions), counts, patients=count)[1].lived.table
 
 

@@ -15,7 +15,7 @@ from ..contact import Model
 from ..core.checks import check_text, nearest, require, shown
 from ..core.input_files import open_input, recorded_inputs, resolve_input
 from ..core.quantities import QUANTITIES
-from ..hip.file import read_hip
+from ..hip.config import read_hip
 from ..io.joint_file import KEYS, JointFile, check_keys
 from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of

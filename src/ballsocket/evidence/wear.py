@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from ..hip.file import HipFile, read_hip
+from ..hip.config import HipFile, read_hip
+from ..hip.simulation import HipSimulation
 from ..hip.uncertainty import uncertainty
-from ..hip.use import InUse
 from ..studies.parameters import LOADS, pressable
 from .matrix import Case
 from .question import Question
@@ -41,7 +41,7 @@ def _rate(question: Question, given: HipFile, case: Case) -> float | None:
         return None
 
 
-def _use(question: Question, given: HipFile, case: Case) -> InUse:
+def _use(question: Question, given: HipFile, case: Case) -> HipSimulation:
     """The hip of the file with the joint of a case, its cup as the case turns it."""
     joint, _, _ = pressable(question.file.joint, dict(_shape(case)))
     facing: dict[str, Any] = {name: case[name] for name in _FACING if name in case}

@@ -1,35 +1,42 @@
-"""The hip in use: gait, sliding, wear and creep over millions of cycles, film and friction."""
+"""Wear simulation of hip joints: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
 from .bands import Bands
-from .creep import Ladder, constrained_share, logarithmic
+from .creep_law import constrained_share
+from .creep_laws import KelvinVoigtChain, LogarithmicCreep, logarithmic
 from .cycle import Cycle, Frame, Spring
 from .film import Film, Lubricant
 from .gait import constant_load, flexion, iso_14242_1, iso_14242_1_key_points, iso_14242_4, rocking, two_axis
 from .history import History
 from .in_vivo import in_vivo
-from .laws import Archard, AreaLaw, CrossShear, EnergyLaw, OwnLaw
 from .mix import Activity, Mix
 from .named_cycles import named_cycle
+from .simulation import HipSimulation
 from .uncertainty import population, uncertainty
-from .use import InUse
 from .variability import PatientVariability
+from .wear_laws import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 
-Scatter = PatientVariability
-"""Name of `PatientVariability` in version 1.0."""
+AreaLaw, EnergyLaw, OwnLaw = ContactAreaWear, FrictionEnergyWear, CustomWearLaw
+InUse, Ladder, Scatter = HipSimulation, KelvinVoigtChain, PatientVariability
 
 __all__ = [
     "Activity",
     "Archard",
     "AreaLaw",
     "Bands",
+    "ContactAreaWear",
     "CrossShear",
+    "CustomWearLaw",
     "Cycle",
     "EnergyLaw",
     "Film",
     "Frame",
+    "FrictionEnergyWear",
+    "HipSimulation",
     "History",
     "InUse",
+    "KelvinVoigtChain",
     "Ladder",
+    "LogarithmicCreep",
     "Lubricant",
     "Mix",
     "OwnLaw",

@@ -14,8 +14,8 @@ from ..core.deprecation import RenamedAttribute
 from ..elasticity.off_axis.surfaces import Springs
 from .cohort_results import RESULT_UNITS, CohortResult
 from .contact_checks import list_notes
-from .laws import AreaLaw
 from .variability import PatientVariability, summarize_distributions
+from .wear_law import coefficient_field
 
 DEFAULT_LEVEL = 0.95
 """Default fraction of the predictions within a band."""
@@ -180,8 +180,9 @@ class Bands:
         if COEFFICIENT not in self.variability.distributions:
             return ()
         low, high = self.variability.distributions[COEFFICIENT].frozen.ppf(self._tails)
-        unit = "" if isinstance(self.variability.use.wear, AreaLaw) else " mm³/(N m)"
-        band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g}{unit}"
+        coefficient = coefficient_field(self.variability.use.wear)
+        unit = "" if coefficient is None else coefficient.unit.text
+        band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
         return (f"the wear coefficient is unknown, but the same for all patients: {band}",)
 
     @property

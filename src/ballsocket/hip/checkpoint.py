@@ -13,9 +13,8 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.storage.array_files import read_arrays, write_arrays
 from ..core.storage.fingerprint import digest_of
+from .hip_setup import HipSetup
 from .history import Report
-from .laws import OwnLaw
-from .set_up import SetUp
 
 _VERSION = 6
 """Version of the file's format."""
@@ -98,17 +97,20 @@ def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
     return Report(**values)
 
 
-def checkpoint(use: SetUp, folder: Path) -> Checkpoint:
+def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
     """Return the checkpoint of a hip's run in a folder.
 
     Raises
     ------
     ValueError
-        A custom wear law, whose function has no fingerprint.
+        A wear law by a function, which has no fingerprint.
     """
-    if isinstance(use.wear, OwnLaw) or isinstance(use.ball_wear, OwnLaw):
-        raise ValueError("a run with a custom wear law cannot be stored: its function has no fingerprint")
-    loads = sha256(b"".join(array.tobytes() for array in (use.loads, use.tether, use.turns, use.loaded))).hexdigest()
+    for law in (use.wear, use.ball_wear):
+        if not getattr(law, "storable", True):
+            raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function has no fingerprint")
+    loads = sha256(
+        b"".join(array.tobytes() for array in (use.loads, use.lateral_stiffness, use.turns, use.loaded))
+    ).hexdigest()
     inputs = (
         use.joint,
         use.placed,

@@ -11,7 +11,7 @@ import numpy
 from ..core.arrays import Numbers
 from .contact_checks import utilisation_and_validity
 from .history import Report
-from .use import InUse
+from .simulation import HipSimulation
 
 RESULT_UNITS: Mapping[str, str] = {
     "volume": "mm3",
@@ -67,7 +67,7 @@ def result_table(reports: Sequence[Report]) -> Numbers:
     return numpy.array([[_result(report, name) for name in RESULT_UNITS] for report in reports])
 
 
-def contact_table(use: InUse, reports: Sequence[Report]) -> Numbers:
+def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
     """Compute utilisation and validity of the contact, unworn and at each report: (1 + reports, 2)."""
     return utilisation_and_validity(
         use.contact_model, use.joint, [use.unworn_worst, *(report.worst_contacts for report in reports)]

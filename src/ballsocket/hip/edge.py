@@ -10,7 +10,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..elasticity.off_axis.grid import Grid
-from .placing import Placed
+from .cup_frame import CupFrame
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,14 +72,14 @@ class Edge:
     place: Numbers
     pressure: Numbers
 
-    def nearest(self, use: Placed) -> int | None:
+    def nearest(self, use: CupFrame) -> int | None:
         """Which of the contacts comes nearest; of several, that of the largest load; None where nothing is pressed."""
         if not len(self.distance):
             return None
         near = numpy.flatnonzero(self.distance <= self.distance.min())
         return int(near[numpy.linalg.norm(use.loads[near], axis=1).argmax()])
 
-    def worst(self, use: Placed) -> Worst | None:
+    def worst(self, use: CupFrame) -> Worst | None:
         """The worst instant; None where nothing is pressed."""
         chosen = self.nearest(use)
         if chosen is None:

@@ -1,4 +1,4 @@
-"""The film between ball and socket over a cycle, and what friction does: moment, power, heat."""
+"""Lubricant film between ball and socket over a cycle, and friction: moment, power, heat."""
 
 from __future__ import annotations
 
@@ -11,28 +11,31 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..problem import Joint, Material
-from .placing import Placed
+from .cup_frame import CupFrame
 from .sliding import Sliding
-from .springs import CycleBed, Rest
+from .socket_foundation import CycleEquilibrium, SocketFoundation
 
-CONFORMING = (
-    "Hamrock and Dowson's films are those of bodies that hardly conform: here they tell a regime, not a thickness"
+CONFORMITY_NOTE = (
+    "Hamrock and Dowson's formulas hold for bodies of low conformity: here they give a regime, not a thickness"
 )
-_MIXED, _FULL = 1.0, 3.0
+"""Note on the film thickness of a conforming joint."""
+
+_MIXED_RATIO, _FULL_RATIO = 1.0, 3.0
+"""Film ratios at which mixed and full-film lubrication begin."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Lubricant:
-    """What lies between ball and socket, and how rough they are.
+    """Lubricant between ball and socket, with roughness and friction of the surfaces.
 
     Parameters
     ----------
     viscosity : float
-        In Pa s: 2.5e-3 (default) in a joint, about 1e-3 in diluted serum.
+        Viscosity in Pa s: 2.5e-3 (default) in a joint, about 1e-3 in diluted serum.
     ball_roughness, cup_roughness : float
-        Ra in mm, 2e-5 and 1e-3 by default.
+        Roughness Ra in mm, 2e-5 and 1e-3 by default.
     friction : float
-        The coefficient of friction, 0.06 by default.
+        Coefficient of friction, 0.06 by default.
     """
 
     viscosity: float = 2.5e-3
@@ -49,28 +52,29 @@ class Lubricant:
 
 
 def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float) -> tuple[Numbers, Numbers]:
-    """The least and the central thickness of a film in mm, by Hamrock and Dowson: isoviscous, elastic, circular.
+    """Compute the minimum and the central film thickness in mm by Hamrock and Dowson: isoviscous, elastic, circular.
 
     Parameters
     ----------
     joint : Joint
     force : array
-        In N.
+        Load in N.
     spin : array
-        Of the ball across the load, in rad/s.
+        Rotation rate of the ball perpendicular to the load, in rad/s.
     viscosity : float
-        In Pa s.
+        Viscosity in Pa s.
 
     Returns
     -------
     pair of arrays
-        NaN without clearance, where no body of revolution stands for ball and socket.
+        Thicknesses; NaN without clearance, where no equivalent sphere exists.
     """
     if float(joint.clearance) == 0:
         return numpy.full_like(force, numpy.nan), numpy.full_like(force, numpy.nan)
     # h_min = 2.80 R* U^.65 W^-.21, h_cen = 3.34 R* U^.64 W^-.22, U = ηu/(E'R*), W = F/(E'R*²), u = ωR1/2
     radius = float(joint.ball_radius * joint.socket_radius / joint.clearance)
-    modulus = 2 / (_give(joint.liner) + (0.0 if joint.ball is None else _give(joint.ball)))
+    ball_compliance = 0.0 if joint.ball is None else _plane_strain_compliance(joint.ball)
+    modulus = 2 / (_plane_strain_compliance(joint.liner) + ball_compliance)
     speed = 1e-6 * viscosity * spin * float(joint.ball_radius) / 2 / (modulus * radius)
     load = force / (modulus * radius**2)
     with numpy.errstate(divide="ignore", invalid="ignore"):
@@ -78,30 +82,30 @@ def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float
     return least, central
 
 
-def _give(material: Material) -> float:
+def _plane_strain_compliance(material: Material) -> float:
     return float((1 - material.poisson**2) / material.young)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Film:
-    """A cycle of film and friction, over the instants in which the ball is pressed.
+    """Film and friction of a cycle in the loaded instants.
 
     Attributes
     ----------
     phases : array (instants,)
-        0 to 1.
+        Phases of the cycle, 0 to 1.
     least, central : array (instants,)
-        Thickness in mm.
+        Minimum and central thickness in mm.
     ratio : array (instants,)
-        λ, the least thickness over the roughness of both.
+        Film ratio λ: minimum thickness over the combined roughness.
     moment : array (instants, 3)
-        Of friction on the cup about its centre in N mm, in the cup's frame; that on the ball is its opposite.
+        Friction moment on the cup about its centre in N mm, in the cup's frame; the moment on the ball is opposite.
     power : array (instants,)
-        Of friction in W.
+        Friction power in W.
     heat : float
-        Of a cycle in J.
+        Friction heat of a cycle in J.
     duration : float
-        Of a cycle in s.
+        Duration of a cycle in s.
     """
 
     phases: Numbers
@@ -115,18 +119,18 @@ class Film:
 
     @property
     def regime(self) -> str:
-        """Where the film is thickest: boundary, mixed or full; unknown without clearance."""
+        """Lubrication regime at the thickest film: boundary, mixed or full; unknown without clearance."""
         largest = float(self.ratio.max(initial=0.0))
         if numpy.isnan(largest):
             return "unknown"
-        return "boundary" if largest < _MIXED else "mixed" if largest < _FULL else "full"
+        return "boundary" if largest < _MIXED_RATIO else "mixed" if largest < _FULL_RATIO else "full"
 
     def summary(self) -> dict[str, Any]:
-        """For JSON; thickness in nm."""
+        """Return the film as data for JSON, with thicknesses in nm."""
         if not len(self.phases):
             return {}
         size = numpy.linalg.norm(self.moment, axis=1)
-        told = {
+        values = {
             "least_nm": 1e6 * self.least.min(),
             "largest_nm": 1e6 * self.least.max(),
             "lambda_least": self.ratio.min(),
@@ -135,35 +139,49 @@ class Film:
             "power_W": self.heat / self.duration,
             "heat_J_per_cycle": self.heat,
         }
-        numbers = {name: float(each) if numpy.isfinite(each) else None for name, each in told.items()}
-        most = [float(part) for part in self.moment[size.argmax()]]
-        return {**numbers, "moment_on_cup_Nmm": most, "regime": self.regime, "note": CONFORMING}
+        numbers = {name: float(value) if numpy.isfinite(value) else None for name, value in values.items()}
+        largest_moment = [float(component) for component in self.moment[size.argmax()]]
+        return {**numbers, "moment_on_cup_Nmm": largest_moment, "regime": self.regime, "note": CONFORMITY_NOTE}
 
 
-def film(placed: Placed, bed: CycleBed, sliding: Sliding, rest: Rest, lubricant: Lubricant) -> Film:
-    """The film and the friction of a cycle of contacts, where the ball slides so over this bore."""
-    instant = placed.cycle.seconds[placed.loaded]
-    carried = placed.carried(rest.displacement)
-    size = numpy.linalg.norm(carried, axis=1)
-    across = numpy.linalg.norm(numpy.cross(placed.turns, carried), axis=1) / numpy.where(size > 0, size, 1.0)
-    least, central = film_thickness(placed.joint, size, across / instant, lubricant.viscosity)
-    rough = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
-    work = lubricant.friction * numpy.einsum("tp,tp,p->t", rest.pressure, sliding.steps, bed.areas)
+def film(
+    cup_frame: CupFrame,
+    foundation: SocketFoundation,
+    sliding: Sliding,
+    equilibrium: CycleEquilibrium,
+    lubricant: Lubricant,
+) -> Film:
+    """Compute film and friction of a cycle from its contacts and its sliding."""
+    durations = cup_frame.cycle.seconds[cup_frame.loaded]
+    forces = cup_frame.socket_forces(equilibrium.displacement)
+    size = numpy.linalg.norm(forces, axis=1)
+    spin = numpy.linalg.norm(numpy.cross(cup_frame.turns, forces), axis=1) / numpy.where(size > 0, size, 1.0)
+    least, central = film_thickness(cup_frame.joint, size, spin / durations, lubricant.viscosity)
+    roughness = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
+    work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.steps, foundation.areas)
     return Film(
-        phases=placed.cycle.phases[placed.loaded],
+        phases=cup_frame.cycle.phases[cup_frame.loaded],
         least=least,
         central=central,
-        ratio=least / rough if rough > 0 else numpy.full_like(least, inf),
-        moment=lubricant.friction * _moment(bed, sliding, rest.pressure),
-        power=1e-3 * work / instant,
+        ratio=least / roughness if roughness > 0 else numpy.full_like(least, inf),
+        moment=lubricant.friction * _unit_moment(foundation, sliding, equilibrium.pressure),
+        power=1e-3 * work / durations,
         heat=1e-3 * float(work.sum()),
-        duration=placed.cycle.duration,
+        duration=cup_frame.cycle.duration,
     )
 
 
-def _moment(bed: CycleBed, sliding: Sliding, pressure: Numbers) -> Numbers:
-    """∫ R n × v/abs(v) p dA, v = R ω × n: n × (ω × n) = ω - (ω·n) n; in N mm: (instants, 3)."""
-    n, turns, steps = bed.directions, sliding.turns, sliding.steps
-    share = numpy.divide(pressure * bed.areas * sliding.radius**2, steps, out=numpy.zeros_like(steps), where=steps > 0)
-    along = share * (turns @ n)
-    return turns * share.sum(axis=1)[:, None] - along @ n.T
+def _unit_moment(foundation: SocketFoundation, sliding: Sliding, pressure: Numbers) -> Numbers:
+    """Compute the friction moment on the cup for a coefficient of friction of 1, in N mm: (instants, 3).
+
+    It is ∫ R n × v/abs(v) p dA with v = R ω × n, and n × (ω × n) = ω - (ω·n) n.
+    """
+    n, rotations, distances = foundation.directions, sliding.turns, sliding.steps
+    weight = numpy.divide(
+        pressure * foundation.areas * sliding.radius**2,
+        distances,
+        out=numpy.zeros_like(distances),
+        where=distances > 0,
+    )
+    along_normal = weight * (rotations @ n)
+    return rotations * weight.sum(axis=1)[:, None] - along_normal @ n.T

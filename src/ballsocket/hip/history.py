@@ -1,4 +1,4 @@
-"""What becomes of a hip in use: numbers of the first cycle, and what is seen later on."""
+"""Results of a wear simulation: reports at cycle counts, with numerical errors and notes."""
 
 from __future__ import annotations
 
@@ -12,16 +12,18 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.deprecation import RenamedAttribute, renamed_names
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_notes
 from .edge import Edge, Worst
 from .film import Lubricant
+from .hip_setup import HipSetup
+from .law_fields import law_summary
 from .mix import Mix
-from .set_up import SetUp
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Report:
-    """A hip after a number of cycles.
+    """State of a hip after a number of cycles.
 
     Attributes
     ----------
@@ -29,33 +31,33 @@ class Report:
     wear : array (rings, meridians)
         Worn depth in mm on the grid of the bore.
     volume, depth : float
-        Worn away: mm³, and mm at the deepest point.
+        Worn volume in mm³ and largest worn depth in mm.
     work : float
         ∫ p v dA dt of all cycles so far, in N mm.
     displacement : array (3,)
-        How far the ball's centre has moved since the first cycle at the largest force, in mm, in the cup's frame.
-    worn_in, crept_in : array (3,)
-        The same of a bore that were only worn, and of one that had only crept.
+        Displacement of the ball's centre at the largest force since the first cycle, in mm, in the cup's frame.
+    wear_displacement, creep_displacement : array (3,)
+        The same for a bore with the wear alone, and for a bore with the creep alone.
     max_pressure : float
-        In the cycle, in MPa.
+        Largest pressure of the cycle in MPa.
     edge_distance : array (loaded,)
-        From the edge of each contact of the cycle to the end of the bore in mm; 0 where it reaches it.
+        Arc from the edge of each contact of the cycle to the end of the bore in mm; 0 where the contact reaches it.
     edge_place : array (loaded,)
-        Where that is around the cup's axis, in rad from its uppermost point.
+        Azimuth of that edge around the cup's axis, in rad from its uppermost point.
     edge_pressure : array (loaded,)
         Largest pressure in MPa in the outermost ring of cells.
     crept : array (rings, meridians)
         Depth of creep in mm.
     creep_depth : float
-        At the point that has crept furthest, in mm.
+        Largest depth of creep in mm.
     ball_wear : array (cells,)
-        Worn depth of the ball in mm, in the cells of `facing.ball_grid`; empty where it does not wear.
+        Worn depth of the ball in mm, in the cells of `HipSimulation.ball_grid`; empty for a ball without wear.
     ball_volume, ball_depth : float
-        Worn away of the ball: mm³, and mm at the deepest point.
+        Worn volume of the ball in mm³ and largest worn depth in mm.
     worst_contacts : array (activities, 5)
         Contact with the largest pressure in each activity; see `contact_checks.COLUMNS`.
-    settled : bool
-        Whether every contact balanced its load.
+    converged : bool
+        True if every contact balanced its load.
     """
 
     cycles: float
@@ -64,8 +66,8 @@ class Report:
     depth: float
     work: float
     displacement: Numbers
-    worn_in: Numbers
-    crept_in: Numbers
+    wear_displacement: Numbers
+    creep_displacement: Numbers
     max_pressure: float
     edge_distance: Numbers
     edge_place: Numbers
@@ -76,28 +78,31 @@ class Report:
     ball_volume: float = 0.0
     ball_depth: float = 0.0
     worst_contacts: Numbers = field(default_factory=lambda: numpy.zeros((0, len(COLUMNS))))
-    settled: bool = True
+    converged: bool = True
+    worn_in = RenamedAttribute("wear_displacement")
+    crept_in = RenamedAttribute("creep_displacement")
+    settled = RenamedAttribute("converged")
 
     @property
     def penetration(self) -> float:
-        """How far the ball's centre has moved, in mm."""
+        """Distance by which the ball's centre has moved since the first cycle, in mm."""
         return float(numpy.linalg.norm(self.displacement))
 
     @property
     def edge(self) -> Edge:
-        """How near the contacts come to the rim."""
+        """Edges of the contacts nearest to the rim."""
         return Edge(distance=self.edge_distance, place=self.edge_place, pressure=self.edge_pressure)
 
     def summary(self) -> dict[str, Any]:
-        """For JSON, in mm, MPa, mm³."""
+        """Return the report as data for JSON, in mm, MPa and mm³."""
         return {
             "cycles": self.cycles,
             "volume": self.volume,
             "depth": self.depth,
             "penetration": self.penetration,
             "penetration_vector": [float(part) for part in self.displacement],
-            "penetration_of_wear": float(numpy.linalg.norm(self.worn_in)),
-            "penetration_of_creep": float(numpy.linalg.norm(self.crept_in)),
+            "penetration_of_wear": float(numpy.linalg.norm(self.wear_displacement)),
+            "penetration_of_creep": float(numpy.linalg.norm(self.creep_displacement)),
             "max_pressure": self.max_pressure,
             "creep_depth": self.creep_depth,
             "ball_volume": self.ball_volume,
@@ -107,10 +112,15 @@ class Report:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Error:
-    """What volume and depth may be off by, relative to them, for this joint, law and cycle.
+class NumericalError:
+    """Estimated relative errors of volume and depth for this joint, law and cycle.
 
-    `blocks` is the part of the geometry's updates; rings and instants are in the other two.
+    Attributes
+    ----------
+    blocks : float
+        Part of the error by blocks of cycles with one geometry.
+    volume, depth : float
+        Total errors, by blocks, rings and time steps.
     """
 
     blocks: float
@@ -120,32 +130,34 @@ class Error:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
-    """What became of a hip in use.
+    """Results of a wear simulation.
 
     Attributes
     ----------
-    use : InUse
+    use : HipSimulation
     reports : tuple of Report
-    error : Error
+    error : NumericalError
     steps : int
-        Blocks in which the geometry was updated.
+        Number of blocks of cycles, each with one geometry.
     lubricant : Lubricant
     """
 
-    use: SetUp
+    use: HipSetup
     reports: tuple[Report, ...]
-    error: Error
+    error: NumericalError
     steps: int
     lubricant: Lubricant = Lubricant()  # noqa: RUF009 (frozen)
+    settled = RenamedAttribute("converged")
 
     @property
     def last(self) -> Report:
+        """Report at the end."""
         return self.reports[-1]
 
     @property
-    def settled(self) -> bool:
-        """Whether every contact balanced its load."""
-        return all(report.settled for report in self.reports)
+    def converged(self) -> bool:
+        """True if every contact balanced its load."""
+        return all(report.converged for report in self.reports)
 
     @cached_property
     def contact_checks(self) -> tuple[tuple[ContactCheck, ...], ...]:
@@ -155,7 +167,7 @@ class History:
     @property
     def valid(self) -> bool:
         """True if every contact balances its load and the worst contacts are inside their model's validity."""
-        return self.settled and self.contact_valid
+        return self.converged and self.contact_valid
 
     @property
     def contact_valid(self) -> bool:
@@ -170,44 +182,46 @@ class History:
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes on cycle, cup, laws, contact model and rim."""
-        unsettled = () if self.settled else (_UNSETTLED,)
-        return (*self._contact_notes, *self.use.notes, *self._worn_through, *self._at_the_rim, *unsettled)
+        unbalanced = () if self.converged else (_NOT_CONVERGED,)
+        return (*self._contact_notes, *self.use.notes, *self._thin_liner_notes, *self._rim_notes, *unbalanced)
 
     @property
     def _contact_notes(self) -> tuple[str, ...]:
         """Notes of the contact model, each at its first occurrence."""
-        later = (_LATER.format(report.cycles) for report in self.reports)
-        return tuple(list_notes([(_NEW, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)]))
+        later = (_AFTER_CYCLES.format(report.cycles) for report in self.reports)
+        return tuple(
+            list_notes([(_FIRST_CYCLE, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
+        )
 
     @property
-    def _worn_through(self) -> tuple[str, ...]:
-        """When the liner is gone, or so thin that it is another spring."""
+    def _thin_liner_notes(self) -> tuple[str, ...]:
+        """Note on a liner that is worn through, or so thin that its stiffness has changed."""
         liner = float(self.use.joint.liner_thickness)
-        for limit, sentence in ((1.0, _THROUGH), (_THIN, _THINNER)):
-            found = next((report for report in self.reports if report.depth > limit * liner), None)
-            if found is not None:
-                return (sentence.format(found.cycles, found.depth, liner),)
+        for limit, sentence in ((1.0, _WORN_THROUGH), (_THIN_LINER, _WORN_THIN)):
+            first = next((report for report in self.reports if report.depth > limit * liner), None)
+            if first is not None:
+                return (sentence.format(first.cycles, first.depth, liner),)
         return ()
 
     @property
     def worst(self) -> Worst | None:
-        """The instant of the first cycle in which the contact comes nearest to the rim."""
+        """Instant of the first cycle in which the contact is nearest to the rim; None without contact."""
         return self.use.edge(self.use.unworn).worst(self.use)
 
     @property
-    def _at_the_rim(self) -> tuple[str, ...]:
-        """When a contact reaches the rim first, in which instant most, and where."""
-        seen = [(_NEW, self.worst)]
-        seen += [(_LATER.format(report.cycles), report.edge.worst(self.use)) for report in self.reports]
-        for when, worst in seen:
+    def _rim_notes(self) -> tuple[str, ...]:
+        """Note on the first stage at which a contact reaches the rim."""
+        stages = [(_FIRST_CYCLE, self.worst)]
+        stages += [(_AFTER_CYCLES.format(report.cycles), report.edge.worst(self.use)) for report in self.reports]
+        for stage, worst in stages:
             if worst is not None and worst.reaching:
-                of = len(self.use.loaded)
-                return (_REACHES.format(when, worst.reaching, of, worst.where, worst.pressure),)
+                count = len(self.use.loaded)
+                return (_AT_RIM.format(stage, worst.reaching, count, worst.where, worst.pressure),)
         return ()
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
-        first, apart = self.use.first, self.use.separation
+        """Return the results as data for JSON."""
+        first, separation = self.use.first, self.use.separation
         return {
             "cycle": {
                 "name": self.use.cycle.name,
@@ -216,8 +230,8 @@ class History:
                 "pressure_slide_integral_Nm": first.work,
                 "cross_shear_mean": first.cross_shear,
                 "crossing_angle_mean_deg": degrees(self.use.crossing_angle),
-                "edge": _told(self.worst),
-                "microseparation": None if apart is None else apart.summary(self.use.cycle),
+                "edge": _edge_summary(self.worst),
+                "microseparation": None if separation is None else separation.summary(self.use.cycle),
                 "peaks": {
                     "force_N": first.max_force,
                     "max_pressure_MPa": first.max_pressure,
@@ -230,35 +244,53 @@ class History:
                 "utilisation": self.utilisation,
                 "unworn": [check.summary() for check in self.use.unworn_checks],
             },
+            "laws": {
+                "wear": law_summary(self.use.wear),
+                "ball_wear": law_summary(self.use.ball_wear),
+                "creep": law_summary(self.use.creep),
+            },
             "film": self.use.film(self.lubricant).summary(),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
-            "history": list(map(self._seen, self.reports, self.contact_checks)),
+            "history": list(map(self._report_summary, self.reports, self.contact_checks)),
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
             "notes": list(self.notes),
         }
 
-    def _seen(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
+    def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
         """Return a report as data for JSON, with its contacts, and with years if the cycles per year are known."""
         mix = self.use.cycle
         years = {"years": report.cycles / mix.per_year} if isinstance(mix, Mix) else {}
         contact = {
-            "valid": report.settled and all(check.valid for check in checks),
+            "valid": report.converged and all(check.valid for check in checks),
             "utilisation": largest_utilisation(checks),
             "contact": [check.summary() for check in checks],
         }
-        return {**report.summary(), **years, "edge": _told(report.edge.worst(self.use)), **contact}
+        return {**report.summary(), **years, "edge": _edge_summary(report.edge.worst(self.use)), **contact}
 
 
-_THIN = 0.25
-_THROUGH = "worn through: after {:g} cycles the depth is {:.3g} mm in a liner of {:g} mm; what follows has no meaning"
-_THINNER = "after {:g} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of a whole one"
-_NEW, _LATER = "in the first cycle", "after {:g} cycles"
-_REACHES = (
+_THIN_LINER = 0.25
+"""Worn depth above which a note appears, relative to the thickness of the liner."""
+
+_WORN_THROUGH = "worn through: after {:g} cycles the depth is {:.3g} mm in a liner of {:g} mm; later reports are void"
+_WORN_THIN = (
+    "after {:g} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of the unworn liner"
+)
+_FIRST_CYCLE, _AFTER_CYCLES = "in the first cycle", "after {:g} cycles"
+_AT_RIM = (
     "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}; "
     "the pressure in the outermost ring is at most {:.3g} MPa"
 )
-_UNSETTLED = "a contact did not balance its load: no digit of this run is to be trusted"
+_NOT_CONVERGED = "a contact did not balance its load: the results of this run are invalid"
 
 
-def _told(worst: Worst | None) -> dict[str, Any] | None:
+def _edge_summary(worst: Worst | None) -> dict[str, Any] | None:
     return None if worst is None else worst.summary()
+
+
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "Error": "NumericalError",
+        "First": "ballsocket.hip.hip_setup.FirstCycleResult",
+    },
+)

@@ -14,10 +14,10 @@ from ..io.toml import table_of
 from ..io.units import parse
 from ..studies.distributions import check_nominal
 from ..studies.scatter import Read, distribution_of
-from .coefficients import share_of_slide, wear_factor, wear_per_energy
-from .laws import AreaLaw, EnergyLaw
-from .use import InUse
+from .law_fields import wear_factor
+from .simulation import HipSimulation
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
+from .wear_law import coefficient_field
 
 UNCERTAINTY_KEYS = ("count", "seed", *SAMPLED_QUANTITIES)
 """Keys of the table."""
@@ -57,7 +57,7 @@ class UncertaintySettings:
     scatter = RenamedAttribute("variability")
 
 
-def read_uncertainty(content: Mapping[str, Any], use: InUse) -> UncertaintySettings:
+def read_uncertainty(content: Mapping[str, Any], use: HipSimulation) -> UncertaintySettings:
     """Read the table [uncertainty] of a file.
 
     Parameters
@@ -65,7 +65,7 @@ def read_uncertainty(content: Mapping[str, Any], use: InUse) -> UncertaintySetti
     content : mapping
         Content of the file. The table has distributions by name of `SAMPLED_QUANTITIES`, as in study files.
         It may have `count`, a power of two, and `seed`.
-    use : InUse
+    use : HipSimulation
         Hip of the nominal patient.
 
     Raises
@@ -89,13 +89,11 @@ def read_uncertainty(content: Mapping[str, Any], use: InUse) -> UncertaintySetti
     return UncertaintySettings(variability=variability, count=count, seed=seed)
 
 
-def _nominal(use: InUse) -> dict[str, float]:
+def _nominal(use: HipSimulation) -> dict[str, float]:
     """Return the nominal values of the quantities that may differ between patients."""
-    wear: Any = use.wear
-    coefficient = getattr(wear, "straight", getattr(wear, "coefficient", None))
-    cup = use.placed
+    coefficient, cup = coefficient_field(use.wear), use.placed
     values = {"clearance": use.joint.clearance, "inclination": cup.inclination, "anteversion": cup.anteversion}
-    known = values if coefficient is None else {**values, "coefficient": coefficient}
+    known = values if coefficient is None else {**values, "coefficient": getattr(use.wear, coefficient.name)}
     return {name: float(value) for name, value in known.items()}
 
 
@@ -108,11 +106,11 @@ def _read_body_weight(content: Mapping[str, Any]) -> float | None:
     return weights.pop() if weights else None
 
 
-def _read(name: str, use: InUse) -> Read:
+def _read(name: str, use: HipSimulation) -> Read:
     if name != "coefficient":
         return lambda key, value: parse(key, value, _KINDS[name])
-    readers: dict[type, Read] = {AreaLaw: share_of_slide, EnergyLaw: wear_per_energy}
-    return readers.get(type(use.wear), wear_factor)
+    coefficient = coefficient_field(use.wear)
+    return wear_factor if coefficient is None else coefficient.unit.read
 
 
 def _read_integer(name: str, value: Any) -> int:

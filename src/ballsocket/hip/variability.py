@@ -15,13 +15,12 @@ from ..core.checks import check_names, require
 from ..core.deprecation import RenamedAttribute, renamed_names
 from ..elasticity.off_axis.surfaces import Springs
 from ..studies.distributions import Distribution
-from .blocks import Run
 from .cycle import Cycle
 from .history import Report
-from .laws import CrossShear, Law
-from .looks import check_meant, report_of
 from .mix import Mix
-from .use import InUse
+from .simulation import HipSimulation, check_total_wear, make_report
+from .wear_integrator import WearIntegrator
+from .wear_law import with_coefficient
 
 SAMPLED_QUANTITIES = (
     "coefficient",
@@ -53,7 +52,7 @@ class PatientVariability:
 
     Parameters
     ----------
-    use : InUse
+    use : HipSimulation
         Hip of the nominal patient. The other patients have radial springs, rings of 8° and 32 instants a cycle.
     distributions : mapping of str to Rectangular, Normal or LogNormal
         Distributions by name of `SAMPLED_QUANTITIES`. Forces are proportional to `body_weight`, cycles in a given time
@@ -70,10 +69,10 @@ class PatientVariability:
     Examples
     --------
     >>> import ballsocket as bs
-    >>> from ballsocket.hip import Archard, InUse, PatientVariability, iso_14242_1
+    >>> from ballsocket.hip import Archard, HipSimulation, PatientVariability, iso_14242_1
     >>> from ballsocket.studies import LogNormal
     >>> joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
-    >>> use = InUse(joint=joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6))
+    >>> use = HipSimulation(joint=joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6))
     >>> distributions = {"coefficient": LogNormal(median=1e-6, factor=1.5)}
     >>> variability = PatientVariability(use=use, distributions=distributions)
     >>> reports = variability.patient({"coefficient": 2e-6}).simulate([1e6])
@@ -81,7 +80,7 @@ class PatientVariability:
     2.1
     """
 
-    use: InUse
+    use: HipSimulation
     distributions: Mapping[str, Distribution]
     body_weight: float | None = None
 
@@ -94,7 +93,7 @@ class PatientVariability:
                 if name in self.distributions:
                     raise ValueError(f"tilt and {name} both orient the cup: give one of them")
         if "coefficient" in self.distributions:
-            _with_coefficient(self.use.wear, 0.0)
+            with_coefficient(self.use.wear, 0.0)
         for name in ("body_weight", "cycles_per_year"):
             if name in self.distributions:
                 median = float(self.distributions[name].frozen.median())
@@ -111,7 +110,7 @@ class PatientVariability:
         return cycle.per_year if isinstance(cycle, Mix) else self._medians.get("cycles_per_year")
 
     @cached_property
-    def quick(self) -> InUse:
+    def quick(self) -> HipSimulation:
         """Hip of the nominal patient with the coarse discretization of the other patients."""
         use = self.use
         return replace(
@@ -143,7 +142,7 @@ class PatientVariability:
         wear = use.wear
         if "coefficient" in values:
             require("coefficient", values["coefficient"], values["coefficient"] >= 0, "it must be at least 0")
-            wear = _with_coefficient(wear, values["coefficient"])
+            wear = with_coefficient(wear, values["coefficient"])
         seconds = use.seconds_per_cycle
         return Patient(
             use=replace(
@@ -172,13 +171,13 @@ class Patient:
 
     Attributes
     ----------
-    use : InUse
+    use : HipSimulation
         Hip of the patient.
     cycle_ratio : float
         Ratio of the patient's cycles to those of the nominal patient in the same time.
     """
 
-    use: InUse
+    use: HipSimulation
     cycle_ratio: float
 
     def simulate(self, counts: Sequence[float]) -> tuple[Report, ...]:
@@ -189,27 +188,15 @@ class Patient:
         ValueError
             A contact did not balance its load, or the liner would be worn through many times.
         """
-        check_meant(self.use, self.cycle_ratio * counts[-1])
-        run = Run(use=self.use)
-        reports = tuple(report_of(run.until(self.cycle_ratio * count, lambda cycles: None)) for count in counts)
-        if not all(report.settled for report in reports):
+        check_total_wear(self.use, self.cycle_ratio * counts[-1])
+        run = WearIntegrator(setup=self.use)
+        reports = tuple(make_report(run.run_until(self.cycle_ratio * count, lambda cycles: None)) for count in counts)
+        if not all(report.converged for report in reports):
             raise ValueError("a contact did not balance its load")
         return reports
 
     pace = RenamedAttribute("cycle_ratio")
     seen = RenamedAttribute("simulate")
-
-
-def _with_coefficient(wear: Law, value: float) -> Law:
-    """A law with another coefficient; where it has two, that on a straight track, and the other in its ratio."""
-    law: Any = wear
-    if isinstance(law, CrossShear):
-        require("coefficient", law.straight, law.straight > 0, "one that scatters is positive, on a straight track too")
-        return replace(law, straight=value, circular=law.circular * (value / law.straight))
-    if not any(each.name == "coefficient" for each in fields(law)):
-        raise ValueError("coefficient cannot scatter: the law of wear has none")
-    scaled: Law = replace(law, coefficient=value)
-    return scaled
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..hip.ball_wear import ball_directions
 from ..hip.bands import Bands
 from ..hip.history import History, Report
 from ..hip.mix import Mix
 from ..hip.sliding import tracks
-from ..hip.spots import ball_directions, ball_grid
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..core.arrays import Numbers
-    from ..hip.set_up import SetUp
+    from ..hip.hip_setup import HipSetup
 
 _INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"
 _SIZE = (6.4, 4.2)
@@ -47,14 +47,14 @@ def wear_map(history: History, report: Report | None = None) -> Figure:
 def cross_shear_map(history: History) -> Figure:
     """The cross-shear of the first cycle over the bore, seen as the worn depth."""
     use = history.use
-    done = use.passed(use.unworn)
+    done = use.exposure(use.unworn)
     field = done.cross_shear.reshape(use.grid.rings, -1)
     return _map(use, field, "cross-shear", "0 on a straight track, 0.5 where no direction is preferred")
 
 
 def ball_map(history: History) -> Figure:
     """The worn depth of the ball, seen from above as it is not turned: to the side is to the right, the front above."""
-    own = ball_grid(history.use.ring_width)
+    own = history.use.ball_grid
     x, y, z = ball_directions(own)
     upper, radius = z > 0, float(history.use.joint.ball_radius)
     figure, axes = _figure((5.6, 4.8))
@@ -69,7 +69,7 @@ def ball_map(history: History) -> Figure:
     return figure
 
 
-def _map(use: SetUp, field: Numbers, label: str, title: str) -> Figure:
+def _map(use: HipSetup, field: Numbers, label: str, title: str) -> Figure:
     """A field (rings, meridians) over the bore, with a cross where the largest load points."""
     figure, axes = _figure((5.6, 4.8), polar=True)
     around = numpy.append(use.grid.azimuth, use.grid.azimuth[0] + 2 * pi)
@@ -109,7 +109,7 @@ def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
         axes.fill_between(count, low, high, color=_INK, alpha=0.3, linewidth=0, label=label)
     axes.plot(count, whole, "o-", color=_INK, ms=4, label="penetration")
     if any(report.creep_depth > 0 for report in history.reports):
-        parts = {"worn_in": ("wear alone", _SECOND, "--"), "crept_in": ("creep alone", _THIRD, ":")}
+        parts = {"wear_displacement": ("wear alone", _SECOND, "--"), "creep_displacement": ("creep alone", _THIRD, ":")}
         for name, (label, colour, dash) in parts.items():
             part = [0.0, *(float(numpy.linalg.norm(getattr(report, name))) for report in history.reports)]
             axes.plot(count, part, dash, color=colour, label=label)
@@ -179,7 +179,7 @@ def edge_figure(history: History) -> Figure:
     return figure
 
 
-def _course(use: SetUp, values: Numbers) -> tuple[Numbers, Numbers]:
+def _course(use: HipSetup, values: Numbers) -> tuple[Numbers, Numbers]:
     """% of the cycle, and values (loaded,) over it: a line ends where nothing is pressed and where activities part."""
     whole = numpy.full(use.cycle.instants, numpy.nan)
     whole[use.loaded] = values
@@ -187,13 +187,13 @@ def _course(use: SetUp, values: Numbers) -> tuple[Numbers, Numbers]:
     return numpy.insert(100 * use.cycle.phases, parted, numpy.nan), numpy.insert(whole, parted, numpy.nan)
 
 
-def _ends(use: SetUp) -> list[int]:
+def _ends(use: HipSetup) -> list[int]:
     """Instants after which a cycle, or an activity of a mix, ends."""
     parts = [each.cycle for each in use.cycle.activities] if isinstance(use.cycle, Mix) else [use.cycle]
     return list(accumulate(part.instants for part in parts))
 
 
-def _over_the_cycle(axes: Any, use: SetUp) -> None:
+def _over_the_cycle(axes: Any, use: HipSetup) -> None:
     """The horizontal axis and a legend; where it is a mix, its activities side by side with their names."""
     axes.legend(frameon=False, loc="upper center", ncol=2)
     axes.set_xlim(0, 100)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..hip.bands import Bands
-from ..hip.film import CONFORMING
+from ..hip.film import CONFORMITY_NOTE
 from ..hip.history import History
 from . import hip_plots
 from .hip_bands import band_sections
@@ -39,7 +39,7 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
             hip_plots.cross_shear_map,
             "Of the first cycle, each slide weighted by its pressure.",
         ),
-        "film": ("Film and friction", hip_plots.film_figure, f"{CONFORMING}."),
+        "film": ("Film and friction", hip_plots.film_figure, f"{CONFORMITY_NOTE}."),
         "edge": ("Edge distance", hip_plots.edge_figure, "0 is edge loading; a dot where the contact comes nearest."),
     }
 )

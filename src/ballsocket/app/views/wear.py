@@ -10,12 +10,12 @@ from typing import Any
 from ...core.checks import check_names, shown
 from ...core.kinds import Kind, Unit
 from ...core.quantities import CONTACT
-from ...hip.coefficients import share_of_slide, wear_factor
+from ...hip.law_fields import LawField
 from ...io.joint_file import JointFile
 from ...output import html as page
 from ...problem.presets import joints
 from ..fields import Field, choice, number, segments, typed
-from ..in_use import CHOICES, Use
+from ..in_use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS, Use
 from ..jobs import Kept, ViewJob
 from ..screen import Screen
 from ..use_fields import cycle_fields
@@ -26,8 +26,10 @@ from ..words import progress, unit_of_files
 
 _FOUND: Kept = Kept(most=24)
 _ALONE, _NOW, _OTHER = "", "as it is now", "as it was put beside"
-_UNITS = {"area": "mm/m"}
-_SHOWN = ("cycle", "body_weight", "contact", "law", "coefficient", "circular", "spread", "millions", "creep", "beside")
+_SHOWN = (
+    *("cycle", "body_weight", "contact", "law", "coefficient", *WEAR_INPUTS, "spread", "millions", "creep"),
+    *(*CREEP_INPUTS, "beside"),
+)
 
 
 class Wear:
@@ -137,25 +139,40 @@ def designs(screen: Screen) -> dict[str, JointFile]:
 
 def _fields(screen: Screen) -> dict[str, Field]:
     use = screen.use
-    unit = _UNITS.get(use.law, "mm³/(N m)")
-    factors = {
-        name: number(f"wear.{name}", f"{title} [{unit}]", Unit(""), (1e-8, 1e-5), 1e-8, getattr(use, name))
-        for name, title in (("coefficient", "Coefficient"), ("circular", "Coefficient on a circle"))
-    }
     listed = [
         *cycle_fields("wear", use),
         choice("wear.law", "Law of wear", [(name, name) for name in CHOICES["law"]], use.law),
-        factors["coefficient"],
-        {**factors["circular"], "hidden": use.law != "cross-shear"},
-        {
-            **number("wear.spread", "It scatters by a factor", Unit(""), (1.0, 3.0), 0.1, use.spread),
-            "hidden": use.law != "archard",
-        },
+        _coefficient_input(use),
+        *(_law_input(name, use) for name in WEAR_INPUTS),
+        number("wear.spread", "It scatters by a factor", Unit(""), (1.0, 3.0), 0.1, use.spread),
         number("wear.millions", "Million cycles", Unit(""), (0.5, 20.0), 0.5, use.millions),
         segments("wear.creep", "The liner creeps", [(name, name) for name in CHOICES["creep"]], use.creep),
+        *(_law_input(name, use) for name in CREEP_INPUTS),
         choice("wear.beside", "Compare with", _choices(screen), _OTHER if screen.beside else _ALONE),
     ]
     return {field["name"]: field for field in listed}
+
+
+def _law_field(name: str, part: LawField, value: float, title: str) -> Field:
+    """Describe the input of a number of a law, over three decades around its example."""
+    unit = f" [{part.unit.text}]" if part.unit.text else ""
+    step = part.example / 100 or 0.01
+    return number(f"wear.{name}", f"{title}{unit}", Unit(""), (step, 1000 * step), step, value)
+
+
+def _coefficient_input(use: Use) -> Field:
+    """Describe the input of the wear coefficient, hidden for a law without one."""
+    part = use.coefficient_field
+    if part is None:
+        return {**number("wear.coefficient", "Coefficient", Unit(""), (0.0, 1.0), 0.01, 0.0), "hidden": True}
+    return _law_field("coefficient", part, use.coefficient, "Coefficient")
+
+
+def _law_input(name: str, use: Use) -> Field:
+    """Describe the input of a number of `LAW_INPUTS`, hidden unless a chosen law has it."""
+    part = LAW_INPUTS[name]
+    title = part.meaning[0].upper() + part.meaning[1:]
+    return {**_law_field(name, part, use.law_number(name), title), "hidden": name not in use.used_inputs}
 
 
 def _choices(screen: Screen) -> list[tuple[str, str]]:
@@ -176,6 +193,8 @@ def _beside(screen: Screen, value: Any) -> tuple[JointFile, ...]:
 def _changed(screen: Screen, key: str, value: Any) -> Use:
     """What the hip goes through, after one input has been changed."""
     check_names([key], _SHOWN, "among the inputs of wear")
+    if key in LAW_INPUTS:
+        return screen.use.with_law_number(key, float(LAW_INPUTS[key].unit.read(key, _decimal_point(value))))
     changes: dict[str, Any] = {key: _READ[key](value, screen.use) if key in _READ else _word(key, value)}
     return replace(screen.use, **changes)
 
@@ -186,16 +205,21 @@ def _word(key: str, value: Any) -> str:
     return value
 
 
-def _factor(key: str, value: Any, use: Use) -> float:
-    """A coefficient as it is typed: bare, with a decimal comma, or with its unit."""
-    text = value.strip().replace(",", ".") if isinstance(value, str) else value
-    return float((share_of_slide if use.law == "area" else wear_factor)(key, text))
+def _decimal_point(value: Any) -> Any:
+    """Replace the decimal comma of a typed number."""
+    return value.strip().replace(",", ".") if isinstance(value, str) else value
+
+
+def _coefficient(value: Any, use: Use) -> float:
+    """Read a typed coefficient: a number with a decimal point or comma, with or without its unit."""
+    if use.coefficient_field is None:
+        raise ValueError(f"the law {use.law!r} has no coefficient")
+    return float(use.coefficient_field.unit.read("coefficient", _decimal_point(value)))
 
 
 _READ: Mapping[str, Callable[[Any, Use], float]] = {
     "body_weight": lambda value, use: typed("body_weight", value, Unit("N"), Kind.FORCE),
-    "coefficient": partial(_factor, "coefficient"),
-    "circular": partial(_factor, "circular"),
+    "coefficient": _coefficient,
     "spread": lambda value, use: typed("spread", value, Unit(""), Kind.NUMBER),
     "millions": lambda value, use: typed("millions", value, Unit(""), Kind.NUMBER),
 }

@@ -1,0 +1,191 @@
+"""Wear of the ball: maps pressures of the socket to the rotating surface of the ball."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..elasticity.off_axis.grid import Grid
+from .hip_setup import HipSetup
+from .sliding import Sliding
+from .socket_foundation import SocketFoundation
+from .wear_law import CycleExposure
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BilinearInterpolation:
+    """Interpolation from the cells of a grid to points between them.
+
+    Attributes
+    ----------
+    cells : array (n, points, 4)
+        Numbers of the four cells around each point.
+    weights : array (n, points, 4)
+        Weights of these cells, with a sum of 1; 0 beyond the end of the grid.
+    """
+
+    cells: Numbers
+    weights: Numbers
+
+    def interpolate(self, fields: Numbers) -> Numbers:
+        """Interpolate fields (n or 1, all cells) at the points: (n, points)."""
+        count, points, corners = self.cells.shape
+        fields = numpy.broadcast_to(fields, (count, fields.shape[-1]))
+        values = numpy.take_along_axis(fields, self.cells.reshape(count, -1), axis=1)
+        return numpy.einsum("tpk,tpk->tp", values.reshape(count, points, corners), self.weights)
+
+
+def interpolation_at(grid: Grid, directions: Numbers) -> BilinearInterpolation:
+    """Create the interpolation at unit vectors (3, n, points) between the centres of a grid's cells."""
+    x, y, z = directions
+    polar, azimuth = numpy.arctan2(numpy.hypot(x, y), z), numpy.arctan2(y, x)
+    ring = numpy.clip(numpy.searchsorted(grid.polar, polar) - 1, 0, grid.rings - 2)
+    polar_fraction = numpy.clip((polar - grid.polar[ring]) / (grid.polar[ring + 1] - grid.polar[ring]), 0.0, 1.0)
+    column = azimuth / (2 * numpy.pi) * grid.meridians - 0.5
+    meridian = numpy.floor(column).astype(int)
+    fraction = column - meridian
+    cells = numpy.stack(
+        [(ring + i) * grid.meridians + (meridian + j) % grid.meridians for i in (0, 1) for j in (0, 1)], axis=-1
+    )
+    inner, outer = 1 - polar_fraction, polar_fraction
+    weights = numpy.stack([inner * (1 - fraction), inner * fraction, outer * (1 - fraction), outer * fraction], axis=-1)
+    return BilinearInterpolation(cells=cells, weights=weights * (polar <= grid.reach)[..., None])
+
+
+def ball_directions(grid: Grid) -> Numbers:
+    """Compute unit vectors (3, cells) to the centres of the cells of an unrotated ball, in the body's frame."""
+    first, second, axis = grid.middles.reshape(3, -1)
+    return numpy.stack([second, axis, first])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CounterfaceMap:
+    """Cells of the ball that pass over cells of the socket in a cycle.
+
+    Attributes
+    ----------
+    cells : array (m,)
+        Numbers of these cells in the ball's grid.
+    sliding : Sliding
+        Sliding of the socket over them, in the ball's frame.
+    areas : array (m,)
+        Areas in mm².
+    socket_areas : array (n,)
+        Areas of the socket's cells in mm².
+    socket_cells : array (n,)
+        Numbers of the socket's cells under them.
+    socket_size, ball_size : int
+        Numbers of cells of the complete grids.
+    on_socket, on_ball : BilinearInterpolation
+        Interpolations from the ball's grid to the socket's cells in each instant, and the reverse.
+    """
+
+    cells: Numbers
+    sliding: Sliding
+    areas: Numbers
+    socket_areas: Numbers
+    socket_cells: Numbers
+    socket_size: int
+    ball_size: int
+    on_socket: BilinearInterpolation
+    on_ball: BilinearInterpolation
+
+    def depth_on_socket(self, depth: Numbers) -> Numbers:
+        """Interpolate the worn depth of the ball (m,) at the socket's cells: (instants, n)."""
+        field = numpy.zeros((1, self.ball_size))
+        field[0, self.cells] = depth
+        return self.on_socket.interpolate(field)
+
+    def ball_exposure(self, cycle: CycleExposure) -> CycleExposure:
+        """Map the exposure of the socket to the ball, with the same work of friction in each instant."""
+        pressure = self._interpolate_on_ball(cycle.pressure)
+        socket_work = (cycle.pressure * cycle.sliding.steps) @ self.socket_areas
+        ball_work = (pressure * self.sliding.steps) @ self.areas
+        ratio = numpy.divide(socket_work, ball_work, out=numpy.zeros_like(socket_work), where=ball_work > 0)
+        return CycleExposure(
+            pressure=pressure * ratio[:, None],
+            sliding=self.sliding,
+            contact_shares=lambda: self._interpolate_on_ball(cycle.contact),
+        )
+
+    def _interpolate_on_ball(self, values: Numbers) -> Numbers:
+        """Interpolate values of the socket's cells (instants, n) at those of the ball: (instants, m)."""
+        field = numpy.zeros((len(values), self.socket_size))
+        field[:, self.socket_cells] = values
+        return self.on_ball.interpolate(field)
+
+
+def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
+    """Map the ball's cells that pass over some cells of the socket in a cycle."""
+    cup_frame = numpy.array(setup.placed.frame)
+    rotated = cup_frame @ setup.moved.middles[setup.loaded]
+    grid = setup.ball_grid
+    directions = ball_directions(grid)
+    to_ball = interpolation_at(setup.grid, numpy.einsum("tij,jp->itp", rotated, directions))
+    selected = numpy.zeros(len(setup.foundation.areas))
+    selected[cells] = 1.0
+    ball_cells = numpy.flatnonzero((to_ball.interpolate(selected[None]) > 0).any(axis=0))
+    to_socket = numpy.einsum("tji,jp->itp", rotated, setup.foundation.directions[:, cells])
+    radius = float(setup.joint.ball_radius)
+    return CounterfaceMap(
+        cells=ball_cells,
+        sliding=Sliding(
+            radius=radius,
+            turns=numpy.einsum("tji,tj->ti", rotated, setup.turns),
+            directions=directions[:, ball_cells],
+        ),
+        areas=numpy.repeat(grid.areas[:, 0], grid.meridians)[ball_cells] * radius**2,
+        socket_areas=setup.foundation.areas[cells],
+        socket_cells=cells,
+        socket_size=len(setup.foundation.areas),
+        ball_size=grid.rings * grid.meridians,
+        on_socket=interpolation_at(grid, to_socket[[2, 0, 1]]),
+        on_ball=BilinearInterpolation(cells=to_ball.cells[:, ball_cells], weights=to_ball.weights[:, ball_cells]),
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ActiveCells:
+    """Cells of the socket near the contacts, and the cells of a wearing ball that pass over them.
+
+    Attributes
+    ----------
+    cells : array (n,)
+        Numbers of the socket's cells.
+    foundation : SocketFoundation
+        Foundation of these cells.
+    sliding : Sliding
+        Sliding of the ball over these cells.
+    counterface : CounterfaceMap, optional
+        Cells of the ball; None for a ball without wear.
+    """
+
+    cells: Numbers
+    foundation: SocketFoundation
+    sliding: Sliding
+    counterface: CounterfaceMap | None
+
+    @property
+    def ball_cells(self) -> Numbers:
+        """Numbers of the ball's cells; empty for a ball without wear."""
+        return numpy.zeros(0, dtype=int) if self.counterface is None else self.counterface.cells
+
+    @property
+    def areas(self) -> Numbers:
+        """Areas of all wearing cells in mm², first of the socket, then of the ball."""
+        if self.counterface is None:
+            return self.foundation.areas
+        return numpy.concatenate([self.foundation.areas, self.counterface.areas])
+
+
+def select_active_cells(setup: HipSetup, cells: Numbers) -> ActiveCells:
+    """Select cells of the socket, and those of a wearing ball that pass over them."""
+    counterface = None if setup.ball_wear is None else map_counterface(setup, cells)
+    return ActiveCells(
+        cells=cells,
+        foundation=setup.foundation.select_cells(cells),
+        sliding=setup.sliding.part(cells),
+        counterface=counterface,
+    )

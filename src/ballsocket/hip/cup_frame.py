@@ -1,0 +1,184 @@
+"""Loads and rotations of a cycle in the cup's frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import degrees
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.deprecation import RenamedAttribute
+from ..problem import Joint
+from ..problem.cup import Cup, Side
+from .cycle import Cycle, Frame
+from .mix import Mix
+from .separation import Pulled, Separation
+from .sliding import slide
+
+_MIN_RELATIVE_FORCE = 1e-6
+"""Force below which the ball counts as unloaded, relative to the largest force."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CupFrame:
+    """Cycle of loads and rotations in the frame of the cup; the fields are those of `HipSimulation`."""
+
+    joint: Joint
+    cycle: Cycle | Mix
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
+    tether = RenamedAttribute("lateral_stiffness")
+    carried = RenamedAttribute("socket_forces")
+
+    def _check_dislocation(self) -> None:
+        outside = self._beyond_rim
+        if self.separation is not None:
+            outside = outside[numpy.isnan(self.separation.displacement[:, 0])]
+        if len(outside):
+            first = outside[0]
+            raise ValueError(
+                f"dislocated at {self.cycle.told(first)}: the load of {numpy.linalg.norm(self.forces[first]):.0f} N "
+                f"points {degrees(self._force_angles[first]):.1f}° from the dome's pole, and the bore ends at "
+                f"{degrees(self.reach):.1f}°"
+            )
+
+    @cached_property
+    def moved(self) -> Cycle | Mix:
+        """Cycle on the side of the body that the cup belongs to."""
+        return self.cycle.mirrored() if self.cup.side is Side.LEFT else self.cycle
+
+    @cached_property
+    def forces(self) -> Numbers:
+        """Forces of the ball on the socket in N, in the cup's frame: (instants, 3)."""
+        forces = self.moved.forces
+        return forces if self.cycle.frame is Frame.CUP else _in_cup(self.placed, forces)
+
+    @property
+    def _force_angles(self) -> Numbers:
+        """Angles of the forces from the dome's pole, in rad: (instants,)."""
+        return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
+
+    @cached_property
+    def _has_load(self) -> Numbers:
+        """Mask of the instants with a load: (instants,)."""
+        sizes = self.cycle.sizes
+        return numpy.asarray(sizes > _MIN_RELATIVE_FORCE * max(float(sizes.max()), 1e-300))
+
+    @cached_property
+    def _pulled(self) -> Pulled | None:
+        """Ball on its lateral spring; None without a spring."""
+        spring = self.moved.spring
+        if spring is None:
+            return None
+        return Pulled(
+            spring=spring,
+            side=self._spring_axis,
+            reach=self.reach,
+            socket_radius=float(self.joint.socket_radius),
+            ball_radius=float(self.joint.ball_radius),
+        )
+
+    @property
+    def _spring_axis(self) -> Numbers:
+        """First axis of the cycle's frame, along which the spring acts, in the cup's frame: (3,)."""
+        return numpy.array([1.0, 0.0, 0.0] if self.cycle.frame is Frame.CUP else numpy.array(self.placed.frame)[:, 0])
+
+    @cached_property
+    def lateral_stiffness(self) -> Numbers:
+        """Stiffness in N/mm of the cycle's spring, which unloads the ball as it moves: (3, 3)."""
+        spring = self.moved.spring
+        return numpy.outer(self._spring_axis, self._spring_axis) * (0.0 if spring is None else spring.stiffness)
+
+    def socket_forces(self, displacement: Numbers) -> Numbers:
+        """Compute the forces on the socket in N for displacements of the ball in mm: (loaded, 3)."""
+        return self.loads - displacement @ self.lateral_stiffness
+
+    @cached_property
+    def _beyond_rim(self) -> Numbers:
+        """Indices of the instants in which the load pushes the ball over the rim."""
+        beyond = numpy.flatnonzero(self._has_load & (self._force_angles >= self.reach))
+        return beyond if self._pulled is None else beyond[self._pulled.beyond(self.forces[beyond])]
+
+    @cached_property
+    def separation(self) -> Separation | None:
+        """Instants in which a spring has pushed the ball onto the rim; None without such instants."""
+        beyond = self._beyond_rim
+        return None if self._pulled is None or not len(beyond) else self._pulled.rest(self.forces[beyond], beyond)
+
+    @cached_property
+    def placed(self) -> Cup:
+        """Cup with its own orientation if set, else with the tilt of the cycle's standard."""
+        tilt = self.cycle.cup_tilt
+        return self.cup if self.cup.oriented or tilt is None else self.cup.tilted(tilt)
+
+    @property
+    def reach(self) -> float:
+        """End of the bore, in rad from the dome's pole."""
+        return float(self.cup.rim - self.cup.chamfer / self.joint.socket_radius)
+
+    @cached_property
+    def loaded(self) -> Numbers:
+        """Indices of the instants in which the ball is pressed into the bore: (loaded,)."""
+        mask = self._has_load.copy()
+        mask[self._beyond_rim] = False
+        return numpy.flatnonzero(mask)
+
+    @cached_property
+    def loads(self) -> Numbers:
+        """Forces in N of the loaded instants, in the cup's frame: (loaded, 3)."""
+        return numpy.ascontiguousarray(self.forces[self.loaded])
+
+    @property
+    def largest(self) -> Numbers:
+        """Index of the largest load: one number, or none without loads."""
+        sizes = numpy.linalg.norm(self.loads, axis=1)
+        return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
+
+    @cached_property
+    def turns(self) -> Numbers:
+        """Rotation vectors of the ball in the loaded instants in rad, in the cup's frame: (loaded, 3)."""
+        return _in_cup(self.placed, self.moved.turns[self.loaded])
+
+    @property
+    def slide(self) -> float:
+        """Sliding distance of the ball past the line of the load in a cycle, in mm."""
+        sizes = self.cycle.sizes[:, None]
+        directions = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
+        rotations = _in_cup(self.placed, self.moved.turns)
+        return slide(float(self.joint.ball_radius), rotations, _last_loaded(directions, self.loaded))
+
+    @property
+    def _frame_notes(self) -> tuple[str, ...]:
+        """Notes on the orientation of the cup, unloaded instants and microseparation."""
+        tilted = () if self.placed == self.cup else (_TILTED.format(degrees(self.cycle.cup_tilt or 0.0)),)
+        separated = () if self.separation is None else (self.separation.told(self.cycle),)
+        return (*tilted, *self._unloaded_notes, *separated)
+
+    @property
+    def _unloaded_notes(self) -> tuple[str, ...]:
+        """Note on the instants without a load."""
+        unloaded = numpy.flatnonzero(~self._has_load)
+        if len(unloaded) == self.cycle.instants:
+            return (_NEVER_LOADED,)
+        if not len(unloaded):
+            return ()
+        return (_LIFTS_OFF.format(self.cycle.told(int(unloaded[0])), len(unloaded), self.cycle.instants),)
+
+
+_TILTED = "the cup is tilted by {:g}° from the load, as the cycle's standard requires"
+_NEVER_LOADED = "no wear: the ball is never in contact during this cycle"
+_LIFTS_OFF = "the ball lifts off, first at {}: {} of {} instants have no contact and no wear"
+
+
+def _in_cup(cup: Cup, vectors: Numbers) -> Numbers:
+    """Rotate vectors (n, 3) of the body into the cup's frame."""
+    return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
+
+
+def _last_loaded(directions: Numbers, loaded: Numbers) -> Numbers:
+    """Replace the directions of unloaded instants by those of the last loaded instant before them."""
+    if not len(loaded):
+        return directions
+    last = numpy.searchsorted(loaded, numpy.arange(len(directions)), side="right") - 1
+    return directions[loaded[last]]

@@ -1,0 +1,271 @@
+"""Elastic socket under all loads of a cycle: a closed shell, or the cup with its rim and backing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy
+import scipy.fft
+
+from ..core.arrays import Numbers
+from ..elasticity.finite_elements.shapes import socket_shape
+from ..elasticity.off_axis.compliance import Compliance, compliance_on
+from ..elasticity.off_axis.directions import sized
+from ..elasticity.off_axis.edges import Edges
+from ..elasticity.off_axis.gap import Separation, sunk
+from ..elasticity.off_axis.grid import Grid, even_grid
+from ..elasticity.off_axis.search import Bed
+from ..elasticity.off_axis.search import Rest as BedRest
+from ..elasticity.off_axis.surfaces import ClosedShell, RealCup
+from ..problem import Joint
+from ..problem.cup import Cup
+from ..problem.gaps import LinearGap
+from .socket_foundation import NO_LATERAL_SPRING, CycleEquilibrium, contact_shares, grid_neighbours
+
+_POWER_ITERATIONS = 60
+"""Number of power iterations for the largest stiffness."""
+
+_SEED = 1
+"""Seed of the initial field of the power iteration."""
+
+_DEEPER_STARTS = 1.0, 1.2
+"""Factors of the initial displacement for loads that have not converged."""
+
+_MAX_LEVELS = 12
+"""Largest number of load levels of one direction."""
+
+_PARALLEL_TOLERANCE = 1e-9
+"""Relative tolerance for loads of one direction, and for loads of one magnitude."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LoadInterpolation:
+    """Load levels that are solved, and the weights that interpolate all loads between them.
+
+    Attributes
+    ----------
+    loads : array (levels, 3)
+        Forces in N.
+    weights : array (loads, levels)
+        Weight of each level in each load. They add up to 1, and they interpolate the loads themselves exactly.
+    """
+
+    loads: Numbers
+    weights: Numbers
+
+    def interpolate(self, solved: Numbers) -> Numbers:
+        """Interpolate results at the levels (levels, ...) to all loads: (loads, ...)."""
+        return self.weights @ solved
+
+
+def uninterpolated(loads: Numbers) -> LoadInterpolation:
+    """Return all loads (loads, 3) as levels."""
+    return LoadInterpolation(loads=loads, weights=numpy.eye(len(loads)))
+
+
+def interpolate_loads(loads: Numbers, max_levels: int = _MAX_LEVELS) -> LoadInterpolation:
+    """Choose levels for loads (loads, 3) in N of one direction; loads of several directions are all solved.
+
+    The levels are closer to each other at small loads, where the contacts change most.
+    """
+    size = numpy.linalg.norm(loads, axis=1)
+    if len(loads) <= max_levels or abs(numpy.cross(loads, loads[0])).max() > _PARALLEL_TOLERANCE * size.max() ** 2:
+        return uninterpolated(loads)
+    levels = numpy.linspace(size.min() ** 0.5, size.max() ** 0.5, max_levels) ** 2
+    levels[0], levels[-1] = size.min(), size.max()
+    if levels[-1] - levels[0] <= _PARALLEL_TOLERANCE * levels[-1]:
+        levels = levels[-1:]
+        return LoadInterpolation(loads=levels[:, None] * loads[0] / size[0], weights=numpy.ones((len(loads), 1)))
+    lower = numpy.clip(numpy.searchsorted(levels, size, side="right") - 1, 0, max_levels - 2)
+    fraction = (size - levels[lower]) / (levels[lower + 1] - levels[lower])
+    weights = numpy.zeros((len(loads), max_levels))
+    rows = numpy.arange(len(loads))
+    weights[rows, lower], weights[rows, lower + 1] = 1 - fraction, fraction
+    return LoadInterpolation(loads=levels[:, None] * loads[0] / size[0], weights=weights)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class GridSmoothing:
+    """Filter [1 2 1]/4 along the meridians and around the axis, there as wide as the rings are. It conserves volume.
+
+    An elastic socket answers a wave of the worn depth with a pressure that increases as the wavelength decreases. The
+    shortest waves are artefacts of the grid. Near the pole, where cells are narrow, the filter around the axis is wider
+    in proportion.
+
+    Attributes
+    ----------
+    grid : Grid
+    """
+
+    grid: Grid
+
+    @cached_property
+    def _harmonic_factors(self) -> Numbers:
+        """Factors of the harmonics about the axis: (rings, harmonics)."""
+        # cos²(π m / 2M') is [1 2 1]/4 on M' cells a half circle
+        half_circle = numpy.maximum(self.grid.meridians / 2 * numpy.sin(self.grid.polar), 1.0)[:, None]
+        m = numpy.arange(self.grid.degrees + 1)
+        return numpy.where(m < half_circle, numpy.cos(numpy.pi * m / (2 * half_circle)) ** 2, 0.0)
+
+    @cached_property
+    def _ring_flux(self) -> Numbers:
+        """Area of exchange between neighbouring rings: (rings - 1, 1)."""
+        areas = self.grid.areas
+        return numpy.minimum(areas[1:], areas[:-1]) / 4
+
+    def __call__(self, fields: Numbers) -> Numbers:
+        """Smooth fields (..., rings, meridians)."""
+        waves = scipy.fft.rfft(fields) * self._harmonic_factors
+        filtered = scipy.fft.irfft(waves, n=self.grid.meridians)
+        flux = self._ring_flux * numpy.diff(filtered, axis=-2)
+        no_flux = numpy.zeros_like(filtered[..., :1, :])
+        flux = numpy.concatenate([no_flux, flux, no_flux], axis=-2)
+        return filtered + numpy.diff(flux, axis=-2) / self.grid.areas
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ElasticFoundation:
+    """Elastic socket whose cells are coupled; see `SocketFoundation`.
+
+    Attributes
+    ----------
+    compliance : Compliance
+    clearance, socket_radius : float
+        Lengths in mm.
+    edges : Edges
+        Relation of pressure and gap at the edge of a contact.
+    """
+
+    compliance: Compliance
+    clearance: float
+    socket_radius: float
+    edges: Edges
+
+    @property
+    def grid(self) -> Grid:
+        """Grid of the bore."""
+        return self.compliance.grid
+
+    @cached_property
+    def directions(self) -> Numbers:
+        """Unit vectors to the centres of the cells, in the cup's frame: (3, cells)."""
+        return numpy.ascontiguousarray(self.grid.middles.reshape(3, -1))
+
+    @cached_property
+    def normals(self) -> Numbers:
+        """Means of the outward normal over the cells, in the cup's frame: (3, cells)."""
+        return numpy.ascontiguousarray(self.grid.normals.reshape(3, -1))
+
+    @cached_property
+    def areas(self) -> Numbers:
+        """Areas of the cells in mm²: (cells,)."""
+        return numpy.repeat(self.grid.areas[:, 0], self.grid.meridians) * self.socket_radius**2
+
+    @cached_property
+    def _smoothing(self) -> GridSmoothing:
+        return GridSmoothing(grid=self.grid)
+
+    def smoothed(self, depth: Numbers) -> Numbers:
+        """Remove the waves that the grid cannot resolve from a depth, at the same volume: (cells,)."""
+        return self._smoothing(depth.reshape(self.grid.rings, -1)).ravel()
+
+    @cached_property
+    def max_stiffness(self) -> float:
+        """Largest change of the pressure by the depth of a smoothed wave, in MPa/mm, by power iteration."""
+        field = numpy.random.default_rng(_SEED).normal(size=(1, self.grid.rings, self.grid.meridians))
+        growth = 0.0
+        for _ in range(_POWER_ITERATIONS):
+            field = field / numpy.linalg.norm(field)
+            field = self._smoothing(self.compliance.pressure(field))
+            growth = float(numpy.linalg.norm(field))
+        return growth
+
+    def select_cells(self, cells: Numbers) -> ElasticFoundation:
+        """Return the foundation of all cells: they are coupled."""
+        return self
+
+    def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
+        """Mark all cells: (cells,)."""
+        return numpy.ones(len(self.areas), dtype=bool)
+
+    @property
+    def edge_inset(self) -> float:
+        """Distance of the contact edge inside the zero of `edge_field`, as a fraction of a ring."""
+        return self.edges.inset
+
+    def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
+        """Compute the levels in mm, with 0 at the edge of the contacts: (loads, cells)."""
+        shape = (len(equilibrium.pressure), self.grid.rings, self.grid.meridians)
+        pressure = equilibrium.pressure.reshape(shape)
+        overlap = equilibrium.displacement @ self.normals - self.clearance - depth
+        gap = self.compliance.displacement(pressure) - overlap.reshape(shape)
+        return self.edges.levels(pressure, gap).reshape(equilibrium.pressure.shape)
+
+    @cached_property
+    def _neighbours(self) -> Numbers:
+        return grid_neighbours(self.grid)
+
+    def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
+        """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells)."""
+        return contact_shares(self.edge_field(equilibrium, depth), self._neighbours, self.edge_inset)
+
+    def solve_equilibrium(
+        self,
+        loads: Numbers,
+        depth: Numbers,
+        start: CycleEquilibrium | None = None,
+        lateral_stiffness: Numbers = NO_LATERAL_SPRING,
+    ) -> CycleEquilibrium:
+        """Solve the equilibria of the ball under all loads; see `SpringFoundation.solve_equilibrium`.
+
+        For a fixed load direction, a few load levels are solved, and linear interpolation gives the others. It
+        balances every load exactly.
+        """
+        levels = uninterpolated(loads) if lateral_stiffness.any() else interpolate_loads(loads)
+        shape = (len(levels.loads), self.grid.rings, self.grid.meridians)
+        separation = Separation(
+            grid=self.grid,
+            clearance=self.clearance,
+            socket_radius=self.socket_radius,
+            depth=depth.reshape(shape[1:]),
+            kind=LinearGap,
+        )
+        bed = Bed(compliance=self.compliance, separation=separation, tether=lateral_stiffness)
+        solved = self._solve_levels(bed, levels, depth, start)
+        flat = solved.pressure.reshape(shape[0], -1)
+        return CycleEquilibrium(
+            displacement=levels.interpolate(solved.displacement),
+            pressure=levels.interpolate(flat),
+            converged=bool(solved.found.all()),
+            levels=(solved.displacement, solved.pressure),
+        )
+
+    def _solve_levels(
+        self, bed: Bed, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
+    ) -> BedRest:
+        """Solve the load levels from the previous equilibrium; others start again from a deeper displacement."""
+        count, deep = len(levels.loads), sunk(self, self.compliance.evenly, depth, *sized(levels.loads))
+        previous = None if start is None else start.levels
+        begin, pressure = previous if previous is not None and len(previous[0]) == count else (deep, None)
+        solved = bed.under(levels.loads, begin, numpy.ones(count, dtype=bool), pressure)
+        for factor in _DEEPER_STARTS:
+            if solved.found.all():
+                break
+            retried = bed.under(levels.loads, factor * deep, ~solved.found)
+            unsolved = ~solved.found
+            for name in ("displacement", "pressure", "found"):
+                getattr(solved, name)[unsolved] = getattr(retried, name)[unsolved]
+        return solved
+
+
+@lru_cache(maxsize=4)
+def elastic_foundation(surface: RealCup | ClosedShell, joint: Joint, cup: Cup, width: float) -> ElasticFoundation:
+    """Create the foundation of a joint in rings of one width (rad); the last four are cached."""
+    cells = even_grid(socket_shape(joint, cup).reach, width)
+    return ElasticFoundation(
+        compliance=compliance_on(surface, joint, cup, cells),
+        clearance=float(joint.clearance),
+        socket_radius=float(joint.socket_radius),
+        edges=surface.edges(joint, cup, cells),
+    )

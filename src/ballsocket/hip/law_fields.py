@@ -1,0 +1,395 @@
+"""Fields of wear and creep laws: units, limits, and their values in files and JSON."""
+
+from __future__ import annotations
+
+import re
+from abc import ABC
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import MISSING, dataclass, field, fields
+from math import inf
+from numbers import Real
+from types import MappingProxyType
+from typing import Any, ClassVar, TypeVar
+
+from ..core.checks import known_name, require, shown
+from ..core.kinds import Kind
+from ..io.units import convert, parse, parse_units, split_quantity
+
+_WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")
+"""Force times length in a denominator, which people write without brackets."""
+
+_WEAR_FACTOR = "mm^3/(N m)"
+_FACTOR_UNITS = (_WEAR_FACTOR, "m^3/(N m)")
+"""Accepted units of a wear factor: each is for metres of sliding."""
+
+_ENERGY_UNITS = (*_FACTOR_UNITS, "mm^3/J", "mm^3/kJ", "mm^3/MJ", "m^3/J")
+"""Accepted units of a wear volume per energy."""
+
+
+def wear_factor(name: str, value: Any) -> float:
+    """Read a wear factor k in mm³/(N m): a number, or text such as "1.066e-6 mm^3/(N m)".
+
+    Raises
+    ------
+    ValueError
+        Text without a number, a unit of another dimension, or a unit for another length of sliding than the metre.
+        The message states the factor between both lengths.
+
+    Examples
+    --------
+    >>> wear_factor("coefficient", "1.066e-6 mm³/(N·m)")
+    1.066e-06
+    >>> wear_factor("coefficient", "1.066e-9 mm^3/(N mm)")
+    Traceback (most recent call last):
+    ValueError: coefficient = '1.066e-9 mm^3/(N mm)' is for mm of sliding: 1 mm^3/(N mm) is 1000 mm^3/(N m), \
+so that this is 1.066e-06 mm^3/(N m); write it so
+    """
+    number, unit = _split(name, value, _WEAR_FACTOR)
+    if unit:
+        number *= _factor_in_metres(name, value, number, unit, _FACTOR_UNITS)
+    require(name, number, 0 <= number < inf, f"a wear coefficient is at least 0 {_WEAR_FACTOR}, and finite")
+    return number
+
+
+def wear_per_energy(name: str, value: Any) -> float:
+    """Read a wear volume per friction energy in mm³/J: a number, or text such as "1e-5 mm^3/J".
+
+    Raises
+    ------
+    ValueError
+        As `wear_factor`.
+    """
+    number, unit = _split(name, value, "mm^3/J")
+    if unit:
+        number *= _factor_in_metres(name, value, number, unit, _ENERGY_UNITS)
+    require(name, number, 0 <= number < inf, "a wear coefficient is at least 0 mm^3/J, and finite")
+    return number
+
+
+def wear_per_slide(name: str, value: Any) -> float:
+    """Read a wear depth per length of sliding in mm/mm: a number, or text such as "1e-6 mm/m".
+
+    Raises
+    ------
+    ValueError
+        Text without a number, or a unit of another dimension.
+    """
+    number, unit = _split(name, value, "mm/m")
+    if unit:
+        number *= _unit_factor(name, value, unit, "", "mm/mm, a depth over a length of sliding")
+    require(name, number, 0 <= number < inf, "a wear coefficient is at least 0, and finite")
+    return number
+
+
+def _split(name: str, value: Any, example: str) -> tuple[float, str]:
+    """Split a coefficient into its number and the text of its unit."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return parse(name, value, Kind.NUMBER), ""
+    try:
+        number, unit = split_quantity(value if isinstance(value, str) else "")
+        unit = _WORK.sub(r"(N*\1)", unit)
+        parse_units(unit)
+    except ValueError as error:
+        raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'") from error
+    return number, unit
+
+
+def _factor_in_metres(name: str, value: Any, number: float, unit: str, allowed: tuple[str, ...]) -> float:
+    """Compute the factor from a unit to mm³/(N m), and reject units for other lengths of sliding."""
+    meaning = f"{_WEAR_FACTOR}, a volume over a force and a length of sliding"
+    factor = _unit_factor(name, value, unit, _WEAR_FACTOR, meaning)
+    if parse_units(unit) not in [parse_units(accepted) for accepted in allowed]:
+        written = unit.replace("**", "^").replace("N*m", "N m")
+        length = "for mm of sliding" if abs(factor / 1000 - 1) < 1e-9 else "for another length of sliding"
+        raise ValueError(
+            f"{name} = {shown(value)} is {length}: 1 {written} is {factor:.6g} {_WEAR_FACTOR}, "
+            f"so that this is {number * factor:.6g} {_WEAR_FACTOR}; write it so"
+        )
+    return factor
+
+
+def _unit_factor(name: str, value: Any, unit: str, target: str, meaning: str) -> float:
+    try:
+        return convert(1.0, parse_units(unit), parse_units(target))
+    except ValueError as error:
+        raise ValueError(f"{name} = {shown(value)} has the wrong unit; expected {meaning}") from error
+
+
+@dataclass(frozen=True, kw_only=True)
+class LawUnit:
+    """Unit of a field of a law.
+
+    Attributes
+    ----------
+    text : str
+        Unit after a number in texts; empty for a plain number.
+    typed : str
+        Unit as files write it.
+    suffix : str
+        End of a key in JSON.
+    read : function
+        Function from name and value in a file to the value in this unit.
+    """
+
+    text: str
+    typed: str
+    suffix: str
+    read: Callable[[str, Any], Any]
+
+    def example(self, value: Any) -> str:
+        """Write a value as an example for files."""
+        if isinstance(value, tuple):
+            return f"[{', '.join(f'{number:g}' for number in value)}]"
+        return f"'{value:g} {self.typed}'" if self.typed else f"{value:g}"
+
+
+def kind_unit(kind: Kind) -> LawUnit:
+    """Return the unit of a kind of quantity."""
+    text = "" if kind is Kind.NUMBER else kind.unit
+    return LawUnit(text=text, typed=text, suffix=text, read=lambda name, value: parse(name, value, kind))
+
+
+def bare_unit(text: str, suffix: str) -> LawUnit:
+    """Return a unit that files do not write: its values are plain numbers."""
+    return LawUnit(text=text, typed="", suffix=suffix, read=lambda name, value: parse(name, value, Kind.NUMBER))
+
+
+def list_unit(text: str, suffix: str) -> LawUnit:
+    """Return the unit of a list of plain numbers."""
+
+    def read(name: str, value: Any) -> tuple[float, ...]:
+        if not isinstance(value, list) or not value:
+            raise ValueError(f"{name} = {shown(value)} must be a list of numbers, in {text}")
+        return tuple(parse(name, number, Kind.NUMBER) for number in value)
+
+    return LawUnit(text=text, typed=text, suffix=suffix, read=read)
+
+
+WEAR_FACTOR = LawUnit(text="mm³/(N m)", typed=_WEAR_FACTOR, suffix="mm3_per_Nm", read=wear_factor)
+"""Unit of a worn volume over force and length of sliding."""
+
+WEAR_PER_ENERGY = LawUnit(text="mm³/J", typed="mm^3/J", suffix="mm3_per_J", read=wear_per_energy)
+"""Unit of a worn volume over friction energy."""
+
+WEAR_PER_SLIDE = LawUnit(text="mm/mm", typed="mm/mm", suffix="mm_per_mm", read=wear_per_slide)
+"""Unit of a worn depth over a length of sliding."""
+
+NUMBER = kind_unit(Kind.NUMBER)
+"""Unit of a plain number."""
+
+PRESSURE = kind_unit(Kind.MODULUS)
+"""Unit of a pressure: MPa."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LawField:
+    """Number of a law, with its unit, meaning and limits.
+
+    Attributes
+    ----------
+    name : str
+        Name of the attribute.
+    key : str
+        Key in files.
+    unit : LawUnit
+    meaning : str
+        Noun phrase for messages and labels.
+    example : number or tuple
+        Value for messages, and initial value in the explorer.
+    required : bool
+        True if the law has no default for it.
+    low, high : float
+        Limits; `high` itself is excluded.
+    low_included : bool
+        True if `low` itself is allowed.
+    """
+
+    name: str
+    key: str
+    unit: LawUnit
+    meaning: str
+    example: Any
+    required: bool
+    low: float
+    high: float
+    low_included: bool
+
+    @property
+    def listed(self) -> bool:
+        """True if the value is a tuple of numbers."""
+        return isinstance(self.example, tuple)
+
+    @property
+    def allowed(self) -> str:
+        """Limits in words."""
+        low = f"{self.meaning} ({self.unit.text or 'a number'}) is {'at least' if self.low_included else 'above'} "
+        return f"{low}{self.low:g}, and {'finite' if self.high == inf else f'below {self.high:g}'}"
+
+    def check(self, value: Any) -> None:
+        """Check a value of this field.
+
+        Raises
+        ------
+        TypeError
+            The value is not a number (or, for a list, not a tuple of numbers).
+        ValueError
+            The value is outside the limits.
+        """
+        for number in value if self.listed else (value,):
+            if not isinstance(number, Real) or isinstance(number, bool):
+                wanted = "a tuple of numbers" if self.listed else "one number"
+                raise TypeError(f"{self.name} must be {wanted}, got {value!r:.60}")
+            real = float(number)
+            above_low = self.low <= real if self.low_included else self.low < real
+            require(self.name, number, above_low and real < self.high, self.allowed)
+
+
+def law_field(
+    unit: LawUnit,
+    meaning: str,
+    *,
+    example: Any,
+    key: str | None = None,
+    default: Any = MISSING,
+    low: float = 0.0,
+    high: float = inf,
+    low_included: bool = True,
+) -> Any:
+    """Define a field of a law, a dataclass.
+
+    Parameters
+    ----------
+    unit : LawUnit
+    meaning : str
+        Noun phrase for messages and labels.
+    example : number or tuple
+    key : str, optional
+        Key in files; the name of the field by default.
+    default : number or tuple, optional
+        Without it the field is required.
+    low, high : float
+        Limits; `high` itself is excluded, `low` only with `low_included=False`.
+    """
+    limits = {"low": low, "high": high, "low_included": low_included}
+    words = {"unit": unit, "meaning": meaning, "example": example, "key": key, **limits}
+    return field(default=default, metadata={"law": words})
+
+
+class Law(ABC):
+    """Law with a name, and fields with units, of which files, JSON and the explorer are made.
+
+    A law is a frozen dataclass; `law_field` defines its fields.
+    """
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    storable: ClassVar[bool] = True
+    """True if the text of the law identifies it, so that a run can be stored."""
+
+    def __post_init__(self) -> None:
+        for part in self.law_fields():
+            part.check(getattr(self, part.name))
+
+    @classmethod
+    def law_fields(cls) -> tuple[LawField, ...]:
+        """Return the fields of the law."""
+        return tuple(
+            LawField(
+                name=part.name,
+                required=part.default is MISSING,
+                **{**part.metadata["law"], "key": part.metadata["law"]["key"] or part.name},
+            )
+            for part in fields(cls)  # type: ignore[arg-type]  # every law is a dataclass
+            if "law" in part.metadata
+        )
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes on the numbers of the law."""
+        return ()
+
+    def summary(self) -> dict[str, Any]:
+        """Return name and numbers as data for JSON; keys end in units."""
+        numbers = {
+            "_".join(filter(None, (part.name, part.unit.suffix))): _as_json(getattr(self, part.name), part)
+            for part in self.law_fields()
+        }
+        return {"law": self.name, **numbers}
+
+
+def _as_json(value: Any, part: LawField) -> Any:
+    return list(map(float, value)) if part.listed else float(value)
+
+
+def law_summary(law: Any) -> dict[str, Any] | None:
+    """Return name and numbers of a law as data for JSON; None without a law, and the class alone of other objects."""
+    if law is None:
+        return None
+    return law.summary() if isinstance(law, Law) else {"law": type(law).__name__}
+
+
+AnyLaw = TypeVar("AnyLaw", bound=Law)
+
+
+def law_keys(laws: Mapping[str, type[AnyLaw]]) -> tuple[str, ...]:
+    """Return the keys in files of all laws, each once."""
+    return tuple(dict.fromkeys(part.key for law in laws.values() for part in law.law_fields()))
+
+
+def read_law(
+    table: Mapping[str, Any],
+    laws: Mapping[str, type[AnyLaw]],
+    law: type[AnyLaw],
+    keys: Mapping[str, str] = MappingProxyType({}),
+    **values: Any,
+) -> AnyLaw:
+    """Read a law from a table of a file.
+
+    Parameters
+    ----------
+    table : mapping
+    laws : mapping of str to class
+        Registry with the law.
+    law : class
+    keys : mapping of str to str
+        Other keys of this table, by the usual key.
+    **values
+        Further values of fields that files do not have.
+
+    Raises
+    ------
+    ValueError
+        A missing key, a key of another law, or a value that is not allowed.
+    """
+    known = {keys.get(part.key, part.key): part for part in law.law_fields()}
+    for key in law_keys(laws):
+        if key in table and key not in {*known, *keys}:
+            raise ValueError(f"{key} belongs to {_owners(key, laws)}, and the law is {law.name!r}")
+    for key, part in known.items():
+        if part.required and key not in table:
+            raise ValueError(
+                f"the law {law.name!r} needs {key} ({part.meaning}), such as {key} = {part.unit.example(part.example)}"
+            )
+    numbers = {part.name: part.unit.read(key, table[key]) for key, part in known.items() if key in table}
+    return law(**numbers, **values)
+
+
+def _owners(key: str, laws: Mapping[str, type[AnyLaw]]) -> str:
+    names = [repr(name) for name, law in laws.items() if any(part.key == key for part in law.law_fields())]
+    return f"the law {names[0]}" if len(names) == 1 else f"the laws {', '.join(names)}"
+
+
+def chosen_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:
+    """Return the law that a table names; else the first law with a key in the table that no other law has.
+
+    Without such a key the first law of the registry is the default.
+    """
+    if "law" in table:
+        return laws[known_name(noun, table["law"], laws)]
+    return next(_laws_by_key(table, laws), next(iter(laws.values())))
+
+
+def _laws_by_key(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]]) -> Iterator[type[AnyLaw]]:
+    for law in laws.values():
+        if any(part.key in table for part in law.law_fields()):
+            yield law

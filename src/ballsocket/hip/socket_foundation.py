@@ -1,0 +1,301 @@
+"""Socket as a foundation under all loads of a cycle at once, and its form of radial springs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Protocol
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..elasticity.off_axis.directions import sized
+from ..elasticity.off_axis.gap import sunk
+from ..elasticity.off_axis.grid import Grid
+
+_MAX_ITERATIONS = 60
+"""Number of Newton steps after which an equilibrium counts as not converged."""
+
+FORCE_TOLERANCE = 1e-8
+"""Allowed error of the force balance, relative to the load."""
+
+NO_LATERAL_SPRING = numpy.zeros((3, 3))
+"""Stiffness matrix (N/mm) for a ball without a lateral spring."""
+
+_REGULARISATION = 1e-12
+"""Stiffness added to the tangent stiffness, relative to its trace."""
+
+_CONTACT_STEP = 1e-3
+"""Step of a ball without contact beyond the clearance, relative to the socket's radius."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CycleEquilibrium:
+    """Equilibria of the ball under all loads of a cycle.
+
+    Attributes
+    ----------
+    displacement : array (loads, 3)
+        Displacement of the ball's centre in mm, in the cup's frame.
+    pressure : array (loads, cells)
+        Pressure in MPa.
+    converged : bool
+        True if every load is balanced.
+    levels : pair of arrays, optional
+        Displacements and pressures of the solved load levels, if the loads are interpolated between levels.
+    """
+
+    displacement: Numbers
+    pressure: Numbers
+    converged: bool
+    levels: tuple[Numbers, Numbers] | None = None
+
+
+class SocketFoundation(Protocol):
+    """Socket in cells, under all loads of a cycle at once."""
+
+    @property
+    def clearance(self) -> float:
+        """Radial clearance in mm."""
+        ...
+
+    @property
+    def socket_radius(self) -> float:
+        """Radius of the bore in mm."""
+        ...
+
+    @property
+    def directions(self) -> Numbers:
+        """Unit vectors to the centres of the cells, in the cup's frame: (3, cells)."""
+        ...
+
+    @property
+    def normals(self) -> Numbers:
+        """Means of the outward normal over the cells, in the cup's frame: (3, cells)."""
+        ...
+
+    @property
+    def areas(self) -> Numbers:
+        """Areas of the cells in mm²: (cells,)."""
+        ...
+
+    @property
+    def max_stiffness(self) -> float:
+        """Largest change of the pressure by the depth of a wave of the bore, in MPa/mm."""
+        ...
+
+    @property
+    def edge_inset(self) -> float:
+        """Distance of the contact edge inside the zero of `edge_field`, as a fraction of a cell."""
+        ...
+
+    def select_cells(self, cells: Numbers) -> SocketFoundation:
+        """Return the foundation of the selected cells alone."""
+        ...
+
+    def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
+        """Mark the cells within a margin of any contact, relative to the largest overlap: (cells,)."""
+        ...
+
+    def solve_equilibrium(
+        self,
+        loads: Numbers,
+        depth: Numbers,
+        start: CycleEquilibrium | None = None,
+        lateral_stiffness: Numbers = NO_LATERAL_SPRING,
+    ) -> CycleEquilibrium:
+        """Solve the equilibria of the ball under all loads; see `SpringFoundation.solve_equilibrium`."""
+        ...
+
+    def smoothed(self, depth: Numbers) -> Numbers:
+        """Remove the waves that the grid cannot resolve from a depth, at the same volume: (cells,)."""
+        ...
+
+    def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
+        """Compute a field in mm that is 0 at the edge of each contact and positive inside: (loads, cells)."""
+        ...
+
+    def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
+        """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells)."""
+        ...
+
+
+def spring_foundation(grid: Grid, modulus: float, clearance: float, socket_radius: float) -> SpringFoundation:
+    """Create a foundation of springs in the cells of a grid; see `SpringFoundation`."""
+    return SpringFoundation(
+        directions=numpy.ascontiguousarray(grid.middles.reshape(3, -1)),
+        normals=numpy.ascontiguousarray(grid.normals.reshape(3, -1)),
+        areas=numpy.repeat(grid.areas[:, 0], grid.meridians) * socket_radius**2,
+        modulus=modulus,
+        clearance=clearance,
+        socket_radius=socket_radius,
+        neighbours=grid_neighbours(grid),
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpringFoundation:
+    """Foundation of independent radial springs, p = K max(u, 0), u = e·n - c - h.
+
+    Attributes
+    ----------
+    directions, normals : array (3, cells)
+        Unit vectors to the centres of the cells, and means of the outward normal over them, in the cup's frame.
+    areas : array (cells,)
+        Areas in mm².
+    modulus : float
+        Foundation modulus K in MPa/mm.
+    clearance, socket_radius : float
+        Lengths in mm.
+    neighbours : array (2, 2, cells)
+        Numbers of the neighbouring cells; see `grid_neighbours`.
+    """
+
+    directions: Numbers
+    normals: Numbers
+    areas: Numbers
+    modulus: float
+    clearance: float
+    socket_radius: float
+    neighbours: Numbers
+
+    def select_cells(self, cells: Numbers) -> SpringFoundation:
+        """Return the foundation of the selected cells alone."""
+        return replace(
+            self,
+            directions=self.directions[:, cells],
+            normals=self.normals[:, cells],
+            areas=self.areas[cells],
+            neighbours=subset_neighbours(self.neighbours, cells),
+        )
+
+    def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
+        """Mark the cells in contact with any displaced ball, or within a margin of it: (cells,).
+
+        The margin is relative to the largest overlap.
+        """
+        overlap = (equilibrium.displacement @ self.normals).max(axis=0, initial=0.0) - self.clearance - depth
+        mask: Numbers = overlap > -margin * float(overlap.max())
+        return mask
+
+    def smoothed(self, depth: Numbers) -> Numbers:
+        """Return the depth unchanged: springs resolve every wave of the grid."""
+        return depth
+
+    @property
+    def edge_inset(self) -> float:
+        """Distance of the contact edge inside the zero of `edge_field`, as a fraction of a cell: 0 for springs."""
+        return 0.0
+
+    def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
+        """Compute the overlap in mm, with 0 at the edge of the contacts: (loads, cells)."""
+        return equilibrium.displacement @ self.normals - self.clearance - depth
+
+    def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
+        """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells)."""
+        return contact_shares(self.edge_field(equilibrium, depth), self.neighbours, self.edge_inset)
+
+    @property
+    def max_stiffness(self) -> float:
+        """Largest change of the pressure by the depth of a wave of the bore, in MPa/mm."""
+        return self.modulus
+
+    @cached_property
+    def _force_weights(self) -> Numbers:
+        """Matrix from pressures in MPa to forces in N: (cells, 3)."""
+        return (self.normals * self.areas).T.copy()
+
+    @cached_property
+    def _stiffness_weights(self) -> Numbers:
+        """Products n nᵀ dA of the cells: (cells, 9)."""
+        n = self.normals
+        return (n[:, None] * n[None] * self.areas).reshape(9, -1).T.copy()
+
+    def solve_equilibrium(
+        self,
+        loads: Numbers,
+        depth: Numbers,
+        start: CycleEquilibrium | None = None,
+        lateral_stiffness: Numbers = NO_LATERAL_SPRING,
+    ) -> CycleEquilibrium:
+        """Solve the equilibria of the ball under all loads by Newton's method.
+
+        Parameters
+        ----------
+        loads : array (loads, 3)
+            Forces in N in the cup's frame, none of them zero.
+        depth : array (cells,)
+            Depth of the worn bore below the sphere in mm.
+        start : CycleEquilibrium, optional
+            Initial guess.
+        lateral_stiffness : array (3, 3)
+            Stiffness (N/mm) of a spring that unloads the ball as it moves.
+        """
+        e = sunk(self, self.modulus, depth, *sized(loads)) if start is None else start.displacement
+        allowed = FORCE_TOLERANCE * numpy.linalg.norm(loads, axis=1)
+        error = numpy.inf
+        for _ in range(_MAX_ITERATIONS):
+            overlap = e @ self.normals
+            overlap -= self.clearance + depth
+            in_contact = (overlap > 0).astype(float)
+            pressure = numpy.maximum(overlap, 0.0, out=overlap)
+            pressure *= self.modulus
+            residual = loads - e @ lateral_stiffness - pressure @ self._force_weights
+            error = float((numpy.linalg.norm(residual, axis=1) / allowed).max(initial=0.0))
+            if error <= 1:
+                break
+            e = e + self._newton_step(in_contact, residual, loads, lateral_stiffness)
+        return CycleEquilibrium(displacement=e, pressure=pressure, converged=error <= 1)
+
+    def _newton_step(
+        self, in_contact: Numbers, residual: Numbers, loads: Numbers, lateral_stiffness: Numbers
+    ) -> Numbers:
+        """Compute Newton's step; a ball without contact moves along its load until it touches the bore."""
+        tangent = self.modulus * (in_contact @ self._stiffness_weights).reshape(-1, 3, 3)
+        trace = numpy.trace(tangent, axis1=1, axis2=2)
+        separated = trace <= 0
+        tangent += lateral_stiffness
+        added = numpy.where(separated, 1.0, _REGULARISATION * trace)
+        step = numpy.linalg.solve(tangent + added[:, None, None] * numpy.eye(3), residual[:, :, None])[:, :, 0]
+        direction = loads / numpy.linalg.norm(loads, axis=1)[:, None]
+        return numpy.where(separated[:, None], (self.clearance + _CONTACT_STEP * self.socket_radius) * direction, step)
+
+
+def grid_neighbours(grid: Grid) -> Numbers:
+    """Number the four neighbours of every cell: (2, 2, cells), along the meridians and around the axis.
+
+    Across the pole the neighbour is the opposite cell of the first ring. At the rim a cell is its own neighbour.
+    """
+    cells = numpy.arange(grid.rings * grid.meridians).reshape(grid.rings, grid.meridians)
+    before = numpy.vstack([numpy.roll(cells[:1], grid.meridians // 2, axis=1), cells[:-1]])
+    after = numpy.vstack([cells[1:], cells[-1:]])
+    circumferential = [numpy.roll(cells, shift, axis=1) for shift in (1, -1)]
+    return numpy.stack([before, after, *circumferential]).reshape(2, 2, -1)
+
+
+def subset_neighbours(neighbours: Numbers, cells: Numbers) -> Numbers:
+    """Renumber the neighbours for a subset of the cells; a neighbour outside the subset becomes the cell itself."""
+    numbers = numpy.full(neighbours.shape[-1], -1)
+    numbers[cells] = numpy.arange(len(cells))
+    chosen = numbers[neighbours[..., cells]]
+    return numpy.where(chosen < 0, numpy.arange(len(cells)), chosen)
+
+
+def contact_shares(level: Numbers, neighbours: Numbers, inset: float) -> Numbers:
+    """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells).
+
+    Parameters
+    ----------
+    level : array (loads, cells)
+        Field in mm, positive in the contact. Linear interpolation between two cells gives its zero.
+    neighbours : array (2, 2, cells)
+    inset : float
+        Distance of the edge inside that zero, as a fraction of a cell's width; see `off_axis.edges`.
+    """
+    positive, span = level > 0, numpy.zeros_like(level)
+    for pair in neighbours:
+        falls = [numpy.where(positive[:, cells] != positive, abs(level - level[:, cells]), 0.0) for cells in pair]
+        span += numpy.maximum(*falls)
+    steps = numpy.divide(level, span, out=numpy.where(positive, 1.0, -1.0), where=span > 0)
+    cell_shares: Numbers = numpy.clip(0.5 - inset + steps, 0.0, 1.0)
+    return cell_shares

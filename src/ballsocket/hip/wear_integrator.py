@@ -1,0 +1,319 @@
+"""Integration of wear and creep over millions of cycles, in blocks with a controlled error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from math import inf
+from types import MappingProxyType
+from typing import Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from .ball_wear import select_active_cells
+from .chebyshev import Step, longest, stages_of, step
+from .creep_law import CreepLaw
+from .hip_setup import HipSetup
+from .socket_foundation import CycleEquilibrium
+from .wear_law import CycleExposure, max_wear_sensitivity
+
+_FIRST_BLOCK = 1e-2
+"""Length of the first block, relative to the time in which the fastest wave of the bore decays."""
+
+_STEP_SAFETY = 0.8
+"""Safety factor of the next block's length."""
+
+_MIN_GROWTH, _MAX_GROWTH = 0.2, 4.0
+"""Limits of the ratio of a block's length to that of the block before."""
+
+_RATE_SAFETY = 1.1
+"""Safety factor of the fastest decay rate."""
+
+_FIRST_CREEP_BLOCK = 30.0
+"""Length in s of the first block with creep."""
+
+_CREEP_GROWTH = 0.25
+"""Length of a block with creep, relative to the total time before it."""
+
+_MAX_CREEP_SWEEPS = 8
+"""Largest number of iterations for the mean pressure under which the liner creeps."""
+
+_CREEP_TOLERANCE = 1e-3
+"""Relative tolerance of that mean pressure."""
+
+_MARGIN = 0.3
+"""Initial margin of the active cells, relative to the largest overlap."""
+
+
+@dataclass(kw_only=True, eq=False)
+class WearIntegrator:
+    """Wear simulation in progress.
+
+    Attributes
+    ----------
+    setup : HipSetup
+    cycles : float
+        Number of cycles so far.
+    depth : array (cells,)
+        Worn depth of the socket in mm.
+    ball : array (ball's cells,)
+        Worn depth of the ball in mm; empty for a ball without wear.
+    work : float
+        ∫∫ p v dA dt so far, in N mm.
+    length : float
+        Length of the next block in cycles.
+    steps : int
+        Number of blocks so far.
+    converged : bool
+        True if every contact balanced its load.
+    volume_error : float
+        Estimated error of the worn volume by the blocks, in mm³.
+    margin : float
+        Margin of the active cells around the contacts, relative to the largest overlap.
+    equilibrium : CycleEquilibrium
+        Last solved contacts.
+    """
+
+    setup: HipSetup
+    cycles: float = 0.0
+    depth: Numbers = field(default_factory=lambda: numpy.zeros(0))
+    ball: Numbers = field(default_factory=lambda: numpy.zeros(0))
+    work: float = 0.0
+    length: float = inf
+    steps: int = 0
+    converged: bool = True
+    volume_error: float = 0.0
+    margin: float = _MARGIN
+
+    def __post_init__(self) -> None:
+        self.depth = numpy.zeros(len(self.setup.foundation.areas))
+        self.ball = numpy.zeros(0 if self.setup.ball_wear is None else len(self.setup.ball_areas))
+        creep, count = self.setup.creep, len(self.depth)
+        self.strain = numpy.zeros((1, count)) if creep is None else creep.initial_strain(count)
+        self.equilibrium = self.setup.unworn
+        self._update_active_cells()
+        if self._max_decay_rate > 0:
+            self.length = _FIRST_BLOCK / self._max_decay_rate
+
+    @property
+    def creep_depth(self) -> Numbers:
+        """Depth of creep in mm: (cells,)."""
+        strain = self.strain.sum(axis=0)
+        if not strain.any():
+            return strain
+        return self.setup.foundation.smoothed(float(self.setup.joint.liner_thickness) * strain)
+
+    @property
+    def volume(self) -> float:
+        """Worn volume of the socket in mm³."""
+        return float(self.depth @ self.setup.foundation.areas)
+
+    @property
+    def ball_volume(self) -> float:
+        """Worn volume of the ball in mm³."""
+        return float(self.ball @ self.setup.ball_areas) if len(self.ball) else 0.0
+
+    @property
+    def relative_volume_error(self) -> float:
+        """Estimated error of the worn volume by the blocks, relative to the volume."""
+        total_volume = self.volume + self.ball_volume
+        return self.volume_error / total_volume if total_volume > 0 else 0.0
+
+    def _update_active_cells(self) -> None:
+        """Select the cells near the contacts, and compute their wear per cycle."""
+        mask = self.setup.foundation.cells_near_contact(self.equilibrium, self.depth + self.creep_depth, self.margin)
+        cells = numpy.flatnonzero(mask)
+        self._active = select_active_cells(self.setup, cells)
+        self._active_creep = self.creep_depth[cells]
+        self._rate = self._compute_rate(self._values)
+
+    @property
+    def _values(self) -> Numbers:
+        """State to integrate: depths of the active cells of socket and ball, and the work."""
+        active = self._active
+        return numpy.concatenate([self.depth[active.cells], self.ball[active.ball_cells], [self.work]])
+
+    def _compute_rate(self, values: Numbers) -> Numbers:
+        """Compute the change of the state per cycle."""
+        active, count = self._active, len(self._active.cells)
+        depth = values[:count] + self._active_creep
+        if active.counterface is not None:
+            depth = depth + active.counterface.depth_on_socket(values[count:-1])
+        equilibrium = active.foundation.solve_equilibrium(
+            self.setup.loads, depth, self.equilibrium, self.setup.lateral_stiffness
+        )
+        self.equilibrium = equilibrium
+        self.converged = self.converged and equilibrium.converged
+        contact_shares = partial(active.foundation.contact_shares, equilibrium, depth)
+        self._exposure = CycleExposure(
+            pressure=equilibrium.pressure, sliding=active.sliding, contact_shares=contact_shares
+        )
+        worn = active.foundation.smoothed(self.setup.wear.depth(self._exposure))
+        work = float(self._exposure.work @ active.foundation.areas)
+        return numpy.concatenate([worn, self._ball_rate, [work]])
+
+    @property
+    def _ball_rate(self) -> Numbers:
+        """Worn depth of the ball per cycle in mm; empty for a ball without wear."""
+        counterface, law = self._active.counterface, self.setup.ball_wear
+        if counterface is None or law is None:
+            return numpy.zeros(0)
+        return law.depth(counterface.ball_exposure(self._exposure))
+
+    @property
+    def _max_decay_rate(self) -> float:
+        """Fastest decay of a wave of the worn depth per cycle: sensitivity of the laws times largest stiffness."""
+        sensitivity = max_wear_sensitivity(self.setup.wear, self._exposure)
+        counterface = self._active.counterface
+        if counterface is not None and self.setup.ball_wear is not None:
+            sensitivity += max_wear_sensitivity(self.setup.ball_wear, counterface.ball_exposure(self._exposure))
+        return _RATE_SAFETY * sensitivity * self.setup.foundation.max_stiffness
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """State of the run before the next block: a resumed run equals an uninterrupted run bit by bit."""
+        numbers = {name: getattr(self, name) for name in _STATE}
+        cells = {"cells": self._active.cells, "rate": self._rate}
+        return {**numbers, **cells, **_equilibrium_arrays(self.equilibrium)}
+
+    def resume(self, state: Mapping[str, Numbers]) -> None:
+        """Continue from a stored state with its contacts, without solving them again."""
+        for name, kind in _STATE.items():
+            setattr(self, name, kind(state[name]))
+        self._active = select_active_cells(self.setup, state["cells"])
+        self._active_creep = self.creep_depth[state["cells"]]
+        self._rate = state["rate"]
+        self.equilibrium = _read_equilibrium(state)
+        self._exposure = CycleExposure(pressure=self.equilibrium.pressure, sliding=self._active.sliding)
+
+    def run_until(self, count: float, progress: Callable[[float], None]) -> WearIntegrator:
+        """Integrate up to a number of cycles, and return this integrator."""
+        while self.cycles < count:
+            self._advance(count)
+            progress(self.cycles)
+        return self
+
+    def _advance(self, count: float) -> None:
+        """Integrate a block, limited by its error and by a number of cycles."""
+        decay_rate, remaining = self._max_decay_rate, count - self.cycles
+        while True:
+            length = _block_length(min(self.length, longest(decay_rate), self._max_creep_step), remaining)
+            block = step(self._compute_rate, self._values, self._rate, length, stages_of(length, decay_rate))
+            if self._contact_left_active_cells(block):
+                self.margin *= 2
+                self._update_active_cells()
+                continue
+            error = self._error(block, decay_rate)
+            self.length = length * min(max(_STEP_SAFETY * max(error, 1e-12) ** (-1 / 3), _MIN_GROWTH), _MAX_GROWTH)
+            if error <= 1:
+                break
+        self.volume_error += abs(float(block.error[:-1] @ self._active.areas))
+        self._store_values(block.values)
+        self.steps, self._rate = self.steps + 1, block.rate
+        self.cycles = count if length == remaining else self.cycles + length
+        if self.setup.creep is not None:
+            self._advance_creep(self.setup.creep, length * self.setup.seconds)
+        if self._contact_spreads or self.setup.creep is not None:
+            self._update_active_cells()
+
+    def _store_values(self, values: Numbers) -> None:
+        active, count = self._active, len(self._active.cells)
+        self.depth, self.ball, self.work = self.depth.copy(), self.ball.copy(), float(values[-1])
+        self.depth[active.cells], self.ball[active.ball_cells] = values[:count], values[count:-1]
+
+    @property
+    def _max_creep_step(self) -> float:
+        """Largest number of cycles in a block with creep; infinite without creep."""
+        if not self.setup.creep:
+            return inf
+        return max(_CREEP_GROWTH * self.cycles, _FIRST_CREEP_BLOCK / self.setup.seconds)
+
+    def _advance_creep(self, creep: CreepLaw, seconds: float) -> None:
+        """Creep under the mean pressure at the end of a block, which decreases by the creep itself: iterate both."""
+        active, setup = self._active, self.setup
+        weights = setup.cycle.seconds[setup.loaded] / setup.cycle.duration
+        recovered, strain_per_pressure = creep.linear_response(self.strain[:, active.cells], seconds)
+        thickness = float(setup.joint.liner_thickness)
+        mean = weights @ self._exposure.pressure
+        stiffness = active.foundation.max_stiffness * (weights @ (self._exposure.pressure > 0))
+        for _ in range(_MAX_CREEP_SWEEPS):
+            self._active_creep = active.foundation.smoothed(thickness * (recovered + strain_per_pressure * mean))
+            self._compute_rate(self._values)
+            change = (weights @ self._exposure.pressure - mean) / (1 + stiffness * thickness * strain_per_pressure)
+            mean = numpy.maximum(mean + change, 0.0)
+            if abs(change).max(initial=0.0) <= _CREEP_TOLERANCE * mean.max(initial=0.0):
+                break
+        pressure = numpy.zeros(len(self.depth))
+        pressure[active.cells] = mean
+        self.strain = creep.advanced(self.strain, pressure, seconds)
+
+    def _error(self, block: Step, decay_rate: float) -> float:
+        """Estimate the root mean square error of a block over the cells, relative to the allowed error."""
+        initial = _FIRST_BLOCK * float(self._rate[:-1].max(initial=0.0)) / decay_rate if decay_rate > 0 else 0.0
+        allowed = self.setup.tolerance * max(float(block.values[:-1].max(initial=0.0)), initial)
+        error = block.error[:-1]
+        return float(numpy.sqrt(error @ error / max(len(error), 1))) / allowed if allowed > 0 else 0.0
+
+    def _contact_left_active_cells(self, block: Step) -> bool:
+        """Check if a block has brought the contact to inactive cells."""
+        depth = self.creep_depth
+        depth += self.depth
+        depth[self._active.cells] = block.values[: len(self._active.cells)] + self._active_creep
+        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, 0.0)
+        mask[self._active.cells] = False
+        return bool(mask.any())
+
+    @property
+    def _contact_spreads(self) -> bool:
+        """True if the contact comes near to inactive cells."""
+        depth = self.depth + self.creep_depth
+        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)
+        mask[self._active.cells] = False
+        return bool(mask.any())
+
+
+_STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(
+    {
+        "cycles": float,
+        "depth": numpy.asarray,
+        "ball": numpy.asarray,
+        "strain": numpy.asarray,
+        "work": float,
+        "length": float,
+        "steps": int,
+        "converged": bool,
+        "volume_error": float,
+        "margin": float,
+    }
+)
+"""Types of the attributes in a stored state."""
+
+
+def _equilibrium_arrays(equilibrium: CycleEquilibrium) -> dict[str, Any]:
+    """Return contacts as arrays of a stored state."""
+    arrays = {
+        "equilibrium_displacement": equilibrium.displacement,
+        "equilibrium_pressure": equilibrium.pressure,
+        "equilibrium_converged": equilibrium.converged,
+    }
+    if equilibrium.levels is not None:
+        arrays["level_displacement"], arrays["level_pressure"] = equilibrium.levels
+    return arrays
+
+
+def _read_equilibrium(state: Mapping[str, Numbers]) -> CycleEquilibrium:
+    """Read contacts from the arrays of a stored state; see `_equilibrium_arrays`."""
+    interpolated = "level_displacement" in state
+    return CycleEquilibrium(
+        displacement=state["equilibrium_displacement"],
+        pressure=state["equilibrium_pressure"],
+        converged=bool(state["equilibrium_converged"]),
+        levels=(state["level_displacement"], state["level_pressure"]) if interpolated else None,
+    )
+
+
+def _block_length(length: float, remaining: float) -> float:
+    """Limit a block to the remaining cycles; two blocks share them equally instead of a long and a short one."""
+    return remaining if length >= remaining else min(length, remaining / 2)

@@ -1,0 +1,233 @@
+"""Wear laws, and the registry in which files, the command line and the explorer find them by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import NamedItems, require
+from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
+from .law_fields import (
+    NUMBER,
+    PRESSURE,
+    WEAR_FACTOR,
+    WEAR_PER_ENERGY,
+    WEAR_PER_SLIDE,
+    Law,
+    chosen_law,
+    law_field,
+    read_law,
+)
+from .wear_law import COEFFICIENT, METRE, CycleExposure, WearLaw, plausibility_notes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Archard(WearLaw):
+    """Archard's law dh = k p v dt, with the speed of sliding v.
+
+    Parameters
+    ----------
+    coefficient : float
+        k in mm³/(N m): 1.066e-6 for conventional UHMWPE, some 1e-7 to 4e-7 for cross-linked UHMWPE.
+    """
+
+    name: ClassVar[str] = "archard"
+    title: ClassVar[str] = "wear by pressure and sliding (Archard)"
+    coefficient: float = law_field(WEAR_FACTOR, "wear factor k", example=1e-6)
+
+    def depth(self, cycle: CycleExposure) -> Numbers:
+        return METRE * self.coefficient * cycle.work
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        return plausibility_notes(self.coefficient)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrictionEnergyWear(WearLaw):
+    """Wear by the work of friction, dh = e μ p v dt.
+
+    Parameters
+    ----------
+    coefficient : float
+        e in mm³ per joule of friction.
+    friction : float
+        Coefficient of friction μ.
+    """
+
+    name: ClassVar[str] = "energy"
+    title: ClassVar[str] = "wear by the work of friction"
+    coefficient: float = law_field(WEAR_PER_ENERGY, "worn volume e per friction energy", example=2e-5)
+    friction: float = law_field(NUMBER, "coefficient of friction", example=0.05, high=10.0)
+
+    def depth(self, cycle: CycleExposure) -> Numbers:
+        return METRE * self.coefficient * self.friction * cycle.work
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        return plausibility_notes(self.coefficient * self.friction)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactAreaWear(WearLaw):
+    """Wear by sliding in contact, dh = C v dt, independent of the pressure.
+
+    A cell at the edge of the contact wears in proportion to its contact share.
+
+    Parameters
+    ----------
+    coefficient : float
+        C in mm per mm of sliding, mm³/(mm² mm).
+    """
+
+    name: ClassVar[str] = "area"
+    title: ClassVar[str] = "wear by sliding in contact at any pressure"
+    coefficient: float = law_field(WEAR_PER_SLIDE, "worn depth C per length of sliding", example=1e-9)
+
+    def depth(self, cycle: CycleExposure) -> Numbers:
+        return self.coefficient * numpy.einsum("tp,tp->p", cycle.contact, cycle.sliding.steps)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CrossShear(WearLaw):
+    """Wear dh = k p v dt with a wear factor k that increases with cross-shear, and may depend on the pressure.
+
+    k = [straight + 2 CS (circular - straight)] (p/reference)^exponent. CS is the cross-shear, and p the mean pressure
+    of a point while it slides in contact.
+
+    Parameters
+    ----------
+    straight, circular : float
+        k in mm³/(N m) on a straight track, CS = 0, and on a circle, CS = 1/2.
+    exponent : float
+        Exponent of the pressure; 0 (default) for a k that is independent of the pressure.
+    reference : float
+        Pressure in MPa at which k has the values above. Default 1.
+    """
+
+    name: ClassVar[str] = "cross-shear"
+    title: ClassVar[str] = "wear by pressure, sliding and cross-shear"
+    wears_balls: ClassVar[bool] = False
+    straight: float = law_field(WEAR_FACTOR, "wear factor on a straight track", example=1e-6, key=COEFFICIENT)
+    circular: float = law_field(WEAR_FACTOR, "wear factor on a circle", example=2e-6)
+    exponent: float = law_field(NUMBER, "exponent", example=0.0, default=0.0, low=-1.0, high=3.0, low_included=False)
+    reference: float = law_field(PRESSURE, "reference pressure", example=1.0, default=1.0, low_included=False)
+
+    def depth(self, cycle: CycleExposure) -> Numbers:
+        factor = self.straight + 2 * cycle.cross_shear * (self.circular - self.straight)
+        if self.exponent != 0:
+            distance = cycle.sliding.steps.sum(axis=0, where=cycle.pressure > 0)
+            mean = numpy.divide(cycle.work, distance, out=numpy.zeros_like(distance), where=distance > 0)
+            factor = factor * numpy.where(mean > 0, mean / self.reference, 1.0) ** self.exponent
+        return METRE * factor * cycle.work
+
+    def with_coefficient(self, value: float) -> CrossShear:
+        """Return the law with another wear factor on a straight track, and the same ratio of both factors."""
+        require(COEFFICIENT, self.straight, self.straight > 0, "a sampled wear factor on a straight track is positive")
+        return replace(self, straight=value, circular=self.circular * (value / self.straight))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        return plausibility_notes(self.straight, self.circular)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CustomWearLaw(Law):
+    """Wear law by a function, for Python only.
+
+    Parameters
+    ----------
+    function : function
+        Function from a `CycleExposure` (its `pressure`, `sliding.steps`, `work`, `cross_shear`) to worn depths in mm:
+        (points,), at least 0.
+
+    Raises
+    ------
+    ValueError
+        A depth of the function has another shape, is negative, or is not finite.
+
+    Examples
+    --------
+    Archard's law with a pressure below which nothing wears:
+
+    >>> law = CustomWearLaw(
+    ...     function=lambda cycle: 1e-9 * ((cycle.pressure - 0.5).clip(0) * cycle.sliding.steps).sum(axis=0)
+    ... )
+    """
+
+    name: ClassVar[str] = "custom"
+    title: ClassVar[str] = "custom function"
+    storable: ClassVar[bool] = False
+    function: Callable[[CycleExposure], Numbers]
+    of = RenamedAttribute("function")
+
+    def depth(self, cycle: CycleExposure) -> Numbers:
+        depth, shape = numpy.asarray(self.function(cycle), dtype=float), cycle.pressure.shape[1:]
+        if depth.shape != shape:
+            raise ValueError(f"a CustomWearLaw returned depths of shape {depth.shape}; the points need {shape}")
+        allowed = (depth >= 0) & (depth < numpy.inf)
+        if not allowed.all():
+            raise ValueError(
+                f"a CustomWearLaw returned a depth of {depth[~allowed][0]:g} mm: a depth is at least 0, and finite"
+            )
+        return depth
+
+
+CustomWearLaw.__init__ = renamed_arguments(of="function")(CustomWearLaw.__init__)  # type: ignore[method-assign]
+
+_WEAR_LAWS: tuple[type[WearLaw], ...] = (
+    Archard,
+    FrictionEnergyWear,
+    ContactAreaWear,
+    CrossShear,
+)
+
+WEAR_LAWS: Mapping[str, type[WearLaw]] = NamedItems("wear law", {law.name: law for law in _WEAR_LAWS})
+"""Registry of the wear laws by their names in files; the first one is the default."""
+
+BALL_COEFFICIENT = "ball_coefficient"
+"""Key of the wear coefficient of a ball that wears too."""
+
+
+def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
+    """Read the wear law of the table [wear] of a file.
+
+    Raises
+    ------
+    ValueError
+        An unknown law, a missing key, a key of another law, or a value that is not allowed.
+    """
+    return read_law(table, WEAR_LAWS, chosen_law(table, WEAR_LAWS, "law"))
+
+
+def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
+    """Read the wear law of the ball from the table [wear] of a file; None without `ball_coefficient`.
+
+    Raises
+    ------
+    ValueError
+        A law that does not wear balls, or as `read_wear_law`.
+    """
+    law = chosen_law(table, WEAR_LAWS, "law")
+    if BALL_COEFFICIENT not in table:
+        return None
+    if not law.wears_balls:
+        names = ", ".join(repr(name) for name, known in WEAR_LAWS.items() if known.wears_balls)
+        raise ValueError(f"{BALL_COEFFICIENT} is not allowed with the law {law.name!r}; it belongs to {names}")
+    return read_law(table, WEAR_LAWS, law, keys={COEFFICIENT: BALL_COEFFICIENT})
+
+
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "AreaLaw": "ContactAreaWear",
+        "EnergyLaw": "FrictionEnergyWear",
+        "OwnLaw": "CustomWearLaw",
+        "Pass": "ballsocket.hip.wear_law.CycleExposure",
+        "Law": "ballsocket.hip.wear_law.WearLaw",
+    },
+)

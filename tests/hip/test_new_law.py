@@ -1,0 +1,124 @@
+"""New wear laws and creep laws, as CONTRIBUTING describes them, in a copy of the package."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+import ballsocket as bs
+
+from ..places import ROOT
+
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+HIP = """
+joint = "hip-28"
+cycles = 1e4
+report_at = []
+[cycle]
+name = "iso-14242-1"
+instants = 12
+[wear]
+law = "threshold"
+coefficient = "1e-6 mm^3/(N m)"
+threshold = "0.5 MPa"
+ring_width = "8 deg"
+[creep]
+law = "power"
+factor = 1e-3
+exponent = 0.2
+[uncertainty]
+coefficient = {median = "1e-6 mm^3/(N m)", factor = 1.5}
+count = 4
+"""
+PYTHON = """
+import ballsocket as bs
+from ballsocket.hip import InUse, iso_14242_1
+from ballsocket.hip.file import read_hip
+from ballsocket.hip.power_creep import PowerCreep
+from ballsocket.hip.threshold_wear import ThresholdWear
+
+law, creep = ThresholdWear(coefficient=1e-6, threshold=0.5), PowerCreep(factor=1e-3, exponent=0.2)
+assert abs(creep.response(3600.0) / 1e-3 - 1) < 0.01
+use = InUse(joint=bs.joints["hip-28"], cycle=iso_14242_1(12), wear=law, creep=creep)
+assert 0 < use.first.volume < 40
+hip = read_hip("hip.toml")
+assert (hip.use.wear, hip.use.creep) == (law, creep)
+assert hip.uncertain.scatter.patient({"coefficient": 2e-6}).use.wear == ThresholdWear(coefficient=2e-6, threshold=0.5)
+"""
+EXPLORER = """
+from ballsocket.app.in_use import hip_of, pairs_of, use_of
+from ballsocket.app.screen import Screen
+from ballsocket.app.views.wear import _fields
+from ballsocket.io.joint_file import JointFile
+settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "power", "creep_exponent": "0.1"})
+assert use_of({name.partition(".")[2]: text for name, text in pairs_of(settings)}) == settings
+screen = Screen(file=JointFile(joint=bs.joints["hip-28"], load={"force": 1000.0}), use=settings)
+worn = hip_of(screen.file, settings)
+assert (worn.wear.threshold, worn.creep.exponent, worn.creep.factor) == (0.25, 0.1, 1e-3)
+hidden = {name: field.get("hidden", False) for name, field in _fields(screen).items()}
+assert (hidden["wear.threshold"], hidden["wear.creep_exponent"], hidden["wear.circular"]) == (False, False, True)
+"""
+
+
+def example(heading):
+    """Return the first Python block of a section of CONTRIBUTING."""
+    section = CONTRIBUTING.split(f"## {heading}\n")[1].split("\n## ")[0]
+    return re.search(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)[1]
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """Return a folder with a copy of the package that has one more wear law and one more creep law."""
+    folder = tmp_path_factory.mktemp("laws")
+    copy = folder / "ballsocket"
+    shutil.copytree(Path(bs.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    for heading, module, law, registry, last in (
+        ("A new wear law", "threshold_wear", "ThresholdWear", "wear_laws", "    CrossShear,\n)"),
+        ("A new creep law", "power_creep", "PowerCreep", "creep_laws", "    KelvinVoigtChain,\n)"),
+    ):
+        code = example(heading)
+        assert code.count("\n") <= 30
+        (copy / "hip" / f"{module}.py").write_text(code, "utf-8")
+        text = (copy / "hip" / f"{registry}.py").read_text("utf-8")
+        assert last in text
+        text = text.replace(last, last.replace(")", f"    {law},\n)")).replace(
+            "\nfrom .law_fields", f"\nfrom .{module} import {law}\nfrom .law_fields", 1
+        )
+        (copy / "hip" / f"{registry}.py").write_text(text, "utf-8")
+    return folder
+
+
+def run(package, folder, *words):
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    return subprocess.run(
+        [sys.executable, "-W", "error::DeprecationWarning:ballsocket", *words],
+        cwd=folder,
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+        env={**environment, "PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"},
+    )
+
+
+def test_new_laws_work_in_python_files_uncertainty_and_explorer(package, tmp_path):
+    (tmp_path / "hip.toml").write_text(HIP, "utf-8")
+    explorer = EXPLORER if find_spec("panel") else ""
+    python = run(package, tmp_path, "-c", PYTHON + explorer)
+    assert python.returncode == 0, python.stderr
+
+
+def test_new_laws_work_on_the_command_line_and_in_json(package, tmp_path):
+    (tmp_path / "hip.toml").write_text(HIP[: HIP.index("[uncertainty]")], "utf-8")
+    command = run(package, tmp_path, "-m", "ballsocket", "hip", "hip.toml", "--json")
+    assert command.returncode == 0, command.stderr
+    answer = json.loads(command.stdout)
+    assert answer["laws"]["wear"] == {"law": "threshold", "coefficient_mm3_per_Nm": 1e-6, "threshold_MPa": 0.5}
+    assert answer["laws"]["creep"] == {"law": "power", "factor_per_MPa": 1e-3, "exponent": 0.2}
+    assert answer["history"][-1]["creep_depth"] > 0
+    assert 0 < answer["initial"]["wear_mm3_per_Mc"] < 40
