@@ -1,0 +1,154 @@
+"""Distance of contacts from the rim, inside the bore and for edge loading."""
+
+from dataclasses import replace
+from math import pi, radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.elasticity.off_axis.load_cases import edge_margins
+
+from ...extent import either
+from ...joints import HIP
+
+STEP = radians(4.0)
+
+
+def lined(ball_radius, clearance, thickness, young, poisson):
+    liner = bs.Material(young=young, poisson=poisson)
+    return bs.Joint(ball_radius=ball_radius, clearance=clearance, liner_thickness=thickness, liner=liner)
+
+
+CUPS = {
+    "thin and soft": (lined(18.0, 0.15, 2.5, 800.0, 0.45), bs.Cup(arc_of_cover=radians(150.0)), 2000.0, 52.3),
+    "hip-36": (bs.joints["hip-36"], bs.Cup(arc_of_cover=radians(170.0)), 3000.0, 45.9),
+    "nearly incompressible": (lined(17.9, 0.1, 6.75, 1000.0, 0.49), bs.Cup(), 2000.0, 60.4),
+    "thick with a chamfer": (
+        lined(14.0, 0.1, 12.0, 1000.0, 0.4),
+        bs.Cup(arc_of_cover=radians(170.0), chamfer=1.0),
+        2000.0,
+        35.6,
+    ),
+}
+"""Joint, cup, load in N, and the tilt in degrees at which the contact first touches the rim, in rings of 0.5°."""
+
+
+@pytest.mark.parametrize("name", CUPS)
+def test_edge_distance_decreases_smoothly_with_tilt_at_the_rim(name):
+    """Steps of half a degree reduce it by 0.03 to 0.2 mm, and differ by less than 0.1 mm."""
+    joint, cup, force, first_touch = CUPS[name]
+    tilt = np.radians(first_touch + np.arange(-3.0, 2.1, 0.5))
+    contact = bs.Sphere(cup=cup).press(joint, force=force, tilt=tilt)
+    steps = np.diff(contact.edge_distance)
+    assert steps.max() < -0.03
+    assert steps.min() > -0.2
+    assert abs(np.diff(steps)).max() < 0.1
+    assert (contact.edge_loaded == (contact.edge_distance <= 0)).all()
+
+
+@pytest.mark.parametrize("name", list(CUPS)[: either(quick=1, long=4)])
+def test_edge_distance_is_independent_of_ring_width(name):
+    """Rings of 2° within 0.1 mm, far from the rim, near it, and beyond it."""
+    joint, cup, force, first_touch = CUPS[name]
+    tilt = np.radians(first_touch + np.array([-25.0, -9.0, -3.5, -0.7, 0.7, 6.0]))
+    wide, narrow = (
+        bs.Sphere(cup=cup, ring_width=radians(width)).press(joint, force=force, tilt=tilt).edge_distance
+        for width in (2.0, either(quick=1.0, long=0.5))
+    )
+    assert wide == pytest.approx(narrow, abs=0.1)
+    touching = first_touch + np.degrees(wide[-1] / joint.socket_radius) + 6.0
+    assert touching == pytest.approx(first_touch, abs=0.25)
+
+
+@pytest.mark.parametrize("name", list(CUPS)[: either(quick=2, long=4)])
+def test_edge_distance_of_a_cut_contact_needs_few_presses(name):
+    joint, cup, force, first_touch = CUPS[name]
+    contact = bs.Sphere(cup=cup).press(joint, force=force, tilt=radians(first_touch + 6.0))
+    state, presses = contact.laws.pieces[0][1].state, []
+
+    def solve(*arguments):
+        presses.append(arguments)
+        return state.solve(*arguments)
+
+    margin = edge_margins(replace(state, solve=solve))
+    assert np.degrees(margin[0]) == pytest.approx(-6.0, abs=0.25)
+    assert len(presses) <= 9
+
+
+def test_half_angle_is_resolved_between_the_cells():
+    """Half angles of closed shells at rings of 2°: within 0.25° of the exact ones, of 14 random joints."""
+    random, errors = np.random.default_rng(11), []
+    for _ in range(14):
+        radius = random.uniform(8.0, 30.0)
+        joint = lined(
+            radius,
+            10 ** random.uniform(-2.0, -0.4),
+            radius * 10 ** random.uniform(-1.0, 0.2),
+            1000.0,
+            random.choice([0.0, 0.3, 0.4, 0.45, 0.48]),
+        )
+        exact = bs.Exact().press(joint, half_angle=np.radians(random.uniform(14.0, 58.0, 4)))
+        model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(2.0))
+        contact = model.press(joint, indentation=exact.indentation, tilt=random.uniform(0.0, 0.35, 4))
+        errors.append(np.degrees(contact.half_angle - exact.half_angle))
+    assert abs(np.array(errors)).max() < 0.25
+
+
+@pytest.mark.parametrize(
+    ("arc", "load"),
+    [(180.0, {"force": 2000.0}), (200.0, {"force": 9000.0}), (150.0, {"indentation": 0.05}), (70.0, {"force": 3000.0})],
+)
+def test_edge_margin_follows_the_rotation_of_the_load(arc, load):
+    """It decreases by about the rotation, a little less near the rim, and by exactly the rotation beyond."""
+    model = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(arc)), ring_width=radians(3.0))
+    tilt = np.arange(0.0, radians(arc / 2 - 8.0), STEP)
+    contact = model.press(HIP, tilt=tilt, **{name: value + 0 * tilt for name, value in load.items()})
+    margin, decrease = contact.edge_margin, -np.diff(contact.edge_margin)
+    assert (decrease > 0).all()
+    assert decrease.max() < STEP + radians(1.0)  # the last ring is loaded all at once
+    assert decrease[contact.edge_loaded[:-1]] == pytest.approx(STEP, rel=1e-6)
+    assert (margin[contact.edge_loaded] <= 0).all()
+    assert (margin[~contact.edge_loaded] >= 0).all()
+    assert contact.edge_distance == pytest.approx(margin * HIP.socket_radius)
+    assert contact.rim_distance == pytest.approx((radians(arc) / 2 - tilt) * HIP.socket_radius)
+
+
+def test_edge_margin_passes_the_rings_evenly():
+    """In rings of 2° a degree of tilt reduces the margin by half a degree to two degrees."""
+    tilt = np.radians(np.arange(30.0, 52.0))
+    margin = bs.Sphere(ring_width=radians(2.0)).press(HIP, force=2000.0, tilt=tilt).edge_margin
+    decrease = -np.degrees(np.diff(margin[margin > radians(2.0)]))
+    assert len(decrease) > 15
+    assert decrease.min() > 0.5
+    assert decrease.max() < 1.8
+
+
+def test_load_rotated_back_by_the_margin_just_touches_the_rim():
+    model, tilt = bs.Sphere(), radians(70.0)
+    beyond = model.press(HIP, force=2500.0, tilt=tilt)
+    assert beyond.edge_margin < -radians(10.0)
+    touching = tilt + beyond.edge_margin
+    back = model.press(HIP, force=2500.0, tilt=[touching - radians(2.0), touching + radians(1.0)])
+    assert back.edge_loaded.tolist() == [False, True]
+    assert back.edge_margin[0] < radians(4.0)
+
+
+def test_bore_narrower_than_its_axial_contact_misses_the_overlap():
+    joint = HIP.replace(clearance=0.05)
+    contact = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(60.0))).press(joint, indentation=0.05)
+    assert contact.edge_loaded
+    assert contact.edge_margin == pytest.approx(pi / 6 - np.arccos(0.05 / 0.1), abs=1e-3)
+
+
+@pytest.mark.parametrize("poisson", [0.3, 0.45])
+def test_error_estimates_hold_for_edge_loading(poisson):
+    """Contacts that the rim cuts off, in rings of 4° and of 2°."""
+    liner = bs.Material(young=1000.0, poisson=poisson)
+    joint = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=liner)
+    tilt = np.radians([45.0, 60.0, 68.0, 75.0])
+    wide, narrow = (bs.Sphere(ring_width=radians(width)).press(joint, force=2000.0, tilt=tilt) for width in (4.0, 2.0))
+    assert wide.edge_loaded.tolist() == [False, True, True, True]
+    for name in ("indentation", "max_pressure", "half_angle", "energy", "stiffness"):
+        error = abs(getattr(wide, name) / getattr(narrow, name) - 1)
+        assert (error <= wide.error[name]).all(), name

@@ -1,0 +1,305 @@
+"""Identification of a joint from measurements."""
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
+from ballsocket.identify.experiment import Candidate, experiment
+from ballsocket.identify.jax_derivatives import by_tracing
+from ballsocket.identify.synthetic import drawn, trials
+from ballsocket.output.identify_plots import fit_figure
+from ballsocket.studies import LogNormal, Normal
+
+RIGID = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
+FREE = {"clearance": (0.02, 0.3), "liner.young": (400.0, 2000.0)}
+FORCE = np.linspace(150.0, 3000.0, 20)
+MODEL = bs.HessForsbach()
+TRUTH = MODEL.press(RIGID, force=FORCE)
+
+
+def measured(quantity, values=None, share=0.02, random=None, force=FORCE, **words):
+    values = getattr(TRUTH, quantity) if values is None else values
+    uncertainty = share * np.max(values)
+    scattered = values if random is None else values + uncertainty * random.standard_normal(len(values))
+    return Measured(quantity=quantity, values=scattered, uncertainty=uncertainty, force=force, **words)
+
+
+def identified(*data, free=FREE, model=MODEL, **words):
+    return bs.identify(model, RIGID, data, free, **words)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        [measured("indentation")],
+        [measured("half_angle"), measured("indentation")],
+        [measured("area"), measured("stiffness")],
+        [
+            Measured(quantity="force", values=FORCE, uncertainty=20.0, indentation=TRUTH.indentation),
+            measured("max_pressure"),
+        ],
+        [measured("area"), Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.004)],
+        [measured("pressure", TRUTH.pressure(0.2), angle=0.2), measured("indentation")],
+    ],
+    ids=lambda data: "+".join(each.quantity for each in data),
+)
+def test_data_without_error_identify_the_true_joint(data):
+    result = identified(*data)
+    assert result.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
+    assert result.identifiable
+    assert result.spread == pytest.approx(0.0, abs=1e-4)
+    assert result.joint.clearance == pytest.approx(0.1, rel=1e-5)
+
+
+def test_errors_of_the_machine_are_identified_with_the_joint():
+    machine = Machine(compliance=(0.0, 2e-5), offset=(-0.02, 0.02))
+    read = TRUTH.indentation + 8e-6 * FORCE - 0.007
+    by_force = measured("indentation", read, share=1e-3, machine=machine)
+    by_depth = Measured(quantity="force", values=FORCE, uncertainty=2.0, indentation=read, machine=machine)
+    truth = {"clearance": 0.1, "liner_young": 1000.0, "machine.compliance": 8e-6, "machine.offset": -0.007}
+    for each in (by_force, by_depth):
+        assert identified(each, measured("area", share=1e-3)).point == pytest.approx(truth, rel=1e-4)
+
+
+def test_known_errors_of_the_machine_are_subtracted():
+    machine = Machine(compliance=8e-6, offset=0.002)
+    read = measured("indentation", TRUTH.indentation + 8e-6 * FORCE + 0.002, machine=machine)
+    assert identified(read).point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
+
+
+def test_values_of_a_saturated_film_are_lower_bounds():
+    """The modulus is too low if the values at the limit count as exact."""
+    film = np.minimum(TRUTH.max_pressure, 7.0)
+    free = {"liner.young": (400.0, 2000.0)}
+    honest = identified(measured("max_pressure", film, saturation=7.0), free=free)
+    taken = identified(measured("max_pressure", film), free=free)
+    assert honest["liner.young"].value == pytest.approx(1000.0, rel=0.01)
+    assert taken.point["liner_young"] < 900.0
+
+
+def test_outliers_have_little_influence_with_a_heavy_tail():
+    random = np.random.default_rng(3)
+    values = TRUTH.indentation * (1 + 0.01 * random.standard_normal(20))
+    values[[4, 11, 17]] *= 1.5
+    data = measured("indentation", values, share=0.01)
+    normal, heavy = identified(data), identified(data, scatter=HeavyTailed())
+    errors = [abs(np.log(result.point["clearance"] / 0.1)) for result in (normal, heavy)]
+    assert errors[1] < 0.5 * errors[0]
+    assert any(note.startswith("value 18 of indentation is") for note in normal.notes)
+    assert any("there are outliers" in note for note in normal.notes)
+
+
+@pytest.mark.parametrize("quantities", [("area",), ("max_pressure",), ("half_angle", "max_pressure")])
+def test_areas_and_pressures_identify_only_the_product(quantities):
+    """Theory, 3g: of a rigid ball they depend on E c; only the socket's radius, R1 + c, hints at c."""
+    random = np.random.default_rng(5)
+    data = [measured(quantity, share=0.04, random=random) for quantity in quantities]
+    result = identified(*data, free={"clearance": (0.05, 0.2), "liner.young": (400.0, 2000.0)})
+    assert result.information.rank == 1
+    assert result.information.condition > 1e3
+    assert not result.identifiable
+    assert np.isnan(result["clearance"].value)
+    assert np.isnan(result["liner.young"].value)
+    (product,) = result.information.products
+    assert product.exponents == {"clearance": 1.0, "liner_young": 1.0}
+    assert product.low < 100.0 < product.high < 1.2 * product.low
+    assert result.notes[0] == (
+        "only clearance · liner_young is identifiable from these data, clearance and liner_young separately are not: "
+        "measure indentation or free play"
+    )
+    assert result.summary()["valid"] is False
+    assert result.summary()["estimates"][0]["value"] is None
+
+
+def test_the_gain_of_a_measurement_is_the_predicted_gain():
+    areas = measured("area")
+    result = identified(areas)
+    gain = next(each for each in result.next.gains if each.candidate.quantity == "indentation")
+    more = identified(areas, gain.candidate.measured(MODEL.press(result.joint, force=gain.candidate.force).indentation))
+    grown = (
+        np.linalg.slogdet(more.information.matrix + np.eye(2))[1]
+        - np.linalg.slogdet(result.information.matrix + np.eye(2))[1]
+    )
+    assert gain.bits == pytest.approx(grown / np.log(4.0), rel=0.1)
+    assert more.identifiable
+    assert gain.identifies == ("clearance", "liner_young")
+    assert "area" not in result.next.sufficient_quantities
+
+
+def test_a_very_uncertain_candidate_gains_nothing():
+    result = identified(measured("indentation", share=1e-4))
+    (gain,) = experiment(result, [Candidate("max_pressure", 1e6, 1000.0)]).gains
+    assert gain.bits < 1e-6
+    assert gain.uncertainty_ratio["clearance"] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_prior_distribution_makes_the_product_separable():
+    known = {"clearance": Normal(mean=0.1, deviation=0.01), "liner.young": (400.0, 2000.0)}
+    result = identified(measured("area"), free=known)
+    assert result.identifiable
+    assert result["clearance"].value == pytest.approx(0.1, abs=1e-3)
+    assert result["clearance"].high - result["clearance"].low == pytest.approx(2 * 1.96 * 0.01, rel=0.02)
+    assert result["liner.young"].value == pytest.approx(1000.0, rel=0.01)
+
+
+def test_the_band_of_a_log_normal_prior_is_a_factor():
+    result = identified(measured("area"), free={**FREE, "clearance": LogNormal(median=0.1, factor=1.1)})
+    each = result["clearance"]
+    assert (each.low, each.high) == pytest.approx((0.1 / 1.1**1.96, 0.1 * 1.1**1.96), rel=0.01)
+
+
+def test_uncertain_loads_widen_the_band():
+    sure = identified(measured("indentation", share=1e-3))
+    unsure = identified(measured("indentation", share=1e-3, load_uncertainty=60.0))
+    wide, narrow = (each["clearance"].high / each["clearance"].low for each in (unsure, sure))
+    assert np.log(wide) > 2 * np.log(narrow)
+    offs = [drawn(result, np.random.default_rng(0))[0].values - TRUTH.indentation for result in (unsure, sure)]
+    assert np.std(offs[0]) > 3 * np.std(offs[1])
+
+
+def test_bands_of_95_percent_hold_the_truth():
+    """40 sets of data: fewer than 33 held of 40 bands of 95 % would be a chance of one in ten thousand."""
+    result = identified(measured("indentation", share=0.01), measured("max_pressure", saturation=8.0))
+    tried = trials(result, 40)
+    assert min(tried.coverage.values()) >= 33 / 40
+    assert max(map(abs, tried.bias.values())) < 0.15
+
+
+@pytest.mark.long
+def test_coverage_and_bias_over_two_hundred_synthetic_sets():
+    model = bs.Tabulated()
+    contact = model.press(RIGID, force=FORCE)
+    data = [measured("indentation", contact.indentation, share=0.01), measured("area", contact.area)]
+    tried = trials(identified(*data, model=model), 200)
+    for name in ("clearance", "liner_young"):
+        assert 0.92 <= tried.coverage[name] <= 0.98
+        assert abs(tried.bias[name]) < 0.1
+
+
+def test_the_posterior_agrees_with_the_bands():
+    pytest.importorskip("emcee")
+    result = identified(measured("indentation", share=0.003, random=np.random.default_rng(8)))
+    posterior = result.posterior(1000)
+    assert posterior.converged
+    assert min(posterior.effective.values()) >= 1000
+    assert 0.2 < posterior.acceptance < 0.9
+    for name, each in result.estimates.items():
+        np.testing.assert_allclose(posterior.band(name), (each.low, each.high), rtol=0.05)
+    assert posterior.samples.shape == (1000, 2)
+
+
+def test_the_posterior_of_an_unidentifiable_pair_follows_the_product():
+    pytest.importorskip("emcee")
+    result = identified(measured("area"))
+    clearance, young = result.posterior(500).samples.T
+    assert clearance.max() > 2 * clearance.min()
+    np.testing.assert_allclose(clearance * young, 100.0, rtol=0.06)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (
+            {"uncertainty": -1e-3},
+            r"indentation_uncertainty\[0\] = -0.001 (and .*)?is not allowed: an uncertainty is above",
+        ),
+        ({"uncertainty": [1e-3, 0.0]}, r"indentation_uncertainty\[1\] = 0 is not allowed"),
+        ({"uncertainty": [1e-3] * 3}, "indentation_uncertainty must have 1 or 2 numbers, got 3"),
+        ({"values": [0.01, np.nan]}, "indentation has no number in row 2"),
+        ({"force": [0.0, 100.0]}, r"force\[0\] = 0 is not allowed: at first touch the indentation is 0"),
+        ({"force": [-1.0, 100.0]}, r"force\[0\] = -1 is not allowed"),
+        ({"indentation": 0.1}, "exactly one of force, indentation, half_angle is needed, got force, indentation"),
+        ({"quantity": "indentations"}, "quantity 'indentations' is not known; did you mean 'indentation'?"),
+        (
+            {"quantity": "area", "values": [10.0, 5000.0]},
+            r"area\[1\] = 5000 is not allowed: a contact area is below half of the ball, 2π",
+        ),
+        ({"quantity": "half_angle", "values": [0.1, 30.0]}, r"half_angle\[1\] = 30 is not allowed: a half angle"),
+        ({"quantity": "area", "machine": Machine()}, "area has a machine, but only indentations are read by one"),
+        ({"quantity": "pressure"}, "pressure needs an angle"),
+    ],
+)
+def test_impossible_data_are_refused(words, message):
+    given = {"quantity": "indentation", "values": [0.01, 0.02], "uncertainty": 1e-3, "force": [100.0, 200.0]}
+    with pytest.raises(ValueError, match=message.replace("(and .*)?", ".*")):
+        identified(Measured(**{**given, **words}))
+
+
+@pytest.mark.parametrize(
+    ("free", "message"),
+    [
+        ({"clearence": (0.1, 0.2)}, "'clearence' among the unknowns is not known; did you mean 'clearance'?"),
+        ({"clearance": (0.2, 0.1)}, r"clearance = \(0.2, 0.1\) is not allowed: two finite ends in ascending order"),
+        ({"clearance": 0.1}, "clearance = 0.1 must be two ends"),
+        ({"clearance": (-0.1, 0.1)}, "clearance = -0.1 is not allowed: a radial clearance"),
+        ({}, "free has no unknowns"),
+        ({**FREE, "liner.poisson": (0.3, 0.4), "ball_radius": (15.0, 17.0)}, "3 values do not suffice for 4 unknowns"),
+        ({"clearance": (0.1, 0.2), "diametral_clearance": (0.1, 0.2)}, "clearance"),
+    ],
+)
+def test_impossible_unknowns_are_refused(free, message):
+    data = Measured(quantity="indentation", values=[0.01, 0.02, 0.03], uncertainty=1e-3, force=[100.0, 400.0, 900.0])
+    with pytest.raises(ValueError, match=message):
+        identified(data, free=free)
+
+
+@pytest.mark.parametrize(
+    ("model", "joint", "data", "message"),
+    [
+        ("tabulated", RIGID, measured("area"), r"model must be a model, such as bs.Tabulated\(\), got 'tabulated'"),
+        (MODEL, "hip-36", measured("area"), "joint must be a Joint"),
+        (MODEL, RIGID.replace(clearance=np.array([0.1, 0.2])), measured("area"), "identify one joint at a time"),
+        (MODEL, RIGID, [3.0], "data must be sets of Measured, got 3.0"),
+        (MODEL, RIGID, [], "data must have at least one set of measurements"),
+    ],
+)
+def test_wrong_types_and_empty_data_are_refused(model, joint, data, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        bs.identify(model, joint, data, FREE)
+
+
+def test_modulus_and_poissons_ratio_are_not_identifiable_together():
+    """Poisson's ratio and the modulus combine to one stiffness."""
+    result = identified(measured("indentation"), free={**FREE, "liner.poisson": (0.3, 0.48)})
+    assert result.information.unidentifiable == ("liner_young", "liner_poisson")
+    assert result.information.rank == 2
+    assert result.notes[0].startswith(
+        "liner_young and liner_poisson are not identifiable from these data; of the usual measurements "
+    )
+
+
+def test_data_without_any_result_of_the_model_are_refused():
+    data = Measured(quantity="indentation", values=0.01, uncertainty=1e-3, force=100.0)
+    with pytest.raises(ValueError, match="tabulated has no result for all the data anywhere within the ranges"):
+        identified(data, free={"liner_thickness": (0.05, 0.1)}, model=bs.Tabulated())
+
+
+@pytest.mark.long
+def test_jax_and_differences_have_the_same_best_point():
+    pytest.importorskip("jax")
+    machine = Machine(compliance=(0.0, 2e-5), offset=0.002)
+    read = TRUTH.indentation + 8e-6 * FORCE + 0.002
+    data = [
+        measured("indentation", read, share=1e-3, machine=machine),
+        Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.004),
+    ]
+    traced, result = identified(*data, slopes=by_tracing), identified(*data)
+    assert traced.point == pytest.approx(result.point, rel=1e-6)
+    np.testing.assert_allclose(traced.information.matrix, result.information.matrix, rtol=1e-3)
+
+
+def test_a_model_that_jax_cannot_trace_is_named():
+    with pytest.raises(ValueError, match="exact cannot be traced by JAX: use by_differences"):
+        identified(measured("area"), model=bs.Exact(), slopes=by_tracing)
+
+
+def test_a_custom_observable_is_read_from_contacts():
+    """The frequency of a small vibration about a load measures the stiffness there."""
+    observable = oscillation(mass=1.0)
+    swings = observable.read(TRUTH)
+    vibrations = Measured(quantity="frequency", observable=observable, values=swings, uncertainty=1.0, force=FORCE)
+    result = identified(vibrations, measured("area"))
+    assert result.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
+    assert drawn(result, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
+    assert fit_figure(result).axes[0].get_ylabel() == "frequency of oscillation f [Hz]"
