@@ -1,5 +1,6 @@
 """Wear simulation of hip joints: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
+from .bands import Bands
 from .creep_law import constrained_share
 from .creep_laws import KelvinVoigtChain, LogarithmicCreep, logarithmic
 from .cycle import Cycle, Frame, Spring
@@ -9,9 +10,9 @@ from .history import History
 from .in_vivo import in_vivo
 from .mix import Activity, Mix
 from .named_cycles import named_cycle
-from .patients import Scatter
 from .simulation import HipSimulation
-from .uncertainty import Bands, population, uncertainty
+from .uncertainty import population, uncertainty
+from .variability import PatientVariability
 from .wear_laws import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 
 AreaLaw = ContactAreaWear
@@ -19,6 +20,7 @@ EnergyLaw = FrictionEnergyWear
 OwnLaw = CustomWearLaw
 InUse = HipSimulation
 Ladder = KelvinVoigtChain
+Scatter = PatientVariability
 
 __all__ = [
     "Activity",
@@ -42,6 +44,7 @@ __all__ = [
     "Lubricant",
     "Mix",
     "OwnLaw",
+    "PatientVariability",
     "Scatter",
     "Spring",
     "constant_load",
