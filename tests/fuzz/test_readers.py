@@ -112,7 +112,7 @@ def test_quantities(text, kind):
 def test_cycle_tables(fresh, raw, side):
     with fresh() as folder, refused_in_a_sentence():
         (folder / "cycle.csv").write_bytes(raw)
-        cycle = read_cycle(folder / "cycle.csv", instants=12, body_weight=side, reading=Reading(closing=0.5))
+        cycle = read_cycle(folder / "cycle.csv", n_steps=12, body_weight=side, reading=Reading(closing=0.5))
         assert numpy.isfinite(numpy.asarray(cycle.force(PHASES))).all()
 
 

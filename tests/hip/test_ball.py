@@ -23,7 +23,7 @@ def spinning(count=24):
         name="spin",
         force=lambda t: 2000.0 + 0 * t,
         angles=lambda t: radians(30.0) * np.stack([0 * t, 0 * t, np.cos(2 * pi * t)]),
-        instants=count,
+        n_steps=count,
     )
 
 

@@ -44,7 +44,7 @@ def test_the_standards_angles(make, phase, flexed, adducted, turned):
 @pytest.mark.parametrize("instants", [8, 72, 100])
 def test_flexion_alone_slides_twice_its_range(radius, instants):
     cycle = flexion(instants)
-    assert slide(radius, cycle.turns, UP) == pytest.approx(2 * radians(43.0) * radius, rel=1e-12)
+    assert slide(radius, cycle.rotation_increments, UP) == pytest.approx(2 * radians(43.0) * radius, rel=1e-12)
 
 
 def test_a_rotation_vector_is_what_the_rotation_was_made_of():
@@ -63,7 +63,7 @@ def test_the_order_of_rotations_is_an_input():
     angles = np.radians([20.0, 10.0, -30.0])
     x, y, z = (rotation_matrices(angles * (np.arange(3) == axis), "xyz") for axis in range(3))
     assert rotation_matrices(angles, "zxy") == pytest.approx(z @ x @ y, abs=1e-15)
-    slides = {order: slide(14.0, iso_14242_1(100, order).turns, UP) for order in ("xyz", "zyx", "yxz")}
+    slides = {order: slide(14.0, iso_14242_1(100, order).rotation_increments, UP) for order in ("xyz", "zyx", "yxz")}
     assert len({round(each, 3) for each in slides.values()}) == 3
 
 
@@ -104,7 +104,7 @@ def test_two_axes_cross_tracks():
     cycle = two_axis(1000)
     angles = np.degrees(cycle.angles(np.linspace(0.0, 1.0, 1001)))
     assert np.ptp(angles, axis=1) == pytest.approx([46.0, 12.0, 0.0], abs=1e-9)
-    assert (cycle.sizes.min(), cycle.largest_force) == pytest.approx((400.0, 2000.0), rel=1e-6)
+    assert (cycle.force_magnitudes.min(), cycle.largest_force) == pytest.approx((400.0, 2000.0), rel=1e-6)
 
 
 @pytest.mark.parametrize(("name", "percent"), [("walking", 247), ("stairs-down", 260), ("stumbling", 870)])
@@ -127,8 +127,10 @@ def test_the_weight_of_a_body_belongs_to_loads_of_patients():
 def test_rocking_goes_round_and_a_constant_load_is_constant():
     leaning = rocking(amplitude=radians(23.0)).rotations[:, 2]
     assert np.degrees(np.arccos(leaning[:, 2])) == pytest.approx(23.0, rel=1e-9)
-    assert slide(14.0, rocking(1000).turns, UP) == pytest.approx(2 * pi * 14.0 * sin(radians(23.0)), rel=1e-4)
-    assert np.ptp(constant_load().sizes) == 0
+    assert slide(14.0, rocking(1000).rotation_increments, UP) == pytest.approx(
+        2 * pi * 14.0 * sin(radians(23.0)), rel=1e-4
+    )
+    assert np.ptp(constant_load().force_magnitudes) == 0
 
 
 # a table of one's own
@@ -148,7 +150,9 @@ def test_a_table_of_ones_own_is_the_same_cycle(tmp_path):
     cycle, expected = read_cycle(written(tmp_path / "walk.csv")), iso_14242_1()
     assert cycle.duration == pytest.approx(1.2)
     assert cycle.forces == pytest.approx(expected.forces, abs=2.0)
-    assert slide(14.0, cycle.turns, UP) == pytest.approx(slide(14.0, expected.turns, UP), rel=1e-3)
+    assert slide(14.0, cycle.rotation_increments, UP) == pytest.approx(
+        slide(14.0, expected.rotation_increments, UP), rel=1e-3
+    )
 
 
 def test_units_and_body_weight(tmp_path):
@@ -173,7 +177,7 @@ def test_three_components_of_the_force(tmp_path):
     assert cycle.forces == pytest.approx(
         np.column_stack([100 * np.sin(turn), 0 * turn, 2000 + 1000 * np.cos(turn)]), abs=3.0
     )
-    assert degrees(abs(cycle.turns).max()) == 0
+    assert degrees(abs(cycle.rotation_increments).max()) == 0
 
 
 @pytest.mark.parametrize(
@@ -222,7 +226,7 @@ def test_heads_of_a_table_that_say_too_little(tmp_path, heads, refused):
 
 
 def test_a_cycle_has_a_sensible_number_of_instants():
-    with pytest.raises(ValueError, match="instants = 7 is not allowed: a whole number from 8 to 10000"):
+    with pytest.raises(ValueError, match="n_steps = 7 is not allowed: a whole number from 8 to 10000"):
         iso_14242_1(7)
-    with pytest.raises(ValueError, match="instants = 72.0 is not allowed"):
+    with pytest.raises(ValueError, match="n_steps = 72.0 is not allowed"):
         iso_14242_1(72.0)

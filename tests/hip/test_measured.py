@@ -69,9 +69,13 @@ def test_coordinates_and_reactions_of_opensim(tmp_path, side, on, frame):
     ]
     cycle = read_cycle(files, 100, reading=Reading(side=bs.Side.RIGHT if side == "r" else bs.Side.LEFT))
     assert cycle.duration == pytest.approx(1.1)
-    expected = np.stack([0.1 * ISO.sizes, 200 * np.sin(2 * np.pi * ISO.phases), ISO.sizes], axis=1)
+    expected = np.stack(
+        [0.1 * ISO.force_magnitudes, 200 * np.sin(2 * np.pi * ISO.phases), ISO.force_magnitudes], axis=1
+    )
     assert cycle.forces == pytest.approx(expected, abs=3.0)
-    assert slide(14.0, cycle.turns, UP) == pytest.approx(slide(14.0, ISO.turns, UP), rel=1e-3)
+    assert slide(14.0, cycle.rotation_increments, UP) == pytest.approx(
+        slide(14.0, ISO.rotation_increments, UP), rel=1e-3
+    )
 
 
 def test_the_states_of_opensim_in_radians(tmp_path):
@@ -80,7 +84,9 @@ def test_the_states_of_opensim_in_radians(tmp_path):
         tmp_path / "states.sto", dict(zip(names, np.radians(ANGLES), strict=True)), header="nRows=201\ninDegrees=no"
     )
     cycle = read_cycle([states, reactions(tmp_path / "loads.sto")])
-    assert slide(14.0, cycle.turns, UP) == pytest.approx(slide(14.0, ISO.turns, UP), rel=1e-3)
+    assert slide(14.0, cycle.rotation_increments, UP) == pytest.approx(
+        slide(14.0, ISO.rotation_increments, UP), rel=1e-3
+    )
 
 
 def test_one_step_is_cut_out_of_a_walk(tmp_path):
@@ -98,8 +104,8 @@ def test_one_step_is_cut_out_of_a_walk(tmp_path):
 def test_loads_of_orthoload_act_on_the_ball_and_turn_with_it(tmp_path, parting, comma, units):
     file = orthoload(tmp_path / "h1l.csv", -in_femur(FORCE), parting, comma, units)
     cycle = read_cycle(file, reading=Reading(motion=ISO))
-    assert cycle.forces[:, 2] == pytest.approx(ISO.sizes, abs=3.0)
-    assert cycle.forces[:, 0] == pytest.approx(0.1 * ISO.sizes, abs=3.0)
+    assert cycle.forces[:, 2] == pytest.approx(ISO.force_magnitudes, abs=3.0)
+    assert cycle.forces[:, 0] == pytest.approx(0.1 * ISO.force_magnitudes, abs=3.0)
     assert any("the motion is that of iso-14242-1" in note for note in cycle.notes)
     mirrored = -in_femur(FORCE) * [[-1.0], [1.0], [1.0]]
     with_left = read_cycle(orthoload(tmp_path / "left.csv", mirrored), reading=Reading(side=bs.Side.LEFT))
@@ -110,7 +116,7 @@ def test_loads_in_the_frame_of_the_cup(tmp_path):
     file = orthoload(tmp_path / "cup.csv", FORCE)
     cycle = read_cycle(file, reading=Reading(frame="cup", force_on="socket"))
     assert cycle.frame is Frame.CUP
-    assert cycle.forces[:, 0] == pytest.approx(0.1 * ISO.sizes, abs=3.0)
+    assert cycle.forces[:, 0] == pytest.approx(0.1 * ISO.force_magnitudes, abs=3.0)
 
 
 def test_what_is_missing_at_the_end_is_spread_over_the_cycle(tmp_path):
@@ -122,7 +128,7 @@ def test_what_is_missing_at_the_end_is_spread_over_the_cycle(tmp_path):
         read_cycle(file)
     cycle = read_cycle(file, reading=Reading(closing=0.05))
     assert cycle.force(np.array([0.0, 1.0]))[2] == pytest.approx(330.0, rel=1e-6)
-    assert cycle.forces[:, 2] == pytest.approx(ISO.sizes + 30.0, abs=3.0)
+    assert cycle.forces[:, 2] == pytest.approx(ISO.force_magnitudes + 30.0, abs=3.0)
 
 
 @pytest.mark.parametrize(
@@ -260,5 +266,5 @@ def test_a_named_motion_is_that_of_its_name(tmp_path):
     orthoload(tmp_path / "loads.csv", -FORCE)
     changed = told(tmp_path, ('name = "iso-14242-1"', 'file = "loads.csv"\nmotion = "two-axis"\nframe = "body"'))
     cycle = read_hip(changed).use.cycle
-    assert cycle.turns == pytest.approx(named_cycle("two-axis").turns, abs=1e-9)
+    assert cycle.rotation_increments == pytest.approx(named_cycle("two-axis").rotation_increments, abs=1e-9)
     assert np.degrees(radians(cycle.duration)) == pytest.approx(1.0)

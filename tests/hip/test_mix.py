@@ -52,18 +52,18 @@ def test_a_mix_wears_as_its_parts_do_by_their_counts():
 
 def test_a_mix_creeps_under_the_mean_of_time():
     """Half of the cycles are twice as long at twice the load: 5/3 of it in the mean."""
-    one = Cycle(name="one", force=lambda t: 500.0 + 0 * t, angles=flexion().angles, instants=20)
+    one = Cycle(name="one", force=lambda t: 500.0 + 0 * t, angles=flexion().angles, n_steps=20)
     two = replace(one, name="two", force=lambda t: 1000.0 + 0 * t, duration=2.0)
     use = hip(cycle=mixed((one, 1.0), (two, 1.0)), creep=logarithmic())
     shares = use.cycle.seconds / use.cycle.duration
-    assert shares @ use.cycle.sizes == pytest.approx(500.0 * 5 / 3)
+    assert shares @ use.cycle.force_magnitudes == pytest.approx(500.0 * 5 / 3)
     assert use.after(1e3).last.creep_depth > hip(cycle=one, creep=logarithmic()).after(1e3).last.creep_depth
 
 
 def test_the_worst_instant_of_a_mix_has_its_activity():
     stumble = in_vivo("stumbling", 750.0, 40)
     history = hip(cycle=mixed((WALK, 1e6), (stumble, 10.0)), cup=bs.Cup(inclination=radians(40.0))).after(1e4)
-    assert history.worst.told.endswith("% of stumbling")
+    assert history.worst.step_description.endswith("% of stumbling")
     assert history.summary()["history"][-1]["edge"]["at"].endswith("% of stumbling")
     assert any("the contact reaches the rim in" in note and "of stumbling" in note for note in history.notes)
     with pytest.raises(ValueError, match=r"dislocated at 1\.2 % of stairs-up"):
@@ -104,12 +104,12 @@ def test_loads_in_the_cups_own_frame():
 def test_a_socket_set_off_lets_its_ball_onto_the_rim_in_the_swing_phase():
     use = hip(cycle=iso_14242_4(100), cup=bs.Cup(inclination=radians(45.0)))
     apart = use.separation
-    assert (use.cycle.phases[apart.instants] > 0.6).sum() > 30
+    assert (use.cycle.phases[apart.steps] > 0.6).sum() > 30
     assert apart.largest < 8.0
-    assert np.degrees(apart.place) == pytest.approx(0.0, abs=1e-9)
+    assert np.degrees(apart.azimuth) == pytest.approx(0.0, abs=1e-9)
     note = next(note for note in use.notes if note.startswith("microseparation from"))
     assert "what it wears there is not counted" in note
-    assert len(use.loaded) + len(apart.instants) == 100
+    assert len(use.loaded) + len(apart.steps) == 100
     told = use.after(1e4).summary()["cycle"]["microseparation"]
     assert told["largest_mm"] == apart.largest
     assert (told["from"], told["to"]) == ("59.5 % of the cycle", "2.5 % of the cycle")  # of the next
@@ -119,12 +119,12 @@ def test_on_the_rim_the_loads_meet_the_edge():
     """The ball touches the edge, and its spring, shorter by what it has followed, and the load point to it."""
     use = hip(cycle=iso_14242_4(100, mismatch=3.0), cup=bs.Cup(inclination=radians(50.0), anteversion=radians(10.0)))
     apart, radius = use.separation, use.joint.socket_radius
-    edge = radius * np.column_stack([np.cos(apart.place), np.sin(apart.place), 0 * apart.place])
+    edge = radius * np.column_stack([np.cos(apart.azimuth), np.sin(apart.azimuth), 0 * apart.azimuth])
     along = edge - apart.displacement
     assert np.linalg.norm(along, axis=1) == pytest.approx(use.joint.ball_radius, rel=1e-9)
     side = np.array(use.placed.frame)[:, 0]
     followed = apart.displacement @ side
-    loads = use.forces[apart.instants] - 100.0 * followed[:, None] * side
+    loads = use.forces[apart.steps] - 100.0 * followed[:, None] * side
     assert np.cross(along, loads) == pytest.approx(0.0, abs=1e-4)
     assert ((followed > 0) & (followed < 3.0)).all()
 
@@ -134,7 +134,7 @@ def test_whichever_way_the_cup_faces_a_ball_is_in_its_bore_or_on_the_rim():
     use = hip(36.0, 6.0, cycle=iso_14242_4(100), ring_width=radians(6.0))
     seen = [replace(use, cup=bs.Cup().tilted(radians(tilt))) for tilt in np.arange(40.0, 46.0, 0.2)]
     for one in seen:
-        assert len(one.loaded) + len(one.separation.instants) == 100
+        assert len(one.loaded) + len(one.separation.steps) == 100
         assert one.unworn.settled
         assert np.linalg.norm(one.unworn.displacement, axis=1).max() < 0.6  # it had been metres
     volumes = np.array([one.first.volume for one in seen])
@@ -172,5 +172,5 @@ def test_a_ball_set_off_presses_nearer_to_the_rim():
     """By the angle that the spring's 400 N turn the load."""
     set_off, usual = (hip(cycle=make(50)) for make in (iso_14242_4, iso_14242_1))
     near, far = (use.edge_distance(use.unworn)[use.largest[0]] for use in (set_off, usual))
-    turned = np.arctan2(400.0, usual.cycle.sizes.max())
+    turned = np.arctan2(400.0, usual.cycle.force_magnitudes.max())
     assert near == pytest.approx(far - usual.joint.socket_radius * turned, abs=0.1)

@@ -37,16 +37,16 @@ def test_under_pressure_a_side_counts_for_more():
 
 def test_what_slides_over_the_socket_has_the_cross_shear_of_its_track():
     cycle, radius = iso_14242_1(200), 14.0
-    sliding = Sliding(radius=radius, turns=cycle.turns, directions=POLE)
-    steps = radius * np.cross(cycle.turns, POLE[:, 0])
+    sliding = Sliding(radius=radius, rotation_increments=cycle.rotation_increments, directions=POLE)
+    steps = radius * np.cross(cycle.rotation_increments, POLE[:, 0])
     assert sliding.steps[:, 0] == pytest.approx(np.linalg.norm(steps, axis=1), rel=1e-9)
-    pressure = cycle.sizes[:, None] / 1000
+    pressure = cycle.force_magnitudes[:, None] / 1000
     assert sliding.cross_shear(pressure)[0] == pytest.approx(cross_shear_of(steps[:, :2], pressure[:, 0]), rel=1e-9)
 
 
 def test_velocities_are_what_the_steps_are_over_time():
     cycle = iso_14242_1(50)
-    sliding = Sliding(radius=14.0, turns=cycle.turns, directions=POLE)
+    sliding = Sliding(radius=14.0, rotation_increments=cycle.rotation_increments, directions=POLE)
     velocity = sliding.velocities(cycle.seconds)
     assert velocity.shape == (50, 1, 3)
     assert np.linalg.norm(velocity, axis=2) == pytest.approx(sliding.steps / cycle.seconds[:, None], rel=1e-9)
@@ -58,8 +58,8 @@ def test_crossing_angles_of_tracks_that_are_known():
     around = 2 * pi * (np.arange(400) + 0.5) / 400
     circle = 1e-3 * np.column_stack([np.cos(around), np.sin(around), 0 * around])
     rectangle = np.array([[3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-3.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-    for turns, angle in ((flexion(40).turns, 0.0), (circle, pi / 4), (rectangle, pi / 8)):
-        sliding = Sliding(radius=1.0, turns=turns, directions=POLE)
+    for turns, angle in ((flexion(40).rotation_increments, 0.0), (circle, pi / 4), (rectangle, pi / 8)):
+        sliding = Sliding(radius=1.0, rotation_increments=turns, directions=POLE)
         assert sliding.crossing_angle(np.ones((len(turns), 1)))[0] == pytest.approx(angle, abs=1e-7)
 
 
@@ -68,8 +68,8 @@ def test_flexion_alone_has_no_cross_shear_anywhere():
     directions = rng.normal(size=(3, 40))
     directions /= np.linalg.norm(directions, axis=0)
     cycle = flexion()
-    sliding = Sliding(radius=14.0, turns=cycle.turns, directions=directions)
-    assert sliding.cross_shear(np.ones((cycle.instants, 40))) == pytest.approx(0.0, abs=1e-12)
+    sliding = Sliding(radius=14.0, rotation_increments=cycle.rotation_increments, directions=directions)
+    assert sliding.cross_shear(np.ones((cycle.n_steps, 40))) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_tangents_are_across_each_other():

@@ -97,8 +97,8 @@ def test_the_worn_bore_is_pressed_alike_by_the_springs_of_sphere():
         return between((np.arctan2(np.hypot(n[0], n[1]), n[2]), np.arctan2(n[1], n[0]) % (2 * np.pi)))
 
     sphere = bs.Sphere(cup=TILTED, surface=bs.Springs(), worn=bs.Worn(of=depth))
-    largest = int(use.cycle.sizes.argmax())
-    contact = sphere.press(use.joint, force=use.cycle.sizes[largest])
+    largest = int(use.cycle.force_magnitudes.argmax())
+    contact = sphere.press(use.joint, force=use.cycle.force_magnitudes[largest])
     mine = use.rest(report.wear.ravel())
     assert contact.displacement == pytest.approx(mine.displacement[largest], rel=2e-3, abs=2e-4)
     assert contact.max_pressure == pytest.approx(mine.pressure[largest].max(), rel=1e-2)
@@ -155,7 +155,7 @@ def test_the_area_law_is_right_where_the_contact_stands_still_and_states_its_err
         name="turning",
         force=lambda t: force + 0 * t,
         angles=lambda t: amplitude * np.outer(axis, np.cos(2 * np.pi * t)),
-        instants=16,
+        n_steps=16,
     )
     use = hip(cycle=cycle, wear=AreaLaw(coefficient=coefficient), cup=bs.Cup(), ring_width=radians(width))
     joint, cap = use.joint, bs.HessForsbach().press(use.joint, force=force).half_angle
@@ -298,7 +298,7 @@ def test_a_ball_that_lifts_off_wears_only_where_it_presses():
 def test_the_finest_steps_tell_their_error_too():
     """They cannot be halved, which was refused when the run was done."""
     assert 0 < hip(cycle=flexion(8), ring_width=radians(0.6)).halved[0] < 0.05
-    assert flexion(6000).finer().instants == 10_000
+    assert flexion(6000).finer().n_steps == 10_000
 
 
 def test_a_liner_that_is_worn_through_is_told():

@@ -101,10 +101,10 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
     checks = hip.unworn_checks
     utilisation, valid = largest_utilisation(checks), all(check.valid for check in checks)
     polar = numpy.linspace(0.0, hip.reach, RINGS + 1)
-    sizes = hip.cycle.sizes
+    sizes = hip.cycle.force_magnitudes
 
     def course(values: numpy.ndarray) -> numpy.ndarray:
-        whole = numpy.full(hip.cycle.instants, numpy.nan)
+        whole = numpy.full(hip.cycle.n_steps, numpy.nan)
         whole[hip.loaded] = values
         return whole
 
@@ -140,7 +140,7 @@ def _cells(hip: Any, polar: numpy.ndarray) -> bytes:
     spots = spots_of(hip.grid, numpy.asarray(middles).reshape(3, 1, -1))
     pressure = hip.unworn.pressure
     most = float(pressure.max(initial=0.0)) or 1.0
-    frames = numpy.zeros((hip.cycle.instants, RINGS * MERIDIANS), dtype=numpy.uint8)
+    frames = numpy.zeros((hip.cycle.n_steps, RINGS * MERIDIANS), dtype=numpy.uint8)
     for instant, field in zip(hip.loaded, pressure, strict=True):
         frames[instant] = numpy.rint(_LEVELS * spots.of(field[None])[0] / most)
     return frames.tobytes()

@@ -119,16 +119,33 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
     """Return a decorator that accepts keyword arguments by their old names: `@renamed_arguments(listen="progress")`."""
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        label = function.__name__.replace("__init__", function.__qualname__.removesuffix(".__init__"))
+
         @functools.wraps(function)
         def accepting(*args: P.args, **kwargs: P.kwargs) -> T:
             for old in names.keys() & kwargs.keys():
                 new = names[old]
                 if new in kwargs:
-                    raise TypeError(f"{function.__name__}() got both {new!r} and its old name {old!r}")
-                _warn(f"argument {old!r} of {function.__name__}()", repr(new))
+                    raise TypeError(f"{label}() got both {new!r} and its old name {old!r}")
+                _warn(f"argument {old!r} of {label}()", repr(new))
                 kwargs[new] = kwargs.pop(old)
             return function(*args, **kwargs)
 
         return accepting
+
+    return decorate
+
+
+def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
+    """Return a decorator that lets a dataclass accept and give fields by their old names."""
+
+    def decorate(owner: type[T]) -> type[T]:
+        accept: Any = renamed_arguments(**names)
+        setattr(owner, "__init__", accept(owner.__init__))  # noqa: B010 (mypy refuses to assign to a method)
+        for old, new in names.items():
+            attribute = RenamedAttribute(new)
+            attribute.__set_name__(owner, old)
+            setattr(owner, old, attribute)
+        return owner
 
     return decorate

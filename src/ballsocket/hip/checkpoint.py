@@ -88,7 +88,9 @@ def checkpoint(use: SetUp, folder: Path) -> Checkpoint:
     """
     if isinstance(use.wear, OwnLaw) or isinstance(use.ball_wear, OwnLaw):
         raise ValueError("a run with a law of one's own cannot be kept: nothing tells whether it is still the same")
-    cycle = sha256(b"".join(each.tobytes() for each in (use.loads, use.tether, use.turns, use.loaded))).hexdigest()
+    cycle = sha256(
+        b"".join(each.tobytes() for each in (use.loads, use.tether, use.rotation_increments, use.loaded))
+    ).hexdigest()
     parts = (
         use.joint,
         use.placed,

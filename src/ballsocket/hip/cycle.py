@@ -13,9 +13,10 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require, shown
+from ..core.deprecation import RenamedAttribute, renamed_fields
 from .sliding import rotation_matrices, rotation_vectors
 
-INSTANTS = 100
+DEFAULT_STEPS = 100
 _FEWEST, _MOST = 8, 10_000
 _FINE = 10_000
 
@@ -55,6 +56,7 @@ class Spring:
         return self.stiffness * self.mismatch
 
 
+@renamed_fields(instants="n_steps")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Cycle:
     """A cycle of load and motion, cut into instants of equal length.
@@ -71,7 +73,7 @@ class Cycle:
         pulls the ball off, a size below 0, is no contact.
     angles : function
         From phases to flexion, adduction and rotation (3, n) in rad.
-    instants : int
+    n_steps : int
     order : str
         The axes as they are multiplied: "xyz" is R = Rx Ry Rz.
     duration : float
@@ -94,7 +96,7 @@ class Cycle:
     name: str
     force: Course
     angles: Course
-    instants: int = INSTANTS
+    n_steps: int = DEFAULT_STEPS
     order: str = "xyz"
     duration: float = 1.0
     cup_tilt: float | None = None
@@ -102,8 +104,13 @@ class Cycle:
     frame: Frame = Frame.BODY
     spring: Spring | None = None
 
+    sizes = RenamedAttribute("force_magnitudes")
+    middles = RenamedAttribute("midpoint_rotations")
+    turns = RenamedAttribute("rotation_increments")
+    told = RenamedAttribute("describe_step")
+
     def __post_init__(self) -> None:
-        check_instants(self.instants)
+        check_step_count(self.n_steps)
         object.__setattr__(self, "order", order_of(self.order))
         for name, values in {"force": self.forces, "angle": self.rotations}.items():
             require(name, values, numpy.isfinite(values), "the numbers of a cycle are finite")
@@ -111,7 +118,7 @@ class Cycle:
     @property
     def phases(self) -> Numbers:
         """The middle of each instant, 0 to 1."""
-        return (numpy.arange(self.instants) + 0.5) / self.instants
+        return (numpy.arange(self.n_steps) + 0.5) / self.n_steps
 
     @cached_property
     def forces(self) -> Numbers:
@@ -133,44 +140,44 @@ class Cycle:
         return float(numpy.linalg.norm(self._forces_at(numpy.linspace(0.0, 1.0, _FINE + 1)), axis=1).max())
 
     @cached_property
-    def sizes(self) -> Numbers:
+    def force_magnitudes(self) -> Numbers:
         """Sizes of the forces in N: (instants,)."""
         return numpy.linalg.norm(self.forces, axis=1)
 
     @cached_property
     def rotations(self) -> Numbers:
         """Rotation matrices of the ball at the ends of the instants, the last one the first: (instants + 1, 3, 3)."""
-        angles = numpy.asarray(self.angles(numpy.arange(self.instants) / self.instants), dtype=float).T
+        angles = numpy.asarray(self.angles(numpy.arange(self.n_steps) / self.n_steps), dtype=float).T
         turned = rotation_matrices(angles, self.order)
         return numpy.concatenate([turned, turned[:1]])
 
     @cached_property
-    def middles(self) -> Numbers:
+    def midpoint_rotations(self) -> Numbers:
         """Rotation matrices of the ball in the middle of the instants: (instants, 3, 3)."""
         return rotation_matrices(numpy.asarray(self.angles(self.phases), dtype=float).T, self.order)
 
     @cached_property
-    def turns(self) -> Numbers:
+    def rotation_increments(self) -> Numbers:
         """How the ball turns during each instant: rotation vectors in rad, (instants, 3)."""
         return rotation_vectors(self.rotations[1:] @ self.rotations[:-1].swapaxes(1, 2))
 
     @property
     def seconds(self) -> Numbers:
         """That each instant lasts: (instants,)."""
-        return numpy.full(self.instants, self.duration / self.instants)
+        return numpy.full(self.n_steps, self.duration / self.n_steps)
 
     @property
     def activity_slices(self) -> tuple[tuple[str, slice], ...]:
         """Name and instants of the only activity."""
-        return ((self.name, slice(0, self.instants)),)
+        return ((self.name, slice(0, self.n_steps)),)
 
-    def told(self, instant: int) -> str:
+    def describe_step(self, instant: int) -> str:
         """Where in the cycle an instant is, in words."""
         return f"{100 * self.phases[instant]:.1f} % of the cycle"
 
     def finer(self) -> Cycle:
         """This cycle in twice as many instants, if so many are allowed."""
-        return replace(self, instants=min(2 * self.instants, _MOST))
+        return replace(self, n_steps=min(2 * self.n_steps, _MOST))
 
     def mirrored(self) -> Cycle:
         """What the other side of the body goes through: to the left what was to the right."""
@@ -194,7 +201,7 @@ _LEFT = numpy.array([[-1.0], [1.0], [1.0]])
 _OTHER_WAY = numpy.array([[1.0], [-1.0], [-1.0]])
 
 
-def check_instants(count: Any) -> int:
+def check_step_count(count: Any, name: str = "n_steps") -> int:
     """A number of instants, if it is one.
 
     Raises
@@ -203,7 +210,7 @@ def check_instants(count: Any) -> int:
         No whole number from 8 to 10 000.
     """
     if isinstance(count, bool) or not isinstance(count, int) or not _FEWEST <= count <= _MOST:
-        raise ValueError(f"instants = {shown(count)} is not allowed: a whole number from {_FEWEST} to {_MOST}")
+        raise ValueError(f"{name} = {shown(count)} is not allowed: a whole number from {_FEWEST} to {_MOST}")
     return count
 
 

@@ -11,8 +11,9 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require
+from ..core.deprecation import renamed_arguments
 from ..problem.cup import Side
-from .cycle import INSTANTS, Course, Cycle, Frame
+from .cycle import DEFAULT_STEPS, Course, Cycle, Frame
 from .measured import ANGLES, FORCES, Measured, measured, together
 from .resampled import CLOSED, check_closed, clock_of, course, cut, phases_of
 from .sliding import rotation_matrices
@@ -62,9 +63,10 @@ class Reading:
         require("closing", self.closing, 0 <= self.closing <= 0.5, "it is 0 to 0.5 of what a column spans")
 
 
+@renamed_arguments(instants="n_steps")
 def read_cycle(
     path: str | Path | Sequence[str | Path],
-    instants: int = INSTANTS,
+    n_steps: int = DEFAULT_STEPS,
     order: str = "xyz",
     body_weight: float | None = None,
     reading: Reading = Reading(),
@@ -83,7 +85,7 @@ def read_cycle(
     Parameters
     ----------
     path : str or Path, or several
-    instants, order
+    n_steps, order
         As of `Cycle`.
     body_weight : float, optional
         In N.
@@ -103,7 +105,7 @@ def read_cycle(
     try:
         parts = [measured(read_table(each), body_weight, reading.side) for each in paths]
         found = together([replace(part, columns=cut(part.columns, reading.begin, reading.end)) for part in parts])
-        return replace(_cycle(found, order, reading), name=paths[0].stem, instants=instants)
+        return replace(_cycle(found, order, reading), name=paths[0].stem, n_steps=n_steps)
     except ValueError as error:
         raise ValueError(f"{', '.join(each.name for each in paths)}: {error}") from error
 

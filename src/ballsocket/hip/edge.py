@@ -9,10 +9,12 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.deprecation import renamed_fields
 from ..elasticity.off_axis.grid import Grid
 from .placing import Placed
 
 
+@renamed_fields(place="azimuth", told="step_description", reaching="steps_at_rim")
 @dataclass(frozen=True, kw_only=True)
 class Worst:
     """The instant of a cycle in which the contact comes nearest to the rim; of several, that of the largest load.
@@ -21,39 +23,40 @@ class Worst:
     ----------
     distance : float
         In mm; 0 is edge loading.
-    place : float
+    azimuth : float
         Around the cup's axis, in rad from its uppermost point.
-    told : str
+    step_description : str
         The instant, in words.
-    reaching : int
+    steps_at_rim : int
         Instants in which the contact reaches the rim.
     pressure : float
         Largest pressure in MPa in the outermost ring of cells in any instant.
     """
 
     distance: float
-    place: float
-    told: str
-    reaching: int
+    azimuth: float
+    step_description: str
+    steps_at_rim: int
     pressure: float = 0.0
 
     @property
     def where(self) -> str:
         """Instant and place, in words."""
-        return f"{self.told}, {abs(degrees(self.place)):.0f}° from the cup's uppermost point"
+        return f"{self.step_description}, {abs(degrees(self.azimuth)):.0f}° from the cup's uppermost point"
 
     def summary(self) -> dict[str, Any]:
         """For JSON."""
-        place = degrees(self.place)
+        place = degrees(self.azimuth)
         return {
             "distance_mm": self.distance,
-            "at": self.told,
+            "at": self.step_description,
             "place_deg": place,
-            "instants_at_rim": self.reaching,
+            "instants_at_rim": self.steps_at_rim,
             "pressure_at_rim_MPa": self.pressure,
         }
 
 
+@renamed_fields(place="azimuth")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Edge:
     """How near each contact of a cycle comes to the end of the bore.
@@ -62,14 +65,14 @@ class Edge:
     ----------
     distance : array (loaded,)
         The arc in mm from the contact's edge, where it is nearest; 0 where it reaches it.
-    place : array (loaded,)
+    azimuth : array (loaded,)
         Where that is around the cup's axis, in rad from its uppermost point.
     pressure : array (loaded,)
         Largest pressure in MPa in the outermost ring of cells.
     """
 
     distance: Numbers
-    place: Numbers
+    azimuth: Numbers
     pressure: Numbers
 
     def nearest(self, use: Placed) -> int | None:
@@ -86,9 +89,9 @@ class Edge:
             return None
         return Worst(
             distance=float(self.distance[chosen]),
-            place=float(self.place[chosen]),
-            told=use.cycle.told(int(use.loaded[chosen])),
-            reaching=int((self.distance <= 0).sum()),
+            azimuth=float(self.azimuth[chosen]),
+            step_description=use.cycle.describe_step(int(use.loaded[chosen])),
+            steps_at_rim=int((self.distance <= 0).sum()),
             pressure=float(self.pressure.max()),
         )
 
@@ -122,7 +125,7 @@ def edge_of(grid: Grid, radius: float, field: Numbers, pressure: Numbers, inset:
     furthest = numpy.where(ends, numpy.minimum(edges, grid.reach), 0.0).max(axis=1, initial=0.0)
     return Edge(
         distance=(grid.reach - furthest.max(axis=1, initial=0.0)) * radius,
-        place=_middle(furthest, rows[:, -1], grid.azimuth),
+        azimuth=_middle(furthest, rows[:, -1], grid.azimuth),
         pressure=pressure.reshape(rows.shape)[:, -1].max(axis=1, initial=0.0),
     )
 

@@ -71,7 +71,7 @@ class Facing:
 def facing(use: SetUp, cells: Numbers) -> Facing:
     """The ball's cells that pass over some cells of the socket in a cycle."""
     frame = numpy.array(use.placed.frame)
-    turned = frame @ use.moved.middles[use.loaded]
+    turned = frame @ use.moved.midpoint_rotations[use.loaded]
     own = ball_grid(use.ring_width)
     directions = ball_directions(own)
     over = spots_of(use.grid, numpy.einsum("tij,jp->itp", turned, directions))
@@ -84,7 +84,7 @@ def facing(use: SetUp, cells: Numbers) -> Facing:
         cells=met,
         sliding=Sliding(
             radius=radius,
-            turns=numpy.einsum("tji,tj->ti", turned, use.turns),
+            rotation_increments=numpy.einsum("tji,tj->ti", turned, use.rotation_increments),
             directions=directions[:, met],
         ),
         areas=numpy.repeat(own.areas[:, 0], own.meridians)[met] * radius**2,

@@ -145,7 +145,9 @@ def film(placed: Placed, bed: CycleBed, sliding: Sliding, rest: Rest, lubricant:
     instant = placed.cycle.seconds[placed.loaded]
     carried = placed.carried(rest.displacement)
     size = numpy.linalg.norm(carried, axis=1)
-    across = numpy.linalg.norm(numpy.cross(placed.turns, carried), axis=1) / numpy.where(size > 0, size, 1.0)
+    across = numpy.linalg.norm(numpy.cross(placed.rotation_increments, carried), axis=1) / numpy.where(
+        size > 0, size, 1.0
+    )
     least, central = film_thickness(placed.joint, size, across / instant, lubricant.viscosity)
     rough = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
     work = lubricant.friction * numpy.einsum("tp,tp,p->t", rest.pressure, sliding.steps, bed.areas)
@@ -163,7 +165,7 @@ def film(placed: Placed, bed: CycleBed, sliding: Sliding, rest: Rest, lubricant:
 
 def _moment(bed: CycleBed, sliding: Sliding, pressure: Numbers) -> Numbers:
     """∫ R n × v/abs(v) p dA, v = R ω × n: n × (ω × n) = ω - (ω·n) n; in N mm: (instants, 3)."""
-    n, turns, steps = bed.directions, sliding.turns, sliding.steps
+    n, turns, steps = bed.directions, sliding.rotation_increments, sliding.steps
     share = numpy.divide(pressure * bed.areas * sliding.radius**2, steps, out=numpy.zeros_like(steps), where=steps > 0)
     along = share * (turns @ n)
     return turns * share.sum(axis=1)[:, None] - along @ n.T

@@ -9,7 +9,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from .cycle import INSTANTS, Course, Cycle, Spring, order_of
+from ..core.deprecation import renamed_arguments
+from .cycle import DEFAULT_STEPS, Course, Cycle, Spring, order_of
 
 
 def half_cosines(phases: Numbers, knots: Numbers, values: Numbers) -> Numbers:
@@ -50,14 +51,15 @@ def _iso_key_points(phases: Numbers) -> Numbers:
     return numpy.stack([half_cosines(phases, *course) for course in _ISO_ANGLES])
 
 
-def iso_14242_1(instants: int = INSTANTS, order: str = "xyz", key_points: Course | None = None) -> Cycle:
+@renamed_arguments(instants="n_steps")
+def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", key_points: Course | None = None) -> Cycle:
     """Walking as hip simulators do it (ISO 14242-1): 300 to 3000 N, the load fixed to the socket, 1 Hz.
 
     The angles follow smooth generators, one cosine each.
 
     Parameters
     ----------
-    instants : int
+    n_steps : int
     order : str
         Of the rotations, which the standard does not name; see `Cycle`.
     """
@@ -65,33 +67,36 @@ def iso_14242_1(instants: int = INSTANTS, order: str = "xyz", key_points: Course
         name="iso-14242-1",
         force=_iso_force,
         angles=key_points or _iso_generators,
-        instants=instants,
+        n_steps=n_steps,
         order=order,
         cup_tilt=_ISO_TILT,
         notes=(_UNREAD,),
     )
 
 
-def iso_14242_1_key_points(instants: int = INSTANTS, order: str = "xyz") -> Cycle:
+@renamed_arguments(instants="n_steps")
+def iso_14242_1_key_points(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """ISO 14242-1 with half cosines between the key points of every angle; see `iso_14242_1`."""
-    return replace(iso_14242_1(instants, order, _iso_key_points), name="iso-14242-1-key-points")
+    return replace(iso_14242_1(n_steps, order, _iso_key_points), name="iso-14242-1-key-points")
 
 
-def flexion(instants: int = INSTANTS, order: str = "xyz") -> Cycle:
+@renamed_arguments(instants="n_steps")
+def flexion(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """The force and the flexion of ISO 14242-1 alone: every track is an arc that is passed twice."""
     return Cycle(
         name="flexion",
         force=_iso_force,
         angles=lambda phases: _iso_generators(phases) * numpy.array([[1.0], [0.0], [0.0]]),
-        instants=instants,
+        n_steps=n_steps,
         order=order,
         cup_tilt=_ISO_TILT,
         notes=(_UNREAD,),
     )
 
 
+@renamed_arguments(instants="n_steps")
 def iso_14242_4(
-    instants: int = INSTANTS,
+    n_steps: int = DEFAULT_STEPS,
     order: str = "xyz",
     *,
     mismatch: float = 4.0,
@@ -102,7 +107,7 @@ def iso_14242_4(
 
     Parameters
     ----------
-    instants : int
+    n_steps : int
     order : str
         Of the rotations; see `Cycle`.
     mismatch : float
@@ -115,7 +120,7 @@ def iso_14242_4(
     require("swing", swing, 0 < swing < inf, "a load (N) of the swing phase is positive and finite")
     knots, values = _ISO_FORCE
     return replace(
-        iso_14242_1(instants, order),
+        iso_14242_1(n_steps, order),
         name="iso-14242-4",
         force=lambda phases: half_cosines(phases, knots, numpy.where(values > 300.0, values, swing)),
         spring=Spring(stiffness=stiffness, mismatch=mismatch),
@@ -123,12 +128,13 @@ def iso_14242_4(
     )
 
 
-def two_axis(instants: int = INSTANTS, order: str = "xyz", *, peak: float = 2000.0) -> Cycle:
+@renamed_arguments(instants="n_steps")
+def two_axis(n_steps: int = DEFAULT_STEPS, order: str = "xyz", *, peak: float = 2000.0) -> Cycle:
     """A simulator of two axes: flexion by 46° and adduction by 12° in all, a quarter of a cycle apart.
 
     Parameters
     ----------
-    instants : int
+    n_steps : int
     order : str
         Of the rotations; see `Cycle`.
     peak : float
@@ -140,20 +146,21 @@ def two_axis(instants: int = INSTANTS, order: str = "xyz", *, peak: float = 2000
         angles=lambda phases: numpy.stack(
             [_TWO[0] * numpy.cos(2 * pi * phases), _TWO[1] * numpy.sin(2 * pi * phases), 0 * phases]
         ),
-        instants=instants,
+        n_steps=n_steps,
         order=order,
         notes=("the course of the two-axis simulator is a typical one, and no machine's own",),
     )
 
 
+@renamed_arguments(instants="n_steps")
 def rocking(
-    instants: int = INSTANTS, order: str = "xyz", *, amplitude: float = radians(23.0), peak: float = 2000.0
+    n_steps: int = DEFAULT_STEPS, order: str = "xyz", *, amplitude: float = radians(23.0), peak: float = 2000.0
 ) -> Cycle:
     """Biaxial rocking: the ball's axis goes round a cone of this half angle once a cycle, without spin of its own.
 
     Parameters
     ----------
-    instants : int
+    n_steps : int
     order : str
         Changes nothing: the cone is the same.
     amplitude : float
@@ -166,7 +173,7 @@ def rocking(
         name="biaxial-rocking",
         force=lambda phases: peak * (0.55 - 0.45 * numpy.cos(2 * pi * phases)),
         angles=lambda phases: _leaning(amplitude, 2 * pi * phases),
-        instants=instants,
+        n_steps=n_steps,
     )
 
 
@@ -181,14 +188,15 @@ def _leaning(tilt: float, around: Numbers) -> Numbers:
     return numpy.stack([flexion, adduction, rotation])
 
 
+@renamed_arguments(instants="n_steps")
 def constant_load(
-    instants: int = INSTANTS, order: str = "xyz", *, force: float = 3000.0, amplitude: float = radians(21.5)
+    n_steps: int = DEFAULT_STEPS, order: str = "xyz", *, force: float = 3000.0, amplitude: float = radians(21.5)
 ) -> Cycle:
     """A constant load in N under flexion to both sides by an amplitude in rad."""
     return Cycle(
         name="constant-load",
         force=lambda phases: force + 0 * phases,
         angles=lambda phases: amplitude * numpy.stack([numpy.cos(2 * pi * phases), 0 * phases, 0 * phases]),
-        instants=instants,
+        n_steps=n_steps,
         order=order,
     )

@@ -12,7 +12,7 @@ from ..core.kinds import Kind
 from ..io.toml import table_of
 from ..io.units import parse
 from ..problem.cup import Side
-from .cycle import INSTANTS, Cycle, order_of
+from .cycle import DEFAULT_STEPS, Cycle, check_step_count, order_of
 from .cycle_file import Reading, read_cycle
 from .in_vivo import IN_VIVO, check_weight
 from .mix import Activity, Mix
@@ -82,9 +82,9 @@ def _cycle(table: Mapping[str, Any], folder: Path, weight: float | None, where: 
     if ("name" in table) == ("file" in table):
         raise ValueError(f"{where} needs a name or a file, and not both; names: {', '.join(CYCLES)}")
     weight = weight if "body_weight" not in table else _weight(table)
-    instants = table.get("instants", INSTANTS)
+    n_steps = check_step_count(table.get("instants", DEFAULT_STEPS), "instants")
     order = order_of(table.get("rotation_order", "flexion, adduction, rotation"))
-    made = (_of_file if "file" in table else _of_name)(table, folder, weight, where, instants, order)
+    made = (_of_file if "file" in table else _of_name)(table, folder, weight, where, n_steps, order)
     if "times_body_weight" not in table:
         return made
     if weight is None:
@@ -95,7 +95,7 @@ def _cycle(table: Mapping[str, Any], folder: Path, weight: float | None, where: 
 
 
 def _of_name(
-    table: Mapping[str, Any], folder: Path, weight: float | None, where: str, instants: int, order: str
+    table: Mapping[str, Any], folder: Path, weight: float | None, where: str, n_steps: int, order: str
 ) -> Cycle:
     name = known_name("cycle", table["name"], CYCLES)
     words = _OF_MACHINES.get(name, {})
@@ -103,18 +103,18 @@ def _of_name(
     own = ("body_weight",) if patients or "times_body_weight" in table else ()
     check_names(table, ("name", *_OF_ALL, *own, *words), f"beside the name {name!r} in {where}")
     given = {word: parse(key, table[key], kind) for key, (word, kind) in words.items() if key in table}
-    return named_cycle(name, instants, order, weight if patients else None, **given)
+    return named_cycle(name, n_steps, order, weight if patients else None, **given)
 
 
 def _of_file(
-    table: Mapping[str, Any], folder: Path, weight: float | None, where: str, instants: int, order: str
+    table: Mapping[str, Any], folder: Path, weight: float | None, where: str, n_steps: int, order: str
 ) -> Cycle:
     check_names(table, ("file", "body_weight", *_OF_ALL, *_OF_FILES), f"beside a file in {where}")
     files = table["file"] if isinstance(table["file"], list) else [table["file"]]
     if not files or not all(files):
         raise ValueError(f"file = {shown(table['file'])} names no table")
     paths = [folder / check_text("file", each) for each in files]
-    return read_cycle(paths, instants, order, weight, _reading(table, weight, order))
+    return read_cycle(paths, n_steps, order, weight, _reading(table, weight, order))
 
 
 def _reading(table: Mapping[str, Any], weight: float | None, order: str) -> Reading:
@@ -126,5 +126,5 @@ def _reading(table: Mapping[str, Any], weight: float | None, order: str) -> Read
             words[word] = parse(key, table[key], Kind.NUMBER)
     if "motion" in table:
         name = known_name("motion", table["motion"], CYCLES)
-        words["motion"] = named_cycle(name, INSTANTS, order, (weight or 1.0) if name in IN_VIVO else None)
+        words["motion"] = named_cycle(name, DEFAULT_STEPS, order, (weight or 1.0) if name in IN_VIVO else None)
     return Reading(**words)

@@ -86,7 +86,7 @@ class Report:
     @property
     def edge(self) -> Edge:
         """How near the contacts come to the rim."""
-        return Edge(distance=self.edge_distance, place=self.edge_place, pressure=self.edge_pressure)
+        return Edge(distance=self.edge_distance, azimuth=self.edge_place, pressure=self.edge_pressure)
 
     def summary(self) -> dict[str, Any]:
         """For JSON, in mm, MPa, mm³."""
@@ -200,9 +200,9 @@ class History:
         seen = [(_NEW, self.worst)]
         seen += [(_LATER.format(report.cycles), report.edge.worst(self.use)) for report in self.reports]
         for when, worst in seen:
-            if worst is not None and worst.reaching:
+            if worst is not None and worst.steps_at_rim:
                 of = len(self.use.loaded)
-                return (_REACHES.format(when, worst.reaching, of, worst.where, worst.pressure),)
+                return (_REACHES.format(when, worst.steps_at_rim, of, worst.where, worst.pressure),)
         return ()
 
     def summary(self) -> dict[str, Any]:
@@ -211,7 +211,7 @@ class History:
         return {
             "cycle": {
                 "name": self.use.cycle.name,
-                "instants": self.use.cycle.instants,
+                "instants": self.use.cycle.n_steps,
                 "slide_mm": first.slide,
                 "pressure_slide_integral_Nm": first.work,
                 "cross_shear_mean": first.cross_shear,

@@ -11,7 +11,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require
-from .cycle import INSTANTS, Cycle
+from ..core.deprecation import renamed_arguments
+from .cycle import DEFAULT_STEPS, Cycle
 from .gait import iso_14242_1
 
 _WALK = iso_14242_1()
@@ -115,7 +116,8 @@ def check_weight(weight: float) -> float:
     return weight
 
 
-def in_vivo(name: str, body_weight: float, instants: int = INSTANTS, order: str = "xyz") -> Cycle:
+@renamed_arguments(instants="n_steps")
+def in_vivo(name: str, body_weight: float, n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """A load that was measured in patients, upwards in the body: walking, stairs, jogging, stumbling and others.
 
     Only the peak was measured so; what is assumed of course and motion stands in the notes.
@@ -126,7 +128,7 @@ def in_vivo(name: str, body_weight: float, instants: int = INSTANTS, order: str 
         "walking", "one-leg-stance", "stand-up", "average-walking", "stairs-up", "stairs-down", "jogging", "stumbling".
     body_weight : float
         In N.
-    instants, order
+    n_steps, order
         As of `Cycle`.
 
     Raises
@@ -147,7 +149,7 @@ def in_vivo(name: str, body_weight: float, instants: int = INSTANTS, order: str 
         name=key,
         force=lambda phases: peak * load.course(phases),
         angles=load.angles,
-        instants=instants,
+        n_steps=n_steps,
         order=order,
         duration=load.duration,
         notes=(f"{key}: a peak of {load.percent:g} % of body weight ({load.source}); assumed: {load.assumed}",),

@@ -101,7 +101,7 @@ def report_of(run: Run) -> Report:
         crept_in=moved[2],
         max_pressure=float(rest.pressure.max(initial=0.0)),
         edge_distance=edge.distance,
-        edge_place=edge.place,
+        edge_place=edge.azimuth,
         edge_pressure=edge.pressure,
         crept=crept.reshape(shape),
         creep_depth=float(crept.max()),

@@ -11,6 +11,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..core.deprecation import RenamedAttribute
 from .cycle import Cycle, Frame
 
 
@@ -57,6 +58,12 @@ class Mix:
     """
 
     activities: tuple[Activity, ...]
+
+    instants = RenamedAttribute("n_steps")
+    sizes = RenamedAttribute("force_magnitudes")
+    middles = RenamedAttribute("midpoint_rotations")
+    turns = RenamedAttribute("rotation_increments")
+    told = RenamedAttribute("describe_step")
 
     def __post_init__(self) -> None:
         if not self.activities:
@@ -106,13 +113,13 @@ class Mix:
         return None
 
     @property
-    def instants(self) -> int:
-        return sum(each.instants for each in self._cycles)
+    def n_steps(self) -> int:
+        return sum(each.n_steps for each in self._cycles)
 
     @property
     def phases(self) -> Numbers:
         """The middle of each instant, 0 to 1, one activity after the other."""
-        return (numpy.arange(self.instants) + 0.5) / self.instants
+        return (numpy.arange(self.n_steps) + 0.5) / self.n_steps
 
     @property
     def duration(self) -> float:
@@ -130,19 +137,19 @@ class Mix:
         return numpy.concatenate([each.forces for each in self._cycles])
 
     @cached_property
-    def sizes(self) -> Numbers:
+    def force_magnitudes(self) -> Numbers:
         """Sizes of the forces in N: (instants,)."""
         return numpy.linalg.norm(self.forces, axis=1)
 
     @cached_property
-    def middles(self) -> Numbers:
+    def midpoint_rotations(self) -> Numbers:
         """Rotation matrices of the ball in the middle of the instants: (instants, 3, 3)."""
-        return numpy.concatenate([each.middles for each in self._cycles])
+        return numpy.concatenate([each.midpoint_rotations for each in self._cycles])
 
     @cached_property
-    def turns(self) -> Numbers:
+    def rotation_increments(self) -> Numbers:
         """How the ball turns during each instant, as often as that is: rotation vectors in rad, (instants, 3)."""
-        return self._shared(lambda cycle: cycle.turns)
+        return self._shared(lambda cycle: cycle.rotation_increments)
 
     def _shared(self, of: Callable[[Cycle], Numbers]) -> Numbers:
         return numpy.concatenate([share * of(each) for share, each in zip(self.shares, self._cycles, strict=True)])
@@ -162,16 +169,16 @@ class Mix:
         """Name and instants of each activity."""
         begin, slices = 0, []
         for cycle in self._cycles:
-            slices.append((cycle.name, slice(begin, begin + cycle.instants)))
-            begin += cycle.instants
+            slices.append((cycle.name, slice(begin, begin + cycle.n_steps)))
+            begin += cycle.n_steps
         return tuple(slices)
 
-    def told(self, instant: int) -> str:
+    def describe_step(self, instant: int) -> str:
         """Where in which activity an instant is, in words."""
         for each in self._cycles:
-            if instant < each.instants:
+            if instant < each.n_steps:
                 return f"{100 * each.phases[instant]:.1f} % of {each.name}"
-            instant -= each.instants
+            instant -= each.n_steps
         raise IndexError(instant)
 
     def finer(self) -> Mix:

@@ -7,7 +7,8 @@ from types import MappingProxyType
 from typing import Any
 
 from ..core.checks import known_name
-from .cycle import INSTANTS, Cycle
+from ..core.deprecation import renamed_arguments
+from .cycle import DEFAULT_STEPS, Cycle
 from .gait import constant_load, flexion, iso_14242_1, iso_14242_1_key_points, iso_14242_4, rocking, two_axis
 from .in_vivo import IN_VIVO, in_vivo
 
@@ -27,15 +28,16 @@ MACHINES: Mapping[str, Callable[..., Cycle]] = MappingProxyType(
 CYCLES = (*MACHINES, *IN_VIVO)
 
 
+@renamed_arguments(instants="n_steps")
 def named_cycle(
-    name: Any, instants: int = INSTANTS, order: str = "xyz", body_weight: float | None = None, **words: Any
+    name: Any, n_steps: int = DEFAULT_STEPS, order: str = "xyz", body_weight: float | None = None, **words: Any
 ) -> Cycle:
     """A cycle by its name.
 
     Parameters
     ----------
     name : str
-    instants, order
+    n_steps, order
         As of `Cycle`.
     body_weight : float, optional
         In N, which loads that were measured in patients need.
@@ -51,7 +53,7 @@ def named_cycle(
     if known in IN_VIVO:
         if body_weight is None:
             raise ValueError(f"the loads of {known!r} are multiples of the body's weight: body_weight is needed")
-        return in_vivo(known, body_weight, instants, order)
+        return in_vivo(known, body_weight, n_steps, order)
     if body_weight is not None:
         raise ValueError(f"the loads of {known!r} are a machine's: it takes no body_weight")
-    return MACHINES[known](instants, order, **words)
+    return MACHINES[known](n_steps, order, **words)

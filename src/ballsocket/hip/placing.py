@@ -9,6 +9,7 @@ from math import degrees
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.deprecation import RenamedAttribute
 from ..problem import Joint
 from ..problem.cup import Cup, Side
 from .cycle import Cycle, Frame
@@ -37,6 +38,7 @@ class Placed:
     joint: Joint
     cycle: Cycle | Mix
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
+    turns = RenamedAttribute("rotation_increments")
 
     def _check_held(self) -> None:
         out = self._over
@@ -45,8 +47,9 @@ class Placed:
         if len(out):
             first = out[0]
             raise ValueError(
-                f"dislocated at {self.cycle.told(first)}: the load of {numpy.linalg.norm(self.forces[first]):.0f} N "
-                f"points {degrees(self._tilts[first]):.1f}° from the dome's pole, and the bore ends at "
+                f"dislocated at {self.cycle.describe_step(first)}: the load of "
+                f"{numpy.linalg.norm(self.forces[first]):.0f} N points "
+                f"{degrees(self._tilts[first]):.1f}° from the dome's pole, and the bore ends at "
                 f"{degrees(self.reach):.1f}°"
             )
 
@@ -69,7 +72,7 @@ class Placed:
     @cached_property
     def _pressed(self) -> Numbers:
         """Whether there is a load at all: (instants,)."""
-        sizes = self.cycle.sizes
+        sizes = self.cycle.force_magnitudes
         return numpy.asarray(sizes > _LIFTED * max(float(sizes.max()), 1e-300))
 
     @cached_property
@@ -143,31 +146,35 @@ class Placed:
         return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
 
     @cached_property
-    def turns(self) -> Numbers:
+    def rotation_increments(self) -> Numbers:
         """How the ball turns in those instants, in the cup's frame: (loaded, 3)."""
-        return _in_cup(self.placed, self.moved.turns[self.loaded])
+        return _in_cup(self.placed, self.moved.rotation_increments[self.loaded])
 
     @property
     def slide(self) -> float:
         """How far the ball slides past the loads' line in a cycle, in mm."""
-        sizes = self.cycle.sizes[:, None]
+        sizes = self.cycle.force_magnitudes[:, None]
         along = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
-        return slide(float(self.joint.ball_radius), _in_cup(self.placed, self.moved.turns), _held(along, self.loaded))
+        return slide(
+            float(self.joint.ball_radius),
+            _in_cup(self.placed, self.moved.rotation_increments),
+            _held(along, self.loaded),
+        )
 
     @property
     def _placing_notes(self) -> tuple[str, ...]:
         """What is to be said of where the cup faces, and of a ball that is not in it all the time."""
         placed = () if self.placed == self.cup else (_PLACED.format(degrees(self.cycle.cup_tilt or 0.0)),)
-        apart = () if self.separation is None else (self.separation.told(self.cycle),)
+        apart = () if self.separation is None else (self.separation.describe(self.cycle),)
         return (*placed, *self._lifted, *apart)
 
     @property
     def _lifted(self) -> tuple[str, ...]:
         """When the ball is lifted off, in a sentence."""
         off = numpy.flatnonzero(~self._pressed)
-        if len(off) == self.cycle.instants:
+        if len(off) == self.cycle.n_steps:
             return (_NEVER,)
-        return (_LIFTS.format(self.cycle.told(int(off[0])), len(off), self.cycle.instants),) if len(off) else ()
+        return (_LIFTS.format(self.cycle.describe_step(int(off[0])), len(off), self.cycle.n_steps),) if len(off) else ()
 
 
 _PLACED = "the cup is tilted by {:g}° from the load, as the cycle's standard has it"

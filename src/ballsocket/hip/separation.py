@@ -10,29 +10,32 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.deprecation import RenamedAttribute, renamed_fields
 from .cycle import Cycle, Spring
 from .mix import Mix
 
 _HALVINGS = 60
 
 
+@renamed_fields(instants="steps", place="azimuth")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Separation:
     """The instants of a cycle in which the ball sits on the rim of its cup.
 
     Attributes
     ----------
-    instants : array (n,)
+    steps : array (n,)
         Of the cycle.
     displacement : array (n, 3)
         Of the ball's centre from the bore's in mm, in the cup's frame; NaN where nothing holds it.
-    place : array (n,)
+    azimuth : array (n,)
         Of the rim where it is touched, in rad around the cup's axis from its uppermost point.
     """
 
-    instants: Numbers
+    steps: Numbers
     displacement: Numbers
-    place: Numbers
+    azimuth: Numbers
+    told = RenamedAttribute("describe")
 
     @property
     def largest(self) -> float:
@@ -45,16 +48,21 @@ class Separation:
 
     def _ends(self, whole: int) -> tuple[int, int]:
         """The first and the last of the instants of so many in a cycle, which may pass from one into the next."""
-        away = numpy.diff(self.instants, append=self.instants[0] + whole)
+        away = numpy.diff(self.steps, append=self.steps[0] + whole)
         longest = int(away.argmax())
-        return int(self.instants[(longest + 1) % len(away)]), int(self.instants[longest])
+        return int(self.steps[(longest + 1) % len(away)]), int(self.steps[longest])
 
     def summary(self, cycle: Cycle | Mix) -> dict[str, Any]:
         """For JSON."""
-        first, last = (cycle.told(instant) for instant in self._ends(cycle.instants))
-        return {"from": first, "to": last, "largest_mm": self.largest, "place_deg": degrees(self.place[self._furthest])}
+        first, last = (cycle.describe_step(instant) for instant in self._ends(cycle.n_steps))
+        return {
+            "from": first,
+            "to": last,
+            "largest_mm": self.largest,
+            "place_deg": degrees(self.azimuth[self._furthest]),
+        }
 
-    def told(self, cycle: Cycle | Mix) -> str:
+    def describe(self, cycle: Cycle | Mix) -> str:
         """A sentence: when, where, how far."""
         seen = self.summary(cycle)
         return (
@@ -102,7 +110,7 @@ class Pulled:
         out: Numbers = self._centre(forces, followed) @ self._aside <= followed
         return out
 
-    def rest(self, forces: Numbers, instants: Numbers) -> Separation:
+    def rest(self, forces: Numbers, steps: Numbers) -> Separation:
         """Where the ball rests in these instants under forces (n, 3), those of a spring that it has not followed."""
         furthest = abs(self.spring.mismatch)
         low, high = numpy.zeros(len(forces)), numpy.full(len(forces), furthest)
@@ -114,9 +122,9 @@ class Pulled:
         held = abs(centre @ self._aside - high) <= 1e-6 * furthest
         loads = self._loads(forces, high)
         return Separation(
-            instants=instants,
+            steps=steps,
             displacement=numpy.where(held[:, None], centre, numpy.nan),
-            place=numpy.arctan2(loads[:, 1], loads[:, 0]),
+            azimuth=numpy.arctan2(loads[:, 1], loads[:, 0]),
         )
 
     def _loads(self, forces: Numbers, followed: Numbers) -> Numbers:

@@ -127,7 +127,11 @@ class SetUp(Placed):
 
     @cached_property
     def sliding(self) -> Sliding:
-        return Sliding(radius=float(self.joint.ball_radius), turns=self.turns, directions=self.bed.directions)
+        return Sliding(
+            radius=float(self.joint.ball_radius),
+            rotation_increments=self.rotation_increments,
+            directions=self.bed.directions,
+        )
 
     def edge(self, rest: Rest, depth: Numbers | float = 0.0) -> Edge:
         """How near the edge of each contact comes to the end of the bore, and where."""
@@ -188,7 +192,9 @@ class SetUp(Placed):
     def contact_checks(self, worst: Numbers) -> tuple[ContactCheck, ...]:
         """Check the contact model for each activity with contact, from a table of `worst_contacts`."""
         return tuple(
-            check_contact(self.contact_model, self.joint, row, activity, self.cycle.told(int(self.loaded[int(row[0])])))
+            check_contact(
+                self.contact_model, self.joint, row, activity, self.cycle.describe_step(int(self.loaded[int(row[0])]))
+            )
             for (activity, _), row in zip(self._activities, worst, strict=True)
         )
 

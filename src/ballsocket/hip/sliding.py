@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.deprecation import renamed_arguments, renamed_fields
 from ..elasticity.off_axis.directions import tangents
 
 
@@ -78,6 +79,7 @@ def cross_shear_of(steps: Numbers, weights: Numbers | float = 1.0) -> Numbers:
     return cross_shear(*((share * each).sum(axis=-1) for each in (x * x, y * y, x * y)))
 
 
+@renamed_fields(turns="rotation_increments")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sliding:
     """The ball's surface passing over points of the socket.
@@ -86,39 +88,41 @@ class Sliding:
     ----------
     radius : float
         Of the ball in mm.
-    turns : array (instants, 3)
+    rotation_increments : array (instants, 3)
         Rotation vectors of the instants in rad, in the frame of the directions.
     directions : array (3, points)
         Unit vectors from the centre to the points of the socket.
     """
 
     radius: float
-    turns: Numbers
+    rotation_increments: Numbers
     directions: Numbers
 
     @cached_property
     def steps(self) -> Numbers:
         """How far the ball slides over each point in each instant, in mm: (instants, points)."""
-        along = self.turns @ self.directions
-        square = (self.turns * self.turns).sum(axis=1)[:, None]
+        along = self.rotation_increments @ self.directions
+        square = (self.rotation_increments * self.rotation_increments).sum(axis=1)[:, None]
         return self.radius * numpy.sqrt(numpy.maximum(square - along * along, 0.0))
 
     def part(self, points: Numbers) -> Sliding:
         """Some of the points alone."""
-        chosen = Sliding(radius=self.radius, turns=self.turns, directions=self.directions[:, points])
+        chosen = Sliding(
+            radius=self.radius, rotation_increments=self.rotation_increments, directions=self.directions[:, points]
+        )
         vars(chosen)["steps"] = self.steps[:, points]
         return chosen
 
     def velocities(self, seconds: Numbers) -> Numbers:
         """Velocities of the ball over points, R ω × n, in instants that last so long: (instants, points, 3) mm/s."""
-        omega = self.turns / seconds[:, None]
+        omega = self.rotation_increments / seconds[:, None]
         return self.radius * numpy.cross(omega[:, None], self.directions.T[None])
 
     @cached_property
     def _turned(self) -> tuple[Numbers, Numbers]:
         """The two parts of each step in the tangent plane, turned by 90°: each (instants, points)."""
         one, other = tangents(self.directions)
-        return self.radius * (self.turns @ one), self.radius * (self.turns @ other)
+        return self.radius * (self.rotation_increments @ one), self.radius * (self.rotation_increments @ other)
 
     @cached_property
     def _moments(self) -> tuple[Numbers, ...]:
@@ -144,19 +148,20 @@ class Sliding:
         return numpy.divide(summed, whole, out=numpy.zeros_like(whole), where=whole > 0)
 
 
-def slide(radius: float, turns: Numbers, direction: Numbers) -> float:
+@renamed_arguments(turns="rotation_increments")
+def slide(radius: float, rotation_increments: Numbers, direction: Numbers) -> float:
     """How far the ball slides in mm over a point of the socket in a cycle.
 
     Parameters
     ----------
     radius : float
         Of the ball in mm.
-    turns : array (instants, 3)
+    rotation_increments : array (instants, 3)
         Rotation vectors of the instants in rad.
     direction : array (3,) or (instants, 3)
         Unit vector to the point; where the load points at each instant, say.
     """
-    return float(radius * numpy.linalg.norm(numpy.cross(turns, direction), axis=-1).sum())
+    return float(radius * numpy.linalg.norm(numpy.cross(rotation_increments, direction), axis=-1).sum())
 
 
 def tracks(rotations: Numbers, points: Numbers, radius: float = 1.0) -> Numbers:
