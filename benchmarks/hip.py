@@ -80,7 +80,7 @@ def _worn(volumes: dict[str, float], name: str, use: InUse, cycles: float) -> Ca
 def _by_hand(volumes: dict[str, float]) -> Callable[[], object]:
     bed: Any = SPRINGS.bed
     loads = SPRINGS.loads
-    steps, outward = SPRINGS.sliding.steps, (bed.normals * bed.areas).T
+    steps, outward = SPRINGS.sliding.distances, (bed.normals * bed.areas).T
 
     def work() -> None:
         depth, places = numpy.zeros(len(bed.areas)), SPRINGS.unworn.displacement.copy()

@@ -12,8 +12,8 @@ from ballsocket.core.executors.local import Serial
 from ballsocket.core.storage.npz import read_arrays, write_arrays
 from ballsocket.elasticity.off_axis import read_scan
 from ballsocket.hip import InUse
-from ballsocket.hip.gait import iso_14242_1
 from ballsocket.hip.laws import Archard
+from ballsocket.hip.simulator_cycles import iso_14242_1
 
 HIP = bs.joints["hip-28"]
 ELEMENT = bs.ForceElement(bs.HessForsbach(), HIP)

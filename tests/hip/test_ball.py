@@ -61,9 +61,9 @@ def test_flexion_spreads_what_the_ball_loses_over_its_track():
 def test_the_work_of_each_instant_is_that_of_the_socket():
     use = hip(cycle=iso_14242_1(40), **BOTH)
     ours = facing(use, np.arange(len(use.bed.areas)))
-    given = (use.unworn.pressure * use.sliding.steps) @ use.bed.areas
+    given = (use.unworn.pressure * use.sliding.distances) @ use.bed.areas
     found = ours.passed(use.passed(use.unworn))
-    assert (found.pressure * found.sliding.steps) @ ours.areas == pytest.approx(given, rel=1e-9)
+    assert (found.pressure * found.sliding.distances) @ ours.areas == pytest.approx(given, rel=1e-9)
     smaller = (use.joint.socket_radius / use.joint.ball_radius) ** 2  # is the ball, under the same force
     assert found.pressure.max() == pytest.approx(smaller * use.unworn.pressure.max(), rel=2e-3)
 

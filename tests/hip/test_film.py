@@ -116,7 +116,7 @@ def test_the_place_at_the_rim_is_where_the_load_leans():
     )
     edge = use.edge(use.unworn)
     assert np.degrees(edge.azimuth) == pytest.approx(40.0, abs=2.0)
-    assert edge.worst(use).step_description == "99.5 % of the cycle"
+    assert edge.closest_approach(use).step_description == "99.5 % of the cycle"
 
 
 @pytest.mark.parametrize(

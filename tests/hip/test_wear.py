@@ -127,7 +127,7 @@ def test_a_left_hip_wears_as_a_right_one():
 def test_the_area_law_counts_the_share_of_each_cell_that_touches():
     use = hip(wear=AreaLaw(coefficient=1e-9))
     done = use.passed(use.unworn)
-    expected = 1e6 * 1e-9 * float((done.contact * done.sliding.steps).sum(axis=0) @ use.bed.areas)
+    expected = 1e6 * 1e-9 * float((done.contact * done.sliding.distances).sum(axis=0) @ use.bed.areas)
     assert use.first.volume == pytest.approx(expected, rel=1e-12)
     partly = (done.contact > 0) & (done.contact < 1)
     assert 0 < partly.mean() < 0.1

@@ -12,8 +12,8 @@ import numpy
 from ..elasticity.off_axis.directions import unit_vectors
 from ..hip import Lubricant
 from ..hip.contact_checks import largest_utilisation, list_notes
+from ..hip.cycle_registry import CYCLES
 from ..hip.film import film
-from ..hip.in_vivo import IN_VIVO
 from ..hip.spots import spots_of
 from ..io.joint_file import JointFile
 from .in_use import Own, Use, hip_of
@@ -79,7 +79,7 @@ class Gaited:
 
 def gait_of(file: JointFile, use: Use, own: Own | None) -> Hashable:
     """What the courses over a cycle depend on."""
-    weight = use.body_weight if own is not None or use.cycle in IN_VIVO else None
+    weight = use.body_weight if own is not None or CYCLES[use.cycle].per_body_weight else None
     return file.joint, file.cup, file.cup.oriented, weight, use.contact, own or use.cycle
 
 
@@ -97,7 +97,7 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
     rest, lubricant = hip.unworn, Lubricant()
     told(Reached(share=0.7, words="film and edge"))
     found, edge = film(hip, hip.bed, hip.sliding, rest, lubricant), hip.edge(rest)
-    worst, first = edge.worst(hip), hip.first
+    worst, first = edge.closest_approach(hip), hip.first
     checks = hip.unworn_checks
     utilisation, valid = largest_utilisation(checks), all(check.valid for check in checks)
     polar = numpy.linspace(0.0, hip.reach, RINGS + 1)
@@ -118,7 +118,7 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
         load=numpy.divide(hip.forces, sizes[:, None], out=numpy.zeros_like(hip.forces), where=sizes[:, None] > 0),
         cells=_cells(hip, polar),
         polar=polar,
-        worst="nothing is pressed" if worst is None else worst.where,
+        worst="nothing is pressed" if worst is None else worst.location,
         regime=found.regime,
         utilisation=utilisation,
         valid=valid,

@@ -13,9 +13,9 @@ from ..core.kinds import Kind
 from ..hip import Cycle, InUse, named_cycle
 from ..hip.coefficients import share_of_slide, wear_factor
 from ..hip.cycle_file import read_cycle
+from ..hip.cycle_registry import CYCLES
 from ..hip.given_laws import given_creep, given_law, given_surface
-from ..hip.in_vivo import IN_VIVO, check_weight
-from ..hip.named_cycles import CYCLES
+from ..hip.in_vivo import check_body_weight
 from ..io.joint_file import JointFile
 from ..io.units import parse
 
@@ -33,7 +33,7 @@ class Use:
     Attributes
     ----------
     cycle : str
-        One of `hip.named_cycles.CYCLES`.
+        One of `hip.cycle_registry.CYCLES`.
     body_weight : float
         In N, for loads that were measured in patients.
     instant : int, optional
@@ -66,7 +66,7 @@ class Use:
     def __post_init__(self) -> None:
         for name, known in CHOICES.items():
             check_names([getattr(self, name)], known, f"as {name}")
-        check_weight(self.body_weight)
+        check_body_weight(self.body_weight)
         if self.instant is not None:
             require("instant", self.instant, 0 <= self.instant < 10_000, "an instant of a cycle counts from 0")
         coefficient = share_of_slide if self.law == "area" else wear_factor
@@ -77,7 +77,7 @@ class Use:
 
 
 CHOICES: Mapping[str, tuple[str, ...]] = {
-    "cycle": CYCLES,
+    "cycle": tuple(CYCLES),
     "contact": CONTACTS,
     "law": LAWS,
     "creep": ("no", "yes"),
@@ -148,7 +148,7 @@ def hip_of(file: JointFile, use: Use, own: Own | None = None) -> InUse:
     ValueError
         A cycle that pushes the ball over the rim; what `InUse` refuses.
     """
-    weight = use.body_weight if use.cycle in IN_VIVO else None
+    weight = use.body_weight if CYCLES[use.cycle].per_body_weight else None
     wear = {"law": use.law, "coefficient": use.coefficient}
     return InUse(
         joint=file.joint,

@@ -38,6 +38,14 @@ MOVED = {
     "ballsocket.fem": "ballsocket.elasticity.finite_elements",
     "ballsocket.fem.export": "ballsocket.elasticity.finite_elements.decks",
     "ballsocket.sphere": "ballsocket.elasticity.off_axis",
+    "ballsocket.hip.gait": "ballsocket.hip.simulator_cycles",
+    "ballsocket.hip.named_cycles": "ballsocket.hip.cycle_registry",
+    "ballsocket.hip.given_cycle": "ballsocket.hip.cycle_file",
+    **{f"ballsocket.hip.{name}": "ballsocket.hip.cycle_tables" for name in ("measured", "tables")},
+    "ballsocket.hip.resampled": "ballsocket.hip.waveforms",
+    "ballsocket.hip.sliding": "ballsocket.hip.kinematics",
+    **{f"ballsocket.hip.{name}": "ballsocket.hip.rim" for name in ("edge", "separation")},
+    "ballsocket.hip.chebyshev": "ballsocket.hip.runge_kutta_chebyshev",
 }
 """New path of each package or module that moved; the modules of a package move with it."""
 
@@ -137,7 +145,7 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
 
 
 def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
-    """Return a decorator that lets a dataclass accept and give fields by their old names."""
+    """Return a decorator that keeps old names of a dataclass: fields, other attributes and methods."""
 
     def decorate(owner: type[T]) -> type[T]:
         accept: Any = renamed_arguments(**names)

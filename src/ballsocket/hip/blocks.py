@@ -12,10 +12,10 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from .chebyshev import Step, longest, stages_of, step
 from .creep import Ladder
 from .laws import Pass, steepest
 from .near import near_cells
+from .runge_kutta_chebyshev import ChebyshevStep, integrate_step, max_step_length, stage_count
 from .set_up import SetUp
 from .springs import Rest
 
@@ -166,8 +166,8 @@ class Run:
         """A block, as long as its error allows, and no further than asked for."""
         fastest, left = self._fastest, count - self.cycles
         while True:
-            length = _shared(min(self.length, longest(fastest), self._calm), left)
-            taken = step(self._rate, self._values, self._slope, length, stages_of(length, fastest))
+            length = _shared(min(self.length, max_step_length(fastest), self._calm), left)
+            taken = integrate_step(self._rate, self._values, self._slope, length, stage_count(length, fastest))
             if self._overlooked(taken):
                 self.margin *= 2
                 self._look()
@@ -213,14 +213,14 @@ class Run:
         pressure[near.cells] = mean
         self.strain = creep.advanced(self.strain, pressure, seconds)
 
-    def _error(self, taken: Step, fastest: float) -> float:
+    def _error(self, taken: ChebyshevStep, fastest: float) -> float:
         """What a block missed in the mean square of the cells, over what it may."""
         begun = _FIRST * float(self._slope[:-1].max(initial=0.0)) / fastest if fastest > 0 else 0.0
         allowed = self.use.tolerance * max(float(taken.values[:-1].max(initial=0.0)), begun)
         missed = taken.error[:-1]
         return float(numpy.sqrt(missed @ missed / max(len(missed), 1))) / allowed if allowed > 0 else 0.0
 
-    def _overlooked(self, taken: Step) -> bool:
+    def _overlooked(self, taken: ChebyshevStep) -> bool:
         """Whether a block has brought the contact to cells that are not looked at."""
         depth = self.crept
         depth += self.depth

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy
 
 from ..core.arrays import Numbers
+from .kinematics import SurfaceSliding
 from .laws import Pass
 from .set_up import SetUp
-from .sliding import Sliding
 from .spots import Spots, ball_directions, ball_grid, spots_of
 
 
@@ -21,7 +21,7 @@ class Facing:
     ----------
     cells : array (m,)
         Of the ball's grid.
-    sliding : Sliding
+    sliding : SurfaceSliding
         Of the socket over them, in the ball's own frame.
     areas : array (m,)
         In mm².
@@ -36,7 +36,7 @@ class Facing:
     """
 
     cells: Numbers
-    sliding: Sliding
+    sliding: SurfaceSliding
     areas: Numbers
     socket_areas: Numbers
     socket_cells: Numbers
@@ -54,8 +54,8 @@ class Facing:
     def passed(self, done: Pass) -> Pass:
         """What the points of the ball go through, with the work of each instant as the socket has it."""
         pressure = self._on_ball(done.pressure)
-        given = (done.pressure * done.sliding.steps) @ self.socket_areas
-        found = (pressure * self.sliding.steps) @ self.areas
+        given = (done.pressure * done.sliding.distances) @ self.socket_areas
+        found = (pressure * self.sliding.distances) @ self.areas
         share = numpy.divide(given, found, out=numpy.zeros_like(given), where=found > 0)
         return Pass(
             pressure=pressure * share[:, None], sliding=self.sliding, shares=lambda: self._on_ball(done.contact)
@@ -82,7 +82,7 @@ def facing(use: SetUp, cells: Numbers) -> Facing:
     radius = float(use.joint.ball_radius)
     return Facing(
         cells=met,
-        sliding=Sliding(
+        sliding=SurfaceSliding(
             radius=radius,
             rotation_increments=numpy.einsum("tji,tj->ti", turned, use.rotation_increments),
             directions=directions[:, met],

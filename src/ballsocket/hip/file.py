@@ -15,9 +15,9 @@ from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of
 from ..io.units import parse
 from ..problem.cup import Cup
+from .cycle_file import KEYS as CYCLE_KEYS
+from .cycle_file import parse_cycle
 from .film import Lubricant
-from .given_cycle import KEYS as CYCLE_KEYS
-from .given_cycle import given_cycle
 from .given_laws import KEYS as WEAR_KEYS
 from .given_laws import given_ball_law, given_creep, given_law, given_lubricant, given_seconds, given_surface
 from .looks import check_cycles
@@ -90,7 +90,7 @@ def _hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     for name in ("cup", "cycle", "wear", "creep", "film", "uncertainty"):
         check_keys(table_of(content, name), name, f"in [{name}]", FILE_KEYS)
     given = _joint(content, folder)
-    cycle, wear = given_cycle(content, folder), table_of(content, "wear")
+    cycle, wear = parse_cycle(content, folder), table_of(content, "wear")
     width = {name: parse(name, wear[name], Kind.ANGLE) for name in ("ring_width",) if name in wear}
     use = InUse(
         joint=given.joint,

@@ -11,8 +11,8 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..problem import Joint, Material
+from .kinematics import SurfaceSliding
 from .placing import Placed
-from .sliding import Sliding
 from .springs import CycleBed, Rest
 
 CONFORMING = (
@@ -140,7 +140,7 @@ class Film:
         return {**numbers, "moment_on_cup_Nmm": most, "regime": self.regime, "note": CONFORMING}
 
 
-def film(placed: Placed, bed: CycleBed, sliding: Sliding, rest: Rest, lubricant: Lubricant) -> Film:
+def film(placed: Placed, bed: CycleBed, sliding: SurfaceSliding, rest: Rest, lubricant: Lubricant) -> Film:
     """The film and the friction of a cycle of contacts, where the ball slides so over this bore."""
     instant = placed.cycle.seconds[placed.loaded]
     carried = placed.carried(rest.displacement)
@@ -150,7 +150,7 @@ def film(placed: Placed, bed: CycleBed, sliding: Sliding, rest: Rest, lubricant:
     )
     least, central = film_thickness(placed.joint, size, across / instant, lubricant.viscosity)
     rough = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
-    work = lubricant.friction * numpy.einsum("tp,tp,p->t", rest.pressure, sliding.steps, bed.areas)
+    work = lubricant.friction * numpy.einsum("tp,tp,p->t", rest.pressure, sliding.distances, bed.areas)
     return Film(
         phases=placed.cycle.phases[placed.loaded],
         least=least,
@@ -163,9 +163,9 @@ def film(placed: Placed, bed: CycleBed, sliding: Sliding, rest: Rest, lubricant:
     )
 
 
-def _moment(bed: CycleBed, sliding: Sliding, pressure: Numbers) -> Numbers:
+def _moment(bed: CycleBed, sliding: SurfaceSliding, pressure: Numbers) -> Numbers:
     """∫ R n × v/abs(v) p dA, v = R ω × n: n × (ω × n) = ω - (ω·n) n; in N mm: (instants, 3)."""
-    n, turns, steps = bed.directions, sliding.rotation_increments, sliding.steps
+    n, turns, steps = bed.directions, sliding.rotation_increments, sliding.distances
     share = numpy.divide(pressure * bed.areas * sliding.radius**2, steps, out=numpy.zeros_like(steps), where=steps > 0)
     along = share * (turns @ n)
     return turns * share.sum(axis=1)[:, None] - along @ n.T

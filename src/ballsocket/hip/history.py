@@ -13,9 +13,9 @@ import numpy
 
 from ..core.arrays import Numbers
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_notes
-from .edge import Edge, Worst
 from .film import Lubricant
 from .mix import Mix
+from .rim import ClosestApproach, RimDistance
 from .set_up import SetUp
 
 
@@ -84,9 +84,9 @@ class Report:
         return float(numpy.linalg.norm(self.displacement))
 
     @property
-    def edge(self) -> Edge:
+    def edge(self) -> RimDistance:
         """How near the contacts come to the rim."""
-        return Edge(distance=self.edge_distance, azimuth=self.edge_place, pressure=self.edge_pressure)
+        return RimDistance(distance=self.edge_distance, azimuth=self.edge_place, pressure=self.edge_pressure)
 
     def summary(self) -> dict[str, Any]:
         """For JSON, in mm, MPa, mm³."""
@@ -190,19 +190,19 @@ class History:
         return ()
 
     @property
-    def worst(self) -> Worst | None:
+    def worst(self) -> ClosestApproach | None:
         """The instant of the first cycle in which the contact comes nearest to the rim."""
-        return self.use.edge(self.use.unworn).worst(self.use)
+        return self.use.edge(self.use.unworn).closest_approach(self.use)
 
     @property
     def _at_the_rim(self) -> tuple[str, ...]:
         """When a contact reaches the rim first, in which instant most, and where."""
         seen = [(_NEW, self.worst)]
-        seen += [(_LATER.format(report.cycles), report.edge.worst(self.use)) for report in self.reports]
+        seen += [(_LATER.format(report.cycles), report.edge.closest_approach(self.use)) for report in self.reports]
         for when, worst in seen:
             if worst is not None and worst.steps_at_rim:
                 of = len(self.use.loaded)
-                return (_REACHES.format(when, worst.steps_at_rim, of, worst.where, worst.pressure),)
+                return (_REACHES.format(when, worst.steps_at_rim, of, worst.location, worst.pressure),)
         return ()
 
     def summary(self) -> dict[str, Any]:
@@ -246,7 +246,7 @@ class History:
             "utilisation": largest_utilisation(checks),
             "contact": [check.summary() for check in checks],
         }
-        return {**report.summary(), **years, "edge": _told(report.edge.worst(self.use)), **contact}
+        return {**report.summary(), **years, "edge": _told(report.edge.closest_approach(self.use)), **contact}
 
 
 _THIN = 0.25
@@ -260,5 +260,5 @@ _REACHES = (
 _UNSETTLED = "a contact did not balance its load: no digit of this run is to be trusted"
 
 
-def _told(worst: Worst | None) -> dict[str, Any] | None:
+def _told(worst: ClosestApproach | None) -> dict[str, Any] | None:
     return None if worst is None else worst.summary()

@@ -11,7 +11,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from .sliding import Sliding
+from .kinematics import SurfaceSliding
 
 _NUDGE = 1e-6  # of the largest pressure, for the slope of a law
 METRE = 1e-3
@@ -26,13 +26,13 @@ class Pass:
     ----------
     pressure : array (instants, points)
         In MPa.
-    sliding : Sliding
+    sliding : SurfaceSliding
     shares : function, optional
         Function that computes `contact`. Without it, a cell with a positive pressure is in contact completely.
     """
 
     pressure: Numbers
-    sliding: Sliding
+    sliding: SurfaceSliding
     shares: Callable[[], Numbers] | None = None
 
     @cached_property
@@ -43,7 +43,7 @@ class Pass:
     @cached_property
     def work(self) -> Numbers:
         """∫ p v dt of each point, in N/mm: (points,)."""
-        return numpy.einsum("tp,tp->p", self.pressure, self.sliding.steps)
+        return numpy.einsum("tp,tp->p", self.pressure, self.sliding.distances)
 
     @cached_property
     def cross_shear(self) -> Numbers:
@@ -152,7 +152,7 @@ class AreaLaw:
         _check_coefficient(self.coefficient)
 
     def depth(self, cycle: Pass) -> Numbers:
-        return self.coefficient * numpy.einsum("tp,tp->p", cycle.contact, cycle.sliding.steps)
+        return self.coefficient * numpy.einsum("tp,tp->p", cycle.contact, cycle.sliding.distances)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -190,7 +190,7 @@ class CrossShear:
     def depth(self, cycle: Pass) -> Numbers:
         factor = self.straight + 2 * cycle.cross_shear * (self.circular - self.straight)
         if self.exponent != 0:
-            way = cycle.sliding.steps.sum(axis=0, where=cycle.pressure > 0)
+            way = cycle.sliding.distances.sum(axis=0, where=cycle.pressure > 0)
             mean = numpy.divide(cycle.work, way, out=numpy.zeros_like(way), where=way > 0)
             factor = factor * numpy.where(mean > 0, mean / self.reference, 1.0) ** self.exponent
         return METRE * factor * cycle.work
@@ -207,7 +207,8 @@ class OwnLaw:
     Parameters
     ----------
     of : function
-        From a `Pass` (its `pressure`, `sliding.steps`, `work`, `cross_shear`) to depths in mm (points,), at least 0.
+        From a `Pass` (its `pressure`, `sliding.distances`, `work`, `cross_shear`) to depths in mm (points,), at
+        least 0.
 
     Raises
     ------
@@ -218,7 +219,7 @@ class OwnLaw:
     --------
     Archard's law with a pressure below which nothing wears:
 
-    >>> law = OwnLaw(of=lambda cycle: 1e-9 * ((cycle.pressure - 0.5).clip(0) * cycle.sliding.steps).sum(axis=0))
+    >>> law = OwnLaw(of=lambda cycle: 1e-9 * ((cycle.pressure - 0.5).clip(0) * cycle.sliding.distances).sum(axis=0))
     """
 
     of: Callable[[Pass], Numbers]

@@ -8,8 +8,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from .facing import Facing, facing
+from .kinematics import SurfaceSliding
 from .set_up import SetUp
-from .sliding import Sliding
 from .springs import CycleBed
 
 
@@ -19,7 +19,7 @@ class Near:
 
     cells: Numbers
     bed: CycleBed
-    sliding: Sliding
+    sliding: SurfaceSliding
     facing: Facing | None
 
     @property
@@ -35,4 +35,4 @@ class Near:
 def near_cells(use: SetUp, cells: Numbers) -> Near:
     """Some cells of the socket, and those of the ball that pass over them if it wears."""
     faced = None if use.ball_wear is None else facing(use, cells)
-    return Near(cells=cells, bed=use.bed.part(cells), sliding=use.sliding.part(cells), facing=faced)
+    return Near(cells=cells, bed=use.bed.part(cells), sliding=use.sliding.select_points(cells), facing=faced)

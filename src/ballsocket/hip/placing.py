@@ -13,9 +13,9 @@ from ..core.deprecation import RenamedAttribute
 from ..problem import Joint
 from ..problem.cup import Cup, Side
 from .cycle import Cycle, Frame
+from .kinematics import sliding_distance
 from .mix import Mix
-from .separation import Pulled, Separation
-from .sliding import slide
+from .rim import Microseparation, SpringLoadedBall
 
 _LIFTED = 1e-6
 """Of the largest force: below, the ball is taken to be lifted off."""
@@ -76,12 +76,12 @@ class Placed:
         return numpy.asarray(sizes > _LIFTED * max(float(sizes.max()), 1e-300))
 
     @cached_property
-    def _pulled(self) -> Pulled | None:
+    def _pulled(self) -> SpringLoadedBall | None:
         """The ball on its spring; None where it has none."""
         spring = self.moved.spring
         if spring is None:
             return None
-        return Pulled(
+        return SpringLoadedBall(
             spring=spring,
             side=self._side,
             reach=self.reach,
@@ -108,13 +108,13 @@ class Placed:
     def _over(self) -> Numbers:
         """The instants in which the load pushes the ball over the rim."""
         found = numpy.flatnonzero(self._pressed & (self._tilts >= self.reach))
-        return found if self._pulled is None else found[self._pulled.beyond(self.forces[found])]
+        return found if self._pulled is None else found[self._pulled.leaves_bore(self.forces[found])]
 
     @cached_property
-    def separation(self) -> Separation | None:
+    def separation(self) -> Microseparation | None:
         """The instants in which a spring has pushed the ball onto the rim; None where it never does."""
         over = self._over
-        return None if self._pulled is None or not len(over) else self._pulled.rest(self.forces[over], over)
+        return None if self._pulled is None or not len(over) else self._pulled.solve_separation(self.forces[over], over)
 
     @cached_property
     def placed(self) -> Cup:
@@ -155,7 +155,7 @@ class Placed:
         """How far the ball slides past the loads' line in a cycle, in mm."""
         sizes = self.cycle.force_magnitudes[:, None]
         along = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
-        return slide(
+        return sliding_distance(
             float(self.joint.ball_radius),
             _in_cup(self.placed, self.moved.rotation_increments),
             _held(along, self.loaded),

@@ -23,14 +23,14 @@ from ..problem.cup import Cup
 from .contact_checks import ContactCheck, check_contact, half_angles
 from .creep import Ladder, creep_note
 from .cycle import Cycle
-from .edge import Edge, edge_of
 from .elastic_bed import elastic_bed
 from .film import Film, Lubricant, film
 from .first import First, first_of
+from .kinematics import SurfaceSliding
 from .laws import Law, Pass
 from .mix import Mix
 from .placing import Placed
-from .sliding import Sliding
+from .rim import RimDistance, rim_distance
 from .spots import ball_grid
 from .springs import CycleBed, Rest, spring_bed
 
@@ -126,17 +126,17 @@ class SetUp(Placed):
         return Cup(arc_of_cover=self.cup.arc_of_cover, chamfer=self.cup.chamfer, interface=self.cup.interface)
 
     @cached_property
-    def sliding(self) -> Sliding:
-        return Sliding(
+    def sliding(self) -> SurfaceSliding:
+        return SurfaceSliding(
             radius=float(self.joint.ball_radius),
             rotation_increments=self.rotation_increments,
             directions=self.bed.directions,
         )
 
-    def edge(self, rest: Rest, depth: Numbers | float = 0.0) -> Edge:
+    def edge(self, rest: Rest, depth: Numbers | float = 0.0) -> RimDistance:
         """How near the edge of each contact comes to the end of the bore, and where."""
         field = self.bed.edge_field(rest, self._everywhere(depth))
-        return edge_of(self.grid, self.bed.socket_radius, field, rest.pressure, self.bed.inset)
+        return rim_distance(self.grid, self.bed.socket_radius, field, rest.pressure, self.bed.inset)
 
     def edge_distance(self, rest: Rest, depth: Numbers | float = 0.0) -> Numbers:
         """The arc in mm from the edge of each contact to the end of the bore where it is nearest: (loaded,).
@@ -234,11 +234,11 @@ class SetUp(Placed):
         done = self.passed(self.unworn)
         touched = numpy.flatnonzero(done.work > 0)
         weight = (done.work * self.bed.areas)[touched]
-        found = self.sliding.part(touched).crossing_angle(done.pressure[:, touched])
+        found = self.sliding.select_points(touched).crossing_angle(done.pressure[:, touched])
         return float(found @ weight / weight.sum()) if len(touched) else 0.0
 
     @property
     def largest_speed(self) -> float:
         """The largest speed of sliding in contact in the first cycle, in mm/s."""
-        within = numpy.where(self.unworn.pressure > 0, self.sliding.steps, 0.0)
+        within = numpy.where(self.unworn.pressure > 0, self.sliding.distances, 0.0)
         return float((within / self.cycle.seconds[self.loaded][:, None]).max(initial=0.0))

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..hip.history import History, Report
+from ..hip.kinematics import tracks
 from ..hip.mix import Mix
-from ..hip.sliding import tracks
 from ..hip.spots import ball_directions, ball_grid
 from ..hip.uncertainty import Bands
 
@@ -169,7 +169,7 @@ def edge_figure(history: History) -> Figure:
     axes.plot(*_course(use, use.edge_distance(use.unworn)), color=_INK, label="unworn")
     told = f"after {last.cycles / 1e6:g} million cycles"
     axes.plot(*_course(use, last.edge_distance), "--", color=_SECOND, label=told)
-    worst = last.edge.nearest(use)
+    worst = last.edge.closest_index(use)
     if worst is not None:
         at = 100 * use.cycle.phases[use.loaded[worst]]
         axes.plot(at, last.edge_distance[worst], "o", color=_SECOND, ms=5)
