@@ -2,7 +2,7 @@
 
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 
 import pytest
@@ -100,3 +100,5 @@ def test_a_renamed_field_is_accepted_and_given_with_a_warning():
     with pytest.warns(DeprecationWarning, match=r"^Note.told is deprecated: use text"):
         assert note.told == note.text == "loose"
     assert Note(text="loose") == note
+    with pytest.warns(DeprecationWarning, match=r"^argument 'told' of Note\(\) is deprecated: use 'text'"):
+        assert replace(note, told="tight").text == "tight"

@@ -127,15 +127,13 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
     """Return a decorator that accepts keyword arguments by their old names: `@renamed_arguments(listen="progress")`."""
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
-        label = function.__name__.replace("__init__", function.__qualname__.removesuffix(".__init__"))
-
         @functools.wraps(function)
         def accepting(*args: P.args, **kwargs: P.kwargs) -> T:
             for old in names.keys() & kwargs.keys():
                 new = names[old]
                 if new in kwargs:
-                    raise TypeError(f"{label}() got both {new!r} and its old name {old!r}")
-                _warn(f"argument {old!r} of {label}()", repr(new))
+                    raise TypeError(f"{function.__name__}() got both {new!r} and its old name {old!r}")
+                _warn(f"argument {old!r} of {function.__name__}()", repr(new))
                 kwargs[new] = kwargs.pop(old)
             return function(*args, **kwargs)
 
@@ -145,11 +143,23 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
 
 
 def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
-    """Return a decorator that keeps old names of a dataclass: fields, other attributes and methods."""
+    """Return a decorator that keeps old names of a dataclass: fields, other attributes and methods.
+
+    An old name of a field replaces the value under the new name, which `dataclasses.replace` passes as well.
+    """
 
     def decorate(owner: type[T]) -> type[T]:
-        accept: Any = renamed_arguments(**names)
-        setattr(owner, "__init__", accept(owner.__init__))  # noqa: B010 (mypy refuses to assign to a method)
+        initialise: Any = owner.__init__
+        arguments = {old: new for old, new in names.items() if new in owner.__dict__.get("__dataclass_fields__", {})}
+
+        @functools.wraps(initialise)
+        def accepting(self: T, *args: Any, **kwargs: Any) -> None:
+            for old in arguments.keys() & kwargs.keys():
+                _warn(f"argument {old!r} of {owner.__name__}()", repr(arguments[old]))
+                kwargs[arguments[old]] = kwargs.pop(old)
+            initialise(self, *args, **kwargs)
+
+        setattr(owner, "__init__", accepting)  # noqa: B010 (mypy refuses to assign to a method)
         for old, new in names.items():
             attribute = RenamedAttribute(new)
             attribute.__set_name__(owner, old)
