@@ -180,7 +180,7 @@ def hips() -> dict[str, wear.InUse]:
         "shell": in_use(surface=bs.ClosedShell(), **few),
         "cup": in_use(surface=bs.RealCup(), **few),
         "chamfered cup": in_use(surface=bs.RealCup(), cup=replace(steep, chamfer=1.0, inclination=0.4), **few),
-        "leaning in cup": in_use(surface=bs.RealCup(), cycle=replace(leaning, instants=10), ring_width=radians(6.0)),
+        "leaning in cup": in_use(surface=bs.RealCup(), cycle=replace(leaning, n_steps=10), ring_width=radians(6.0)),
     }
 
 
@@ -189,7 +189,7 @@ def hip(results: Results, folder: Path) -> None:
     phases = numpy.linspace(0.0, 0.95, 20)
     for name, order in product((*MACHINES, *IN_VIVO), ("xyz", "zxy")):
         cycle = wear.named_cycle(name, 20, order, **({"body_weight": 800.0} if name in IN_VIVO else {}))
-        results.add(f"cycle/{name}/{order}", [cycle.largest_force, cycle.duration, cycle.instants])
+        results.add(f"cycle/{name}/{order}", [cycle.largest_force, cycle.duration, cycle.n_steps])
         results.add_attributes(f"cycle/{name}/{order}", cycle, "forces rotations turns middles notes")
         if order == "xyz":
             results.add(f"cycle/{name}/courses", {"force": cycle.force(phases), "angles": cycle.angles(phases)})

@@ -101,7 +101,7 @@ def test_the_numbers_of_a_patient_are_those_of_its_hip():
     )
     numbers = {"body_weight": 900.0, "inclination": 0.4, "anteversion": 0.1, "clearance": 0.15, "cycles_per_year": 2e6}
     patient = some.patient(numbers)
-    assert patient.use.cycle.sizes == pytest.approx(1.2 * some.quick.cycle.sizes)
+    assert patient.use.cycle.force_magnitudes == pytest.approx(1.2 * some.quick.cycle.force_magnitudes)
     assert patient.use.placed == bs.Cup(inclination=0.4, anteversion=0.1)
     assert patient.use.joint.clearance == 0.15
     assert patient.pace == 2.0

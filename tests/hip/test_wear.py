@@ -107,8 +107,8 @@ def test_the_worn_bore_is_pressed_alike_by_the_springs_of_sphere():
         return between((np.arctan2(np.hypot(n[0], n[1]), n[2]), np.arctan2(n[1], n[0]) % (2 * np.pi)))
 
     sphere = bs.Sphere(cup=TILTED, surface=bs.Springs(), worn=bs.Worn(of=depth))
-    largest = int(use.cycle.sizes.argmax())
-    contact = sphere.press(use.joint, force=use.cycle.sizes[largest])
+    largest = int(use.cycle.force_magnitudes.argmax())
+    contact = sphere.press(use.joint, force=use.cycle.force_magnitudes[largest])
     mine = use.solve_equilibrium(report.wear.ravel())
     assert contact.displacement == pytest.approx(mine.displacement[largest], rel=2e-3, abs=2e-4)
     assert contact.max_pressure == pytest.approx(mine.pressure[largest].max(), rel=1e-2)
@@ -137,7 +137,7 @@ def test_a_left_hip_wears_as_a_right_one():
 def test_the_area_law_counts_the_share_of_each_cell_that_touches():
     use = hip(wear=ContactAreaWear(coefficient=1e-9))
     done = use.exposure(use.unworn)
-    expected = 1e6 * 1e-9 * float((done.contact * done.sliding.steps).sum(axis=0) @ use.foundation.areas)
+    expected = 1e6 * 1e-9 * float((done.contact * done.sliding.distances).sum(axis=0) @ use.foundation.areas)
     assert use.first.volume == pytest.approx(expected, rel=1e-12)
     partly = (done.contact > 0) & (done.contact < 1)
     assert 0 < partly.mean() < 0.1
@@ -165,7 +165,7 @@ def test_the_area_law_is_right_where_the_contact_stands_still_and_states_its_err
         name="turning",
         force=lambda t: force + 0 * t,
         angles=lambda t: amplitude * np.outer(axis, np.cos(2 * np.pi * t)),
-        instants=16,
+        n_steps=16,
     )
     use = hip(cycle=cycle, wear=ContactAreaWear(coefficient=coefficient), cup=bs.Cup(), ring_width=radians(width))
     joint, cap = use.joint, bs.HessForsbach().press(use.joint, force=force).half_angle
@@ -308,7 +308,7 @@ def test_a_ball_that_lifts_off_wears_only_where_it_presses():
 def test_the_finest_steps_tell_their_error_too():
     """They cannot be halved, which was refused when the run was done."""
     assert 0 < hip(cycle=flexion(8), ring_width=radians(0.6)).discretization_error[0] < 0.05
-    assert flexion(6000).finer().instants == 10_000
+    assert flexion(6000).finer().n_steps == 10_000
 
 
 def test_a_liner_that_is_worn_through_is_told():

@@ -11,10 +11,10 @@ import numpy
 from ..core.arrays import Numbers
 from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
-from ..hip.gait import iso_14242_1, iso_14242_4, rocking
-from ..hip.named_cycles import named_cycle
+from ..hip.cycle_registry import named_cycle
 from ..hip.patients import ANSWERS, Scatter
 from ..hip.simulation import HipSimulation
+from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
 from ..hip.uncertainty import LEVEL, population
 from ..hip.wear_law import WearLaw
 from ..hip.wear_laws import Archard, ContactAreaWear

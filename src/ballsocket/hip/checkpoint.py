@@ -89,7 +89,7 @@ def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
         if not getattr(law, "storable", True):
             raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function cannot be identified")
     cycle = sha256(
-        b"".join(each.tobytes() for each in (use.loads, use.lateral_stiffness, use.turns, use.loaded))
+        b"".join(each.tobytes() for each in (use.loads, use.lateral_stiffness, use.rotation_increments, use.loaded))
     ).hexdigest()
     parts = (
         use.joint,

@@ -220,7 +220,7 @@ def _sampled(cycle: Cycle | Mix) -> Cycle | Mix:
 
 
 def _numbers(cycle: Cycle) -> Cycle:
-    few = replace(cycle, instants=min(cycle.instants, _INSTANTS))
-    middles, begins = few.phases, numpy.arange(few.instants) / few.instants
+    few = replace(cycle, n_steps=min(cycle.n_steps, _INSTANTS))
+    middles, begins = few.phases, numpy.arange(few.n_steps) / few.n_steps
     force, angles = (numpy.asarray(of, dtype=float) for of in (few.force(middles), few.angles(begins)))
     return replace(few, force=_Table(middles, force), angles=_Table(begins, angles))
