@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy
 
 import ballsocket as bs
-from ballsocket.elasticity.finite_elements.decks.calculix import SECTORS, contact_pressures, printed
+from ballsocket.elasticity.finite_elements.decks.calculix import SECTORS, read_contact_pressures, read_printed
 
 SCALE = 1e-3
 RIM, GROWTH, WIDEST = 120.0, 1.3, 15.0  # degrees, of the liner's elements beyond the contact
@@ -68,9 +68,9 @@ class Calculix:
     def answer(self) -> Steps:
         """What the last run wrote; NaN for a step that it did not reach."""
         whole = numpy.full((3, self.steps), numpy.nan)
-        for step, forces in printed(self.folder / f"{self.name}.dat", "PUSHED").items():
+        for step, forces in read_printed(self.folder / f"{self.name}.dat", "PUSHED").items():
             whole[0, step] = -forces[0, 1] * SECTORS / SCALE
-        for step, pressures in contact_pressures(self.folder / f"{self.name}.frd").items():
+        for step, pressures in read_contact_pressures(self.folder / f"{self.name}.frd").items():
             whole[1:, step] = _profile(self.surface, pressures)
         return Steps(force=whole[0], max_pressure=whole[1], half_angle=whole[2])
 

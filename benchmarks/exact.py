@@ -18,7 +18,7 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.elasticity.exact.exact_curve import fitted_of
+from ballsocket.elasticity.exact.exact_curve import chebyshev_curve_of
 from ballsocket.elasticity.exact.model import curve_of
 
 from .calculix_rival import Calculix, Mesh, Steps
@@ -128,7 +128,7 @@ def _curves() -> list[tuple[str, Work, float, float]]:
 
     def bound() -> None:
         curve_of.cache_clear()
-        fitted_of.cache_clear()
+        chebyshev_curve_of.cache_clear()
         _ = model.press(BACKED, force=3000.0).max_pressure
 
     def many() -> None:

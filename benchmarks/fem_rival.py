@@ -35,7 +35,7 @@ REPEATS = 5
 
 def forget() -> None:
     """Nothing is known of any joint."""
-    for kept in (solver.curve, bodies.socket_compliance, bodies.ball_compliance):
+    for kept in (solver.load_curve_of, bodies.socket_compliance, bodies.ball_compliance):
         kept.cache_clear()
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.identify import HeavyTailed, Identified, Machine, Measured
+from ballsocket.identify import HeavyTailed, IdentificationResult, Machine, Measured
 
 from .report import Report, Rows
 
@@ -123,12 +123,12 @@ def _indentations(random: numpy.random.Generator, case: Case) -> Measured:
     )
 
 
-def _identified(data: Sequence[Measured], free: dict[str, Any], heavy: bool = False) -> Identified:
+def _identified(data: Sequence[Measured], free: dict[str, Any], heavy: bool = False) -> IdentificationResult:
     option: Any = {"scatter": HeavyTailed()} if heavy else {}
     return bs.identify(MODEL, TRUTH, data, free, **option)
 
 
-def _holds(fit: Identified, name: str) -> bool:
+def _holds(fit: IdentificationResult, name: str) -> bool:
     return fit[name].low * (1 - 1e-9) <= VALUES[name] <= fit[name].high * (1 + 1e-9)
 
 
@@ -136,7 +136,7 @@ def _pairs(free: dict[str, Any]) -> list[str]:
     counts, wrong, held = [0, 0, 0, 0], 0, [0, 0]
     for seed in range(SETS):
         fit = _identified(half_angles_and_pressures(numpy.random.default_rng(1000 + seed)), free)
-        identifiable = [fit[name].told for name in FREE]
+        identifiable = [fit[name].identifiable for name in FREE]
         holds = [_holds(fit, name) for name in FREE]
         counts[identifiable[0] + 2 * identifiable[1]] += 1
         wrong += all(identifiable) and not all(holds)
@@ -160,7 +160,7 @@ def _coverage(case: Case) -> list[str]:
 
 
 def _is_remark(note: str) -> bool:
-    words = ("uncertainties from the answer", "data scatter", "half its band", "as wide as the stated", "identifiable")
+    words = ("uncertainties from the result", "data scatter", "half its band", "as wide as the stated", "identifiable")
     return any(word in note for word in words)
 
 

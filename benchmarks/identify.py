@@ -14,7 +14,7 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.identify import Identified, Measured
+from ballsocket.identify import IdentificationResult, Measured
 from ballsocket.identify.posterior import Posterior
 
 from .report import Report, Rows
@@ -86,7 +86,7 @@ def _by_hand(data: Measured) -> Any:
     )[0]
 
 
-def _chains(found: Identified) -> tuple[dict[str, Spread], Posterior, float]:
+def _chains(found: IdentificationResult) -> tuple[dict[str, Spread], Posterior, float]:
     """Seconds of both, our posterior, and how many independent samples the plain chains have."""
     drawn = found.posterior(SAMPLES)
     plain = _plain(found, _steps(drawn))
@@ -109,12 +109,12 @@ def _steps(drawn: Posterior) -> int:
     return int(drawn.effective[name] * drawn.autocorrelation[name] / 64)
 
 
-def _plain(found: Identified, steps: int) -> Work:
+def _plain(found: IdentificationResult, steps: int) -> Work:
     import emcee
 
     def run() -> Any:
         random = numpy.random.default_rng(0)
-        places = found.best.places + 0.1 * random.standard_normal((64, len(found.best.places)))
+        places = found.best.theta + 0.1 * random.standard_normal((64, len(found.best.theta)))
         sampler = emcee.EnsembleSampler(64, places.shape[1], found.misfit.log_posterior, vectorize=True)
         sampler.run_mcmc(places, steps + 200)
         return sampler.get_chain(discard=200)

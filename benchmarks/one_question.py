@@ -17,7 +17,7 @@ import numpy
 
 import ballsocket as bs
 from ballsocket.compiled import Compiled, compiled_law
-from ballsocket.elasticity.exact.tabulated.curves import Curves
+from ballsocket.elasticity.exact.tabulated.curves import JointCurves
 from ballsocket.models.kinematics import linear_force, linear_stiffness
 
 from . import opensim_rival
@@ -149,7 +149,7 @@ def _a_joint_each() -> Rows:
 
 def _products(blocks: list[bs.Joint]) -> None:
     for block in blocks:
-        _ = Curves("", block).three
+        _ = JointCurves("", block).functions
 
 
 def _joints(random: numpy.random.Generator, ball: bs.Material | None) -> bs.Joint:

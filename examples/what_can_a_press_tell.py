@@ -32,9 +32,9 @@ def read(quantity: str, share: float) -> Measured:
 
 
 areas = read("area", 0.02)
-found = bs.identify(bs.Tabulated(), hip, areas, free)
-print(found)
-save(experiment_figure(found.next), "what_can_a_press_tell_1_next.png")
+result = bs.identify(bs.Tabulated(), hip, areas, free)
+print(result)
+save(experiment_figure(result.next), "what_can_a_press_tell_1_next.png")
 
 # %%
 # So indentations are measured as well, and both numbers have a band. What is left of their dependence shows where one

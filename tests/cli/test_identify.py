@@ -37,7 +37,7 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_what_is_told_has_a_value_and_a_band(folder):
+def test_an_identifiable_unknown_has_a_value_and_a_band(folder):
     done = run("identify", "indentation.toml", "--json", folder=folder)
     assert (done.returncode, done.stderr) == (0, "")
     said = json.loads(done.stdout)
@@ -49,7 +49,7 @@ def test_what_is_told_has_a_value_and_a_band(folder):
     assert said["experiment"][0]["bits"] > 0
 
 
-def test_areas_alone_are_answered_by_the_product(folder):
+def test_areas_alone_identify_only_the_product(folder):
     done = run("identify", "area.toml", folder=folder)
     assert done.returncode == 0
     assert "not identifiable" in done.stdout
@@ -60,7 +60,7 @@ def test_areas_alone_are_answered_by_the_product(folder):
     assert said["products"][0]["value"] == pytest.approx(HIP.clearance * HIP.liner.young, rel=1e-2)
 
 
-def test_figures_and_samples(folder):
+def test_the_command_writes_figures_and_samples(folder):
     pytest.importorskip("emcee")
     pictures = ("--figure", "fit.png", "--corner", "corner.png", "--experiment", "next.png")
     done = run("identify", "indentation.toml", "--samples", "200", *pictures, folder=folder)
@@ -69,10 +69,8 @@ def test_figures_and_samples(folder):
     assert all((folder / name).stat().st_size > 10_000 for name in pictures[1::2])
 
 
-def test_one_sentence_for_what_is_wrong(folder):
+def test_an_error_is_one_sentence(folder):
     (folder / "area.csv").write_text("force,area_mm2\n100,20\n", "utf-8")
     done = run("identify", "area.toml", folder=folder)
     assert done.returncode == 2
-    assert (
-        done.stderr == "ballsocket: area.toml: area.csv: column 'force' has no unit: write force_N, or another unit\n"
-    )
+    assert done.stderr == "ballsocket: area.toml: area.csv: column 'force' has no unit: use force_N, or another unit\n"

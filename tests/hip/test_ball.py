@@ -26,7 +26,7 @@ def spinning(count=24):
     )
 
 
-def test_what_the_ball_misses_is_what_was_rubbed_off():
+def test_ball_volume_equals_the_work_of_friction():
     report = (
         hip(cycle=iso_14242_1(40), wear=Archard(coefficient=K), ball_wear=Archard(coefficient=3e-7)).after(5e5).last
     )
@@ -34,7 +34,7 @@ def test_what_the_ball_misses_is_what_was_rubbed_off():
     assert report.ball_volume == pytest.approx(1e-3 * 3e-7 * report.work, rel=1e-6)
 
 
-def test_a_ball_that_spins_about_its_load_wears_as_its_socket():
+def test_ball_spinning_about_its_load_wears_as_the_socket():
     """And both together leave the contact as twice the wear of the socket alone does."""
     pair = hip(cycle=spinning(), cup=bs.Cup(), **BOTH).after(2e6).last
     alone = hip(cycle=spinning(), cup=bs.Cup(), **COARSE).after(2e6).last
@@ -45,7 +45,7 @@ def test_a_ball_that_spins_about_its_load_wears_as_its_socket():
     assert pair.max_pressure == pytest.approx(alone.max_pressure, rel=5e-2)  # a spike where nothing slides
 
 
-def test_flexion_spreads_what_the_ball_loses_over_its_track():
+def test_flexion_spreads_the_wear_of_the_ball_over_its_track():
     """The load stands still on the socket, and goes to and fro on the ball."""
     use = hip(cycle=flexion(40), **BOTH)
     report = use.after(1e6).last
@@ -59,7 +59,7 @@ def test_flexion_spreads_what_the_ball_loses_over_its_track():
     )
 
 
-def test_the_work_of_each_instant_is_that_of_the_socket():
+def test_ball_and_socket_have_the_same_work_in_each_instant():
     use = hip(cycle=iso_14242_1(40), **BOTH)
     ours = map_counterface(use, np.arange(len(use.foundation.areas)))
     given = (use.unworn.pressure * use.sliding.distances) @ use.foundation.areas
@@ -69,25 +69,25 @@ def test_the_work_of_each_instant_is_that_of_the_socket():
     assert found.pressure.max() == pytest.approx(smaller * use.unworn.pressure.max(), rel=2e-3)
 
 
-def test_a_run_with_a_ball_goes_on_from_where_it_stopped(tmp_path):
+def test_run_with_ball_wear_resumes_from_its_checkpoint(tmp_path):
     use = hip(cycle=iso_14242_1(20), **BOTH)
     use.after(1e5, store=tmp_path)
     assert use.after(2e5, store=tmp_path).last.ball_volume == pytest.approx(use.after(2e5).last.ball_volume, rel=1e-3)
 
 
 @pytest.mark.parametrize("words", [{"surface": bs.ClosedShell()}, {"creep": logarithmic()}])
-def test_a_ball_that_wears_is_on_springs_that_do_not_creep(words):
+def test_ball_wear_needs_springs_without_creep(words):
     with pytest.raises(ValueError, match="ball_wear needs surface=Springs.. and no creep law"):
         hip(**words, **BOTH)
 
 
-def test_a_law_of_ones_own_for_the_ball_cannot_be_kept(tmp_path):
+def test_custom_ball_law_cannot_be_stored(tmp_path):
     use = hip(ball_wear=CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work))
     with pytest.raises(ValueError, match="runs with a CustomWearLaw cannot be stored"):
         use.after(1e4, store=tmp_path)
 
 
-def test_the_page_of_a_ball_that_wears_has_its_map(tmp_path):
+def test_report_page_has_a_map_of_the_ball_wear(tmp_path):
     history = hip(
         cycle=iso_14242_1(20), ring_width=radians(8.0), wear=Archard(coefficient=K), ball_wear=Archard(coefficient=K)
     ).after(1e4)

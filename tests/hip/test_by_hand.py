@@ -77,7 +77,7 @@ def by_cross_shear(straight, circular):
         (44.0, 0.03, 3.0, 55.0, "YXZ", CrossShear(straight=5e-8, circular=8e-7), by_cross_shear(5e-8, 8e-7)),
     ],
 )
-def test_a_loop_by_hand_wears_as_much(diameter, clearance, liner, tilt, order, law, depth_of):
+def test_independent_loop_gives_the_same_wear(diameter, clearance, liner, tilt, order, law, depth_of):
     joint = bs.Joint(ball_radius=diameter / 2, clearance=clearance, liner_thickness=liner, liner=bs.UHMWPE)
     use = HipSimulation(
         joint=joint, cycle=iso_14242_1(INSTANTS, order.lower()), wear=law, cup=bs.Cup().tilted(radians(tilt))

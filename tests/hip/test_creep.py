@@ -15,7 +15,7 @@ LADDER = KelvinVoigtChain(compliances=(1e-3, 5e-4, 2e-3), times=(30.0, 4e3, 7e5)
 
 @pytest.mark.parametrize("steps", [1, 3, 1000])
 @pytest.mark.parametrize("last", [10.0, 1e4, 1e7])
-def test_a_step_of_pressure_is_met_exactly_whatever_the_steps(steps, last):
+def test_creep_under_a_pressure_step_is_exact_for_any_time_steps(steps, last):
     rng = np.random.default_rng(steps)
     ends = np.sort(np.append(rng.uniform(0.0, last, steps - 1), last))
     pressure, strain = np.array([0.0, 3.0, 11.0]), LADDER.initial_strain(3)
@@ -26,20 +26,20 @@ def test_a_step_of_pressure_is_met_exactly_whatever_the_steps(steps, last):
     assert LADDER.response(last) == pytest.approx(closed, rel=1e-10)
 
 
-def test_what_is_unloaded_comes_back():
+def test_unloaded_creep_strain_recovers():
     strain = LADDER.advanced(LADDER.initial_strain(1), np.array([5.0]), 1e9)
     assert strain.sum() == pytest.approx(5 * sum(LADDER.compliances), rel=1e-10)
     assert LADDER.advanced(strain, np.zeros(1), 1e9).sum() == pytest.approx(0.0, abs=1e-15)
 
 
-def test_the_two_parts_of_an_advance_are_the_advance():
+def test_linear_response_equals_the_advanced_strain():
     rng = np.random.default_rng(4)
     strain, pressure = rng.uniform(size=(3, 5)), rng.uniform(size=5)
     stays, adds = LADDER.linear_response(strain, 500.0)
     assert stays + adds * pressure == pytest.approx(LADDER.advanced(strain, pressure, 500.0).sum(axis=0), rel=1e-12)
 
 
-def test_the_ladder_of_the_logarithm_is_within_two_percent_of_it():
+def test_logarithmic_creep_is_within_two_percent_of_its_formula():
     minutes = np.logspace(1.0, 7.3, 300)
     expected = 3.491e-3 + 7.966e-4 * (np.log10(minutes) - 4)
     assert logarithmic().response(60 * minutes) == pytest.approx(expected, rel=0.02)
@@ -58,12 +58,12 @@ def test_the_ladder_of_the_logarithm_is_within_two_percent_of_it():
         ({"compliances": (1e-3,), "times": (0.0,)}, "times = 0 is not allowed"),
     ],
 )
-def test_ladders_that_are_none(words, refused):
+def test_invalid_kelvin_voigt_chains_are_refused(words, refused):
     with pytest.raises(ValueError, match=refused):
         KelvinVoigtChain(**words)
 
 
-def test_without_wear_the_ball_beds_in_and_the_load_stays_balanced():
+def test_creep_without_wear_balances_its_loads():
     use = hip(wear=Archard(coefficient=0.0), creep=LADDER)
     report = use.after(1e7).last
     rest = use.solve_equilibrium((report.wear + report.crept).ravel())
@@ -77,7 +77,7 @@ def test_without_wear_the_ball_beds_in_and_the_load_stays_balanced():
 
 
 @pytest.mark.long
-def test_radiographs_see_bedding_in_and_then_a_slope():
+def test_penetration_has_bedding_in_and_then_a_steady_rate():
     history = hip(creep=logarithmic()).after(4e6, [1e5, 1e6, 2e6, 3e6])
     early, *later = history.reports
     assert np.linalg.norm(early.creep_displacement) > 5 * np.linalg.norm(early.wear_displacement)
@@ -89,7 +89,7 @@ def test_radiographs_see_bedding_in_and_then_a_slope():
 
 
 @pytest.mark.long
-def test_a_layer_that_cannot_spread_strains_by_the_constrained_modulus():
+def test_constrained_layer_strains_by_the_oedometric_modulus():
     """Uniaxial strain: σr = σθ = ν/(1 - ν) σz, hence εz = σz (1 - 2 ν²/(1 - ν))/E."""
     for poisson in (0.0, 0.3, 0.4, 0.49, 0.5):
         assert constrained_share(poisson) == pytest.approx(1 - 2 * poisson**2 / (1 - poisson), abs=1e-15)
@@ -98,7 +98,7 @@ def test_a_layer_that_cannot_spread_strains_by_the_constrained_modulus():
         constrained_share(0.6)
 
 
-def test_a_confined_ladder_strains_by_its_share_and_the_default_is_that_of_a_bar():
+def test_confinement_scales_the_strain_of_a_free_bar():
     share = constrained_share(0.4)
     confined = replace(LADDER, confinement=share)
     for seconds in (1.0, 1e4, 1e8):
@@ -111,7 +111,7 @@ def test_a_confined_ladder_strains_by_its_share_and_the_default_is_that_of_a_bar
         replace(LADDER, confinement=1.5)
 
 
-def test_a_confined_liner_creeps_less_and_both_have_a_note():
+def test_confined_liner_creeps_less_and_has_a_note():
     free, confined = (hip(creep=logarithmic(share)) for share in (1.0, constrained_share(0.4)))
     deep, less = (use.after(1e3).last.creep_depth for use in (free, confined))
     assert constrained_share(0.4) * deep < less < deep  # pressures fall less where less creeps
@@ -119,7 +119,7 @@ def test_a_confined_liner_creeps_less_and_both_have_a_note():
     assert any("creep strain is 0.467 of that of a free bar" in note for note in confined.notes)
 
 
-def test_creep_in_half_the_steps_is_the_same(monkeypatch):
+def test_creep_does_not_depend_on_the_block_length(monkeypatch):
     from ballsocket.hip import wear_integrator
 
     use = hip(creep=LADDER)
@@ -130,13 +130,13 @@ def test_creep_in_half_the_steps_is_the_same(monkeypatch):
     assert usual.volume == pytest.approx(finer.volume, rel=0.005)
 
 
-def test_a_day_a_cycle_creeps_as_a_day():
+def test_creep_depends_on_time_and_not_on_cycles():
     slow = hip(creep=LADDER, seconds_per_cycle=100.0).after(1e4).last
     usual = hip(creep=LADDER, wear=Archard(coefficient=1e-2 * K)).after(1e6).last
     assert slow.creep_depth == pytest.approx(usual.creep_depth, rel=1e-2)
 
 
-def test_a_liner_that_creeps_a_little_is_a_softer_spring():
+def test_fast_creep_softens_the_springs():
     """A fast element of compliance J adds J L to 1/K under the mean pressure of a constant load."""
     walk = replace(iso_14242_1(72), force=lambda t: 2000.0 + 0 * t)
     joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
@@ -151,7 +151,7 @@ def test_a_liner_that_creeps_a_little_is_a_softer_spring():
     assert use.after(1e4).last.max_pressure == pytest.approx(expected, rel=2e-3)
 
 
-def test_a_massive_socket_wears_and_cannot_creep():
+def test_socket_of_infinite_thickness_wears_and_cannot_creep():
     assert hip(liner=float("inf")).after(1e5).last.volume > 0
     with pytest.raises(
         ValueError, match="liner_thickness = inf is not allowed: creep needs a liner of finite thickness"

@@ -22,7 +22,7 @@ def elastic(surface="shell", **words):
 
 
 @pytest.mark.parametrize("surface", SURFACES)
-def test_the_first_cycle_presses_as_sphere_does(surface):
+def test_first_cycle_has_the_contacts_of_the_off_axis_model(surface):
     use = elastic(surface, ring_width=radians(3.0))
     sphere = bs.Sphere(cup=TILTED, surface=SURFACES[surface], ring_width=radians(3.0))
     largest = int(use.cycle.force_magnitudes.argmax())
@@ -32,14 +32,14 @@ def test_the_first_cycle_presses_as_sphere_does(surface):
 
 
 @pytest.mark.parametrize("surface", SURFACES)
-def test_what_is_missing_is_what_was_rubbed_off(surface):
+def test_worn_volume_equals_the_work_of_friction(surface):
     use = elastic(surface)
     report = use.after(2e5).last
     assert report.converged
     assert report.volume == pytest.approx(1e-3 * K * report.work, rel=1e-6)
 
 
-def test_a_worn_bore_pressed_again_balances_its_load():
+def test_worn_bore_balances_its_loads():
     use = elastic()
     report = use.after(2e5).last
     rest = use.solve_equilibrium(report.wear.ravel())
@@ -47,7 +47,7 @@ def test_a_worn_bore_pressed_again_balances_its_load():
     assert (np.linalg.norm(carried - use.loads, axis=1) <= 1e-6 * np.linalg.norm(use.loads, axis=1)).all()
 
 
-def test_elasticity_changes_volume_and_depth_by_little():
+def test_elasticity_changes_volume_and_depth_slightly():
     """What full elasticity makes of a hip against springs: the volume within 1 %, the depth within 3 %."""
     cup, springs = elastic("cup").after(1e6).last, hip(cycle=iso_14242_1(50)).after(1e6).last
     assert cup.volume == pytest.approx(springs.volume, rel=1e-2)
@@ -56,7 +56,7 @@ def test_elasticity_changes_volume_and_depth_by_little():
 
 
 @pytest.mark.long
-def test_finer_rings_wear_the_same():
+def test_finer_rings_give_the_same_wear():
     widths = (4.0, 2.5)
     volumes, depths = np.array(
         [(each.volume, each.depth) for each in (elastic(ring_width=radians(w)).after(5e5).last for w in widths)]
@@ -65,7 +65,7 @@ def test_finer_rings_wear_the_same():
     assert depths[0] == pytest.approx(depths[1], rel=2e-2)
 
 
-def test_no_spikes_grow_at_the_width_of_the_grid():
+def test_worn_depth_has_no_waves_of_the_grid():
     """Where the bore is worn in, its depth has no differences of the fourth order."""
     use = elastic()
     wear = use.after(1e6).last.wear
@@ -74,7 +74,7 @@ def test_no_spikes_grow_at_the_width_of_the_grid():
     assert use.solve_equilibrium(wear.ravel()).pressure.max() < use.first.max_pressure
 
 
-def test_smoothing_keeps_what_is_worn_and_takes_the_checkerboard():
+def test_smoothing_conserves_volume_and_removes_a_checkerboard():
     grid = even_grid(radians(90.0), radians(5.0))
     smooth = GridSmoothing(grid=grid)
     rng = np.random.default_rng(5)
@@ -87,7 +87,7 @@ def test_smoothing_keeps_what_is_worn_and_takes_the_checkerboard():
     assert smooth(wide)[:-1] == pytest.approx(wide[:-1], abs=5e-3)
 
 
-def test_levels_carry_the_loads_they_stand_for():
+def test_load_levels_balance_all_loads():
     cycle = iso_14242_1(100)
     levels = interpolate_loads(cycle.forces)
     assert len(levels.loads) == 12
@@ -100,7 +100,7 @@ def test_levels_carry_the_loads_they_stand_for():
     assert same.interpolate(same.loads) == pytest.approx(np.tile([0.0, 0.0, 500.0], (40, 1)))
 
 
-def test_a_few_levels_wear_as_all_loads_do(monkeypatch):
+def test_few_load_levels_wear_as_all_loads(monkeypatch):
     from ballsocket.hip import elastic_foundation as module
 
     use = elastic()
@@ -111,7 +111,7 @@ def test_a_few_levels_wear_as_all_loads_do(monkeypatch):
     assert few.depth == pytest.approx(every.depth, rel=5e-3)
 
 
-def test_the_stiffest_wave_bounds_every_other():
+def test_max_stiffness_bounds_every_wave():
     bed = elastic_foundation(bs.ClosedShell(), hip().joint, bs.Cup(), COARSE)
     rng = np.random.default_rng(6)
     for _ in range(5):
@@ -122,14 +122,14 @@ def test_the_stiffest_wave_bounds_every_other():
 
 
 @pytest.mark.long
-def test_five_million_cycles_in_a_real_cup():
+def test_real_cup_wears_for_five_million_cycles():
     """As in the explanation: 120 s are asked for on two cores."""
     springs, cup = hip().after(5e6).last, hip(surface=bs.RealCup()).after(5e6).last
     assert cup.volume == pytest.approx(springs.volume, rel=5e-3)
     assert cup.depth == pytest.approx(springs.depth, rel=1e-2)
 
 
-def test_loads_that_swing_in_a_worn_bore_come_to_rest():
+def test_swinging_loads_converge_in_a_worn_bore():
     """Small loads in a bore that is worn to the ball's form, where many cells touch at once."""
     use = elastic(cycle=rocking(20))
     report = use.after(8e5).last
@@ -138,14 +138,14 @@ def test_loads_that_swing_in_a_worn_bore_come_to_rest():
 
 
 @pytest.mark.long
-def test_creep_in_a_bore_of_full_elasticity_lowers_its_pressures():
+def test_creep_lowers_the_pressures_of_an_elastic_socket():
     crept = elastic(creep=logarithmic()).after(3e4).last
     assert crept.converged
     assert crept.creep_depth == pytest.approx(hip(creep=logarithmic()).after(3e4).last.creep_depth, rel=0.1)
     assert crept.max_pressure < 0.8 * elastic().first.max_pressure
 
 
-def test_an_incompressible_liner_is_refused_and_springs_take_it():
+def test_incompressible_liner_needs_springs():
     joint = replace(hip().joint, liner=bs.Material(young=1000.0, poisson=0.5))
     with pytest.raises(bs.OutsideDomainError, match="full elasticity has no answer for ν = 0.5"):
         replace(elastic(), joint=joint)

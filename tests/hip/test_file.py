@@ -24,7 +24,7 @@ def told(path, *changes, text=TEXT):
     return file
 
 
-def test_the_command_answers_in_json():
+def test_command_prints_json():
     done = run("hip", str(EXAMPLES / "hip_in_use.toml"), "--json")
     assert done.returncode == 0, done.stderr
     answer = json.loads(done.stdout)
@@ -45,20 +45,20 @@ def test_the_command_answers_in_json():
     assert isinstance(answer["notes"], list)
 
 
-def test_the_command_tells_it_in_a_table(tmp_path):
+def test_command_prints_a_table(tmp_path):
     done = run("hip", str(told(tmp_path, ("5e6\n", "1e6\n"), ("[1e6, 2e6, 5e6]", "[1e6]"))))
     assert done.returncode == 0
     assert "33.7" in done.stdout
     assert "cross-shear 0.107" in done.stdout
 
 
-def test_a_cycle_of_ones_own_beside_the_file(tmp_path):
+def test_file_reads_a_cycle_table_next_to_it(tmp_path):
     write_table(tmp_path / "walk.csv")
     given = read_hip(told(tmp_path, ('name = "iso-14242-1"', 'file = "walk.csv"')))
     assert given.use.first.volume == pytest.approx(32.1, rel=5e-3)
 
 
-def test_where_the_cup_faces(tmp_path):
+def test_tilt_and_inclination_orient_the_cup(tmp_path):
     tilted = read_hip(told(tmp_path)).use
     inclined = read_hip(told(tmp_path, ('tilt = "30 deg"', 'inclination = "30 deg"'))).use
     assert tilted.placed == inclined.placed
@@ -66,14 +66,14 @@ def test_where_the_cup_faces(tmp_path):
         read_hip(told(tmp_path, ('tilt = "30 deg"', 'tilt = "30 deg"\ninclination = "30 deg"')))
 
 
-def test_springs_of_another_model(tmp_path):
+def test_file_selects_the_springs_of_a_model(tmp_path):
     given = read_hip(told(tmp_path, ('contact = "springs"', 'contact = "springs"\nmodel = "vessel"')))
     assert given.use.first.max_pressure > 1.01 * read_hip(told(tmp_path)).use.first.max_pressure
     with pytest.raises(ValueError, match="the model 'hertz' has no radial springs; models with springs: hess-forsbach"):
         read_hip(told(tmp_path, ('contact = "springs"', 'model = "hertz"')))
 
 
-def test_a_preset_in_place_of_a_joint(tmp_path):
+def test_file_accepts_the_name_of_a_joint(tmp_path):
     head, tail = TEXT.split("[joint]")[0], TEXT[TEXT.index("[cup]") :]
     given = read_hip(told(tmp_path, text=f'{head}joint = "hip-28"\n{tail}'))
     assert given.use.joint.ball_radius == 14.0
@@ -126,7 +126,7 @@ def test_a_preset_in_place_of_a_joint(tmp_path):
         ("clearance = ", "clearence = ", "'clearence' in .joint. is not known; did you mean 'clearance'"),
     ],
 )
-def test_what_is_wrong_is_said_in_one_line(tmp_path, old, new, refused):
+def test_wrong_files_are_refused_in_one_line(tmp_path, old, new, refused):
     file = told(tmp_path, (old, new))
     with pytest.raises(ValueError, match=f"hip.toml: .*{refused}"):
         read_hip(file)
@@ -135,7 +135,7 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path, old, new, refused):
     assert done.stderr.count("\n") == 1
 
 
-def test_the_energy_law_and_a_ball_that_wears(tmp_path):
+def test_file_reads_the_energy_law_and_ball_wear(tmp_path):
     energy = 'law = "energy"\nfriction = 0.05\nball_coefficient = "1e-6 mm^3/J"'
     use = read_hip(told(tmp_path, ('law = "archard"', energy), ("1.066e-6 mm^3/(N m)", "2e-2 mm^3/kJ"))).use
     assert (use.wear.coefficient, use.wear.friction) == (pytest.approx(2e-5), 0.05)
@@ -145,7 +145,7 @@ def test_the_energy_law_and_a_ball_that_wears(tmp_path):
 @pytest.mark.parametrize(
     "text", ["1e-6 mm^3/(N m)", "1e-6 mm³/(N·m)", "1e-6 mm3/Nm", "1e-6 mm^3/N/m", "1e-15 m^3/(N m)", "1e-6", 1e-6]
 )
-def test_ways_to_write_a_wear_factor(text):
+def test_wear_factors_are_read_in_many_spellings(text):
     assert wear_factor("coefficient", text) == pytest.approx(1e-6, rel=1e-12)
 
 
@@ -163,17 +163,17 @@ def test_ways_to_write_a_wear_factor(text):
         (float("nan"), "coefficient = nan is not allowed"),
     ],
 )
-def test_wear_factors_that_are_none(text, refused):
+def test_invalid_wear_factors_are_refused(text, refused):
     with pytest.raises(ValueError, match=refused):
         wear_factor("coefficient", text)
 
 
-def test_ways_to_write_the_coefficient_of_the_area_law():
+def test_area_coefficients_are_read_in_many_spellings():
     for text in ("1e-6 mm/m", "1e-6 mm^3/(mm^2 m)", "1e-9", 1e-9):
         assert wear_per_slide("coefficient", text) == pytest.approx(1e-9, rel=1e-12)
 
 
-def test_creep_and_film_in_a_file(tmp_path):
+def test_file_reads_creep_and_film(tmp_path):
     film = '[film]\nviscosity = 1e-3\ncup_roughness = "0.5 um"\nfriction = 0.04\n'
     given = read_hip(told(tmp_path, text=f"{TEXT}\n[creep]\n{film}"))
     assert len(given.use.creep.times) == 9
@@ -200,6 +200,6 @@ def test_creep_and_film_in_a_file(tmp_path):
         ("[film]\nviscosities = 1", "'viscosities' in .film. is not known; did you mean 'viscosity'"),
     ],
 )
-def test_creep_and_films_that_are_none(tmp_path, table, refused):
+def test_invalid_creep_and_film_tables_are_refused(tmp_path, table, refused):
     with pytest.raises(ValueError, match=refused):
         read_hip(told(tmp_path, text=f"{TEXT}\n{table}\n"))

@@ -13,7 +13,7 @@ from ballsocket.hip.film import film_thickness
 from .test_wear import hip
 
 
-def test_films_of_a_hip():
+def test_film_of_a_hip_is_in_the_published_range():
     joint = bs.Joint(
         ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.Material(young=1000.0, poisson=0.4), ball=bs.COCR
     )
@@ -22,7 +22,7 @@ def test_films_of_a_hip():
     assert 1e6 * central == pytest.approx(139, abs=0.5)
 
 
-def test_films_scale_with_speed_and_viscosity_alike():
+def test_film_scales_equally_with_speed_and_viscosity():
     joint, force = hip().joint, np.array(2500.0)
     films = [
         film_thickness(joint, force, np.array(w), eta)[0] for w, eta in ((1.5, 2.5e-3), (1.5, 5e-3), (3.0, 2.5e-3))
@@ -31,7 +31,7 @@ def test_films_scale_with_speed_and_viscosity_alike():
     assert films[1] / films[0] == pytest.approx(2**0.65, rel=1e-12)
 
 
-def test_what_the_moment_does_is_what_friction_takes():
+def test_power_of_the_moment_equals_the_friction_power():
     use = hip()
     film = use.film(Lubricant(friction=0.1))
     assert 1e-3 * np.einsum("tk,tk->", film.moment, use.rotation_increments) == pytest.approx(film.heat, rel=1e-12)
@@ -39,7 +39,7 @@ def test_what_the_moment_does_is_what_friction_takes():
     assert film.power.mean() * use.cycle.duration == pytest.approx(film.heat, rel=1e-12)
 
 
-def test_json_has_the_largest_moment_with_its_direction():
+def test_json_has_the_largest_moment_vector():
     """Flexion turns about the side: so does its moment, in the cup's frame across the tilt."""
     use = hip(cycle=flexion(72))
     told = use.film(Lubricant()).summary()
@@ -49,7 +49,7 @@ def test_json_has_the_largest_moment_with_its_direction():
     assert abs(vector @ aside) == pytest.approx(told["moment_Nmm"], rel=0.02)
 
 
-def test_the_moment_lies_between_those_of_force_and_pressure():
+def test_moment_lies_between_bounds_of_force_and_pressure():
     """μ R F for a contact that is a point, and less than μ R ∫ p dA."""
     use = hip()
     film, size = use.film(Lubricant(friction=0.05)), use.cycle.force_magnitudes
@@ -65,19 +65,19 @@ def test_smooth_surfaces_have_a_full_film():
 
 
 @pytest.mark.parametrize("words", [{"viscosity": 0.0}, {"friction": -0.1}, {"cup_roughness": np.inf}])
-def test_lubricants_that_are_none(words):
+def test_invalid_lubricants_are_refused(words):
     with pytest.raises(ValueError, match=f"{next(iter(words))} = .* is not allowed"):
         Lubricant(**words)
 
 
-def test_the_distance_to_the_rim_is_that_of_the_closed_form():
+def test_edge_distance_equals_the_closed_form():
     use = hip()
     contact = bs.HessForsbach().press(use.joint, force=use.cycle.force_magnitudes)
     expected = use.cup.edge_distance(use.joint.socket_radius, contact.half_angle)
     assert use.edge_distance(use.unworn) == pytest.approx(expected, abs=0.05)
 
 
-def test_a_contact_at_the_rim_is_told_with_its_instant_and_place():
+def test_contact_at_the_rim_is_noted_with_its_instant():
     history = hip(cup=bs.Cup(inclination=radians(60.0))).after(1e5)
     assert history.last.edge_distance.min() == 0
     note = next(note for note in history.notes if note.startswith("edge loading: in the first cycle"))
@@ -90,7 +90,7 @@ def test_a_contact_at_the_rim_is_told_with_its_instant_and_place():
 
 
 @pytest.mark.parametrize("surface", [bs.Springs(), bs.ClosedShell()], ids=["springs", "shell"])
-def test_the_distance_to_the_rim_falls_to_zero_without_a_step(surface):
+def test_edge_distance_decreases_continuously_to_zero(surface):
     """One load at tilts by 0.5°: each moves the edge by at most 0.26 mm, and a shell's as `Sphere` has it."""
     tilts = np.radians(np.arange(36.0, 56.0, 0.5))
     loads = 1500.0 * np.stack([np.sin(tilts), 0 * tilts, np.cos(tilts)])
@@ -107,7 +107,7 @@ def test_the_distance_to_the_rim_falls_to_zero_without_a_step(surface):
     assert distance[:10:3] == pytest.approx(expected, abs=0.1)
 
 
-def test_the_place_at_the_rim_is_where_the_load_leans():
+def test_edge_azimuth_follows_the_load():
     """Seen along the cup's axis: 40° around it, new, at every load."""
     lean = np.array([np.cos(radians(40.0)), np.sin(radians(40.0)), 1.0])
     use = hip(
@@ -126,7 +126,7 @@ def test_the_place_at_the_rim_is_where_the_load_leans():
         ({}, Lubricant(ball_roughness=0.0, cup_roughness=0.0), "lambda_largest"),
     ],
 )
-def test_what_has_no_film_is_missing_in_json(words, lubricant, missing):
+def test_missing_films_are_null_in_json(words, lubricant, missing):
     told = hip(**words).after(1e4, lubricant=lubricant).summary()
     assert told["film"][missing] is None
     assert told["film"]["heat_J_per_cycle"] > 0

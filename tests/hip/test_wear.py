@@ -51,7 +51,7 @@ def walked(first, later):
 
 
 @pytest.mark.parametrize("run", INDEPENDENT["runs"], ids=lambda run: str(run["head_diameter"]))
-def test_the_first_cycle_is_that_of_another_program(run):
+def test_first_cycle_equals_an_independent_program(run):
     first = hip(run["head_diameter"], run["liner"]).first
     assert first.slide == pytest.approx(run["slide_mm_per_cycle"], rel=3e-3)
     assert first.work == pytest.approx(run["pressure_slide_integral_Nm"], rel=3e-3)
@@ -62,7 +62,7 @@ def test_the_first_cycle_is_that_of_another_program(run):
 
 
 @pytest.mark.parametrize("run", some(INDEPENDENT["runs"], 2), ids=lambda run: str(run["head_diameter"]))
-def test_millions_of_cycles_are_those_of_another_program(run):
+def test_millions_of_cycles_equal_an_independent_program(run):
     at = [count for count in (1, 2, 5) if f"at_{count}_Mc" in run]
     history = hip(run["head_diameter"], run["liner"]).after(5e6, [1e6 * count for count in at])
     for count, report in zip(at, history.reports, strict=True):
@@ -76,7 +76,7 @@ def test_millions_of_cycles_are_those_of_another_program(run):
 
 
 @pytest.mark.parametrize("words", [{}, {"diameter": 36.0, "liner": 6.0}, {"clearance": 0.3}, {"cycle": flexion(72)}])
-def test_what_is_missing_is_what_was_rubbed_off(words):
+def test_worn_volume_equals_the_work_of_friction(words):
     use = hip(**words)
     report = use.after(1e6).last
     areas = np.broadcast_to(use.grid.areas, report.wear.shape) * use.joint.socket_radius**2
@@ -84,7 +84,7 @@ def test_what_is_missing_is_what_was_rubbed_off(words):
     assert report.volume == pytest.approx((report.wear * areas).sum(), rel=1e-12)
 
 
-def test_a_worn_bore_pressed_again_balances_its_load():
+def test_worn_bore_balances_its_loads():
     use = hip()
     report = use.after(2e6).last
     rest = use.solve_equilibrium(report.wear.ravel())
@@ -93,7 +93,7 @@ def test_a_worn_bore_pressed_again_balances_its_load():
     assert rest.pressure.max() == pytest.approx(report.max_pressure, rel=1e-6)
 
 
-def test_the_worn_bore_is_pressed_alike_by_the_springs_of_sphere():
+def test_worn_bore_has_the_contact_of_the_off_axis_model():
     """On rings of other widths, with the depth between the cells by interpolation."""
     from scipy.interpolate import RegularGridInterpolator
 
@@ -114,13 +114,13 @@ def test_the_worn_bore_is_pressed_alike_by_the_springs_of_sphere():
     assert contact.max_pressure == pytest.approx(mine.pressure[largest].max(), rel=1e-2)
 
 
-def test_twice_the_coefficient_wears_as_much_in_half_the_cycles():
+def test_doubled_coefficient_wears_as_much_in_half_the_cycles():
     one, other = hip().after(1e6).last, hip(wear=Archard(coefficient=2 * K)).after(5e5).last
     assert other.volume == pytest.approx(one.volume, rel=1e-6)
     assert other.depth == pytest.approx(one.depth, rel=1e-6)
 
 
-def test_a_left_hip_wears_as_a_right_one():
+def test_left_hip_wears_as_a_right_hip():
     """Its cup faces the other way, and the cycle is mirrored with it."""
     cup = bs.Cup(inclination=radians(30.0), anteversion=radians(20.0))
     leaning = replace(iso_14242_1(72), force=lambda t: np.stack([200 + 0 * t, 100 * t, iso_14242_1().force(t)]))
@@ -134,7 +134,7 @@ def test_a_left_hip_wears_as_a_right_one():
 # laws
 
 
-def test_the_area_law_counts_the_share_of_each_cell_that_touches():
+def test_area_wear_is_proportional_to_contact_shares():
     use = hip(wear=ContactAreaWear(coefficient=1e-9))
     done = use.exposure(use.unworn)
     expected = 1e6 * 1e-9 * float((done.contact * done.sliding.distances).sum(axis=0) @ use.foundation.areas)
@@ -155,7 +155,7 @@ def cap_slide(half_angle, axis):
 
 @pytest.mark.parametrize(("width", "force", "limit"), [(4.0, 1000.0, 4e-3), (3.0, 2000.0, 3e-3), (1.5, 2000.0, 3e-3)])
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)], ids=["spin", "flexion"])
-def test_the_area_law_is_right_where_the_contact_stands_still_and_states_its_error(axis, width, force, limit):
+def test_area_wear_of_a_stationary_contact_is_within_the_stated_error(axis, width, force, limit):
     """A constant load along the cup's axis: the edge of the contact passes no cell, and cuts many of them.
 
     Under 1000 N halved rings of 4° divide the error by 3, and 4/3 of the difference is less than the error.
@@ -175,7 +175,7 @@ def test_the_area_law_is_right_where_the_contact_stands_still_and_states_its_err
 
 
 @pytest.mark.parametrize("surface", [bs.Springs(), bs.ClosedShell()], ids=["springs", "shell"])
-def test_the_shares_of_cells_in_contact_add_up_to_the_contact(surface):
+def test_contact_shares_add_up_to_the_contact_area(surface):
     """The solid angle of a round contact, on the pole and beside it, within 0.4 %."""
     for tilt in (0.0, 0.3):
         load = 2000.0 * np.array([np.sin(tilt), 0.0, np.cos(tilt)])
@@ -187,25 +187,25 @@ def test_the_shares_of_cells_in_contact_add_up_to_the_contact(surface):
         assert share == pytest.approx(cap, rel=4e-3)
 
 
-def test_without_a_difference_cross_shear_is_archard():
+def test_cross_shear_with_equal_factors_is_archard():
     assert hip(wear=CrossShear(straight=K, circular=K)).after(1e6).last.volume == pytest.approx(
         hip().after(1e6).last.volume, rel=1e-9
     )
 
 
-def test_where_a_straight_track_does_not_wear_flexion_alone_wears_nothing():
+def test_flexion_alone_does_not_wear_with_zero_straight_factor():
     law = CrossShear(straight=0.0, circular=1e-6)
     assert hip(wear=law, cycle=flexion(72)).first.volume < 1e-9
     assert hip(wear=law).first.volume > 1
 
 
-def test_the_energy_law_wears_by_the_work_of_friction():
+def test_energy_law_wears_by_the_work_of_friction():
     first = hip(wear=FrictionEnergyWear(coefficient=2e-5, friction=0.05)).first
     assert first.volume == pytest.approx(1e6 * 2e-5 * 0.05 * first.work, rel=1e-12)
     assert first.volume == pytest.approx(hip(wear=Archard(coefficient=1e-6)).first.volume, rel=1e-12)
 
 
-def test_a_law_of_ones_own():
+def test_custom_law_equals_archard():
     law = CustomWearLaw(function=lambda cycle: 1e-3 * K * cycle.work)
     assert hip(wear=law).after(1e6).last.volume == pytest.approx(hip().after(1e6).last.volume, rel=1e-12)
 
@@ -218,12 +218,12 @@ def test_a_law_of_ones_own():
         (lambda done: 1e-9, r"returned depths of shape \(\); the points need \(\d+,\)"),
     ],
 )
-def test_laws_of_ones_own_that_are_none(law, refused):
+def test_custom_laws_with_invalid_depths_are_refused(law, refused):
     with pytest.raises(ValueError, match=refused):
         hip(wear=CustomWearLaw(function=law)).after(1e4)
 
 
-def test_the_exponent_of_the_pressure_is_one_of_the_mean_pressure():
+def test_pressure_exponent_applies_to_the_mean_pressure():
     """At an exponent of -1/2 half the reference wears 0.7071 as much, whatever the pressures are."""
     first, other = (
         hip(wear=CrossShear(straight=K, circular=K, exponent=-0.5, reference=each)).first.volume for each in (5.0, 2.5)
@@ -234,7 +234,7 @@ def test_the_exponent_of_the_pressure_is_one_of_the_mean_pressure():
 # numbers that do not depend on how they are made
 
 
-def test_the_error_of_blocks_is_what_they_miss():
+def test_block_error_bounds_the_difference_to_finer_blocks():
     rough = {"ring_width": radians(4.0), "cycle": iso_14242_1(36)}
     coarse, fine, finest = (hip(tolerance=each, **rough).after(3e5) for each in (1e-2, 1e-3, 1e-5))
     off = [abs(run.last.volume / finest.last.volume - 1) for run in (coarse, fine)]
@@ -245,7 +245,7 @@ def test_the_error_of_blocks_is_what_they_miss():
 
 
 @pytest.mark.long
-def test_half_the_rings_and_twice_the_instants_change_little():
+def test_finer_rings_and_time_steps_change_little():
     usual = hip(cycle=iso_14242_1(100)).after(1e6).last
     for words in ({"ring_width": radians(1.5)}, {"cycle": iso_14242_1(200)}):
         other = hip(**({"cycle": iso_14242_1(100)} | words)).after(1e6).last
@@ -253,14 +253,14 @@ def test_half_the_rings_and_twice_the_instants_change_little():
         assert other.depth == pytest.approx(usual.depth, rel=5e-3)
 
 
-def test_instants_converge_with_their_square():
+def test_time_steps_converge_with_second_order():
     volumes = [hip(cycle=iso_14242_1(count)).first.volume for count in (25, 50, 100, 400)]
     off = [abs(volume / volumes[-1] - 1) for volume in volumes[:-1]]
     assert off[0] / off[1] > 3
     assert off[1] / off[2] > 3
 
 
-def test_rings_converge_with_their_square():
+def test_rings_converge_with_second_order():
     volumes = [hip(cycle=iso_14242_1(30), ring_width=radians(width)).first.volume for width in (8.0, 4.0, 2.0, 1.0)]
     off = [abs(volume / volumes[-1] - 1) for volume in volumes[:-1]]
     assert off[0] < 1e-3
@@ -268,7 +268,7 @@ def test_rings_converge_with_their_square():
     assert off[1] / off[2] > 3
 
 
-def test_looking_does_not_change_what_is_seen():
+def test_report_points_do_not_change_the_results():
     often = hip().after(1e6, [1e5, 3e5, 7e5])
     assert often.last.volume == pytest.approx(hip().after(1e6).last.volume, rel=5e-4)
     assert [report.cycles for report in often.reports] == [1e5, 3e5, 7e5, 1e6]
@@ -276,7 +276,7 @@ def test_looking_does_not_change_what_is_seen():
     assert volumes == sorted(volumes)
 
 
-def test_a_ball_sinks_in_as_it_wears():
+def test_penetration_increases_with_wear():
     history = hip().after(5e6, [1e6, 3e6])
     penetrations = [report.penetration for report in history.reports]
     assert penetrations == sorted(penetrations)
@@ -284,7 +284,7 @@ def test_a_ball_sinks_in_as_it_wears():
     assert history.last.displacement[1] == pytest.approx(0.0, abs=0.1 * penetrations[-1])  # across the load's plane
 
 
-def test_it_takes_seconds():
+def test_five_million_cycles_take_seconds():
     """20 ms and 3 s are asked for on a quiet core; here only what no load of the machine explains."""
     use = hip(cycle=iso_14242_1(100))
     begin = process_time()
@@ -295,7 +295,7 @@ def test_it_takes_seconds():
 # the edges of a cycle
 
 
-def test_a_ball_that_lifts_off_wears_only_where_it_presses():
+def test_unloaded_instants_do_not_wear():
     half = hip(cycle=walked(2000.0, -100.0))
     whole = hip(cycle=walked(2000.0, 1e-9))
     assert half.first.volume == pytest.approx(whole.first.volume, rel=1e-9)
@@ -305,20 +305,20 @@ def test_a_ball_that_lifts_off_wears_only_where_it_presses():
     assert half.after(1e6).last.volume > 0
 
 
-def test_the_finest_steps_tell_their_error_too():
+def test_finest_steps_have_an_error_estimate():
     """They cannot be halved, which was refused when the run was done."""
     assert 0 < hip(cycle=flexion(8), ring_width=radians(0.6)).discretization_error[0] < 0.05
     assert flexion(6000).finer().n_steps == 10_000
 
 
-def test_a_liner_that_is_worn_through_is_told():
+def test_worn_through_liner_is_noted():
     thin = hip(liner=2.0, wear=Archard(coefficient=1e-5))
     assert any(note.startswith("worn through: after 5e+06 cycles") for note in thin.after(5e6, [1e5]).notes)
     assert any("its stiffness is still that of the unworn liner" in note for note in thin.after(1e6).notes)
     assert not any("worn" in note for note in hip().after(1e5).notes)
 
 
-def test_a_cycle_without_a_load_wears_nothing():
+def test_cycle_without_load_does_not_wear():
     history = hip(cycle=walked(0.0, 0.0)).after(1e6)
     assert history.last.volume == 0
     assert history.last.penetration == 0
@@ -326,7 +326,7 @@ def test_a_cycle_without_a_load_wears_nothing():
     assert history.converged
 
 
-def test_a_load_over_the_rim_dislocates_with_its_instant():
+def test_dislocation_names_its_instant():
     def force(t):
         angle = radians(95.0) * np.sin(np.pi * t)
         return 1000.0 * np.stack([-np.sin(angle), 0 * t, np.cos(angle)])
@@ -338,7 +338,7 @@ def test_a_load_over_the_rim_dislocates_with_its_instant():
         hip(cup=bs.Cup(inclination=radians(30.0), arc_of_cover=radians(50.0)))
 
 
-def test_a_cup_of_a_standard_stands_as_the_standard_says():
+def test_cup_takes_the_tilt_of_the_standard():
     use = hip(cup=bs.Cup())
     assert use.placed == TILTED
     assert any("tilted by 30° from the load" in note for note in use.notes)
@@ -352,7 +352,7 @@ def test_a_cup_of_a_standard_stands_as_the_standard_says():
         ({"clearance": np.array([0.1, 0.2])}, "joint must have single numbers"),
     ],
 )
-def test_hips_that_are_none(words, refused):
+def test_invalid_simulations_are_refused(words, refused):
     with pytest.raises(ValueError, match=refused):
         hip(**words)
 
@@ -366,12 +366,12 @@ def test_hips_that_are_none(words, refused):
         (1e12, [], r"1e\+12 cycles at the rate of the first one would wear 1\.9.*e\+05 mm away"),
     ],
 )
-def test_numbers_of_cycles_that_are_none(cycles, looks, refused):
+def test_invalid_cycle_counts_are_refused(cycles, looks, refused):
     with pytest.raises(ValueError, match=refused):
         hip().after(cycles, looks)
 
 
-def test_coefficients_that_are_none():
+def test_invalid_coefficients_are_refused():
     with pytest.raises(ValueError, match="coefficient = -1 is not allowed"):
         Archard(coefficient=-1.0)
     with pytest.raises(TypeError, match="coefficient must be one number, got '1e-6'"):
@@ -380,7 +380,7 @@ def test_coefficients_that_are_none():
 
 
 @pytest.mark.parametrize("diameter", [2.8e7, 1001.0, 0.9])
-def test_a_head_of_an_impossible_diameter_is_refused_at_once(diameter):
+def test_impossible_head_diameters_are_refused(diameter):
     value = re.escape(f"{diameter:g}")
     with pytest.raises(ValueError, match=rf"head_diameter = {value} is not allowed: .* 1 mm to 1000 mm"):
         hip(diameter)

@@ -1,11 +1,13 @@
-"""Measurements from files: heads with units, uncertainties, gaps, and the command."""
+"""Measurements from files: heads with units, uncertainties and gaps."""
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.identify import HeavyTailed, Machine, NormalScatter
 from ballsocket.identify.columns import Gaps, head_of, read_measured
 from ballsocket.identify.file import read_identify
+from ballsocket.studies import Normal
 
 HIP = bs.joints["hess-forsbach"]
 FORCE = np.array([250.0, 500.0, 1000.0, 2000.0, 3000.0])
@@ -54,36 +56,39 @@ def test_a_file_holds_several_quantities(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
-        ("force,indentation_um\n1,2\n", "press.csv: column 'force' has no unit: write force_N, or another unit"),
+        ("force,indentation_um\n1,2\n", "press.csv: column 'force' has no unit: use force_N, or another unit"),
         ("force_N,indentation_N\n1,2\n", "press.csv: the unit of indentation_N = '1 N' is not a length"),
-        ("force_N,depth_mm\n1,2\n", "press.csv: column 'depth_mm' is not known: heads are names and units"),
-        ("force_N,force_kN\n1,2\n", "press.csv has two columns of one name"),
-        ("force_N\n1\n", "press.csv has no column of something measured beside force"),
+        ("force_N,depth_mm\n1,2\n", "press.csv: column 'depth_mm' is not known: a head is a name and a unit"),
+        ("force_N,force_kN\n1,2\n", "press.csv has two columns with the same name"),
+        ("force_N\n1\n", "press.csv has no column of a measured quantity besides force"),
         (
             "force_N,indentation_um\n100,2\n200,\nx,4\n",
-            "press.csv: no number for force, indentation in row 2, 3; give it",
+            "press.csv: no number for force, indentation in row 2, 3; add it, or omit such rows",
         ),
         ("force_N,indentation_um\n", "press.csv has no row"),
         (
             "force_N,indentation_um,indentation_uncertainty_um\n9,2,-1\n",
             r"press.csv: indentation_uncertainty\[0\] = -0.001",
         ),
-        ("force_N,indentation_um\n0,2\n9,3\n", r"press.csv: force\[0\] = 0 is not allowed: at first touch there is no"),
+        (
+            "force_N,indentation_um\n0,2\n9,3\n",
+            r"press.csv: force\[0\] = 0 is not allowed: at first touch the indentation is 0",
+        ),
     ],
 )
-def test_files_that_do_not_say_what_they_hold_are_refused(text, said, tmp_path):
-    with pytest.raises(ValueError, match=said):
+def test_incomplete_columns_are_refused(text, message, tmp_path):
+    with pytest.raises(ValueError, match=message):
         read_measured(csv(tmp_path, text), uncertainty="1 um")
 
 
 def test_a_file_needs_an_uncertainty(tmp_path):
-    with pytest.raises(ValueError, match="press.csv: how uncertain is indentation"):
+    with pytest.raises(ValueError, match="press.csv: the uncertainty of indentation is missing"):
         read_measured(csv(tmp_path, "force_N,indentation_um\n100,2\n"))
 
 
-def test_gaps_are_left_out_on_request(tmp_path):
+def test_rows_with_gaps_are_omitted_on_request(tmp_path):
     path = csv(tmp_path, "force_N,indentation_um\n100,2\n200,\n300,4\n")
     (kept,) = read_measured(path, uncertainty="1 um", gaps=Gaps.LEAVE_OUT)
     np.testing.assert_allclose(kept.force, [100.0, 300.0])
@@ -123,7 +128,7 @@ def question(tmp_path):
     return csv(tmp_path, QUESTION.replace("{areas}", areas), "data.toml")
 
 
-def test_a_file_is_read_and_answered(question):
+def test_a_file_is_identified(question):
     given = read_identify(question)
     assert [each.quantity for each in given.data] == ["indentation", "area"]
     assert given.free == {"clearance": (0.02, 0.3), "liner_young": (400.0, 2000.0)}
@@ -153,17 +158,17 @@ uncertainty = "0.1 %"
 """
 
 
-def test_a_mass_that_swings_tells_the_stiffness(question):
+def test_the_frequency_of_a_mass_measures_the_stiffness(question):
     frequency = (1e3 * CONTACT.stiffness[4] / 2.0) ** 0.5 / (2 * np.pi)
     question.write_text(question.read_text("utf-8") + SWING.format(frequency=frequency), "utf-8")
     given = read_identify(question)
-    assert given.data[2].own.described.unit == "Hz"
+    assert given.data[2].observable.described.unit == "Hz"
     truth = {"clearance": HIP.clearance, "liner_young": HIP.liner.young, "frame.compliance": 5e-6}
     assert given.identified().point == pytest.approx(truth, rel=2e-3)
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("clearance =", "clearence =", "data.toml: 'clearence' in [free] is not known; did you mean 'clearance'?"),
         ('"0.02..0.3 mm"', "0.1", "data.toml: clearance = 0.1 must be two ends, such as '0.02..0.3 mm'"),
@@ -181,14 +186,163 @@ def test_a_mass_that_swings_tells_the_stiffness(question):
             'uncertainty = "1 %"\nmass = "2 kg"',
             "of a frequency needs its mass",
         ),
-        ('file = "press.csv"', "", "data.toml: [[data]] needs a file, or a quantity with its values, and not both"),
+        ('file = "press.csv"', "", "data.toml: [[data]] needs either a file, or a quantity with its values"),
         ('model = "tabulated"', 'scatter = "cauchy"', "data.toml: scatter 'cauchy' is not known; known: normal"),
     ],
 )
-def test_files_about_measurements_are_read_strictly(question, old, new, said):
+def test_wrong_names_and_units_in_a_file_are_refused(question, old, new, message):
     text = question.read_text("utf-8")
     assert old in text
     question.write_text(text.replace(old, new, 1), "utf-8")
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         read_identify(question)
-    assert said in str(refused.value)
+    assert message in str(refused.value)
+
+
+def numbers(folder, text, **settings):
+    return read_measured(csv(folder, text), **{"uncertainty": "1 um", **settings})
+
+
+def test_the_first_load_of_force_indentation_and_half_angle_is_the_default(tmp_path):
+    text = "indentation_um,half_angle_deg,area_mm2\n20,30,200\n30,35,300\n"
+    half_angle, area = numbers(tmp_path, text, uncertainty=0.01)
+    assert (half_angle.load, area.load) == ("indentation", "indentation")
+    np.testing.assert_allclose(half_angle.values, np.radians([30.0, 35.0]))
+    depth, area = numbers(tmp_path, text, load="half_angle", uncertainty=0.01)
+    assert (depth.quantity, depth.load) == ("indentation", "half_angle")
+    (free_play,) = numbers(tmp_path, "diametral_clearance_um\n200\n210\n")
+    assert (free_play.load, free_play.values.tolist()) == ("", pytest.approx([0.2, 0.21]))
+
+
+def test_uncertainties_have_columns_or_one_text(tmp_path):
+    text = "force_N,force_uncertainty_N,indentation_um,indentation_uncertainty_um\n100,2,20,0.5\n200,3,30,0.7\n"
+    (depth,) = read_measured(csv(tmp_path, text))
+    np.testing.assert_allclose(depth.uncertainty, [5e-4, 7e-4])
+    np.testing.assert_allclose(depth.load_uncertainty, [2.0, 3.0])
+    plain = "force_N,indentation_um\n100,20\n200,30\n"
+    for stated, expected in (("2 %", [4e-4, 6e-4]), ("1 um", [1e-3, 1e-3]), (2e-3, [2e-3, 2e-3])):
+        (depth,) = numbers(tmp_path, plain, uncertainty=stated, load_uncertainty=4.0)
+        np.testing.assert_allclose(depth.uncertainty, expected)
+        assert depth.load_uncertainty.tolist() == [4.0, 4.0]
+    assert numbers(tmp_path, plain)[0].load_uncertainty.tolist() == [0.0, 0.0]
+
+
+def test_angles_belong_to_pressures_and_a_machine_to_indentations(tmp_path):
+    machine = Machine(offset=0.01)
+    text = "force_N,angle_deg,pressure_MPa,indentation_um,area_mm2\n900,0,5,20,100\n900,10,4,20,100\n"
+    pressure, depth, area = numbers(tmp_path, text, uncertainty=0.1, machine=machine)
+    np.testing.assert_allclose(pressure.angle, np.radians([0.0, 10.0]))
+    assert depth.angle is area.angle is None
+    assert depth.machine is machine
+    assert not area.machine.name
+    assert not pressure.machine.name
+    assert [data.saturation for data in (depth, area)] == [np.inf, np.inf]
+
+
+def test_a_saturation_makes_lower_bounds(tmp_path):
+    (film,) = numbers(tmp_path, "force_N,max_pressure_MPa\n900,5\n1800,7\n", uncertainty=0.1, saturation=7.0)
+    assert film.saturated.tolist() == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"quantities": ["area"]}, "press.csv has no column of area; its columns are force, indentation"),
+        ({"load": "half_angle"}, "press.csv has no load 'half_angle': it needs a column of force, indentation"),
+        ({"load": "indentation", "quantities": ["indentation"]}, "both the measured quantity and the load"),
+        ({"gaps": Gaps.LEAVE_OUT}, "press.csv has no row without a gap"),
+    ],
+)
+def test_columns_that_are_missing_are_named(tmp_path, settings, message):
+    with pytest.raises(ValueError, match=message):
+        numbers(tmp_path, "force_N,indentation_um\n100,\n,30\n" if "gaps" in settings else ONE_ROW, **settings)
+
+
+ONE_ROW = "force_N,indentation_um\n100,20\n"
+
+
+def test_a_message_names_at_most_eight_rows_with_gaps(tmp_path):
+    text = "force_N,indentation_um\n" + "100,\n" * 9
+    with pytest.raises(ValueError, match=r"in row 1, 2, 3, 4, 5, 6, 7, 8 \.\.\.; add it"):
+        numbers(tmp_path, text)
+    with pytest.raises(ValueError, match="in row 1, 2, 3, 4, 5, 6, 7, 8; add it"):
+        numbers(tmp_path, text.removesuffix("100,\n") + "100,20\n")
+
+
+@pytest.mark.parametrize("text", ["force)", "force [kN", "(force", "liner_poisson_mm"])
+def test_heads_with_half_a_bracket_or_a_wrong_unit_are_refused(text):
+    with pytest.raises(ValueError, match=r"column|unit of|liner_poisson"):
+        head_of(text)
+
+
+def test_heads_may_have_units_in_either_bracket():
+    assert head_of("area (mm2)").name == "area"
+    assert head_of("max pressure [MPa]").name == "max_pressure"
+    assert head_of(" max_pressure_uncertainty [kPa] ").factor == pytest.approx(1e-3)
+    assert head_of("liner_young_GPa").factor == pytest.approx(1e3)
+
+
+def test_a_file_states_scatter_priors_and_options(question):
+    text = question.read_text("utf-8").replace('model = "tabulated"', "")
+    text = text.replace('"0.02..0.3 mm"', '{mean = "0.1 mm", deviation = "10 um"}')
+    options = 'uncertainty = "1 %"\nload_uncertainty = "5 N"\nsaturation = 900\nname = "film"'
+    text = text.replace('uncertainty = "1 %"', options)
+    question.write_text(text, "utf-8")
+    plain = read_identify(question)
+    question.write_text('scatter = "heavy-tailed"\n' + text, "utf-8")
+    heavy = read_identify(question)
+    assert (plain.scatter, heavy.scatter) == (NormalScatter(), HeavyTailed())
+    assert heavy.model.name == "tabulated"
+    assert heavy.free["clearance"] == Normal(mean=0.1, deviation=0.01)
+    depth, area = heavy.data
+    assert (area.name, area.saturation, area.load_uncertainty.tolist()) == ("film", 900.0, [5.0, 5.0])
+    assert depth.load_uncertainty.tolist() == [0.0] * 5
+    assert depth.machine == Machine(compliance=(0.0, depth.machine.compliance[1]), offset=0.002, name="frame")
+    assert depth.machine.compliance[1] == pytest.approx(2e-5)
+    assert not area.machine.name
+    np.testing.assert_allclose(area.uncertainty, 0.01 * area.values)
+
+
+def test_a_file_chooses_columns_load_and_gaps(question):
+    csv(question.parent, "force_N,indentation_um,area_mm2\n100,20,200\n200,,300\n300,30,400\n")
+    text = question.read_text("utf-8").replace('machine = "frame"', 'gaps = "leave-out"\nquantities = "area"', 1)
+    question.write_text(text.replace('uncertainty = "0.1 um"', 'uncertainty = "1 mm^2"\nload = "indentation"'), "utf-8")
+    data = read_identify(question).data[0]
+    assert (data.quantity, data.load, data.values.tolist()) == ("area", "indentation", [200.0, 400.0])
+    np.testing.assert_allclose(data.loads, [0.02, 0.03])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[free]", "[fre]", "'fre' at the top is not known; did you mean 'free'?"),
+        ("[machine.frame]", "[machine]\nframe2 = 3\n[machine.frame]", "machine.frame2 = 3 must be a table"),
+        ("compliance =", "complianc =", "'complianc' in [machine.frame] is not known; did you mean 'compliance'?"),
+        ('machine = "frame"', "values = 3", "[[data]] needs either a file, or a quantity with its values"),
+        ('machine = "frame"', 'force = "3 kN"', "'force' in [[data]] with a file is not known"),
+        ('quantity = "area"', 'quantity = "area"\ngaps = "refuse"', "'gaps' in [[data]] with values is not known"),
+        ('uncertainty = "0.1 um"', 'uncertainty = "0.1 um"\ngaps = "skip"', "gaps 'skip' is not known"),
+        ('"0.02..0.3 mm"', '"0.02 mm"', "clearance = '0.02 mm' is not a range"),
+    ],
+)
+def test_keys_that_contradict_the_format_are_named(question, old, new, message):
+    text = question.read_text("utf-8")
+    assert old in text
+    question.write_text(text.replace(old, new, 1), "utf-8")
+    with pytest.raises(ValueError) as refused:  # noqa: PT011
+        read_identify(question)
+    assert message in str(refused.value)
+
+
+def test_a_file_without_data_is_refused(question):
+    text = question.read_text("utf-8").partition("[[data]]")[0]
+    for data in ("", "data = 3\n", "data = [3]\n"):
+        question.write_text(data + text, "utf-8")
+        with pytest.raises(ValueError, match=r"the file has no measurements: add \[\[data\]\] before each set"):
+            read_identify(question)
+
+
+def test_the_modulus_of_a_material_may_be_a_table_or_a_name(question):
+    text = question.read_text("utf-8")
+    question.write_text(text.replace("liner.young", "liner_young"), "utf-8")
+    assert read_identify(question).free["liner_young"] == (400.0, 2000.0)

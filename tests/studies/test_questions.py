@@ -386,7 +386,7 @@ def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_p
     limited = command(tmp_path, "map", backed, *ranges, "--limit", "max_pressure<=1")
     assert "no point of the map is allowed by max_pressure ≤ 1, as exact answers" in limited.stderr
     named = command(tmp_path, "map", backed, *ranges, "--model", "tabulated")
-    assert "tabulated has no answer for layers behind the liner = 1: that is not in the tables" in named.stderr
+    assert "tabulated has no answer for layers behind the liner = 1: outside the tables" in named.stderr
     best = command(tmp_path, "optimise", backed, "--vary", "liner_thickness=4..6 mm", "--json")
     assert json.loads(best.stdout)["point"]["liner_thickness"] == pytest.approx(6.0)
     plain = command(tmp_path, "map", "hip-28", "--force", "3 kN", *ranges, "--json")

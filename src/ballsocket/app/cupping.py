@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy
 
-from ..elasticity.finite_elements.progress import listening
+from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis import Orientations, Sphere, orient
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..io.joint_file import JointFile
@@ -100,7 +100,7 @@ def stood(file: JointFile, told: Told) -> Stood:
         if number.isdecimal():  # not what finite elements say
             told(Reached(share=int(number) / (count + 1), words=words))
 
-    with listening(heard):
+    with progress_to(heard):
         found = orient(file.joint, model=model, inclination=INCLINATIONS, anteversion=ANTEVERSIONS, **file.load)
     return _plain(found)
 

@@ -18,7 +18,7 @@ from ..core.kinds import Kind
 from ..core.quantities import CONTACT, LOADS
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..elasticity.finite_elements.model import FiniteElement
-from ..elasticity.finite_elements.progress import listening
+from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Uniform
 from ..io.joint_file import read_cup
 from ..io.units import parse
@@ -80,7 +80,7 @@ def timed(model: FiniteElement, joint: Any, load: Mapping[str, float]) -> tuple[
     """One contact, and the seconds that it took; on stderr is shown what is being done, where somebody looks."""
     start = perf_counter()
     status = Console(stderr=True).status("finite elements")
-    with status, listening(lambda text: status.update(f"finite elements: {text}")):
+    with status, progress_to(lambda text: status.update(f"finite elements: {text}")):
         contact: Any = model.press(joint, **load)
         _ = [column.of(contact) for column in COLUMNS]
     return contact, perf_counter() - start

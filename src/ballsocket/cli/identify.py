@@ -10,8 +10,8 @@ import typer
 import ballsocket as bs
 
 from ..identify.file import read_identify
-from ..identify.parameters import Identified
 from ..identify.posterior import Posterior
+from ..identify.result import IdentificationResult
 from ..output import identify_plots
 from ..output.identify_terminal import print_identified
 from ..output.save import check_format, save
@@ -58,7 +58,7 @@ def identify(
         raise typer.Exit(FAILURE)
 
 
-def _summary(found: Identified, drawn: Posterior | None) -> dict[str, Any]:
+def _summary(found: IdentificationResult, drawn: Posterior | None) -> dict[str, Any]:
     posterior = None if drawn is None else drawn.summary()
     return {
         "version": bs.__version__,

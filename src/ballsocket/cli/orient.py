@@ -12,7 +12,7 @@ from rich.console import Console
 
 from ..core.arrays import Numbers
 from ..core.quantities import CUP
-from ..elasticity.finite_elements.progress import listening
+from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as stand
 from ..io.joint_file import JointFile, read_aim
@@ -81,7 +81,7 @@ def orient(
     file = words.or_named(joint)
     model = replace(AimWords(ring_width=stands.ring_width).model(), cup=cup.on(file.cup)).along(**stands.aim(file))
     status = Console(stderr=True).status("sphere")
-    with status, listening(lambda text: status.update(f"sphere: {text}")):
+    with status, progress_to(lambda text: status.update(f"sphere: {text}")):
         stood: Orientations = stand(file.joint, model=model, **angles, **load.or_of(file))
     form.print(stood.summary, lambda: print_orientations(stood))
     form.draw(lambda: orientation_figure(stood))

@@ -12,8 +12,14 @@ from numba.extending import overload
 from ..contact.assembly import SolverResult
 from ..core.arrays import Numbers
 from ..elasticity.exact.tabulated import chebyshev, formulas
-from ..elasticity.exact.tabulated.curves import Curves
-from ..elasticity.exact.tabulated.formulas import Curve, Scale, angle_of_force, angle_of_indentation, contact
+from ..elasticity.exact.tabulated.curves import JointCurves
+from ..elasticity.exact.tabulated.formulas import (
+    CurveCoefficients,
+    Scale,
+    angle_of_force,
+    angle_of_indentation,
+    contact,
+)
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint
 from .teaching import compilable, compiled, flat, pick, taught
@@ -22,11 +28,11 @@ from .teaching import compilable, compiled, flat, pick, taught
 def solved(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> SolverResult:
     """The answer to a load of a joint of arrays."""
 
-    def read(curves: Curves, given: Numbers) -> tuple[Numbers, ...]:
+    def read(curves: JointCurves, given: Numbers) -> tuple[Numbers, ...]:
         """ε, d, F, p0 and dF/dd of contacts (contacts,)."""
-        inputs = (curves.scaled(kind, given), curves.ratio, *curves.scale)
+        inputs = (curves.scaled_load(kind, given), curves.ratio, *curves.scale)
         found = numpy.empty((5, len(given)))
-        _kernel(kind)(*(flat(part, given.shape) for part in inputs), curves.three, found)
+        _kernel(kind)(*(flat(part, given.shape) for part in inputs), curves.functions, found)
         return tuple(found)
 
     return model.answer(joint, kind, load, read)
@@ -42,7 +48,7 @@ def _kernel(kind: str) -> Any:
         functions = series[:, :, 0].copy()
         for i in range(found.shape[1]):
             functions[:] = series[:, :, step * i]
-            curve = Curve(pick(ratio, i), functions, functions)
+            curve = CurveCoefficients(pick(ratio, i), functions, functions)
             angle = find(pick(load, i), curve)
             scale = Scale(pick(clearance, i), pick(area, i), pick(compliance, i))
             d, F, p0, stiffness, _ = contact(angle, curve, scale)
@@ -51,7 +57,7 @@ def _kernel(kind: str) -> Any:
     return compiled(run)
 
 
-@overload(formulas.at, strict=False)
+@overload(formulas.evaluate, strict=False)
 def _at(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
     if rows.count == 1:
         return lambda angle, curve, rows: _functions(angle, curve)[:1]
@@ -79,18 +85,18 @@ def _functions(angle, curve):  # type: ignore[no-untyped-def]
         force_slope += c[1, k] * rise
         pole_slope += c[2, k] * rise
         U, U_next = U_next, twice * U_next - U
-    widening = formulas.widening_of(angle, root, curve.ratio)
+    widening = formulas.angle_derivative(angle, root, curve.ratio)
     return (share, widening * share_slope), (force, widening * force_slope), (pole, widening * pole_slope)
 
 
 for _formula in (
     chebyshev.angle_root,
-    formulas.widening_of,
+    formulas.angle_derivative,
     formulas.opening,
     formulas.contact,
-    formulas._angle_of,
-    formulas._indentation_miss,
-    formulas._force_miss,
+    formulas._solve_angle,
+    formulas._indentation_residual,
+    formulas._force_residual,
     formulas.angle_of_indentation,
     formulas.angle_of_force,
 ):

@@ -226,7 +226,7 @@ class Model(ModelInfo):
 
 
 def _declared_names(base: type) -> set[str]:
-    """Names of the public properties and class variables that a class and its bases declare."""
+    """Collect the names of the public properties and class variables that a class and its bases declare."""
     names = {name for cls in base.__mro__ for name in vars(cls).get("__annotations__", {})}
     return names | {name for cls in base.__mro__ for name, value in vars(cls).items() if isinstance(value, property)}
 

@@ -40,8 +40,8 @@ class StrengthUse:
         return self.stress / self.allowed
 
     def __str__(self) -> str:
-        much = f"{100 * self.ratio:.0f} %" if self.ratio <= 1 else f"{self.ratio:.3g} times"
-        return f"{much} {'of ' if self.ratio <= 1 else ''}the {STRENGTH[self.strength].title} of the {self.part}"
+        ratio = f"{100 * self.ratio:.0f} %" if self.ratio <= 1 else f"{self.ratio:.3g} times"
+        return f"{ratio} {'of ' if self.ratio <= 1 else ''}the {STRENGTH[self.strength].title} of the {self.part}"
 
 
 def strength_uses(contact: Contact) -> tuple[StrengthUse, ...]:

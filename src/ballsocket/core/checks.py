@@ -274,7 +274,7 @@ def check_text(name: str, value: Any) -> str:
     Raises
     ------
     ValueError
-        A value that is no text, too long, or contains control characters other than tabs and line ends.
+        A value of another type, a text that is too long, or one with control characters other than tabs and line ends.
     """
     if not isinstance(value, str):
         raise ValueError(f"{name} = {shown(value)} must be text")

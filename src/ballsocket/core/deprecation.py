@@ -65,6 +65,12 @@ MOVED = {
     "ballsocket.hip.sliding": "ballsocket.hip.kinematics",
     **{f"ballsocket.hip.{name}": "ballsocket.hip.rim" for name in ("edge", "separation")},
     "ballsocket.hip.chebyshev": "ballsocket.hip.runge_kutta_chebyshev",
+    "ballsocket.identify.answers": "ballsocket.identify.forward_model",
+    "ballsocket.identify.oscillation": "ballsocket.identify.observables",
+    "ballsocket.identify.parameters": "ballsocket.identify.identification",
+    "ballsocket.identify.profile": "ballsocket.identify.bands",
+    "ballsocket.identify.remarks": "ballsocket.identify.result",
+    "ballsocket.identify.tracing": "ballsocket.identify.jax_derivatives",
 }
 """New path of each package or module that moved; the modules of a package move with it."""
 

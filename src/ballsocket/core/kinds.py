@@ -35,6 +35,7 @@ class Kind(StrEnum):
     COMPLIANCE = "compliance"
     FREQUENCY = "frequency"
     MASS = "mass"
+    SURFACE_ENERGY = "surface energy"
 
     @property
     def unit(self) -> str:
@@ -75,6 +76,7 @@ _KINDS = {
     Kind.COMPLIANCE: ("mm/N", "a compliance, such as '5 um/kN'"),
     Kind.FREQUENCY: ("Hz", "a frequency, such as '120 Hz'"),
     Kind.MASS: ("kg", "a mass, such as '2 kg'"),
+    Kind.SURFACE_ENERGY: ("N/mm", "an energy per area, such as '0.05 J/m^2'"),
 }
 _WRITTEN = {Kind.ANGLE: Unit("°", degrees(1.0)), Kind.NUMBER: Unit(""), Kind.AREA: Unit("mm²")}
 _SUFFIXES = {
@@ -84,5 +86,6 @@ _SUFFIXES = {
     Kind.ENERGY: "N_mm",
     Kind.FOUNDATION: "MPa_per_mm",
     Kind.COMPLIANCE: "mm_per_N",
+    Kind.SURFACE_ENERGY: "N_per_mm",
 }
 _TYPED = {Kind.ANGLE: "deg", Kind.NUMBER: ""}

@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy
 
 from ..core.arrays import Numbers
-from ..elasticity.finite_elements.elasticity import Elastic
+from ..elasticity.finite_elements.elasticity import ElasticBlock
 from ..elasticity.finite_elements.mesh import Block, block
 
 INNER, OUTER = 1.0, 1.4
 """Radii of the sphere."""
 
 
-def a_block(order: int, elements: int = 6, poisson: float = 0.3, end: float = numpy.pi / 2) -> Elastic:
+def a_block(order: int, elements: int = 6, poisson: float = 0.3, end: float = numpy.pi / 2) -> ElasticBlock:
     """A thick shell of Young's modulus 1, from the axis to a polar angle, `elements` through its wall."""
     angle, radius = numpy.linspace(0.0, end, 2 * elements + 1), numpy.linspace(INNER, OUTER, elements + 1)
-    return Elastic(block=block(angle, [radius], order), young=numpy.ones(1), poisson=numpy.array([poisson]))
+    return ElasticBlock(block=block(angle, [radius], order), young=numpy.ones(1), poisson=numpy.array([poisson]))
 
 
-def polar(elastic: Elastic, across: Numbers, along: Numbers) -> Numbers:
+def polar(elastic: ElasticBlock, across: Numbers, along: Numbers) -> Numbers:
     """u_φ and u_r, unknown by unknown, of a displacement in ρ and z at the nodes."""
     phi = numpy.repeat(elastic.block.angle, elastic.block.radius.shape[1])
     sides = across * numpy.cos(phi) - along * numpy.sin(phi), across * numpy.sin(phi) + along * numpy.cos(phi)
@@ -73,4 +73,4 @@ def pressed(mesh: Block) -> Numbers:
         ring = 2 * numpy.pi * (rho @ N) * w
         across[nodes] += N @ (ring * -(z @ slope))
         along[nodes] += N @ (ring * (rho @ slope))
-    return polar(Elastic(block=mesh, young=numpy.ones(1), poisson=numpy.zeros(1)), across, along)
+    return polar(ElasticBlock(block=mesh, young=numpy.ones(1), poisson=numpy.zeros(1)), across, along)

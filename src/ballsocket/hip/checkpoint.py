@@ -15,7 +15,7 @@ from ..core.storage.npz import read_arrays, write_arrays
 from .hip_setup import HipSetup
 from .history import Report
 
-_VERSION = 5
+_VERSION = 6
 _NAME = "hip_in_use.npz"
 
 

@@ -1,24 +1,39 @@
-"""From results and measurements back to the numbers of a joint.
+"""Identification of a joint from measurements, and calibration of a foundation modulus.
 
-`ballsocket.identify` itself is the function that fits measurements; what it takes and gives are names of this room.
+`ballsocket.identify` itself is the function that fits measurements; this package has its data and results.
 """
 
-from .information import Information, Product
-from .measured import MEASURED, Machine, Measured, Own
+from .estimates import Estimate, Product
+from .identification import identify
+from .information import Information
+from .machine import Machine
+from .machine_errors import MachineError
+from .measured import MEASURED, Measured
+from .model_numbers import ModelNumber
 from .modulus import Calibration, as_constant, as_corrected_vessel, as_polynomial, calibrate
-from .oscillation import oscillation
-from .parameters import Estimate, Identified, identify
+from .observables import CustomObservable, oscillation
+from .registry import MACHINE_ERRORS, MODEL_NUMBERS
+from .result import IdentificationResult
 from .scatter import HeavyTailed, NormalScatter
 
+Identified = IdentificationResult
+Own = CustomObservable
+
 __all__ = [
+    "MACHINE_ERRORS",
     "MEASURED",
+    "MODEL_NUMBERS",
     "Calibration",
+    "CustomObservable",
     "Estimate",
     "HeavyTailed",
+    "IdentificationResult",
     "Identified",
     "Information",
     "Machine",
+    "MachineError",
     "Measured",
+    "ModelNumber",
     "NormalScatter",
     "Own",
     "Product",

@@ -1,4 +1,4 @@
-"""Measurements from CSV: heads that end in units, uncertainties beside values, gaps named."""
+"""Measurements from CSV or Parquet files, whose column heads are names and units."""
 
 from __future__ import annotations
 
@@ -18,15 +18,17 @@ from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, Quantity
 from ..io.units import parse
 from ..studies.columns import read_columns
-from .measured import MEASURED, PERFECT, Machine, Measured
+from .machine import IDEAL_MACHINE, Machine
+from .measured import MEASURED, Measured
 
-_KNOWN = {**MEASURED, "angle": FIELD["angle"]}
+_QUANTITIES = {**MEASURED, "angle": FIELD["angle"]}
 _LOADS = ("force", "indentation", "half_angle")
-_BESIDE = "_uncertainty"
+_MAX_ROWS = 8  # rows that a message names
+_UNCERTAINTY = "_uncertainty"
 
 
 class Gaps(Enum):
-    """What is done with rows in which a number is missing."""
+    """Treatment of rows in which a number is missing."""
 
     REFUSE = "refuse"
     LEAVE_OUT = "leave-out"
@@ -34,44 +36,44 @@ class Gaps(Enum):
 
 @dataclass(frozen=True)
 class Head:
-    """The head of a column: what it holds, and what its numbers are multiplied by."""
+    """Head of a column: name of the quantity, and factor from its unit to mm, N, MPa, rad."""
 
     name: str
     factor: float
 
 
 def head_of(text: str) -> Head:
-    """A head such as "force_N", "indentation_um", "area [mm2]", "max_pressure_uncertainty_MPa".
+    """Read a head such as "force_N", "indentation_um", "area [mm2]", "max_pressure_uncertainty_MPa".
 
     Raises
     ------
     ValueError
-        A name that is not known; no unit, or one of something else.
+        A name that is not known; a missing unit, or the unit of another quantity.
     """
     plain = _without_brackets(text.strip()).replace(" ", "_")
-    known = [name for name in _KNOWN if plain == name or plain.startswith(f"{name}_")]
+    known = [name for name in _QUANTITIES if plain == name or plain.startswith(f"{name}_")]
     if not known:
         raise ValueError(
-            f"column {shown(text)} is not known: heads are names and units, such as force_N, indentation_um"
+            f"column {shown(text)} is not known: a head is a name and a unit, such as force_N, indentation_um"
         )
     name = max(known, key=len)
-    unit, kind = plain[len(name) :], _KNOWN[name].kind
-    if unit.startswith(_BESIDE):
-        name, unit = name + _BESIDE, unit[len(_BESIDE) :]
+    unit, kind = plain[len(name) :], _QUANTITIES[name].kind
+    if unit.startswith(_UNCERTAINTY):
+        name, unit = name + _UNCERTAINTY, unit[len(_UNCERTAINTY) :]
     unit = unit.removeprefix("_").replace("_per_", "/").replace("_", " ")
     if kind is Kind.NUMBER:
         return Head(name, parse(text, f"1 {unit}".strip(), kind))
     if not unit:
-        raise ValueError(f"column {shown(text)} has no unit: write {name}_{kind.suffix}, or another unit")
+        raise ValueError(f"column {shown(text)} has no unit: use {name}_{kind.suffix}, or another unit")
     return Head(name, parse(f"the unit of {text}", f"1 {unit}", kind))
 
 
 def _without_brackets(head: str) -> str:
     """Rewrite a unit in brackets at the end of a head as a part of its name."""
-    begin = min((head.index(bracket) for bracket in "[(" if bracket in head), default=-1)
-    if begin < 0 or head[-1] not in "])":
+    start = min((head.index(bracket) for bracket in "[(" if bracket in head), default=-1)
+    if start < 0 or head[-1] not in "])":
         return head
-    return f"{head[:begin].rstrip()}_{head[begin + 1 : -1].strip()}"
+    return f"{head[:start].rstrip()}_{head[start + 1 : -1].strip()}"
 
 
 def read_measured(
@@ -82,33 +84,41 @@ def read_measured(
     uncertainty: float | str | None = None,
     load_uncertainty: float = 0.0,
     saturation: float = inf,
-    machine: Machine = PERFECT,
+    machine: Machine = IDEAL_MACHINE,
     gaps: Gaps = Gaps.REFUSE,
 ) -> tuple[Measured, ...]:
-    """Sets of measurements from a CSV (or Parquet) file, one for each quantity in it.
+    """Read sets of measurements from a CSV or Parquet file, one for each measured quantity.
 
     Heads are names of `ballsocket.identify.MEASURED` with units: "force_N", "indentation_um", "half_angle_deg",
-    "area_mm2", "max_pressure_MPa", "pressure_MPa" beside "angle_deg"; uncertainties (k = 1) have columns such as
-    "indentation_uncertainty_um". Lines that begin with # before the heads are passed over.
+    "area_mm2", "max_pressure_MPa". A column "pressure_MPa" needs a column "angle_deg". Columns of uncertainties (k = 1)
+    have heads such as "indentation_uncertainty_um". Lines before the heads that begin with # are skipped.
 
     Parameters
     ----------
     path : str or Path
     quantities : sequence of str
-        Which columns are measured; without any, all that are no load.
+        Measured columns; by default all columns except loads.
     load : str
-        Which column is the load; without a word the force, where there is one.
+        Column of the load; by default the force if there is one.
     uncertainty : float or str
-        Of quantities without a column for it, in mm, N, MPa, rad; or text, "2 %" of each value, "1 um".
-    load_uncertainty, saturation, machine
-        As of `Measured`.
+        Uncertainty of quantities without a column for it, in mm, N, MPa, rad, or as text: "2 %" of each value, "1 um".
+    load_uncertainty : float
+        Standard uncertainty of the loads.
+    saturation : float
+        Largest reading of a film or sensor.
+    machine : Machine
+        Machine that reads the indentations.
     gaps : Gaps
-        Whether rows in which a number is missing are left out, or refused by their numbers.
+        Treatment of rows in which a number is missing: an error, or omission.
+
+    Returns
+    -------
+    tuple of Measured
 
     Raises
     ------
     ValueError
-        A head without a unit, a column too few, a gap, a number that is not allowed: named with file and row.
+        A head without a unit, a missing column, a gap, or a number that is not allowed, with file and row.
     OSError
         The file cannot be read.
     """
@@ -117,23 +127,23 @@ def read_measured(
     kind = _load_of(columns, load, path.name)
     chosen = list(quantities) or [name for name in columns if name in MEASURED and name != kind]
     if not chosen:
-        raise ValueError(f"{path.name} has no column of something measured beside {kind or 'nothing'}")
+        raise ValueError(f"{path.name} has no column of a measured quantity{f' besides {kind}' if kind else ''}")
     sets = []
     for name in chosen:
         if name not in columns:
-            raise ValueError(f"{path.name} has no column of {name}: it has {', '.join(columns)}")
-        wanted = [each for each in (kind, name, name + _BESIDE, kind + _BESIDE, "angle") if each in columns]
-        rows, order = _whole(path.name, {each: columns[each] for each in wanted}, gaps)
+            raise ValueError(f"{path.name} has no column of {name}; its columns are {', '.join(columns)}")
+        heads = [head for head in (kind, name, name + _UNCERTAINTY, kind + _UNCERTAINTY, "angle") if head in columns]
+        rows, order = _complete_rows(path.name, {head: columns[head] for head in heads}, gaps)
         sets.append(
             Measured(
                 quantity=name,
                 values=rows[name],
                 uncertainty=_uncertainty(path.name, name, rows, uncertainty),
                 saturation=saturation,
-                machine=machine if "indentation" in (name, kind) else PERFECT,
+                machine=machine if "indentation" in (name, kind) else IDEAL_MACHINE,
                 order=order,
                 name=path.name,
-                **_beside(kind, rows, load_uncertainty),
+                **_load_columns(kind, rows, load_uncertainty),
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
         )
@@ -141,7 +151,7 @@ def read_measured(
 
 
 def _columns(path: Path) -> dict[str, Numbers]:
-    """Columns by their names, in mm, N, MPa, rad."""
+    """Read the columns by name, in mm, N, MPa, rad."""
     heads: dict[str, Head] = {}
 
     def check(texts: Sequence[str]) -> None:
@@ -152,53 +162,58 @@ def _columns(path: Path) -> dict[str, Numbers]:
                 raise ValueError(f"{path.name}: {error}") from error
         names = [head.name for head in heads.values()]
         if len(names) < len(texts) or len(set(names)) < len(names):
-            raise ValueError(f"{path.name} has two columns of one name: {', '.join(texts)}")
+            raise ValueError(f"{path.name} has two columns with the same name: {', '.join(texts)}")
 
     return {heads[text].name: heads[text].factor * column for text, column in read_columns(path, check).items()}
 
 
 def _load_of(columns: Mapping[str, Numbers], load: str, title: str) -> str:
+    """Choose the load: the stated one, or the first that has a column; empty without one."""
     if load:
         if load not in LOADS or load not in columns:
-            raise ValueError(f"{title} has no load {shown(load)}: a column of {', '.join(_LOADS)} is needed")
+            raise ValueError(f"{title} has no load {shown(load)}: it needs a column of {', '.join(_LOADS)}")
         return load
     return next((name for name in _LOADS if name in columns), "")
 
 
-def _whole(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple[dict[str, Numbers], Numbers]:
+def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple[dict[str, Numbers], Numbers]:
     """Select the rows without gaps, and return their numbers from 0."""
     missing = numpy.isnan(numpy.stack(list(columns.values())))
     rows = missing.any(axis=0)
     if rows.any() and gaps is Gaps.REFUSE:
-        which = ", ".join(str(row + 1) for row in numpy.flatnonzero(rows)[:8])
-        names = ", ".join(name for name, bad in zip(columns, missing, strict=True) if bad.any())
+        numbers = ", ".join(str(row + 1) for row in numpy.flatnonzero(rows)[:_MAX_ROWS])
+        names = ", ".join(name for name, absent in zip(columns, missing, strict=True) if absent.any())
         raise ValueError(
-            f"{title}: no number for {names} in row {which}{' ...' if rows.sum() > 8 else ''}; give it, or have such "
-            'rows left out (gaps = "leave-out")'
+            f"{title}: no number for {names} in row {numbers}{' ...' if rows.sum() > _MAX_ROWS else ''}; add it, or "
+            'omit such rows with gaps = "leave-out"'
         )
     if rows.all():
         raise ValueError(f"{title} has no row without a gap")
     return {name: column[~rows] for name, column in columns.items()}, numpy.flatnonzero(~rows).astype(float)
 
 
-def _uncertainty(title: str, name: str, rows: Mapping[str, Numbers], given: float | str | None) -> Any:
-    if name + _BESIDE in rows:
-        return rows[name + _BESIDE]
-    if given is None:
-        raise ValueError(f"{title}: how uncertain is {name}? give it a column {name}{_BESIDE}_..., or an uncertainty")
-    return uncertainty_of(_KNOWN[name], given, rows[name])
+def _uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
+    """Return the uncertainty of a quantity from its column, or as it is stated for the file."""
+    if name + _UNCERTAINTY in rows:
+        return rows[name + _UNCERTAINTY]
+    if stated is None:
+        raise ValueError(
+            f"{title}: the uncertainty of {name} is missing; add a column {name}{_UNCERTAINTY}_..., or an uncertainty"
+        )
+    return uncertainty_of(_QUANTITIES[name], stated, rows[name])
 
 
-def uncertainty_of(quantity: Quantity, given: float | str, values: Numbers) -> Any:
-    """An uncertainty from "2 %" of each value, or from a quantity of the values' kind."""
-    name = f"{quantity.name}{_BESIDE}"
-    share = re.fullmatch(r"\s*([-+.\deE]+)\s*%\s*", given) if isinstance(given, str) else None
-    if share:
-        return parse(name, share[1], Kind.NUMBER) / 100 * abs(values)
-    return parse(name, given, quantity.kind)
+def uncertainty_of(quantity: Quantity, stated: float | str, values: Numbers) -> Any:
+    """Convert an uncertainty from "2 %" of each value, or from text or a number of the values' kind."""
+    name = f"{quantity.name}{_UNCERTAINTY}"
+    percentage = re.fullmatch(r"\s*([-+.\deE]+)\s*%\s*", stated) if isinstance(stated, str) else None
+    if percentage:
+        return parse(name, percentage[1], Kind.NUMBER) / 100 * abs(values)
+    return parse(name, stated, quantity.kind)
 
 
-def _beside(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:
+def _load_columns(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:
+    """Return load and load uncertainty as arguments of `Measured`."""
     if not kind:
         return {}
-    return {kind: rows[kind], "load_uncertainty": rows.get(kind + _BESIDE, load_uncertainty)}
+    return {kind: rows[kind], "load_uncertainty": rows.get(kind + _UNCERTAINTY, load_uncertainty)}

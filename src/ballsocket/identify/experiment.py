@@ -5,127 +5,150 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import log
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
-from .information import TOLD
-from .measured import OF_JOINT, PERFECT, Machine, Measured
+from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
+from .fit import FittedModel
+from .information import MAX_WIDTH_RATIO
+from .machine import IDEAL_MACHINE, Machine
+from .measured import OF_JOINT, Measured
 
-if TYPE_CHECKING:
-    from .parameters import Identified
+STANDARD_QUANTITIES = ("indentation", "half_angle", "max_pressure", "diametral_clearance")
+"""Quantities of the default candidates: the last is the free play of a joint, and needs no load."""
 
-USUAL = ("indentation", "half_angle", "max_pressure", "diametral_clearance")
-"""What is usually measured: the last is the free play of a joint, and needs no load."""
-
-_SHARE = 0.02  # uncertainty of what has not been measured yet, as a share of its value
-_LOADS = 6
-_BEYOND = 1.5  # times the largest load of the data
+_RELATIVE_UNCERTAINTY = 0.02  # of a quantity that has not been measured yet
+_N_LOADS = 6
+_LOAD_FACTOR = 1.5  # largest load of a candidate over the largest load of the data
+_DEFAULT_FORCE = 2000.0  # largest load in N for data without forces
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A measurement that could be made.
+    """A possible measurement.
 
     Attributes
     ----------
     quantity : str
         One of `ballsocket.identify.MEASURED`.
     uncertainty : float
-        Its standard uncertainty; in its unit.
+        Standard uncertainty in the unit of the quantity.
     force : float or None
-        In N; None of a number of the joint.
+        Load in N; None for a number of the joint.
     machine : Machine
-        What would read an indentation.
+        Machine that would read an indentation.
     order : float
-        Number of the reading, for a machine whose zero drifts.
+        Number of the reading, for a machine with a drifting zero.
     """
 
     quantity: str
     uncertainty: float
     force: float | None = None
-    machine: Machine = PERFECT
+    machine: Machine = IDEAL_MACHINE
     order: float = 0.0
 
     def measured(self, value: float) -> Measured:
         """Convert the candidate to a set of data."""
-        words: dict[str, Any] = {} if self.force is None else {"force": self.force}
+        load: dict[str, Any] = {} if self.force is None else {"force": self.force}
         return Measured(
             quantity=self.quantity,
             values=value,
             uncertainty=self.uncertainty,
             machine=self.machine,
             order=self.order,
-            **words,
+            **load,
         )
 
 
 @dataclass(frozen=True)
 class Gain:
-    """What a candidate is expected to tell.
+    """Expected gain of a candidate.
 
     Attributes
     ----------
     candidate : Candidate
     bits : float
         Half log2 of the growth of the information's determinant (D-optimal).
-    left : dict of str to float
-        By unknown, its uncertainty afterwards over that of today.
-    settles : tuple of str
+    uncertainty_ratio : dict of str to float
+        Uncertainty of each unknown after the measurement over its present uncertainty.
+    identifies : tuple of str
         Unknowns that this measurement would make identifiable.
     """
 
     candidate: Candidate
     bits: float
-    left: dict[str, float]
-    settles: tuple[str, ...]
+    uncertainty_ratio: dict[str, float]
+    identifies: tuple[str, ...]
+    left = RenamedAttribute("uncertainty_ratio")
+    settles = RenamedAttribute("identifies")
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
-        words = {"quantity": self.candidate.quantity, "force": self.candidate.force}
-        return {**words, "uncertainty": self.candidate.uncertainty, "bits": self.bits, "left": self.left}
+        """Return one dictionary for JSON."""
+        return {
+            "quantity": self.candidate.quantity,
+            "force": self.candidate.force,
+            "uncertainty": self.candidate.uncertainty,
+            "bits": self.bits,
+            "left": self.uncertainty_ratio,
+        }
 
 
 @dataclass(frozen=True, eq=False)
 class Experiment:
-    """Candidates for the next measurement, the one that tells most first."""
+    """Candidates for the next measurement in descending order of their gain.
+
+    Attributes
+    ----------
+    gains : tuple of Gain
+    unidentifiable : tuple of str
+        Unknowns that are unidentifiable at present.
+    """
 
     gains: tuple[Gain, ...]
-    untold: tuple[str, ...]
+    unidentifiable: tuple[str, ...]
+    untold = RenamedAttribute("unidentifiable")
+    each_quantity = RenamedAttribute("best_by_quantity")
+    settling = RenamedAttribute("sufficient_quantities")
 
     @property
     def best(self) -> Gain:
+        """Candidate with the largest gain."""
         return self.gains[0]
 
     @property
-    def each_quantity(self) -> tuple[Gain, ...]:
-        """The best of each quantity."""
-        firsts: dict[str, Gain] = {}
+    def best_by_quantity(self) -> tuple[Gain, ...]:
+        """Candidate with the largest gain of each quantity."""
+        best: dict[str, Gain] = {}
         for gain in self.gains:
-            firsts.setdefault(gain.candidate.quantity, gain)
-        return tuple(firsts.values())
+            best.setdefault(gain.candidate.quantity, gain)
+        return tuple(best.values())
 
     @property
-    def settling(self) -> tuple[str, ...]:
-        """Quantities that would each make every unknown identifiable."""
-        found = [gain.candidate.quantity for gain in self.gains if set(gain.settles) == set(self.untold)]
-        return tuple(name for name in USUAL if name in found) if self.untold else ()
+    def sufficient_quantities(self) -> tuple[str, ...]:
+        """Quantities of which one measurement would make every unknown identifiable."""
+        if not self.unidentifiable:
+            return ()
+        wanted = set(self.unidentifiable)
+        sufficient = {gain.candidate.quantity for gain in self.gains if set(gain.identifies) == wanted}
+        return tuple(name for name in STANDARD_QUANTITIES if name in sufficient)
 
     def summary(self) -> list[dict[str, Any]]:
-        """A list for JSON."""
+        """Return a list for JSON."""
         return [gain.summary() for gain in self.gains]
 
 
-def experiment(found: Identified, candidates: Iterable[Candidate] | None = None) -> Experiment:
-    """Expected gains of candidates, at what is the best point today.
+@renamed_arguments(found="fitted")
+def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = None) -> Experiment:
+    """Compute the expected gains of candidates at the present best point.
 
     Parameters
     ----------
-    found : Identified
+    fitted : IdentificationResult
     candidates : iterable of Candidate
-        By default the usual quantities at loads up to one and a half times those of the data, as uncertain as those of
-        the data were, or 2 %.
+        By default the standard quantities at loads up to one and a half times those of the data. Their uncertainties
+        are those of the data, or 2 % for a new quantity.
 
     Returns
     -------
@@ -135,77 +158,87 @@ def experiment(found: Identified, candidates: Iterable[Candidate] | None = None)
     ----------
     Chaloner & Verdinelli 1995, Stat. Sci. 10, 273.
     """
-    chosen = usual(found) if candidates is None else tuple(candidates)
-    rows = _slopes(found, chosen)
-    kept = [(each, row) for each, row in zip(chosen, rows, strict=True) if numpy.isfinite(row).all()]
-    gains = [_gain(found, each, row) for each, row in kept]
-    return Experiment(tuple(sorted(gains, key=lambda gain: -gain.bits)), found.information.unidentifiable)
+    chosen = standard_candidates(fitted) if candidates is None else tuple(candidates)
+    rows = _slopes(fitted, chosen)
+    valid = [(candidate, row) for candidate, row in zip(chosen, rows, strict=True) if numpy.isfinite(row).all()]
+    gains = [_gain(fitted, candidate, row) for candidate, row in valid]
+    return Experiment(tuple(sorted(gains, key=lambda gain: -gain.bits)), fitted.information.unidentifiable)
 
 
-def usual(found: Identified) -> tuple[Candidate, ...]:
-    """What could be measured next: see `experiment`."""
-    forces = _forces(found)
-    pairs = [(name, None) if name in OF_JOINT else (name, force) for name in USUAL for force in forces]
-    plain = [Candidate(name, 1.0, force, *_machine(found, name)) for name, force in dict.fromkeys(pairs)]
-    values = _answers(found, plain, found.best.places)
+def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
+    """List the default candidates; see `experiment`."""
+    forces = _forces(fitted)
+    pairs = [
+        (quantity, None) if quantity in OF_JOINT else (quantity, force)
+        for quantity in STANDARD_QUANTITIES
+        for force in forces
+    ]
+    candidates = [
+        Candidate(quantity, 1.0, force, *_machine(fitted, quantity)) for quantity, force in dict.fromkeys(pairs)
+    ]
+    values = _results(fitted, candidates)
     return tuple(
-        replace(each, uncertainty=_uncertainty(found, each.quantity, value))
-        for each, value in zip(plain, values.tolist(), strict=True)
+        replace(candidate, uncertainty=_uncertainty(fitted, candidate.quantity, value))
+        for candidate, value in zip(candidates, values.tolist(), strict=True)
         if value > 0
     )
 
 
-def _forces(found: Identified) -> list[float]:
-    loads = [each.loads for each in found.data if each.load == "force"]
-    loads += [row for each, row in zip(found.data, found.answers, strict=True) if each.quantity == "force"]
-    most = float(numpy.max(numpy.concatenate(loads), initial=0.0)) if loads else 0.0
-    return numpy.linspace(0.0, _BEYOND * (most or 2000.0), _LOADS + 1)[1:].tolist()
+def _forces(fitted: FittedModel) -> list[float]:
+    """Return equally spaced forces up to one and a half times the largest of the data."""
+    rows = [measured.loads for measured in fitted.data if measured.load == "force"]
+    rows += [row for measured, row in zip(fitted.data, fitted.answers, strict=True) if measured.quantity == "force"]
+    largest = float(numpy.max(numpy.concatenate(rows), initial=0.0)) if rows else 0.0
+    return numpy.linspace(0.0, _LOAD_FACTOR * (largest or _DEFAULT_FORCE), _N_LOADS + 1)[1:].tolist()
 
 
-def _machine(found: Identified, quantity: str) -> tuple[Machine, float]:
+def _machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
     """Choose the machine of the present indentations, and the number of its next reading."""
-    orders = {each.machine: each.order for each in found.data if each.machine is not PERFECT}
+    orders = {measured.machine: measured.order for measured in fitted.data if measured.machine is not IDEAL_MACHINE}
     if quantity != "indentation" or not orders:
-        return PERFECT, 0.0
+        return IDEAL_MACHINE, 0.0
     machine, order = next(iter(orders.items()))
     return machine, float(order.max()) + 1
 
 
-def _uncertainty(found: Identified, quantity: str, value: float) -> float:
-    """An uncertainty as it was so far, in its unit or relative, whichever varied less; 2 % of what is new."""
-    rows = [(each.uncertainty, abs(each.values)) for each in found.data if each.quantity == quantity]
+def _uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
+    """Estimate an uncertainty from the data, absolute or relative, whichever varied less; 2 % of a new quantity."""
+    rows = [(measured.uncertainty, abs(measured.values)) for measured in fitted.data if measured.quantity == quantity]
     if not rows:
-        return _SHARE * value
-    plain, values = (numpy.concatenate(parts) for parts in zip(*rows, strict=True))
-    relative = plain / numpy.maximum(values, 1e-300)
-    alike = numpy.std(numpy.log(plain)) <= numpy.std(numpy.log(relative))
-    return float(numpy.median(plain) if alike else numpy.median(relative) * value)
+        return _RELATIVE_UNCERTAINTY * value
+    absolute, values = (numpy.concatenate(columns) for columns in zip(*rows, strict=True))
+    relative = absolute / numpy.maximum(values, 1e-300)
+    constant = numpy.std(numpy.log(absolute)) <= numpy.std(numpy.log(relative))
+    return float(numpy.median(absolute) if constant else numpy.median(relative) * value)
 
 
-def _answers(found: Identified, candidates: Sequence[Candidate], places: Numbers) -> Numbers:
-    """What the model says that they would read, at many places."""
-    answers = replace(found.misfit.answers, data=tuple(each.measured(1.0) for each in candidates))
-    return answers.at(numpy.atleast_2d(found.scales.values(places)))[0]
+def _results(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
+    """Compute the results of the candidates at the best point, (candidates,)."""
+    forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
+    return forward.at(numpy.atleast_2d(fitted.transform.values(fitted.best.theta)))[0]
 
 
-def _slopes(found: Identified, candidates: Sequence[Candidate]) -> Numbers:
-    """The slopes of candidates along the places, (candidates, unknowns)."""
-    answers = replace(found.misfit.answers, data=tuple(each.measured(1.0) for each in candidates))
-    return found.misfit.slopes(answers, found.scales, found.best.places)[1]
+def _slopes(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
+    """Compute the derivatives of the candidates with respect to theta, (candidates, unknowns)."""
+    forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
+    return fitted.misfit.slopes(forward, fitted.transform, fitted.best.theta)[1]
 
 
-def _gain(found: Identified, candidate: Candidate, slopes: Numbers) -> Gain:
-    """By the rank-one update of the covariance."""
-    before = found.information.covariance
-    row = slopes * (found.misfit.scatter.told**0.5 / candidate.uncertainty)
-    seen = before @ row
-    told = float(row @ seen)
-    after = numpy.diagonal(before) - seen**2 / (1 + told)
-    names = found.scales.names
-    settled = [name for place, name in enumerate(names) if after[place] ** 0.5 < TOLD]
+def _gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) -> Gain:
+    """Compute the gain of a candidate by a rank-one update of the covariance."""
+    before = fitted.information.covariance
+    row = slopes * (fitted.misfit.scatter.information**0.5 / candidate.uncertainty)
+    covariance = before @ row
+    added = float(row @ covariance)
+    after = numpy.diagonal(before) - covariance**2 / (1 + added)
+    names = fitted.transform.names
+    narrow = [name for index, name in enumerate(names) if after[index] ** 0.5 < MAX_WIDTH_RATIO]
     return Gain(
         candidate=candidate,
-        bits=log(1 + told) / log(4),
-        left=dict(zip(names, numpy.sqrt(after / numpy.diagonal(before)).tolist(), strict=True)),
-        settles=tuple(name for name in found.information.unidentifiable if name in settled),
+        bits=log(1 + added) / log(4),
+        uncertainty_ratio=dict(zip(names, numpy.sqrt(after / numpy.diagonal(before)).tolist(), strict=True)),
+        identifies=tuple(name for name in fitted.information.unidentifiable if name in narrow),
     )
+
+
+__getattr__ = renamed_names(__name__, {"USUAL": "STANDARD_QUANTITIES", "usual": "standard_candidates"})

@@ -1,4 +1,4 @@
-"""A file about measurements: TOML with units in; model, joint, unknowns and data out. Strict, as joint files."""
+"""Identification files: TOML with units to model, joint, unknowns and data. Unknown keys are errors."""
 
 from __future__ import annotations
 
@@ -19,59 +19,73 @@ from ..io.toml import read_toml, table_of
 from ..io.units import parse
 from ..problem import Joint
 from ..studies.file import named_model
-from ..studies.parameters import PARAMETERS
 from ..studies.phrases import ends_of
 from ..studies.scatter import distribution_of
 from .columns import Gaps, read_measured, uncertainty_of
-from .measured import MACHINE, MEASURED, PERFECT, Machine, Measured, Own
-from .oscillation import FREQUENCY, oscillation
-from .parameters import Identified, identify
-from .scatter import HeavyTailed, NormalScatter, Scatter
-from .unknowns import Given
+from .identification import identify
+from .machine import IDEAL_MACHINE, Machine, NumberOrRange
+from .measured import MEASURED, Measured
+from .observables import FREQUENCY, CustomObservable, oscillation
+from .registry import FREE_NUMBERS, MACHINE_ERRORS
+from .result import IdentificationResult
+from .scatter import HeavyTailed, NormalScatter, ScatterModel
+from .unknowns import Prior
 
-_OF_FILE = ("file", "quantities", "load", "gaps")
-_OF_VALUES = ("quantity", "values", "angle", "mass", "order", *LOADS)
-_OF_BOTH = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
+_FILE_KEYS = ("file", "quantities", "load", "gaps")
+_VALUE_KEYS = ("quantity", "values", "angle", "mass", "order", *LOADS)
+_COMMON_KEYS = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
 _TABLES: Mapping[str, tuple[str, ...]] = {
     "": (*PARTS, "model", "scatter", "free", "machine", "data"),
-    "data": (*_OF_FILE, *_OF_VALUES, *_OF_BOTH),
+    "data": (*_FILE_KEYS, *_VALUE_KEYS, *_COMMON_KEYS),
 }
 FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
-_READ = {**MEASURED, FREQUENCY.name: FREQUENCY}
-_SCATTERS = ("normal", "heavy-tailed")
+_QUANTITIES = {**MEASURED, FREQUENCY.name: FREQUENCY}
+_SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class IdentifyFile:
-    """What a file about measurements says."""
+    """Contents of an identification file.
+
+    Attributes
+    ----------
+    model : Model
+    joint : Joint
+    data : tuple of Measured
+    free : dict of str to two ends or a distribution
+        Unknowns by name.
+    scatter : ScatterModel
+    """
 
     model: Model
     joint: Joint
     data: tuple[Measured, ...]
-    free: dict[str, Given]
-    scatter: Scatter
+    free: dict[str, Prior]
+    scatter: ScatterModel
 
-    def identified(self) -> Identified:
-        """What the measurements tell."""
+    def identified(self) -> IdentificationResult:
+        """Identify the unknowns from the measurements."""
         return identify(self.model, self.joint, self.data, self.free, scatter=self.scatter)
 
 
 def read_identify(path: str | Path) -> IdentifyFile:
-    """Read a file about measurements.
+    """Read an identification file.
 
-    At the top: `model` (by name; "tabulated" without a word), `scatter` ("normal", or "heavy-tailed" against
-    outliers), and the joint as in study files. `free` has the unknowns: text with two ends, "0.02..0.3 mm", or what
-    was known, `{mean, deviation}`, `{median, factor}`. Each `[[data]]` has a `file` (CSV, heads with units), and
-    which of its columns are `quantities` and which the `load`, and `gaps` ("refuse", "leave-out"); or a `quantity`
-    with `values` (one or a list) and its load, a "frequency" also its `mass`; for either `uncertainty` ("1 um", "2
-    %"), `load_uncertainty`, `saturation`, `machine`. `[machine.NAME]` has `compliance` and `offset`, numbers or two
-    ends, and `drift` per reading, counted by the rows of the file or by `order`. Paths are taken from the file's own
-    folder.
+    - At the top: `model` by name, by default "tabulated"; `scatter` ("normal", or "heavy-tailed" for outliers); and the
+      joint as in study files.
+    - `[free]`: unknowns with two ends, "0.02..0.3 mm", or with a distribution, `{mean, deviation}` or
+      `{median, factor}`. The names are those of the joint and of the model.
+    - `[[data]]` with a `file` (CSV, heads with units), its measured `quantities`, its `load`, and `gaps` ("refuse",
+      "leave-out"). Paths are relative to the folder of the TOML file.
+    - `[[data]]` with a `quantity`, `values` (one or a list) and its load; a "frequency" needs its `mass`.
+    - Both kinds of data have `uncertainty` ("1 um", "2 %"), `load_uncertainty`, `saturation` and `machine`.
+    - `[machine.NAME]`: `compliance`, `offset` and `drift` per reading, each a number or two ends. Readings are counted
+      by rows of the file, or by `order`.
 
     Raises
     ------
     ValueError
-        One sentence: what is wrong, and the nearest thing that is right.
+        One sentence: the error, and the nearest allowed name.
     OSError
         A file cannot be read.
     """
@@ -81,70 +95,74 @@ def read_identify(path: str | Path) -> IdentifyFile:
 
 def _file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
     check_keys(content, "", "at the top", FILE_KEYS)
-    given = joint_in(content, folder)
+    joint_file = joint_in(content, folder)
     machines = {name: _machine(name, table) for name, table in table_of(content, "machine").items()}
     return IdentifyFile(
-        model=named_model(content.get("model", "tabulated")).in_cup(given.cup),
-        joint=given.joint,
+        model=named_model(content.get("model", "tabulated")).in_cup(joint_file.cup),
+        joint=joint_file.joint,
         data=_data(content.get("data", []), machines, folder),
         free=_free(table_of(content, "free")),
-        scatter=_scatter(content.get("scatter", "normal")),
+        scatter=_SCATTER_MODELS[known_name("scatter", content.get("scatter", "normal"), _SCATTER_MODELS)],
     )
 
 
-def _scatter(name: Any) -> Scatter:
-    return HeavyTailed() if known_name("scatter", name, _SCATTERS) == "heavy-tailed" else NormalScatter()
-
-
-def _free(table: Mapping[str, Any]) -> dict[str, Given]:
-    """Unknowns; those of a material may stand in a table of its own, `liner.young`."""
+def _free(table: Mapping[str, Any]) -> dict[str, Prior]:
+    """Read the unknowns; those of a material may have their own table, `liner.young`."""
     flat: dict[str, Any] = {}
     for name, value in table.items():
-        of_part = name in ("liner", "ball") and isinstance(value, Mapping)
-        flat |= {f"{name}_{number}": each for number, each in value.items()} if of_part else {name: value}
-    check_names(flat, PARAMETERS, "in [free]")
-    return {name: _given(name, value) for name, value in flat.items()}
+        is_material = name in ("liner", "ball") and isinstance(value, Mapping)
+        flat |= {f"{name}_{number}": entry for number, entry in value.items()} if is_material else {name: value}
+    check_names(flat, FREE_NUMBERS, "in [free]")
+    return {name: _prior(name, value) for name, value in flat.items()}
 
 
-def _given(name: str, value: Any) -> Given:
+def _prior(name: str, value: Any) -> Prior:
+    """Read two ends or a distribution."""
+    kind = FREE_NUMBERS[name].kind
     if isinstance(value, str):
-        return ends_of(name, value, PARAMETERS[name].kind)
+        return ends_of(name, value, kind)
     if not isinstance(value, Mapping):
         raise ValueError(f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}")
-    return distribution_of(name, value, lambda key, number: parse(key, number, PARAMETERS[name].kind))
+    return distribution_of(name, value, lambda key, number: parse(key, number, kind))
 
 
 def _machine(name: str, table: Any) -> Machine:
+    """Read the errors of a machine."""
     if not isinstance(table, Mapping):
         raise ValueError(f"machine.{name} = {shown(table)} must be a table: [machine.{name}]")
-    check_names(table, MACHINE, f"in [machine.{name}]")
-    return Machine(name=name, **{part: _between(f"{name}.{part}", value, part) for part, value in table.items()})
+    check_names(table, MACHINE_ERRORS, f"in [machine.{name}]")
+    sizes = {error: _number_or_range(f"{name}.{error}", value, error) for error, value in table.items()}
+    return Machine(name=name, **sizes)
 
 
-def _between(name: str, value: Any, part: str) -> float | tuple[float, float]:
-    kind = MACHINE[part].kind
+def _number_or_range(name: str, value: Any, error: str) -> NumberOrRange:
+    """Read the size of an error: a number, or two ends."""
+    kind = MACHINE_ERRORS[error].quantity.kind
     return ends_of(name, value, kind) if isinstance(value, str) and ".." in value else parse(name, value, kind)
 
 
 def _data(tables: Any, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
+    """Read all data sets of a file."""
     if not isinstance(tables, list) or not tables or not all(isinstance(table, Mapping) for table in tables):
-        raise ValueError("measurements are needed: [[data]] before each set")
-    return tuple(each for table in tables for each in _set(table, machines, folder))
+        raise ValueError("the file has no measurements: add [[data]] before each set")
+    return tuple(measured for table in tables for measured in _sets(table, machines, folder))
 
 
-def _set(table: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
+def _sets(table: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
+    """Read the data sets of one table."""
     check_keys(table, "data", "in [[data]]", FILE_KEYS)
     if ("file" in table) == ("values" in table):
-        raise ValueError("[[data]] needs a file, or a quantity with its values, and not both")
-    machine = machines[known_name("machine", table["machine"], machines)] if "machine" in table else PERFECT
-    return _of_file(table, machine, folder) if "file" in table else (_of_values(table, machine),)
+        raise ValueError("[[data]] needs either a file, or a quantity with its values")
+    machine = machines[known_name("machine", table["machine"], machines)] if "machine" in table else IDEAL_MACHINE
+    return _sets_of_file(table, machine, folder) if "file" in table else (_set_of_values(table, machine),)
 
 
-def _of_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[Measured, ...]:
-    check_names(table, (*_OF_FILE, *_OF_BOTH), "beside a file in [[data]]")
+def _sets_of_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[Measured, ...]:
+    """Read the data sets of a table with a file."""
+    check_names(table, (*_FILE_KEYS, *_COMMON_KEYS), "in [[data]] with a file")
     listed = table.get("quantities", [])
     quantities = [listed] if isinstance(listed, str) else listed
-    gaps = known_name("gaps", table.get("gaps", Gaps.REFUSE.value), [each.value for each in Gaps])
+    gaps = known_name("gaps", table.get("gaps", Gaps.REFUSE.value), [choice.value for choice in Gaps])
     load = check_text("load", table.get("load", ""))
     return read_measured(
         folder / check_text("file", table["file"]),
@@ -158,13 +176,14 @@ def _of_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[
     )
 
 
-def _of_values(table: Mapping[str, Any], machine: Machine) -> Measured:
-    check_names(table, (*_OF_VALUES, *_OF_BOTH), "beside values in [[data]]")
+def _set_of_values(table: Mapping[str, Any], machine: Machine) -> Measured:
+    """Read the data set of a table with values."""
+    check_names(table, (*_VALUE_KEYS, *_COMMON_KEYS), "in [[data]] with values")
     for key in ("quantity", "uncertainty"):
         if key not in table:
             raise ValueError(f"[[data]] with values needs its {key}")
-    name = known_name("quantity", table["quantity"], _READ)
-    values = _numbers(name, table["values"], _READ[name].kind)
+    name = known_name("quantity", table["quantity"], _QUANTITIES)
+    values = _numbers(name, table["values"], _QUANTITIES[name].kind)
     loads: dict[str, Any] = {kind: _numbers(kind, table[kind], LOADS[kind].kind) for kind in LOADS if kind in table}
     if "order" in table:
         loads["order"] = _numbers("order", table["order"], Kind.NUMBER)
@@ -173,8 +192,8 @@ def _of_values(table: Mapping[str, Any], machine: Machine) -> Measured:
     return Measured(
         quantity=name,
         values=values,
-        uncertainty=uncertainty_of(_READ[name], table["uncertainty"], values),
-        own=_own(name, table),
+        uncertainty=uncertainty_of(_QUANTITIES[name], table["uncertainty"], values),
+        observable=_observable(name, table),
         load_uncertainty=_load_uncertainty(table, next((kind for kind in LOADS if kind in table), "force")),
         machine=machine,
         name=check_text("name", table.get("name", "")),
@@ -183,10 +202,10 @@ def _of_values(table: Mapping[str, Any], machine: Machine) -> Measured:
     )
 
 
-def _own(name: str, table: Mapping[str, Any]) -> Own | None:
-    """What is not a quantity of a contact itself: a frequency, of its mass."""
+def _observable(name: str, table: Mapping[str, Any]) -> CustomObservable | None:
+    """Return the custom observable of a frequency; None for a quantity of a contact."""
     if (name == FREQUENCY.name) != ("mass" in table):
-        raise ValueError("[[data]] of a frequency needs its mass, and no other has one")
+        raise ValueError("[[data]] of a frequency needs its mass, and other data take none")
     return oscillation(parse("mass", table["mass"], Kind.MASS)) if "mass" in table else None
 
 
@@ -200,6 +219,7 @@ def _load_uncertainty(table: Mapping[str, Any], load: str) -> float:
     )
 
 
-def _numbers(name: str, given: Any, kind: str) -> numpy.ndarray:
-    listed = given if isinstance(given, list) else [given]
-    return numpy.array([parse(name, each, kind) for each in listed])
+def _numbers(name: str, value: Any, kind: str) -> numpy.ndarray:
+    """Read one number or a list of numbers with units as an array."""
+    numbers = value if isinstance(value, list) else [value]
+    return numpy.array([parse(name, number, kind) for number in numbers])

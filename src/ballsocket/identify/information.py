@@ -6,63 +6,47 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import exp, inf, log, sqrt
-from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
-from .profile import ProfileEnd
-from .unknowns import Scales, Unknown
+from ..core.deprecation import RenamedAttribute, renamed_names
+from .estimates import Product
+from .unknowns import ParameterTransform, Unknown
 
-TOLD = 0.5
-"""Share of the prior range; a wider band makes an unknown unidentifiable."""
+MAX_WIDTH_RATIO = 0.5
+"""Largest width of the band of an identifiable unknown over its prior range."""
 
-MOVED = 0.1
-"""Largest shift of an identifiable unknown by an unidentifiable one, as a share of the prior range."""
+MAX_SHIFT = 0.1
+"""Largest shift of an identifiable unknown by an unidentifiable one, as a fraction of the prior range."""
 
-WIDE = 1.959963984540054
-"""Standard deviations to either side of a band of 95 %."""
+QUANTILE_95 = 1.959963984540054
+"""Half width of a band of 95 % in standard deviations."""
 
-SURE = 2.5758293035489004
-"""Standard deviations to either side of an interval of 99 %, which ends inside the range of an identifiable unknown."""
+QUANTILE_99 = 2.5758293035489004
+"""Half width of an interval of 99 % in standard deviations; it ends inside the range of an identifiable unknown."""
 
-_ALONE = 0.97  # share of a direction, from which on it is one number and no mix
-_APART = 0.5  # smallest singular value of independent unit directions
+_MIN_MIXED_COMPONENT = (1 - 0.97**2) ** 0.5  # smallest component of a direction that counts as a factor of a product
+_MIN_SINGULAR_VALUE = 0.5  # smallest singular value of independent unit directions
 
 
-@dataclass(frozen=True)
-class Product:
-    """A product of powers of unknowns that the data tell, where they do not tell the factors.
+@dataclass(frozen=True, eq=False)
+class ProfileEnd:
+    """One end of a profile interval.
 
     Attributes
     ----------
-    exponents : dict of str to float
-    unit : str
-    value, low, high : float
-        The product, and its band of 95 %.
+    theta : array (unknowns,)
+        Scaled parameters at the end; all other unknowns are fitted.
+    closed : bool
+        True where χ² reaches its limit; False where the range of the unknown ends first.
+    limited_by : tuple of int
+        Indices of the unknowns at an end of their ranges that increase χ² there.
     """
 
-    exponents: dict[str, float]
-    unit: str
-    value: float
-    low: float
-    high: float
-
-    @property
-    def name(self) -> str:
-        """The product in words, "clearance · liner_young"."""
-        return " · ".join(name if power == 1 else f"{name}^{power:.3g}" for name, power in self.exponents.items())
-
-    def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
-        return {
-            "name": self.name,
-            "exponents": self.exponents,
-            "unit": self.unit,
-            "value": self.value,
-            "low": self.low,
-            "high": self.high,
-        }
+    theta: Numbers
+    closed: bool
+    limited_by: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,22 +77,25 @@ class Information:
 
     Attributes
     ----------
-    scales : Scales
-    places : array (unknowns,)
-        The best point, in deviations of the prior.
+    transform : ParameterTransform
+    theta : array (unknowns,)
+        Best point, in standard deviations of the priors.
     matrix : array (unknowns, unknowns)
-        Fisher's information of the data there; 1 is the information of the prior.
+        Fisher information of the data there; 1 is the information of the prior.
     intervals : tuple of Interval
         Profile intervals over the ranges of the unknowns; `matrix` is local.
     quantile : float
         Standard deviations to either side of a band of 95 %; more than 1.96 where the scatter is too large.
     """
 
-    scales: Scales
-    places: Numbers
+    transform: ParameterTransform
+    theta: Numbers
     matrix: Numbers
     intervals: tuple[Interval, ...]
-    quantile: float = WIDE
+    quantile: float = QUANTILE_95
+    scales = RenamedAttribute("transform")
+    places = RenamedAttribute("theta")
+    untold = RenamedAttribute("unidentifiable")
 
     @cached_property
     def _modes(self) -> tuple[Numbers, Numbers]:
@@ -116,29 +103,30 @@ class Information:
 
     @property
     def eigenvalues(self) -> Numbers:
+        """Eigenvalues of the information, in descending order."""
         return self._modes[0]
 
     @cached_property
     def rank(self) -> int:
         """Number of identifiable directions; full if every unknown is identifiable."""
-        lost = [self.scales.names.index(name) for name in self.unidentifiable]
-        if not lost:
-            return len(self.scales.names)
-        directions = numpy.stack([self._band_direction(index) for index in lost], axis=1)
+        unidentifiable = [self.transform.names.index(name) for name in self.unidentifiable]
+        if not unidentifiable:
+            return len(self.transform.names)
+        directions = numpy.stack([self._band_direction(index) for index in unidentifiable], axis=1)
         sizes = numpy.linalg.svd(directions / numpy.linalg.norm(directions, axis=0), compute_uv=False)
-        return len(self.scales.names) - max(1, int(numpy.sum(sizes > _APART)))
+        return len(self.transform.names) - max(1, int(numpy.sum(sizes > _MIN_SINGULAR_VALUE)))
 
     @property
     def condition(self) -> float:
-        """Largest over smallest eigenvalue; inf where data do not see a direction at all."""
+        """Ratio of the largest to the smallest eigenvalue; inf if the data have no information in a direction."""
         values = self.eigenvalues
         return float(values[0] / values[-1]) if values[-1] > 1e-12 * values[0] else inf
 
     @cached_property
     def deviations(self) -> Mapping[str, float]:
         """Width of the band of 95 % over the prior range, by unknown."""
-        pairs = zip(self.scales.unknowns, self.intervals, range(len(self.intervals)), strict=True)
-        return {each.name: _share(each, interval, index) for each, interval, index in pairs}
+        pairs = zip(self.transform.unknowns, self.intervals, range(len(self.intervals)), strict=True)
+        return {unknown.name: _width_ratio(unknown, interval, index) for unknown, interval, index in pairs}
 
     @cached_property
     def unidentifiable(self) -> tuple[str, ...]:
@@ -147,29 +135,31 @@ class Information:
         One of three conditions holds. The profile interval of 99 % leaves the range. The band of 95 % takes half of the
         range or more. The range of another unidentifiable unknown limits the band and shifts it by a tenth or more.
         """
-        left, unknowns = self.deviations, self.scales.unknowns
-        free = [index for index, each in enumerate(unknowns) if not each.known]
-        lost = [i for i in free if not self.intervals[i].closed or left[unknowns[i].name] >= TOLD]
-        moved = [i for i in free if any(self._is_moved(i, other) for other in set(lost) - {i})]
-        return tuple(each.name for index, each in enumerate(unknowns) if index in {*lost, *moved})
+        widths, unknowns = self.deviations, self.transform.unknowns
+        ranges = [index for index, unknown in enumerate(unknowns) if not unknown.known]
+        wide = {
+            index
+            for index in ranges
+            if not self.intervals[index].closed or widths[unknowns[index].name] >= MAX_WIDTH_RATIO
+        }
+        shifted = {index for index in ranges if any(self._is_shifted(index, cause) for cause in wide - {index})}
+        return tuple(unknown.name for index, unknown in enumerate(unknowns) if index in wide | shifted)
 
-    def _is_moved(self, index: int, other: int) -> bool:
-        return other in self.intervals[index].limits and abs(self._band_direction(other)[index]) >= MOVED * sqrt(12)
+    def _is_shifted(self, index: int, cause: int) -> bool:
+        """Check if the range of another unknown limits a band and shifts it by a tenth or more."""
+        limited = cause in self.intervals[index].limits
+        return limited and abs(self._band_direction(cause)[index]) >= MAX_SHIFT * sqrt(12)
 
     def _band_direction(self, index: int) -> Numbers:
         """Compute the change of all unknowns from the lower to the upper end of the band of one unknown."""
         interval = self.intervals[index]
         return interval.high.theta - interval.low.theta
 
-    @property
-    def untold(self) -> tuple[str, ...]:
-        """Earlier name of `unidentifiable`."""
-        return self.unidentifiable
-
     def limited_by(self, name: str) -> tuple[str, ...]:
         """Return the names of the unknowns whose ranges limit a band, its own name included."""
-        limits = self.intervals[self.scales.names.index(name)].limits
-        return tuple(each.name for index, each in enumerate(self.scales.unknowns) if index in limits and not each.known)
+        limits = self.intervals[self.transform.names.index(name)].limits
+        unknowns = enumerate(self.transform.unknowns)
+        return tuple(unknown.name for index, unknown in unknowns if index in limits and not unknown.known)
 
     @cached_property
     def _determined(self) -> Numbers:
@@ -180,68 +170,77 @@ class Information:
     @cached_property
     def covariance(self) -> Numbers:
         """Covariance of the scaled unknowns from data, prior distributions, and ranges in unidentifiable directions."""
-        counts = [each.known or each.name in self.unidentifiable for each in self.scales.unknowns]
-        return numpy.linalg.inv(self._determined + numpy.diag(numpy.array(counts, dtype=float)))
+        from_prior = [unknown.known or unknown.name in self.unidentifiable for unknown in self.transform.unknowns]
+        return numpy.linalg.inv(self._determined + numpy.diag(numpy.array(from_prior, dtype=float)))
 
     @cached_property
     def products(self) -> tuple[Product, ...]:
         """Identifiable products of powers of unidentifiable unknowns."""
         if not self.unidentifiable:
             return ()
-        found = (self._product(vector) for vector in self._modes[1][:, : self.rank].T)
-        return tuple(product for product in found if product is not None)
+        products = (self._product(vector) for vector in self._modes[1][:, : self.rank].T)
+        return tuple(product for product in products if product is not None)
 
     def _product(self, vector: Numbers) -> Product | None:
-        """Write a direction as a product of powers, the largest of which is 1."""
-        unknowns = self.scales.unknowns
-        powers = vector / [each.span for each in unknowns]
-        shares = abs(vector)
-        some = [place for place in range(len(unknowns)) if shares[place] > (1 - _ALONE**2) ** 0.5]
-        mixed = set(self.unidentifiable) & {unknowns[place].name for place in some}
-        if len(some) < 2 or not mixed or not all(unknowns[place].logarithmic for place in some):
+        """Write a direction as a product of powers, the largest of which is 1; None without an identifiable product."""
+        unknowns = self.transform.unknowns
+        spans = [unknown.span for unknown in unknowns]
+        powers = vector / spans
+        factors = [index for index in range(len(unknowns)) if abs(vector)[index] > _MIN_MIXED_COMPONENT]
+        mixed = set(self.unidentifiable) & {unknowns[index].name for index in factors}
+        if len(factors) < 2 or not mixed or not all(unknowns[index].logarithmic for index in factors):
             return None
-        powers = powers / powers[some[numpy.argmax(abs(powers[some]))]]
-        exponents = {unknowns[place].name: _round(float(powers[place])) for place in some}
-        product = self._band(exponents)
-        spans = [each.span for each in unknowns]
-        factors = [abs(self._band_direction(i)[i]) * spans[i] for i in some if unknowns[i].name in mixed]
-        return product if log(product.high / product.low) < TOLD * min(factors) else None
+        powers = powers / powers[factors[numpy.argmax(abs(powers[factors]))]]
+        exponents = {unknowns[index].name: _rounded(float(powers[index])) for index in factors}
+        product = self._product_band(exponents)
+        widths = [
+            abs(self._band_direction(index)[index]) * spans[index] for index in factors if unknowns[index].name in mixed
+        ]
+        return product if log(product.high / product.low) < MAX_WIDTH_RATIO * min(widths) else None
 
-    def _band(self, exponents: dict[str, float]) -> Product:
+    def _product_band(self, exponents: dict[str, float]) -> Product:
         """Compute a product with its band, at the best point and over the bands of the unidentifiable unknowns."""
-        weight = numpy.array([exponents.get(name, 0.0) for name in self.scales.names])
-        along = weight * [each.span for each in self.scales.unknowns]
-        known = numpy.diag([float(each.known) for each in self.scales.unknowns])
-        left = numpy.linalg.pinv(self._determined + known, rcond=1e-9, hermitian=True)
-        half = self.quantile * float(along @ left @ along) ** 0.5
-        middle = self._logarithm(exponents, self.places)
-        lost = [self.intervals[self.scales.names.index(name)] for name in self.unidentifiable]
-        ends = [self._logarithm(exponents, end.theta) for interval in lost for end in (interval.low, interval.high)]
+        weight = numpy.array([exponents.get(name, 0.0) for name in self.transform.names])
+        direction = weight * [unknown.span for unknown in self.transform.unknowns]
+        known = numpy.diag([float(unknown.known) for unknown in self.transform.unknowns])
+        covariance = numpy.linalg.pinv(self._determined + known, rcond=1e-9, hermitian=True)
+        half = self.quantile * float(direction @ covariance @ direction) ** 0.5
+        middle = self._logarithm(exponents, self.theta)
+        intervals = [self.intervals[self.transform.names.index(name)] for name in self.unidentifiable]
+        ends = [
+            self._logarithm(exponents, end.theta) for interval in intervals for end in (interval.low, interval.high)
+        ]
         low, high = min(middle - half, *ends), max(middle + half, *ends)
-        units = {each.name: each.quantity.unit for each in self.scales.unknowns}
+        units = {unknown.name: unknown.quantity.unit for unknown in self.transform.unknowns}
         unit = " ".join(
             units[name] if power == 1 else f"{units[name]}^{power:.3g}" for name, power in exponents.items()
         )
         return Product(exponents, unit, exp(middle), exp(low), exp(high))
 
     def _logarithm(self, exponents: Mapping[str, float], theta: Numbers) -> float:
-        values = dict(zip(self.scales.names, self.scales.values(theta).tolist(), strict=True))
+        """Compute the logarithm of a product of powers at theta."""
+        values = dict(zip(self.transform.names, self.transform.values(theta).tolist(), strict=True))
         return sum(power * log(values[name]) for name, power in exponents.items())
 
 
-def _share(unknown: Unknown, interval: Interval, index: int) -> float:
+def _width_ratio(unknown: Unknown, interval: Interval, index: int) -> float:
     """Compute the width of a band over that of the range, or over the band of 95 % of a distribution."""
     width = float(interval.high.theta[index] - interval.low.theta[index])
-    return width / (2 * WIDE if unknown.known else sqrt(12))
+    return width / (2 * QUANTILE_95 if unknown.known else sqrt(12))
 
 
 def _modes(matrix: Numbers) -> tuple[Numbers, Numbers]:
-    """Eigenvalues, the largest first, and their directions in columns."""
+    """Compute the eigenvalues in descending order, and the eigenvectors in columns."""
     values, vectors = numpy.linalg.eigh((matrix + matrix.T) / 2)
     return numpy.maximum(values[::-1], 0.0), vectors[:, ::-1]
 
 
-def _round(power: float) -> float:
-    """A whole or a half number that is as near as the data could tell."""
-    near = round(2 * power) / 2
-    return near if abs(power - near) < 0.1 and near else power
+def _rounded(power: float) -> float:
+    """Round a power to a multiple of 1/2 that is nearer than 0.1."""
+    half_integer = round(2 * power) / 2
+    return half_integer if abs(power - half_integer) < 0.1 and half_integer else power
+
+
+__getattr__ = renamed_names(
+    __name__, {"TOLD": "MAX_WIDTH_RATIO", "MOVED": "MAX_SHIFT", "WIDE": "QUANTILE_95", "SURE": "QUANTILE_99"}
+)

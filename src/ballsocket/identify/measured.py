@@ -1,8 +1,8 @@
-"""What was measured: numbers at loads, each with its uncertainty, and the machine that measured them."""
+"""Measured values with uncertainties, at loads or of the joint itself."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf, pi
 from types import MappingProxyType
@@ -10,123 +10,30 @@ from typing import Any
 
 import numpy
 
-from ..contact import Contact
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require, select_load, shown
-from ..core.kinds import Kind, Unit
+from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
 from ..problem import Joint
+from .machine import IDEAL_MACHINE, Machine
+from .observables import CustomObservable
 
 MEASURED: Mapping[str, Quantity] = MappingProxyType(
     {
-        **{name: each for name, each in CONTACT.items() if name != "max_pressure_angle"},
+        **{name: quantity for name, quantity in CONTACT.items() if name != "max_pressure_angle"},
         "pressure": FIELD["pressure"],
         "pressure_integral": DERIVED["pressure_integral"],
         **JOINT,
         **PARTS,
     }
 )
-"""What can be measured: of a contact at a load, or of the joint itself, which needs none."""
+"""Quantities that can be measured: those of a contact need a load, those of the joint none."""
 
 OF_JOINT = (*JOINT, *PARTS)
-"""What is measured without a load, such as the free play of a joint, its `diametral_clearance`."""
-
-MACHINE: Mapping[str, Quantity] = MappingProxyType(
-    {
-        "compliance": Quantity(
-            "compliance",
-            "Cm",
-            "compliance of the machine",
-            Kind.COMPLIANCE,
-            "Deformation of frame and fixtures per force.",
-            Unit("µm/kN", 1e6),
-            allows=lambda value: value >= 0,
-            allowed="a machine's compliance (mm/N) is 0 or more",
-        ),
-        "offset": Quantity(
-            "offset", "d0", "zero offset", Kind.LENGTH, "Indentation that is read at first touch.", Unit("µm", 1e3)
-        ),
-        "drift": Quantity(
-            "drift",
-            "dd",
-            "drift of the zero",
-            Kind.LENGTH,
-            "Change of the zero from one reading to the next.",
-            Unit("µm", 1e3),
-        ),
-    }
-)
-"""Errors of a machine that add to an indentation."""
-
-Between = float | tuple[float, float]
-"""A number that is known, or the ends between which it is unknown."""
+"""Quantities that are measured without a load, such as the free play of a joint, its `diametral_clearance`."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Machine:
-    """A machine that adds to the indentations it reads: d + compliance x force + offset + drift x order.
-
-    Parameters
-    ----------
-    compliance : float or (low, high)
-        Of frame and fixtures in mm/N; two ends make it an unknown that is found with the others.
-    offset : float or (low, high)
-        Of the zero in mm.
-    drift : float or (low, high)
-        Drift of the zero in mm per reading; `Measured.order` numbers the readings.
-    name : str
-        Machines of one name are one: several sets of data may share its unknowns.
-
-    Raises
-    ------
-    ValueError
-        A compliance below 0; ends that are not finite, or the wrong way round.
-    """
-
-    compliance: Between = 0.0
-    offset: Between = 0.0
-    drift: Between = 0.0
-    name: str = "machine"
-
-    def __post_init__(self) -> None:
-        for part, value in self._parts():
-            ends = value if isinstance(value, tuple) else (value, value)
-            if (
-                len(ends) != 2
-                or not -inf < ends[0] <= ends[1] < inf
-                or (isinstance(value, tuple) and ends[0] == ends[1])
-            ):
-                raise ValueError(f"{part} = {shown(value)} must be a number, or two ends that go upwards")
-        low = self.compliance[0] if isinstance(self.compliance, tuple) else self.compliance
-        require("compliance", low, MACHINE["compliance"].allows(low), MACHINE["compliance"].allowed)
-
-    def _parts(self) -> list[tuple[str, Between]]:
-        return [(part, getattr(self, part)) for part in MACHINE]
-
-    def key(self, part: str) -> str:
-        """The name of an unknown of this machine, "machine.offset"."""
-        return f"{self.name}.{part}"
-
-    @property
-    def unknowns(self) -> dict[str, tuple[float, float]]:
-        """Ends of what is not known, by its key."""
-        return {self.key(part): value for part, value in self._parts() if isinstance(value, tuple)}
-
-    def known(self) -> dict[str, float]:
-        """What is known, by its key."""
-        return {self.key(part): value for part, value in self._parts() if not isinstance(value, tuple)}
-
-
-@dataclass(frozen=True)
-class Own:
-    """One's own quantity, such as the frequency of a vibration: how it is described, and read from a contact."""
-
-    described: Quantity
-    read: Callable[[Contact], Any]
-
-
-PERFECT = Machine(name="")
-"""A machine that adds nothing."""
+_NOT_NEGATIVE = "the value must be 0 or more and finite"  # rule in a message
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -136,33 +43,35 @@ class Measured:
     Parameters
     ----------
     quantity : str
-        One of `MEASURED`: "indentation", "half_angle", "area", "max_pressure", "force", ...; "pressure" at angles; or
-        a number of the joint, such as "diametral_clearance", which needs no load.
-    values : array
-        In mm, N, MPa, rad.
+        One of `MEASURED`: "indentation", "half_angle", "area", "max_pressure", "force", ...; "pressure" needs angles. A
+        number of the joint, such as "diametral_clearance", needs no load.
+    values : array (values,)
+        Measured values in mm, N, MPa, rad.
     uncertainty : float or array
-        Standard uncertainty (k = 1) of the values, in their unit, above 0.
+        Standard uncertainty (k = 1) of the values in their unit, above 0.
     force, indentation, half_angle : array
-        One of them: the loads.
+        Loads in N, mm or rad; exactly one of the three is given.
     load_uncertainty : float or array
         Standard uncertainty of the loads.
     angle : array
-        Polar angles (rad) from the load axis, of a "pressure".
+        Polar angles in rad from the load axis, for a "pressure".
     saturation : float
-        What a film or sensor reads at most: values there say that the quantity is at least so much.
+        Largest reading of a film or sensor. A value at this limit is a lower bound.
     machine : Machine
-        What reads the indentations.
+        Machine that reads the indentations.
     order : array
         Numbers of the readings in the order of measurement, for a drift of the zero. Default 0, 1, 2, ...
-    own : Own
-        What one's own quantity is, of any name.
+    observable : CustomObservable
+        Custom quantity; `quantity` is then its name.
     name : str
-        What a refusal or a figure calls this set, such as its file.
+        Name of the data set in messages and figures, such as its file.
 
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value and place; a quantity that is not known; no load.
+        A number that is not allowed, with its value and index; an unknown quantity; a missing load.
+    TypeError
+        A machine that is not a `Machine`.
 
     Examples
     --------
@@ -180,115 +89,119 @@ class Measured:
     load_uncertainty: Any = 0.0
     angle: Any = None
     saturation: float = inf
-    machine: Machine = PERFECT
+    machine: Machine = IDEAL_MACHINE
     order: Any = None
-    own: Own | None = None
+    observable: CustomObservable | None = None
     name: str = ""
     described: Quantity = field(init=False)
-    """The quantity with its title and unit."""
+    """Quantity with its title and unit."""
     load: str = field(init=False, default="")
-    """The name of the load; empty where there is none."""
+    """Name of the load; empty for a quantity of the joint."""
+    own = RenamedAttribute("observable")
 
     def __post_init__(self) -> None:
         if not isinstance(self.machine, Machine):
             raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
-        if self.own is None:
+        if self.observable is None:
             self._set("quantity", known_name("quantity", self.quantity, MEASURED))
-        self._set("described", MEASURED[self.quantity] if self.own is None else self.own.described)
-        values = _row(self._called(self.quantity), self.values)
+        self._set("described", MEASURED[self.quantity] if self.observable is None else self.observable.described)
+        values = _row(self._label(self.quantity), self.values)
         self._set("values", values)
         self._check_values(values)
-        self._set("uncertainty", self._beside(f"{self.quantity}_uncertainty", self.uncertainty, values))
-        sigma, title = self.uncertainty, self._called(f"{self.quantity}_uncertainty")
+        self._set("uncertainty", self._broadcast(f"{self.quantity}_uncertainty", self.uncertainty, values))
+        sigma, title = self.uncertainty, self._label(f"{self.quantity}_uncertainty")
         require(title, sigma, (sigma > 0) & (sigma < inf), "an uncertainty is above 0 and finite")
-        require("saturation", self.saturation, self.saturation > 0, "what a film reads at most is above 0")
+        require("saturation", self.saturation, self.saturation > 0, "the largest reading of a film is above 0")
         if self.quantity not in OF_JOINT:
-            self._take_load(values)
+            self._set_load(values)
         if (self.angle is not None) != (self.quantity == "pressure"):
-            raise ValueError(f"{self._called(self.quantity)} needs {'an angle' if self.angle is None else 'no angle'}")
+            rule = "needs an angle" if self.angle is None else "takes no angle"
+            raise ValueError(f"{self._label(self.quantity)} {rule}")
         if self.angle is not None:
-            self._set("angle", FIELD["angle"].checked(self._beside("angle", self.angle, values)))
-        if self.machine is not PERFECT and "indentation" not in (self.quantity, self.load):
-            raise ValueError(f"{self._called(self.quantity)} has a machine, which belongs to an indentation")
-        self._set("order", self._readings(values))
+            self._set("angle", FIELD["angle"].checked(self._broadcast("angle", self.angle, values)))
+        if self.machine is not IDEAL_MACHINE and "indentation" not in (self.quantity, self.load):
+            raise ValueError(f"{self._label(self.quantity)} has a machine, but only indentations are read by one")
+        self._set("order", self._reading_order(values))
 
     def _set(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
 
-    def _called(self, what: str) -> str:
-        return f"{self.name}: {what}" if self.name else what
+    def _label(self, quantity: str) -> str:
+        """Return the name of a quantity in messages, with the name of the data set."""
+        return f"{self.name}: {quantity}" if self.name else quantity
 
-    def _readings(self, values: Numbers) -> Numbers:
+    def _reading_order(self, values: Numbers) -> Numbers:
         if self.order is None:
             return numpy.arange(float(values.size))
-        order = self._beside("order", self.order, values)
-        require(self._called("order"), order, abs(order) < inf, "numbers of readings must be finite")
+        order = self._broadcast("order", self.order, values)
+        require(self._label("order"), order, abs(order) < inf, "numbers of readings must be finite")
         return order
 
     def _check_values(self, values: Numbers) -> None:
         gaps = numpy.flatnonzero(numpy.isnan(values))
         if len(gaps):
             rows = ", ".join(str(gap + 1) for gap in gaps[:8])
-            raise ValueError(f"{self._called(self.quantity)} has no number in row {rows}: leave it out, or give it one")
-        if self.own is not None:
+            raise ValueError(f"{self._label(self.quantity)} has no number in row {rows}: add it, or omit the row")
+        if self.observable is not None:
             return
         if not self.described.allowed:
-            require(self._called(self.quantity), values, (values >= 0) & (values < inf), "it is 0 or more and finite")
-        elif self.machine is PERFECT:  # one that adds an offset may read less than nothing
-            good = self.described.allows(values)
-            require(self._called(self.quantity), values, good, self.described.allowed)
+            require(self._label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
+        elif self.machine is IDEAL_MACHINE:  # a machine with an offset may read less than 0
+            allowed = self.described.allows(values)
+            require(self._label(self.quantity), values, allowed, self.described.allowed)
 
-    def _beside(self, what: str, numbers: Any, values: Numbers) -> Numbers:
-        """One number for all the values, or one each."""
-        row = _row(self._called(what), numbers)
+    def _broadcast(self, name: str, numbers: Any, values: Numbers) -> Numbers:
+        """Return one number per value, from one number for all values or one for each."""
+        row = _row(self._label(name), numbers)
         if row.size not in (1, values.size):
-            raise ValueError(f"{self._called(what)} has {row.size} numbers beside {values.size} values")
+            raise ValueError(f"{self._label(name)} must have 1 or {values.size} numbers, got {row.size}")
         if numpy.isnan(row).any():
-            raise ValueError(f"{self._called(what)} has no number in row {int(numpy.isnan(row).argmax()) + 1}")
+            raise ValueError(f"{self._label(name)} has no number in row {int(numpy.isnan(row).argmax()) + 1}")
         return numpy.broadcast_to(row, values.shape)
 
-    def _take_load(self, values: Numbers) -> None:
-        kind, given = select_load(**{name: getattr(self, name) for name in LOADS})
+    def _set_load(self, values: Numbers) -> None:
+        kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
         if kind == self.quantity:
-            raise ValueError(f"{self._called(kind)} is measured, and is the load too")
-        row = self._beside(kind, given, values)
-        if self.machine is PERFECT or kind != "indentation":
-            require(self._called(kind), row, LOADS[kind].allows(row), LOADS[kind].allowed)
+            raise ValueError(f"{self._label(kind)} is both the measured quantity and the load; choose another load")
+        row = self._broadcast(kind, load, values)
+        if self.machine is IDEAL_MACHINE or kind != "indentation":
+            require(self._label(kind), row, LOADS[kind].allows(row), LOADS[kind].allowed)
         self._set("load", kind)
         self._set(kind, row)
-        blur = self._beside("load_uncertainty", self.load_uncertainty, values)
-        require(self._called("load_uncertainty"), blur, (blur >= 0) & (blur < inf), "it is 0 or more and finite")
-        self._set("load_uncertainty", blur)
+        sigma = self._broadcast("load_uncertainty", self.load_uncertainty, values)
+        require(self._label("load_uncertainty"), sigma, (sigma >= 0) & (sigma < inf), _NOT_NEGATIVE)
+        self._set("load_uncertainty", sigma)
         self._check_unloaded(row, values)
 
     def _check_unloaded(self, load: Numbers, values: Numbers) -> None:
         """Raise ValueError for a value without a load, except from a machine with a zero error."""
-        if self.machine.offset == 0.0 and self.machine.drift == 0.0:
-            said = f"at first touch there is no {self.described.title}, unless the machine's zero is off"
-            require(self._called(self.load), load, (load > 0) | (values == 0), said)
+        if not self.machine.has_zero_error:
+            rule = f"at first touch the {self.described.title} is 0, except with a zero error of the machine"
+            require(self._label(self.load), load, (load > 0) | (values == 0), rule)
 
     def __len__(self) -> int:
         return len(self.values)
 
     @property
     def loads(self) -> Numbers:
-        """The loads; empty where there are none."""
+        """Loads; empty for a quantity of the joint."""
         return getattr(self, self.load) if self.load else numpy.zeros(0)
 
     @property
     def saturated(self) -> Numbers:
-        """Which values only say that the quantity is at least so much."""
+        """Mask of the values that are lower bounds."""
         return numpy.asarray(self.values >= self.saturation)
 
     def check_within(self, joint: Joint) -> None:
-        """Raise ValueError for what no contact of such a ball can be: wider than half of it."""
+        """Raise ValueError for an area larger than half of the ball."""
         if self.quantity == "area":
             half = 2 * pi * float(joint.ball_radius) ** 2
-            said = f"half of this ball has 2π R1² = {half:.4g} mm², which no contact exceeds"
-            require(self._called("area"), self.values, self.values < half, said)
+            rule = f"a contact area is below half of the ball, 2π R1² = {half:.4g} mm²"
+            require(self._label("area"), self.values, self.values < half, rule)
 
 
 def _row(name: str, numbers: Any) -> Numbers:
+    """Convert numbers to an array (values,)."""
     try:
         plain = numpy.asarray(numbers)
         row = numpy.atleast_1d(plain.astype(float, casting="safe" if plain.dtype.kind == "c" else "unsafe"))
@@ -297,3 +210,15 @@ def _row(name: str, numbers: Any) -> Numbers:
     if row.ndim != 1 or row.size == 0:
         raise ValueError(f"{name} of shape {row.shape} must be a row of numbers")
     return row
+
+
+_init: Any = renamed_arguments(own="observable")(Measured.__init__)
+Measured.__init__ = _init  # type: ignore[method-assign]
+
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "Own": "ballsocket.identify.observables.CustomObservable",
+        "PERFECT": "ballsocket.identify.machine.IDEAL_MACHINE",
+    },
+)

@@ -9,130 +9,172 @@ from math import inf
 import numpy
 
 from ..core.arrays import Numbers
-from .answers import Answers
-from .scatter import Scatter
-from .unknowns import Scales, log_prior
+from ..core.deprecation import RenamedAttribute
+from .forward_model import ForwardModel
+from .scatter import ScatterModel
+from .unknowns import ParameterTransform, log_prior
 
-Slopes = Callable[[Answers, Scales, Numbers], tuple[Numbers, Numbers]]
-"""Function from scaled unknowns (..., unknowns) to results (..., data) and derivatives (..., data, unknowns)."""
+Slopes = Callable[[ForwardModel, ParameterTransform, Numbers], tuple[Numbers, Numbers]]
+"""Function from theta (..., unknowns) to results (..., data) and derivatives (..., data, unknowns)."""
 
 
-def by_differences(answers: Answers, scales: Scales, places: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute results and central differences in one array call, one-sided at the range ends."""
-    count = places.shape[-1]
-    points = places.reshape(-1, 1, count)
-    step = answers.model.smooth_step * numpy.eye(count)
-    stencil = numpy.clip(numpy.concatenate([points, points + step, points - step], axis=1), scales.low, scales.high)
-    found = answers.at(scales.values(stencil.reshape(-1, count))).reshape(*stencil.shape[:2], -1)
-    here, above, below = found[:, 0], found[:, 1 : 1 + count], found[:, 1 + count :]
-    up, down = (numpy.diagonal(part, axis1=1, axis2=2) for part in numpy.split(stencil[:, 1:], 2, axis=1))
-    above, up = _or_here(above, up, here, points[:, 0])
-    below, down = _or_here(below, down, here, points[:, 0])
+def by_differences(forward: ForwardModel, transform: ParameterTransform, theta: Numbers) -> tuple[Numbers, Numbers]:
+    """Compute results and central differences in one array call, one-sided at the range ends.
+
+    Parameters
+    ----------
+    forward : ForwardModel
+    transform : ParameterTransform
+    theta : array (..., unknowns)
+        Scaled parameters.
+
+    Returns
+    -------
+    results : array (..., data)
+        NaN where the model has no result.
+    derivatives : array (..., data, unknowns)
+        Derivatives with respect to theta.
+    """
+    count = theta.shape[-1]
+    points = theta.reshape(-1, 1, count)
+    step = forward.model.smooth_step * numpy.eye(count)
+    stencil = numpy.concatenate([points, points + step, points - step], axis=1)
+    stencil = numpy.clip(stencil, transform.low, transform.high)
+    results = forward.at(transform.values(stencil.reshape(-1, count))).reshape(*stencil.shape[:2], -1)
+    centre, above, below = results[:, 0], results[:, 1 : 1 + count], results[:, 1 + count :]
+    up, down = (numpy.diagonal(half, axis1=1, axis2=2) for half in numpy.split(stencil[:, 1:], 2, axis=1))
+    above, up = _or_centre(above, up, centre, points[:, 0])
+    below, down = _or_centre(below, down, centre, points[:, 0])
     slopes = (above - below) / numpy.where(up > down, up - down, inf)[..., None]
-    shape = places.shape[:-1]
-    return here.reshape(*shape, -1), slopes.swapaxes(1, 2).reshape(*shape, -1, count)
+    shape = theta.shape[:-1]
+    return centre.reshape(*shape, -1), slopes.swapaxes(1, 2).reshape(*shape, -1, count)
 
 
-def _or_here(found: Numbers, at: Numbers, here: Numbers, points: Numbers) -> tuple[Numbers, Numbers]:
+def _or_centre(results: Numbers, theta: Numbers, centre: Numbers, points: Numbers) -> tuple[Numbers, Numbers]:
     """Replace a neighbour without a result by the point itself."""
-    lost = numpy.isnan(found).any(axis=-1)
-    return numpy.where(lost[..., None], here[:, None], found), numpy.where(lost, points, at)
+    missing = numpy.isnan(results).any(axis=-1)
+    return numpy.where(missing[..., None], centre[:, None], results), numpy.where(missing, points, theta)
+
+
+@dataclass(frozen=True, eq=False)
+class FitResult:
+    """End of a search.
+
+    Attributes
+    ----------
+    theta : array (unknowns,)
+        Best point, in standard deviations of the priors.
+    cost : float
+        Minus ln of the posterior density, up to a constant.
+    converged : bool
+    rivals : tuple of array
+        Distant ends of other searches with nearly the same cost.
+    """
+
+    theta: Numbers
+    cost: float
+    converged: bool
+    rivals: tuple[Numbers, ...] = ()
+    places = RenamedAttribute("theta")
 
 
 @dataclass(frozen=True, eq=False)
 class Misfit:
-    """Data against answers: residuals for least squares, whose half sum of squares is -ln of the posterior.
+    """Data against results: residuals for least squares, whose half sum of squares is minus ln of the posterior.
 
     Attributes
     ----------
-    answers : Answers
-    scales : Scales
-    scatter : Scatter
+    forward : ForwardModel
+    transform : ParameterTransform
+    scatter : ScatterModel
     slopes : callable
         `by_differences`, or `by_tracing`.
-    value, uncertainty : array (data,)
+    uncertainty : array (data,)
     widening : float
         Factor on all uncertainties, 1 or more: observed scatter over the stated uncertainties.
-    cut_off : array (data,)
-        Which values only say "at least so much".
+    value : array (data,)
+        Measured values; a saturated value is replaced by its limit.
+    saturated : array (data,)
+        Mask of the values that are lower bounds.
     """
 
-    answers: Answers
-    scales: Scales
-    scatter: Scatter
+    forward: ForwardModel
+    transform: ParameterTransform
+    scatter: ScatterModel
     slopes: Slopes
     uncertainty: Numbers
     widening: float = 1.0
     value: Numbers = field(init=False)
-    cut_off: Numbers = field(init=False)
+    saturated: Numbers = field(init=False)
 
     def __post_init__(self) -> None:
-        data = self.answers.data
-        cut = numpy.concatenate([each.saturated for each in data])
-        limits = numpy.concatenate([numpy.full(len(each), each.saturation) for each in data])
-        values = numpy.concatenate([each.values for each in data])
-        object.__setattr__(self, "cut_off", cut)
-        object.__setattr__(self, "value", numpy.where(cut, limits, values))
+        data = self.forward.data
+        saturated = numpy.concatenate([measured.saturated for measured in data])
+        limits = numpy.concatenate([numpy.full(len(measured), measured.saturation) for measured in data])
+        values = numpy.concatenate([measured.values for measured in data])
+        object.__setattr__(self, "saturated", saturated)
+        object.__setattr__(self, "value", numpy.where(saturated, limits, values))
 
     @property
     def freedom(self) -> int:
         """Degrees of freedom: values less the unknowns without a stated distribution."""
-        return len(self.value) - sum(not each.known for each in self.scales.unknowns)
+        return len(self.value) - sum(not unknown.known for unknown in self.transform.unknowns)
 
-    def standard(self, found: Numbers) -> Numbers:
-        """Compute (answer - value)/uncertainty with the widened uncertainties."""
-        return (found - self.value) / (self.widening * self.uncertainty)
+    def standard(self, results: Numbers) -> Numbers:
+        """Compute (result - value)/uncertainty with the widened uncertainties."""
+        return (results - self.value) / (self.widening * self.uncertainty)
 
-    def residuals(self, found: Numbers) -> Numbers:
-        """One for each of the data, whose half sum of squares is -ln of the likelihood but for a constant."""
-        z = self.standard(found)
-        return numpy.where(self.cut_off, self.scatter.beyond(z)[0], self.scatter.misfit(z))
+    def residuals(self, results: Numbers) -> Numbers:
+        """Compute one residual per value; half the sum of squares is minus ln of the likelihood up to a constant."""
+        z = self.standard(results)
+        return numpy.where(self.saturated, self.scatter.censored(z)[0], self.scatter.misfit(z))
 
-    def both(self, places: Numbers) -> tuple[Numbers, Numbers]:
+    def residuals_and_slopes(self, theta: Numbers) -> tuple[Numbers, Numbers]:
         """Compute residuals (..., data), those of stated distributions included, and their derivatives."""
-        found, slopes = self.slopes(self.answers, self.scales, places)
-        z = self.standard(found)
-        bend = numpy.where(self.cut_off, self.scatter.beyond(z)[1], self.scatter.slope(z))
-        bend = bend / (self.widening * self.uncertainty)
-        known = numpy.array([each.known for each in self.scales.unknowns])
-        unit = numpy.broadcast_to(numpy.eye(places.shape[-1])[known], (*places.shape[:-1], known.sum(), len(known)))
+        results, slopes = self.slopes(self.forward, self.transform, theta)
+        z = self.standard(results)
+        weight = numpy.where(self.saturated, self.scatter.censored(z)[1], self.scatter.slope(z))
+        weight = weight / (self.widening * self.uncertainty)
+        known = numpy.array([unknown.known for unknown in self.transform.unknowns])
+        unit = numpy.broadcast_to(numpy.eye(theta.shape[-1])[known], (*theta.shape[:-1], known.sum(), len(known)))
         return (
-            numpy.concatenate([self.residuals(found), self.scales.surprise(places)[..., known]], axis=-1),
-            numpy.concatenate([bend[..., None] * slopes, unit], axis=-2),
+            numpy.concatenate([self.residuals(results), self.transform.prior_residuals(theta)[..., known]], axis=-1),
+            numpy.concatenate([weight[..., None] * slopes, unit], axis=-2),
         )
 
-    def costs(self, places: Numbers) -> Numbers:
-        """-ln of the likelihood and of what was known, but for a constant; inf where there is no answer. (points,)."""
-        residuals = self.residuals(self.answers.at(self.scales.values(places)))
-        cost = (numpy.sum(residuals**2, axis=1) + numpy.sum(self.scales.surprise(places) ** 2, axis=-1)) / 2
+    def costs(self, theta: Numbers) -> Numbers:
+        """Compute minus ln of likelihood and prior distributions up to a constant, (points,); inf without a result."""
+        residuals = self.residuals(self.forward.at(self.transform.values(theta)))
+        squares = numpy.sum(residuals**2, axis=1) + numpy.sum(self.transform.prior_residuals(theta) ** 2, axis=-1)
+        cost = squares / 2
         return numpy.where(numpy.isfinite(cost), cost, inf)
 
-    def log_posterior(self, places: Numbers) -> Numbers:
-        """ln of the posterior by places, but for a constant; two ends make every number between equally likely."""
-        prior = log_prior(self.scales, places)
-        inside = numpy.clip(places, self.scales.low, self.scales.high)
-        residuals = self.residuals(self.answers.at(self.scales.values(inside)))
+    def log_posterior(self, theta: Numbers) -> Numbers:
+        """Compute ln of the posterior density up to a constant, (points,); all values in a range are equally likely."""
+        prior = log_prior(self.transform, theta)
+        inside = numpy.clip(theta, self.transform.low, self.transform.high)
+        residuals = self.residuals(self.forward.at(self.transform.values(inside)))
         total = prior - numpy.sum(residuals**2, axis=1) / 2
         return numpy.where(numpy.isfinite(total), total, -inf)
 
-    def information(self, places: Numbers) -> Numbers:
-        """Fisher's information that the data hold about the places, (unknowns, unknowns)."""
-        found, slopes = self.slopes(self.answers, self.scales, places)
-        return (slopes * self._weights(found)[:, None]).T @ slopes
+    def information(self, theta: Numbers) -> Numbers:
+        """Compute the Fisher information of the data about theta, (unknowns, unknowns)."""
+        results, slopes = self.slopes(self.forward, self.transform, theta)
+        return (slopes * self._weights(results)[:, None]).T @ slopes
 
-    def shifts(self, places: Numbers, errors: Numbers) -> Numbers:
+    def shifts(self, theta: Numbers, errors: Numbers) -> Numbers:
         """Compute JᵀW δ for errors δ (kinds, data) of the values: (unknowns, kinds)."""
-        found, slopes = self.slopes(self.answers, self.scales, places)
-        return slopes.T @ (self._weights(found) * errors).T
+        results, slopes = self.slopes(self.forward, self.transform, theta)
+        return slopes.T @ (self._weights(results) * errors).T
 
-    def _weights(self, found: Numbers) -> Numbers:
+    def _weights(self, results: Numbers) -> Numbers:
         """Compute the information of each value about its result, in 1/unit²."""
-        each = numpy.where(self.cut_off, self._of_cut_off(found), self.scatter.told)
-        return each / (self.widening * self.uncertainty) ** 2
+        information = numpy.where(self.saturated, self._censored_information(results), self.scatter.information)
+        return information / (self.widening * self.uncertainty) ** 2
 
-    def _of_cut_off(self, found: Numbers) -> Numbers:
-        """-d²/dz² of ln P(reading above): (h² + h pull), h the hazard and pull that of the density."""
-        z = self.standard(found)
-        residual, slope = self.scatter.beyond(z)
-        hazard, pull = -residual * slope, self.scatter.misfit(z) * self.scatter.slope(z)
-        return numpy.maximum(hazard * (hazard + pull), 0.0)
+    def _censored_information(self, results: Numbers) -> Numbers:
+        """Compute -d²/dz² of ln P(reading above): h² + h s, with the hazard h and the slope s of -ln of the density."""
+        z = self.standard(results)
+        residual, slope = self.scatter.censored(z)
+        hazard, density_slope = -residual * slope, self.scatter.misfit(z) * self.scatter.slope(z)
+        return numpy.maximum(hazard * (hazard + density_slope), 0.0)

@@ -1,4 +1,4 @@
-"""From any reference to a foundation modulus: what the closed form must be told, and the error it then makes."""
+"""Calibration of a foundation modulus to a reference model, with the error of the closed form."""
 
 from __future__ import annotations
 
@@ -18,31 +18,33 @@ from ..models.modulus import Modulus, constant, corrected_vessel, polynomial, sp
 from ..problem import Joint
 
 Form = Callable[[Joint, numpy.ndarray], Modulus]
-"""From a joint (of numbers or arrays) and the K wanted there, in MPa/mm, to a modulus."""
+"""Function from a joint (numbers or arrays) and the target K in MPa/mm to a modulus."""
 
 FORCES = (1000.0, 2000.0, 3000.0)
-"""Loads in N over which p0/d is averaged, as in the paper."""
+"""Default loads in N, over which p0/d is averaged, as in the paper."""
 
 
 def as_constant(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """One number in MPa/mm: the mean of `wanted`, the K of the joint (same shape) in MPa/mm."""
+    """Return a constant modulus: the mean of `wanted`, the target K in MPa/mm of the shape of the joint."""
     return constant(float(numpy.mean(wanted)))
 
 
 def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """K R2/E = C1 + C2 (R2/L) + C3 (R2/L)², Eq. (18), by least squares of relative errors, constants 0 or more.
+    """Fit K R2/E = C1 + C2 (R2/L) + C3 (R2/L)², Eq. (18), by least squares of relative errors.
+
+    The constants are 0 or more.
 
     Raises
     ------
     ValueError
-        A joint of fewer than three thicknesses.
+        A joint with fewer than three thicknesses.
     """
     from scipy.optimize import nnls
 
     thicknesses = numpy.unique(_values(joint.thickness_ratio)).size
     if thicknesses < 3:
         raise ValueError(
-            f"{thicknesses} thicknesses are not enough for the three constants of Eq. (18): give 3 or more"
+            f"liner_thickness has {thicknesses} different values, but Eq. (18) has three constants: give 3 or more"
         )
     ratio, scaled = numpy.broadcast_arrays(_values(joint.thickness_ratio), wanted * _values(joint.socket_radius))
     scaled = scaled / _values(joint.liner.young)
@@ -52,13 +54,13 @@ def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
 
 
 def as_corrected_vessel(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L), by least squares."""
+    """Fit K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L), by least squares."""
     ratio = _values(joint.thickness_ratio)
-    kappa, share = numpy.broadcast_arrays(ratio / (1 + ratio), wanted / _values(spherical_vessel(joint)))
-    powers = min(3, numpy.unique(kappa).size)  # one thickness tells one constant
+    kappa, factor = numpy.broadcast_arrays(ratio / (1 + ratio), wanted / _values(spherical_vessel(joint)))
+    powers = min(3, numpy.unique(kappa).size)  # one thickness determines one constant
     basis = numpy.stack([kappa.ravel() ** k for k in range(powers)], axis=-1)
-    found = numpy.linalg.lstsq(basis, share.ravel(), rcond=None)[0]
-    return corrected_vessel(*map(float, numpy.pad(found, (0, 3 - powers))), source="this project's fit")
+    constants = numpy.linalg.lstsq(basis, factor.ravel(), rcond=None)[0]
+    return corrected_vessel(*map(float, numpy.pad(constants, (0, 3 - powers))), source="this project's fit")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,15 +70,15 @@ class Calibration:
     Attributes
     ----------
     modulus : Modulus
-        What was fitted; `model` is the closed form that takes it.
+        Fitted modulus; `model` is the closed form with it.
     joint : Joint
-        The joints it was fitted to (numbers or arrays).
+        Joints of the fit (numbers or arrays).
     force : array
-        The loads in N.
+        Loads in N.
     wanted : array
-        p0/d of the reference in MPa/mm, averaged over the loads; shape of the joint.
+        Target: p0/d of the reference in MPa/mm, averaged over the loads; shape of the joint.
     spread : float
-        Largest relative departure of a single load's p0/d from that mean: how far K is not a constant.
+        Largest relative deviation of p0/d at a single load from that mean.
     reference : Model
     """
 
@@ -89,12 +91,12 @@ class Calibration:
 
     @property
     def model(self) -> RadialFoundation:
-        """The paper's closed form with the fitted modulus."""
+        """Closed form of the paper with the fitted modulus."""
         return RadialFoundation(modulus=self.modulus)
 
     @property
     def residual(self) -> numpy.ndarray:
-        """Relative residual of the fit, fitted over wanted less 1; shape of the joint."""
+        """Relative residual of the fit, fitted over target less 1; shape of the joint."""
         return _values(self.modulus(self.joint)) / self.wanted - 1
 
     @cached_property
@@ -114,7 +116,7 @@ class Calibration:
         return {**errors, "force": worst_error(at_depth.force, truth.force)}
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return one dictionary for JSON."""
         return {
             "reference": self.reference.name,
             "modulus": self.modulus.name,
@@ -130,12 +132,12 @@ class Calibration:
 def calibrate(
     joint: Joint, *, force: Array = FORCES, form: Form = as_constant, reference: Model | None = None
 ) -> Calibration:
-    """Fit a foundation modulus to a reference, as the paper did to finite elements: by the mean of p0/d over loads.
+    """Fit a foundation modulus to a reference by the mean of p0/d over loads, as the paper did to finite elements.
 
     Parameters
     ----------
     joint : Joint
-        One's own geometry and layers; arrays (say of thicknesses) for a modulus that covers a family of joints.
+        Geometry and layers; arrays (such as thicknesses) for a modulus that covers a family of joints.
     force : array
         Loads in N, all above 0.
     form : function
@@ -150,7 +152,7 @@ def calibrate(
     Raises
     ------
     ValueError
-        A load that is not above 0; a joint or load that the reference does not answer.
+        A load that is not above 0; a joint or load for which the reference has no result.
 
     Examples
     --------
@@ -165,17 +167,17 @@ def calibrate(
     if loads.size == 0 or not numpy.all(loads > 0):
         raise ValueError(f"force = {loads.tolist()} is not allowed: a calibration needs loads (N) above 0")
     shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in joint.numbers()))
-    answers = model.press(joint, force=loads.reshape(-1, *(1 for _ in shape)))
-    each = _values(answers.foundation_modulus)
-    if not numpy.all(numpy.isfinite(each)):
-        raise ValueError(f"{model.name} does not answer everywhere: {'; '.join(answers.notes)}")
-    wanted = numpy.mean(each, axis=0)
+    contact = model.press(joint, force=loads.reshape(-1, *(1 for _ in shape)))
+    moduli = _values(contact.foundation_modulus)
+    if not numpy.all(numpy.isfinite(moduli)):
+        raise ValueError(f"{model.name} has no result for some joints or loads: {'; '.join(contact.notes)}")
+    wanted = numpy.mean(moduli, axis=0)
     return Calibration(
         modulus=form(joint, wanted),
         joint=joint,
         force=loads,
         wanted=wanted,
-        spread=float(numpy.max(abs(each / wanted - 1))),
+        spread=float(numpy.max(abs(moduli / wanted - 1))),
         reference=model,
     )
 
@@ -185,5 +187,5 @@ def _values(x: Array) -> numpy.ndarray:
 
 
 def worst_error(value: Array, truth: Array) -> float:
-    """The largest relative error among all points."""
+    """Compute the largest relative error of all points."""
     return float(numpy.max(abs(_values(value) / _values(truth) - 1)))

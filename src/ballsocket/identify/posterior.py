@@ -1,45 +1,44 @@
-"""The distribution of what is sought, by Markov chains, and whether they have converged."""
+"""Posterior distribution of the unknowns by Markov chains, with their convergence."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs, require
+from ..core.deprecation import renamed_arguments
+from .fit import FittedModel
 
-if TYPE_CHECKING:
-    from .parameters import Identified
-
-_WALKERS = 64
-_ENSEMBLES = 2
-_BURN = 60  # steps that are not kept
-_DEGREES = 5.0  # of freedom, of the proposals about the best point
-_MOST = 64  # rounds of chains
+_N_WALKERS = 64
+_N_ENSEMBLES = 2
+_BURN_IN = 60  # steps that are discarded
+_PROPOSAL_FREEDOM = 5.0  # degrees of freedom of the proposals about the best point
+_MAX_ROUNDS = 64  # rounds of chains
 CONVERGED = 1.01
-"""R-hat up to which chains have converged."""
+"""Largest R-hat of converged chains."""
 
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Samples of the unknowns, and how far they can be trusted.
+    """Samples of the posterior distribution, with their quality.
 
     Attributes
     ----------
     names : tuple of str
     samples : array (samples, unknowns)
-        In mm, N, MPa, rad.
+        Values in mm, N, MPa, rad.
     acceptance : float
-        Share of the proposals that were taken.
+        Fraction of accepted proposals.
     autocorrelation : dict of str to float
-        Steps after which a chain has forgotten where it was (integrated autocorrelation time).
+        Integrated autocorrelation time in steps, by unknown.
     effective : dict of str to float
-        As many independent samples tell as much.
+        Effective number of independent samples, by unknown.
     r_hat : dict of str to float
-        Of independent ensembles, each cut in halves; 1 where all of them say the same.
+        Split R-hat of independent ensembles, by unknown; 1 for converged chains.
     """
 
     names: tuple[str, ...]
@@ -51,19 +50,22 @@ class Posterior:
 
     @property
     def converged(self) -> bool:
+        """True if R-hat of every unknown is at most `CONVERGED`."""
         return max(self.r_hat.values()) <= CONVERGED
 
-    def band(self, name: str, share: float = 0.95) -> tuple[float, float]:
-        """Ends between which an unknown lies with that probability, as much beyond the one as beyond the other."""
+    @renamed_arguments(share="probability")
+    def band(self, name: str, probability: float = 0.95) -> tuple[float, float]:
+        """Compute the central interval that holds an unknown with a probability."""
         column = self.samples[:, self.names.index(name)]
-        low, high = numpy.quantile(column, [(1 - share) / 2, (1 + share) / 2])
+        low, high = numpy.quantile(column, [(1 - probability) / 2, (1 + probability) / 2])
         return float(low), float(high)
 
     def median(self, name: str) -> float:
+        """Compute the median of an unknown."""
         return float(numpy.median(self.samples[:, self.names.index(name)]))
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return one dictionary for JSON."""
         return {
             "samples": len(self.samples),
             "acceptance": self.acceptance,
@@ -78,23 +80,30 @@ class Posterior:
         }
 
 
-def posterior(found: Identified, samples: int = 4000, seed: int = 0) -> Posterior:
-    """Samples of the unknowns by two ensembles of Markov chains, until as many are independent as are asked for.
+@renamed_arguments(found="fitted")
+def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Posterior:
+    """Sample the posterior distribution by two ensembles of Markov chains.
 
-    Half of the proposals are drawn about the best point, as wide as the information there says; the others are
-    stretches between walkers, which find their way where the posterior is bent.
+    Half of the proposals are independent draws about the best point, with the covariance there. The others are moves
+    between walkers, which follow a curved posterior. The chains end when the number of independent samples suffices.
 
     Parameters
     ----------
-    found : Identified
+    fitted : IdentificationResult
     samples : int
-        How many, 100 or more.
+        Number of independent samples, 100 or more.
     seed : int
+
+    Returns
+    -------
+    Posterior
 
     Raises
     ------
     ImportError
         emcee is not installed.
+    ValueError
+        Fewer than 100 samples.
 
     References
     ----------
@@ -103,98 +112,105 @@ def posterior(found: Identified, samples: int = 4000, seed: int = 0) -> Posterio
     """
     needs("identify", "emcee")
     require("samples", samples, samples >= 100, "a posterior has 100 samples or more")
-    ensembles = [_ensemble(found, seed + number) for number in range(_ENSEMBLES)]
-    steps = ceil(samples / (_WALKERS * _ENSEMBLES))
-    for _ in range(_MOST):
-        for each in ensembles:
-            each.run_mcmc(None, steps, progress=False)
-        chains = numpy.stack([each.get_chain() for each in ensembles])  # (ensembles, steps, walkers, unknowns)
-        times = numpy.array([_time(chains[..., place]) for place in range(chains.shape[-1])])
+    ensembles = [_ensemble(fitted, seed + number) for number in range(_N_ENSEMBLES)]
+    steps = ceil(samples / (_N_WALKERS * _N_ENSEMBLES))
+    for _ in range(_MAX_ROUNDS):
+        for sampler in ensembles:
+            sampler.run_mcmc(None, steps, progress=False)
+        chains = numpy.stack([sampler.get_chain() for sampler in ensembles])  # (ensembles, steps, walkers, unknowns)
+        times = numpy.array([_autocorrelation_time(chains[..., index]) for index in range(chains.shape[-1])])
         steps = ceil(0.5 * chains.shape[1])
         if chains[..., 0].size >= samples * times.max() and chains.shape[1] > 10 * times.max():
             break
-    return _posterior(found, ensembles, chains, times, samples)
+    return _posterior(fitted, ensembles, chains, times, samples)
 
 
-def _posterior(found: Identified, ensembles: list[Any], chains: Numbers, times: Numbers, samples: int) -> Posterior:
-    names = found.scales.names
+def _posterior(fitted: FittedModel, ensembles: list[Any], chains: Numbers, times: Numbers, samples: int) -> Posterior:
+    """Select equally spaced samples of all chains, with their quality."""
+    names = fitted.transform.names
     flat = chains.reshape(-1, chains.shape[-1])
-    kept = flat[numpy.linspace(0, len(flat) - 1, samples).round().astype(int)]
+    selected = flat[numpy.linspace(0, len(flat) - 1, samples).round().astype(int)]
     return Posterior(
         names=names,
-        samples=found.scales.values(kept),
-        acceptance=float(numpy.mean([each.acceptance_fraction.mean() for each in ensembles])),
+        samples=fitted.transform.values(selected),
+        acceptance=float(numpy.mean([sampler.acceptance_fraction.mean() for sampler in ensembles])),
         autocorrelation=dict(zip(names, times.tolist(), strict=True)),
         effective=dict(zip(names, (len(flat) / times).tolist(), strict=True)),
-        r_hat={name: _r_hat(chains[..., place]) for place, name in enumerate(names)},
+        r_hat={name: _r_hat(chains[..., index]) for index, name in enumerate(names)},
     )
 
 
-def _ensemble(found: Identified, seed: int) -> Any:
-    """Walkers that have forgotten where they began, with proposals from where they went."""
+def _ensemble(fitted: FittedModel, seed: int) -> Any:
+    """Return a sampler after burn-in, with proposals that match the first chains."""
     random = numpy.random.RandomState(seed)
-    guess = _About(found.best.places, numpy.linalg.cholesky(found.information.covariance))
-    start = guess.draw(_WALKERS, random)
-    scales = found.scales
-    anywhere = scales.low + (scales.high - scales.low) * random.random_sample(start.shape)
-    start = numpy.where((start > scales.low) & (start < scales.high), start, anywhere)
-    first = _sampler(found, guess, random)
-    start = first.run_mcmc(start, _BURN, skip_initial_state_check=True).coords
-    walked = first.get_chain(discard=_BURN // 2, flat=True)
-    spread = numpy.cov(walked.T).reshape(2 * [len(scales.names)]) + 1e-12 * numpy.eye(len(scales.names))
-    second = _sampler(found, _About(walked.mean(axis=0), numpy.linalg.cholesky(spread)), random)
-    state = second.run_mcmc(start, _BURN // 2, skip_initial_state_check=True)
+    guess = _StudentProposal(fitted.best.theta, numpy.linalg.cholesky(fitted.information.covariance))
+    start = guess.draw(_N_WALKERS, random)
+    transform = fitted.transform
+    anywhere = transform.low + (transform.high - transform.low) * random.random_sample(start.shape)
+    start = numpy.where((start > transform.low) & (start < transform.high), start, anywhere)
+    first = _sampler(fitted, guess, random)
+    start = first.run_mcmc(start, _BURN_IN, skip_initial_state_check=True).coords
+    chain = first.get_chain(discard=_BURN_IN // 2, flat=True)
+    count = len(transform.names)
+    covariance = numpy.cov(chain.T).reshape(2 * [count]) + 1e-12 * numpy.eye(count)
+    second = _sampler(fitted, _StudentProposal(chain.mean(axis=0), numpy.linalg.cholesky(covariance)), random)
+    state = second.run_mcmc(start, _BURN_IN // 2, skip_initial_state_check=True)
     second.reset()
     second.run_mcmc(state, 1, skip_initial_state_check=True)
     return second
 
 
-def _sampler(found: Identified, about: _About, random: Any) -> Any:
+def _sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
+    """Return an ensemble sampler of emcee with three kinds of moves."""
     from emcee import EnsembleSampler
     from emcee.moves import DEMove, MHMove, StretchMove
 
-    moves = [(MHMove(about), 0.5), (DEMove(), 0.35), (StretchMove(), 0.15)]
-    sampler = EnsembleSampler(_WALKERS, len(about.centre), found.misfit.log_posterior, moves=moves, vectorize=True)
+    moves = [(MHMove(proposal), 0.5), (DEMove(), 0.35), (StretchMove(), 0.15)]
+    count = len(proposal.centre)
+    sampler = EnsembleSampler(_N_WALKERS, count, fitted.misfit.log_posterior, moves=moves, vectorize=True)
     sampler.random_state = random.get_state()
     return sampler
 
 
 @dataclass(frozen=True, eq=False)
-class _About:
-    """Proposals that do not ask where a walker is: Student's t about a centre."""
+class _StudentProposal:
+    """Proposals by Student's t about a centre, independent of the walkers."""
 
     centre: Numbers
     root: Numbers
 
     def draw(self, count: int, random: Any) -> Numbers:
+        """Draw theta (count, unknowns)."""
         size = len(self.centre)
-        wide = numpy.sqrt(_DEGREES / random.chisquare(_DEGREES, (count, 1)))
-        return self.centre + wide * random.standard_normal((count, size)) @ self.root.T
+        scale = numpy.sqrt(_PROPOSAL_FREEDOM / random.chisquare(_PROPOSAL_FREEDOM, (count, 1)))
+        return self.centre + scale * random.standard_normal((count, size)) @ self.root.T
 
-    def density(self, places: Numbers) -> Numbers:
-        """ln of it, but for a constant."""
-        apart = numpy.linalg.solve(self.root, (places - self.centre).T)
-        return -(_DEGREES + len(self.centre)) / 2 * numpy.log1p(numpy.sum(apart**2, axis=0) / _DEGREES)
+    def log_density(self, theta: Numbers) -> Numbers:
+        """Compute ln of the density up to a constant, (points,)."""
+        standard = numpy.linalg.solve(self.root, (theta - self.centre).T)
+        exponent = -(_PROPOSAL_FREEDOM + len(self.centre)) / 2
+        return exponent * numpy.log1p(numpy.sum(standard**2, axis=0) / _PROPOSAL_FREEDOM)
 
-    def __call__(self, places: Numbers, random: Any) -> tuple[Numbers, Numbers]:
-        new = self.draw(len(places), random)
-        return new, self.density(places) - self.density(new)
+    def __call__(self, theta: Numbers, random: Any) -> tuple[Numbers, Numbers]:
+        """Return a proposal for each walker, and ln of the ratio of the proposal densities."""
+        new = self.draw(len(theta), random)
+        return new, self.log_density(theta) - self.log_density(new)
 
 
-def _time(chains: Numbers) -> float:
-    """Integrated autocorrelation time in steps, of (ensembles, steps, walkers), over Sokal's window."""
+def _autocorrelation_time(chains: Numbers) -> float:
+    """Compute the integrated autocorrelation time of chains (ensembles, steps, walkers) over Sokal's window."""
     steps = chains.shape[1]
-    apart = chains - chains.mean()
-    power = abs(numpy.fft.rfft(apart, 2 * steps, axis=1)) ** 2
-    shape = numpy.fft.irfft(power, axis=1)[:, :steps].mean(axis=(0, 2))
-    shape = shape / (steps - numpy.arange(steps))
-    times = 2 * numpy.cumsum(shape / shape[0]) - 1
+    deviations = chains - chains.mean()
+    power = abs(numpy.fft.rfft(deviations, 2 * steps, axis=1)) ** 2
+    correlation = numpy.fft.irfft(power, axis=1)[:, :steps].mean(axis=(0, 2))
+    correlation = correlation / (steps - numpy.arange(steps))
+    times = 2 * numpy.cumsum(correlation / correlation[0]) - 1
     window = numpy.arange(steps) >= 5 * times
     return float(max(times[window.argmax() if window.any() else steps - 1], 1.0))
 
 
 def _r_hat(chains: Numbers) -> float:
-    """Split R-hat: ensembles cut in halves against each other."""
+    """Compute the split R-hat of chains (ensembles, steps, walkers): each ensemble is cut in halves."""
     steps = chains.shape[1] // 2
     halves = numpy.concatenate([chains[:, :steps], chains[:, -steps:]]).reshape(2 * len(chains), -1)
     count = halves.shape[1]

@@ -1,4 +1,4 @@
-"""How readings scatter about the truth: normally, or with tails in which an outlier is nothing unheard of."""
+"""Statistical models of the scatter of readings: normal, or heavy-tailed."""
 
 from __future__ import annotations
 
@@ -10,68 +10,81 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..core.deprecation import renamed_names
 
 
-class Scatter(Protocol):
-    """What is asked of a scatter: z is (answer - value)/uncertainty."""
+class ScatterModel(Protocol):
+    """Distribution of the standardised residual z = (result - value)/uncertainty."""
 
     def misfit(self, z: Numbers) -> Numbers:
-        """r with r²/2 = -ln of the density over the density at 0."""
+        """Compute r, where r²/2 is minus ln of the density over the density at 0."""
 
     def slope(self, z: Numbers) -> Numbers:
-        """dr/dz."""
+        """Compute dr/dz."""
 
-    def beyond(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        """Misfit and slope of a reading that was cut off: r with r²/2 = -ln P(reading above answer - z), and dr/dz."""
+    def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute r and dr/dz of a lower bound, where r²/2 is minus ln P(reading above result - z)."""
 
     @property
-    def told(self) -> float:
+    def information(self) -> float:
         """Fisher information of a reading about its centre, in 1/uncertainty²."""
 
     @property
     def constant(self) -> float:
-        """ln of the density at 0, for an uncertainty of 1."""
+        """Natural logarithm of the density at 0, for an uncertainty of 1."""
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
-        """Readings about 0 with an uncertainty of 1."""
+        """Draw readings about 0 with an uncertainty of 1."""
 
 
 @dataclass(frozen=True)
 class NormalScatter:
-    """Readings that scatter normally about the truth."""
+    """Normal scatter of the readings about the true value."""
 
     @property
-    def told(self) -> float:
+    def information(self) -> float:
+        """Fisher information of a reading, 1."""
         return 1.0
 
     @property
     def constant(self) -> float:
+        """Natural logarithm of the density at 0."""
         return -log(2 * pi) / 2
 
     def misfit(self, z: Numbers) -> Numbers:
+        """Return z, as -ln of the density over that at 0 is z²/2."""
         return z
 
     def slope(self, z: Numbers) -> Numbers:
+        """Return ones, the derivative of the misfit."""
         return numpy.ones_like(z)
 
-    def beyond(self, z: Numbers) -> tuple[Numbers, Numbers]:
+    def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute misfit and slope of a lower bound from the normal distribution function."""
         from scipy.special import log_ndtr
 
         logarithm = log_ndtr(z)
-        return _cut_off(logarithm, numpy.exp(self.constant - z * z / 2 - logarithm))
+        return _censored(logarithm, numpy.exp(self.constant - z * z / 2 - logarithm))
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
+        """Draw normal readings."""
         return random.standard_normal(count)
 
 
 @dataclass(frozen=True, kw_only=True)
 class HeavyTailed:
-    """Readings with Student's t about the truth: an outlier far off costs little, and moves little.
+    """Scatter by Student's t about the true value, which limits the influence of outliers.
 
     Parameters
     ----------
     degrees : float
-        Of freedom, above 0; 4 holds 5 % of the readings beyond 2.8 uncertainties, and many are the normal scatter.
+        Degrees of freedom, above 0. With 4, 5 % of the readings lie beyond 2.8 uncertainties. The limit of infinitely
+        many is normal scatter.
+
+    Raises
+    ------
+    ValueError
+        Degrees of freedom that are not above 0 and finite.
 
     References
     ----------
@@ -84,33 +97,43 @@ class HeavyTailed:
         require("degrees", self.degrees, 0 < self.degrees < inf, "degrees of freedom are above 0 and finite")
 
     @property
-    def told(self) -> float:
+    def information(self) -> float:
+        """Fisher information of a reading about its centre, in 1/uncertainty²."""
         return (self.degrees + 1) / (self.degrees + 3)
 
     @property
     def constant(self) -> float:
+        """Natural logarithm of the density at 0."""
         n = self.degrees
         return lgamma((n + 1) / 2) - lgamma(n / 2) - log(n * pi) / 2
 
     def misfit(self, z: Numbers) -> Numbers:
+        """Compute r = ±sqrt((n + 1) ln(1 + z²/n)) for n degrees of freedom."""
         return numpy.sign(z) * numpy.sqrt((self.degrees + 1) * numpy.log1p(z * z / self.degrees))
 
     def slope(self, z: Numbers) -> Numbers:
+        """Compute dr/dz; its limit at 0 is sqrt((n + 1)/n)."""
         n, r = self.degrees, self.misfit(z)
-        near = abs(z) < 1e-6
-        return numpy.where(near, ((n + 1) / n) ** 0.5, (n + 1) * z / (n + z * z) / numpy.where(near, 1.0, r))
+        at_centre = abs(z) < 1e-6
+        slope = (n + 1) * z / (n + z * z) / numpy.where(at_centre, 1.0, r)
+        return numpy.where(at_centre, ((n + 1) / n) ** 0.5, slope)
 
-    def beyond(self, z: Numbers) -> tuple[Numbers, Numbers]:
+    def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute misfit and slope of a lower bound from Student's distribution function."""
         from scipy.special import stdtr
 
-        share = numpy.maximum(stdtr(self.degrees, z), 1e-300)
-        return _cut_off(numpy.log(share), numpy.exp(self.constant - self.misfit(z) ** 2 / 2) / share)
+        probability = numpy.maximum(stdtr(self.degrees, z), 1e-300)
+        return _censored(numpy.log(probability), numpy.exp(self.constant - self.misfit(z) ** 2 / 2) / probability)
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
+        """Draw readings of Student's t."""
         return random.standard_t(self.degrees, count)
 
 
-def _cut_off(logarithm: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
-    """r and dr/dz from ln P and its slope."""
+def _censored(logarithm: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
+    """Compute r and dr/dz from ln P and its derivative."""
     r = numpy.sqrt(-2 * numpy.minimum(logarithm, 0.0))
     return r, numpy.where(r > 1e-150, -hazard / numpy.maximum(r, 1e-150), 0.0)
+
+
+__getattr__ = renamed_names(__name__, {"Scatter": "ScatterModel"})

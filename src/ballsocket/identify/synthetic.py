@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from .bands import banded
+from ..core.deprecation import renamed_arguments
+from .bands import compute_bands
+from .fit import FittedModel
 from .measured import Measured
-from .search import found as searched
-
-if TYPE_CHECKING:
-    from .parameters import Identified
+from .search import find_best_fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +24,7 @@ class Trials:
     ----------
     names : tuple of str
     truth : array (unknowns,)
-        In deviations of what was known, as all that follows.
+        True values in standard deviations of the priors, as all that follows.
     middle, low, high : array (trials, unknowns)
         Estimates, and the ends of their bands of 95 %.
     """
@@ -38,61 +37,74 @@ class Trials:
 
     @property
     def half(self) -> Numbers:
-        """Half the widths of the bands."""
+        """Half widths of the bands."""
         return (self.high - self.low) / 2
 
     @property
     def coverage(self) -> dict[str, float]:
-        """The share of the bands that hold the truth, by unknown: 0.95 is right."""
-        held = (self.low <= self.truth) & (self.truth <= self.high)
-        return dict(zip(self.names, held.mean(axis=0).tolist(), strict=True))
+        """Fraction of the bands that hold the true value, by unknown: 0.95 is right."""
+        covered = (self.low <= self.truth) & (self.truth <= self.high)
+        return dict(zip(self.names, covered.mean(axis=0).tolist(), strict=True))
 
     @property
     def bias(self) -> dict[str, float]:
-        """How far the estimates are off on average, in widths of the band, by unknown: 0 is right."""
-        off = (self.middle - self.truth).mean(axis=0) / (2 * self.half.mean(axis=0))
-        return dict(zip(self.names, off.tolist(), strict=True))
+        """Mean error of the estimates in widths of the band, by unknown: 0 is right."""
+        bias = (self.middle - self.truth).mean(axis=0) / (2 * self.half.mean(axis=0))
+        return dict(zip(self.names, bias.tolist(), strict=True))
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return one dictionary for JSON."""
         return {"trials": len(self.middle), "coverage": self.coverage, "bias": self.bias}
 
 
-def trials(found: Identified, count: int = 200, seed: int = 0) -> Trials:
-    """Identify again and again from data drawn about the best point, as scattered as the uncertainties say.
+@renamed_arguments(found="fitted")
+def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
+    """Identify synthetic data about the best point many times, with the scatter of the stated uncertainties.
 
     Parameters
     ----------
-    found : Identified
+    fitted : IdentificationResult
         Its best point is the truth.
     count : int
         Sets of data, 1 or more.
     seed : int
+
+    Returns
+    -------
+    Trials
+
+    Raises
+    ------
+    ValueError
+        A count below 1.
     """
     require("count", count, count > 0, "1 trial or more")
     random = numpy.random.default_rng(seed)
-    stated = replace(found.misfit, uncertainty=found.misfit.widening * found.misfit.uncertainty, widening=1.0)
+    widened = fitted.misfit.widening * fitted.misfit.uncertainty
+    stated = replace(fitted.misfit, uncertainty=widened, widening=1.0)
     middle, low, high = [], [], []
     for number in range(count):
-        misfit = replace(stated, answers=replace(stated.answers, data=drawn(found, random)))
-        _, best, information = banded(misfit, searched(misfit, seed + number))
-        middle.append(best.places)
-        low.append([each.low.theta[index] for index, each in enumerate(information.intervals)])
-        high.append([each.high.theta[index] for index, each in enumerate(information.intervals)])
-    return Trials(found.scales.names, found.best.places, *map(numpy.array, (middle, low, high)))
+        misfit = replace(stated, forward=replace(stated.forward, data=drawn(fitted, random)))
+        _, best, information = compute_bands(misfit, find_best_fit(misfit, seed + number))
+        middle.append(best.theta)
+        low.append([interval.low.theta[index] for index, interval in enumerate(information.intervals)])
+        high.append([interval.high.theta[index] for index, interval in enumerate(information.intervals)])
+    return Trials(fitted.transform.names, fitted.best.theta, *map(numpy.array, (middle, low, high)))
 
 
-def drawn(found: Identified, random: numpy.random.Generator) -> tuple[Measured, ...]:
+@renamed_arguments(found="fitted")
+def drawn(fitted: FittedModel, random: numpy.random.Generator) -> tuple[Measured, ...]:
     """Draw synthetic measurements for the joint of the best point; load errors are included in the values."""
-    effective = found.misfit.widening * found.misfit.uncertainty
-    wide = numpy.split(effective, numpy.cumsum([len(each) for each in found.data])[:-1])
+    widened = fitted.misfit.widening * fitted.misfit.uncertainty
+    uncertainties = numpy.split(widened, numpy.cumsum([len(measured) for measured in fitted.data])[:-1])
+    scatter = fitted.misfit.scatter
     return tuple(
-        replace(each, values=_values(each, row, off * found.misfit.scatter.draw(len(each), random)))
-        for each, row, off in zip(found.data, found.answers, wide, strict=True)
+        replace(measured, values=_readings(measured, results, uncertainty * scatter.draw(len(measured), random)))
+        for measured, results, uncertainty in zip(fitted.data, fitted.answers, uncertainties, strict=True)
     )
 
 
-def _values(each: Measured, answers: Numbers, off: Numbers) -> Numbers:
-    """Readings, cut off where the film saturates, and none below 0 but by a machine."""
-    read = answers + off
-    return numpy.minimum(read if each.machine.name else numpy.maximum(read, 0.0), each.saturation)
+def _readings(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
+    """Add noise to results, limited by saturation, and by 0 except for a machine."""
+    readings = results + noise
+    return numpy.minimum(readings if measured.machine.name else numpy.maximum(readings, 0.0), measured.saturation)

@@ -1,4 +1,4 @@
-"""What is to be found: numbers of a joint or a machine, what was known of them, and the scales they are sought on."""
+"""Unknowns of an identification, their prior distributions, and the scaled parameters of the search."""
 
 from __future__ import annotations
 
@@ -9,36 +9,42 @@ from typing import Any
 
 import numpy
 
+from ..catalogue import catalogue
+from ..contact import Model
 from ..core.arrays import Array, Numbers
 from ..core.checks import check_names, require, shown
+from ..core.deprecation import renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import Quantity
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
-from ..studies.parameters import AIMS, LOADS, PARAMETERS
-from .measured import MACHINE, Measured
+from .machine import Machine
+from .model_numbers import ModelNumber
+from .registry import FREE_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS
 
-Given = Any
-"""Of an unknown: two ends, (0.02, 0.3), or a distribution of what was known."""
+Prior = Any
+"""Prior of an unknown as a caller states it: two ends, (0.02, 0.3), or a distribution."""
 
-_FAR = 8.0  # deviations from a mean that is known: as good as infinitely far
+_SEARCH_DEVIATIONS = 8.0  # half width of the search range about a known mean, in standard deviations
 
 
 @dataclass(frozen=True, kw_only=True)
 class Unknown:
-    """A number that is to be found.
+    """A number that an identification estimates.
 
     Attributes
     ----------
     name : str
-        "clearance", "liner_young", "machine.offset".
+        "clearance", "liner_young", "work_of_adhesion", "machine.offset".
     quantity : Quantity
-        Its title and unit.
+        Title, unit and allowed range.
     prior : Rectangular, Normal or LogNormal
-        What was known before.
+        Prior distribution.
     low, high : float
-        Where it is sought.
+        Ends of the search range.
     logarithmic : bool
-        Whether it is sought on a scale of ratios: where both ends are above 0, or a logarithm was known.
+        True for a logarithmic scale: both ends are above 0, or the prior is log-normal.
+    of_machine : bool
+        True for an error of a machine, False for a number of the joint or of the model.
     """
 
     name: str
@@ -47,103 +53,134 @@ class Unknown:
     low: float
     high: float
     logarithmic: bool
+    of_machine: bool = False
 
     @property
     def known(self) -> bool:
-        """Whether more than two ends were known."""
+        """True if the prior is a distribution, and not only a range."""
         return not isinstance(self.prior, Rectangular)
 
     @property
     def middle(self) -> float:
-        """The mean that was known, in deviations on the scale; 0 of two ends."""
+        """Scaled mean of the prior, in its standard deviations; 0 for a range."""
         if isinstance(self.prior, Rectangular):
             return 0.0
         return (self.prior.mean if isinstance(self.prior, Normal) else log(self.prior.median)) / self.span
 
     @property
     def span(self) -> float:
-        """The deviation of what was known, on the scale it is sought on."""
+        """Standard deviation of the prior on the scale of the search."""
         if isinstance(self.prior, Normal):
             return self.prior.deviation
         if isinstance(self.prior, LogNormal):
             return log(self.prior.factor)
         return (self.to_scale(self.high) - self.to_scale(self.low)) / sqrt(12)
 
-    def is_physical(self, side: int, place: float) -> bool:
-        """Check if a value lies at a physical limit of the range, such as a compliance of 0."""
+    def is_physical(self, side: int, theta: float) -> bool:
+        """Check if a scaled value lies at a physical limit of the range, such as a compliance of 0."""
         end = self.high if side > 0 else self.low
         beyond = end + side * 1e-6 * max(abs(end), 1e-12)
-        return abs(place - self.to_scale(end) / self.span) < 1e-6 and not self.quantity.allows(beyond)
+        return abs(theta - self.to_scale(end) / self.span) < 1e-6 and not self.quantity.allows(beyond)
 
     def to_scale(self, value: Array) -> Array:
+        """Convert a value to the scale of the search: its logarithm, or the value itself."""
         return numpy.log(value) if self.logarithmic else value
 
-    def from_scale(self, place: Array) -> Array:
-        return numpy.exp(place) if self.logarithmic else place
+    def from_scale(self, scaled: Array) -> Array:
+        """Convert a number on the scale of the search to a value."""
+        return numpy.exp(scaled) if self.logarithmic else scaled
 
-    def growth(self, place: Array) -> Array:
-        """The number's slope along its scale."""
-        return numpy.exp(place) if self.logarithmic else numpy.ones_like(place)
+    def derivative(self, scaled: Array) -> Array:
+        """Compute the derivative of the value with respect to the number on the scale of the search."""
+        return numpy.exp(scaled) if self.logarithmic else numpy.ones_like(scaled)
 
 
-def unknowns_of(free: Mapping[str, Given], data: Iterable[Measured]) -> tuple[Unknown, ...]:
-    """What is to be found: numbers of the joint by their names in studies, "liner_young" or "liner.young"; machines.
+def unknowns_of(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
+    """Collect the unknowns: free numbers of joint and model by name, and the unknown errors of machines.
+
+    Parameters
+    ----------
+    free : mapping of str to two ends or a distribution
+        Names of `registry.FREE_NUMBERS`; "liner.young" is the same as "liner_young".
+    machines : iterable of Machine
+    model : Model
+        Model that must have the free numbers of a model.
 
     Raises
     ------
     ValueError
-        A name that is not known, given twice, or of a load; ends that are not allowed.
+        A name that is not known or is stated twice; a number that the model does not have; ends that are not allowed.
     """
-    known = {name: each for name, each in PARAMETERS.items() if name not in LOADS and name not in AIMS}
-    plain = {name.replace(".", "_"): value for name, value in free.items()}
-    if len(plain) < len(free):
-        raise ValueError(f"an unknown is given twice: {', '.join(free)}")
-    check_names(plain, known, "among what can be found")
-    own = [_unknown(name, known[name], value) for name, value in plain.items()]
-    return (*own, *_of_machines(data))
+    priors = {name.replace(".", "_"): prior for name, prior in free.items()}
+    if len(priors) < len(free):
+        raise ValueError(f"an unknown is stated twice: {', '.join(free)}")
+    check_names(priors, FREE_NUMBERS, "among the unknowns")
+    for name in priors:
+        if name in MODEL_NUMBERS:
+            _check_model(MODEL_NUMBERS[name], model)
+    numbers = [_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
+    return (*numbers, *_unknown_errors(machines))
 
 
-def _of_machines(data: Iterable[Measured]) -> list[Unknown]:
-    machines = {each.machine.name: each.machine for each in data}
-    for each in data:
-        if each.machine != machines[each.machine.name]:
-            raise ValueError(f"two machines are called {shown(each.machine.name)}: give each a name of its own")
+def _check_model(number: ModelNumber, model: Model) -> None:
+    """Raise ValueError if the model does not have this number."""
+    if not number.belongs_to(model):
+        models = ", ".join(name for name, candidate in catalogue.items() if number.belongs_to(candidate))
+        raise ValueError(f"{number.name} is not a number of the model {model.name}; models that have it: {models}")
+
+
+def _unknown_errors(machines: Iterable[Machine]) -> list[Unknown]:
+    by_name: dict[str, Machine] = {}
+    for machine in machines:
+        if by_name.setdefault(machine.name, machine) != machine:
+            raise ValueError(f"two machines have the name {shown(machine.name)}; use different names")
     return [
-        _unknown(key, MACHINE[key.rsplit(".", 1)[1]], ends)
-        for machine in machines.values()
-        for key, ends in machine.unknowns.items()
+        _unknown(machine.key(error), MACHINE_ERRORS[error].quantity, size, of_machine=True)
+        for machine in by_name.values()
+        for error, size in machine.errors
+        if isinstance(size, tuple)
     ]
 
 
-def _unknown(name: str, quantity: Quantity, given: Given) -> Unknown:
-    prior = _prior(name, given)
+def _unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = False) -> Unknown:
+    prior = _prior(name, stated)
     low, high = _ends(prior, quantity)
     for end in (low, high):
         require(name, end, quantity.allows(end), quantity.allowed)
     ratios = isinstance(prior, Rectangular) and low > 0 and quantity.kind is not Kind.NUMBER
-    logarithmic = ratios or isinstance(prior, LogNormal)
-    return Unknown(name=name, quantity=quantity, prior=prior, low=low, high=high, logarithmic=logarithmic)
+    return Unknown(
+        name=name,
+        quantity=quantity,
+        prior=prior,
+        low=low,
+        high=high,
+        logarithmic=ratios or isinstance(prior, LogNormal),
+        of_machine=of_machine,
+    )
 
 
-def _prior(name: str, given: Given) -> Distribution:
-    if isinstance(given, Distribution):
-        return given
+def _prior(name: str, stated: Prior) -> Distribution:
+    if isinstance(stated, Distribution):
+        return stated
     try:
-        low, high = map(float, given)
+        low, high = map(float, stated)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} = {shown(given)} must be two ends, such as (0.02, 0.3), or a distribution") from error
+        raise ValueError(
+            f"{name} = {shown(stated)} must be two ends, such as (0.02, 0.3), or a distribution"
+        ) from error
     if not -inf < low < high < inf:
-        raise ValueError(f"{name} = {shown(given)} is not allowed: two finite ends that go upwards")
+        raise ValueError(f"{name} = {shown(stated)} is not allowed: two finite ends in ascending order")
     return Rectangular(low=low, high=high)
 
 
 def _ends(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
-    """Where it is sought: between the ends, or a few deviations about a mean, as far as that is allowed."""
+    """Compute the ends of the search: those of the range, or a few standard deviations about a mean, if allowed."""
     if isinstance(prior, Rectangular):
         return prior.low, prior.high
     if isinstance(prior, LogNormal):
-        return prior.median / prior.factor**_FAR, prior.median * prior.factor**_FAR
-    low, high = (prior.mean + side * _FAR * prior.deviation for side in (-1, 1))
+        factor = prior.factor**_SEARCH_DEVIATIONS
+        return prior.median / factor, prior.median * factor
+    low, high = (prior.mean + side * _SEARCH_DEVIATIONS * prior.deviation for side in (-1, 1))
     low, high = max(low, prior.low), min(high, prior.high)
     if not quantity.allows(low):
         low = 1e-3 * prior.mean
@@ -151,49 +188,59 @@ def _ends(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Scales:
-    """Between the numbers that are sought and their places on scales that run over what was known."""
+class ParameterTransform:
+    """Transform between values of the unknowns and scaled parameters theta.
+
+    Theta is the value, or its logarithm, over the standard deviation of the prior.
+    """
 
     unknowns: tuple[Unknown, ...]
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(each.name for each in self.unknowns)
+        """Names of the unknowns."""
+        return tuple(unknown.name for unknown in self.unknowns)
 
     @property
     def low(self) -> Numbers:
-        return self.places([each.low for each in self.unknowns])
+        """Lower ends of the search, as theta."""
+        return self.theta([unknown.low for unknown in self.unknowns])
 
     @property
     def high(self) -> Numbers:
-        return self.places([each.high for each in self.unknowns])
+        """Upper ends of the search, as theta."""
+        return self.theta([unknown.high for unknown in self.unknowns])
 
-    def places(self, values: Any) -> Numbers:
-        """From numbers (..., unknowns) to places, in deviations of what was known."""
+    def theta(self, values: Any) -> Numbers:
+        """Convert values (..., unknowns) to theta."""
         columns = numpy.moveaxis(numpy.asarray(values, dtype=float), -1, 0)
         pairs = zip(self.unknowns, columns, strict=True)
-        return numpy.stack([each.to_scale(column) / each.span for each, column in pairs], axis=-1)
+        return numpy.stack([unknown.to_scale(column) / unknown.span for unknown, column in pairs], axis=-1)
 
-    def values(self, places: Numbers) -> Numbers:
-        """The way back."""
-        pairs = zip(self.unknowns, numpy.moveaxis(places, -1, 0), strict=True)
-        return numpy.stack([each.from_scale(column * each.span) for each, column in pairs], axis=-1)
+    def values(self, theta: Numbers) -> Numbers:
+        """Convert theta (..., unknowns) to values."""
+        pairs = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
+        return numpy.stack([unknown.from_scale(column * unknown.span) for unknown, column in pairs], axis=-1)
 
-    def growth(self, places: Numbers) -> Numbers:
-        """The slopes of the numbers along their places."""
-        pairs = zip(self.unknowns, numpy.moveaxis(places, -1, 0), strict=True)
-        return numpy.stack([each.growth(column * each.span) * each.span for each, column in pairs], axis=-1)
+    def derivatives(self, theta: Numbers) -> Numbers:
+        """Compute the derivatives of the values with respect to theta, (..., unknowns)."""
+        pairs = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
+        columns = [unknown.derivative(column * unknown.span) * unknown.span for unknown, column in pairs]
+        return numpy.stack(columns, axis=-1)
 
-    def surprise(self, places: Numbers) -> Numbers:
-        """How many deviations each number is from a mean that was known, 0 of the others; (..., unknowns)."""
-        known = numpy.array([each.known for each in self.unknowns])
-        return numpy.where(known, places - [each.middle for each in self.unknowns], 0.0)
+    def prior_residuals(self, theta: Numbers) -> Numbers:
+        """Compute the distance of each unknown from the mean of its prior in standard deviations; 0 for a range."""
+        known = numpy.array([unknown.known for unknown in self.unknowns])
+        return numpy.where(known, theta - [unknown.middle for unknown in self.unknowns], 0.0)
 
 
-def log_prior(scales: Scales, places: Numbers) -> Numbers:
-    """ln of the density of what was known, by places; -inf beyond the ends, between which all is equally likely."""
-    inside = numpy.all((places >= scales.low) & (places <= scales.high), axis=-1)
-    flat = numpy.array([0.0 if each.known else 1.0 for each in scales.unknowns])
-    stretch = numpy.sum(flat * numpy.log(scales.growth(places)), axis=-1)
-    surprise = numpy.sum(scales.surprise(places) ** 2, axis=-1) / 2
-    return numpy.where(inside, stretch - surprise, -inf)
+def log_prior(transform: ParameterTransform, theta: Numbers) -> Numbers:
+    """Compute ln of the prior density of theta; -inf outside the ranges, within which all values are equally likely."""
+    inside = numpy.all((theta >= transform.low) & (theta <= transform.high), axis=-1)
+    flat = numpy.array([0.0 if unknown.known else 1.0 for unknown in transform.unknowns])
+    stretch = numpy.sum(flat * numpy.log(transform.derivatives(theta)), axis=-1)
+    square = numpy.sum(transform.prior_residuals(theta) ** 2, axis=-1) / 2
+    return numpy.where(inside, stretch - square, -inf)
+
+
+__getattr__ = renamed_names(__name__, {"Scales": "ParameterTransform"})

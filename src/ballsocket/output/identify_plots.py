@@ -9,8 +9,8 @@ import numpy
 from ..core.quantities import FIELD, LOADS, Quantity
 from ..identify.experiment import Experiment
 from ..identify.measured import MEASURED, Measured
-from ..identify.parameters import Identified
 from ..identify.posterior import Posterior
+from ..identify.result import IdentificationResult
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _DRAWN = 4000  # samples about the best point, where there is no posterior
 _HELD = (0.5, 0.95)
 
 
-def fit_figure(found: Identified) -> Figure:
+def fit_figure(found: IdentificationResult) -> Figure:
     """What was measured and what the model says there, above; how many uncertainties they are apart, below."""
     from matplotlib.figure import Figure
 
@@ -43,7 +43,7 @@ def fit_figure(found: Identified) -> Figure:
     return figure
 
 
-def _draw_set(above: Axes, below: Axes, found: Identified, place: int) -> None:
+def _draw_set(above: Axes, below: Axes, found: IdentificationResult, place: int) -> None:
     each, residuals = found.data[place], found.residuals[place]
     x, label = _across(each)
     quantity, factor = each.described, each.described.shown.factor
@@ -65,7 +65,7 @@ def _draw_set(above: Axes, below: Axes, found: Identified, place: int) -> None:
     finish(below, label, "")
 
 
-def _line(found: Identified, place: int, x: Numbers, factor: float) -> tuple[Numbers, Numbers]:
+def _line(found: IdentificationResult, place: int, x: Numbers, factor: float) -> tuple[Numbers, Numbers]:
     """The model's curve, or its answers at the angles that were measured."""
     each = found.data[place]
     if each.angle is not None:
@@ -83,7 +83,7 @@ def _across(each: Measured) -> tuple[Numbers, str]:
     return load.shown.factor * each.loads, load.label()
 
 
-def corner_figure(found: Identified, drawn: Posterior | None = None) -> Figure:
+def corner_figure(found: IdentificationResult, drawn: Posterior | None = None) -> Figure:
     """Every unknown alone, and every two against each other: samples of the posterior.
 
     Without a posterior they are drawn about the best point, as wide as the information there says.
@@ -91,7 +91,7 @@ def corner_figure(found: Identified, drawn: Posterior | None = None) -> Figure:
     from matplotlib.figure import Figure
 
     samples = _about(found) if drawn is None else drawn.samples
-    unknowns = found.scales.unknowns
+    unknowns = found.transform.unknowns
     count = len(unknowns)
     figure = Figure(figsize=(2.3 * count + 1.2, 2.1 * count + 1.0), layout="constrained")
     panels = figure.subplots(count, count, squeeze=False, sharex="col")
@@ -121,10 +121,10 @@ def _label(name: str, quantity: Quantity) -> str:
     return f"{name}\n{quantity.shown.bracketed}".strip()
 
 
-def _about(found: Identified) -> Numbers:
+def _about(found: IdentificationResult) -> Numbers:
     random = numpy.random.default_rng(0)
-    places = random.multivariate_normal(found.best.places, found.information.covariance, _DRAWN)
-    return found.scales.values(numpy.clip(places, found.scales.low, found.scales.high))
+    places = random.multivariate_normal(found.best.theta, found.information.covariance, _DRAWN)
+    return found.transform.values(numpy.clip(places, found.transform.low, found.transform.high))
 
 
 def _draw_alone(axes: Axes, values: Numbers) -> None:

@@ -6,20 +6,20 @@ from rich.table import Table
 
 from ..core.kinds import Unit
 from ..identify.measured import MEASURED
-from ..identify.parameters import Identified
 from ..identify.posterior import CONVERGED, Posterior
+from ..identify.result import IdentificationResult
 from ..identify.sensitivity import Sensitivity
 from .terminal import console, print_folded
 
 _ROWS = 5
 
 
-def print_identified(found: Identified, drawn: Posterior | None) -> None:
+def print_identified(found: IdentificationResult, drawn: Posterior | None) -> None:
     """Print the unknowns with their bands, products, fit, sensitivity to machine errors, and the next measurement."""
     terminal, information = console(), found.information
     print_folded(terminal, f"{found.model.name} through {_counted(found)}", "bold")
     terminal.print(_table(found, drawn))
-    rank = f"rank {information.rank} of {len(found.scales.names)}, condition {information.condition:.2g}"
+    rank = f"rank {information.rank} of {len(found.transform.names)}, condition {information.condition:.2g}"
     print_folded(terminal, f"information of {rank}; {_scatter(found)}", "")
     if drawn is not None:
         print_folded(terminal, _chains(drawn), "")
@@ -30,12 +30,12 @@ def print_identified(found: Identified, drawn: Posterior | None) -> None:
         print_folded(terminal, note, "dim")
 
 
-def _counted(found: Identified) -> str:
+def _counted(found: IdentificationResult) -> str:
     sets = ", ".join(f"{len(each)} x {each.quantity}" for each in found.data)
     return f"{len(found.misfit.value)} values ({sets})"
 
 
-def _scatter(found: Identified) -> str:
+def _scatter(found: IdentificationResult) -> str:
     if found.freedom <= 0:
         return "as many values as unknowns: the quality of the fit cannot be tested"
     return f"the data scatter {found.spread:.2f} times as far as their uncertainties say"
@@ -50,9 +50,9 @@ def _chains(drawn: Posterior) -> str:
     )
 
 
-def _table(found: Identified, drawn: Posterior | None) -> Table:
+def _table(found: IdentificationResult, drawn: Posterior | None) -> Table:
     table = _plain_table("", "best", "95 %", "unit", *(("posterior",) if drawn else ()))
-    for unknown, each in zip(found.scales.unknowns, found.estimates.values(), strict=True):
+    for unknown, each in zip(found.transform.unknowns, found.estimates.values(), strict=True):
         unit = unknown.quantity.shown
         best = _numbers(unit.factor, each.value) if each.identifiable else "not identifiable"
         band = _band(unit.factor, each.low, each.high)
@@ -81,9 +81,9 @@ def _numbers(factor: float, number: float) -> str:
     return f"{factor * number:.4g}"
 
 
-def _sensitivity(found: Identified) -> Table:
+def _sensitivity(found: IdentificationResult) -> Table:
     """Make the table of shifts by machine errors, with ratios to half bands."""
-    unknowns = found.scales.unknowns
+    unknowns = found.transform.unknowns
     heads = [f"Δ{each.quantity.symbol}, {each.quantity.shown.text}".removesuffix(", ") for each in unknowns]
     table = _plain_table("if the machine had", *heads)
     for error in found.sensitivity:
@@ -92,26 +92,26 @@ def _sensitivity(found: Identified) -> Table:
     return table
 
 
-def _shift(found: Identified, error: Sensitivity, index: int) -> str:
+def _shift(found: IdentificationResult, error: Sensitivity, index: int) -> str:
     """Format a shift and its ratio to half a band."""
-    unknown = found.scales.unknowns[index]
+    unknown = found.transform.unknowns[index]
     ratio = found.shift_ratio(error, unknown.name)
     if not found.estimates[unknown.name].identifiable:
         return "-"
     return f"{unknown.quantity.shown.factor * error.shifts[unknown.name]:+.3g} ({ratio:.1f}x)" if ratio > 5e-3 else "0"
 
 
-def _next(found: Identified) -> Table:
+def _next(found: IdentificationResult) -> Table:
     """The best load of each quantity."""
-    unknowns = found.scales.unknowns
+    unknowns = found.transform.unknowns
     table = _plain_table(
         "measure next", "at", "to within", "bits", *(f"{each.quantity.symbol} left" for each in unknowns)
     )
-    for gain in found.next.each_quantity[:_ROWS]:
+    for gain in found.next.best_by_quantity[:_ROWS]:
         candidate, quantity = gain.candidate, MEASURED[gain.candidate.quantity]
         within = f"{_short(candidate.uncertainty * quantity.shown.factor)} {quantity.shown.text}"
         load = "-" if candidate.force is None else f"{candidate.force:.4g} N"
-        left = [f"{100 * gain.left[each.name]:.0f} %" for each in unknowns]
+        left = [f"{100 * gain.uncertainty_ratio[each.name]:.0f} %" for each in unknowns]
         table.add_row(quantity.title, load, within, f"{gain.bits:.2f}", *left)
     return table
 

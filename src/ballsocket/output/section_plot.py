@@ -54,7 +54,7 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
 
 def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
     section = contact.section
-    outermost = max(float(part.place[0].max()) for part in section.parts)
+    outermost = max(float(part.position[0].max()) for part in section.parts)
     extent = 1.03 * min(outermost, float(contact.joint.socket_radius) + 40.0)
     for part in section.parts:
         _draw_mesh(axes, part)
@@ -67,8 +67,8 @@ def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
             bar.set_label(f"von Mises stress in the {kind} [MPa]", fontsize=8)
     _name_parts(axes, contact, extent)
     axes.set_aspect("equal")
-    low = min(part.place[1].min() for part in section.parts)
-    high = max(part.place[1].max() for part in section.parts)
+    low = min(part.position[1].min() for part in section.parts)
+    high = max(part.position[1].max() for part in section.parts)
     axes.set_xlim(-extent, extent)
     axes.set_ylim(max(low, -extent) - 1.0, min(high, extent) + 0.1 * extent * (len(section.parts) + 1))
     axes.set_xlabel("distance from the load axis [mm]")
@@ -80,7 +80,7 @@ def _draw_mesh(axes: Axes, part: Part) -> None:
     """The outlines of the elements, on the left."""
     from matplotlib.collections import PolyCollection
 
-    corners = part.place[:, part.elements[list(_RIM[len(part.elements)])]]
+    corners = part.position[:, part.elements[list(_RIM[len(part.elements)])]]
     outlines = numpy.moveaxis(corners * numpy.array([-1.0, 1.0])[:, None, None], (0, 1, 2), (2, 1, 0))
     colour = "0.45" if part.name == "ball" else BLUE
     axes.add_collection(PolyCollection(list(outlines), facecolors="white", edgecolors=colour, linewidths=0.25))
@@ -104,7 +104,7 @@ def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
         nearest = numpy.argmin((part.angle - angle) ** 2 * middle**2 + (part.radius - middle) ** 2)
         material = of[part.name]
         text = f"{part.name}: {material.name}" if material is not None and material.name else part.name
-        x, y = part.place[:, nearest]
+        x, y = part.position[:, nearest]
         arrow = {"arrowstyle": "-", "lw": 0.6, "color": "0.2", "relpos": (1.0, 0.5)}
         where = (0.02, 0.98 - 0.07 * number)
         axes.annotate(text, (-x, y), where, textcoords="axes fraction", fontsize=7, va="top", arrowprops=arrow)
@@ -120,7 +120,7 @@ def _draw_stress(axes: Axes, part: Part, highest: float, colours: str) -> Any:
     a, b, c, d = part.elements[:4]
     triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
     levels = MaxNLocator(_LEVELS).tick_values(0.0, highest)
-    mesh = Triangulation(part.place[0], part.place[1], triangles)
+    mesh = Triangulation(part.position[0], part.position[1], triangles)
     return axes.tricontourf(mesh, part.stress.von_mises, levels=levels, cmap=colours, extend="max")
 
 

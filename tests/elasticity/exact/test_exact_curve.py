@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.exact import stress_curve
+from ballsocket.elasticity.exact import subsurface
 
 from ...joints import HIP
 
@@ -88,8 +88,8 @@ def test_the_inside_is_that_of_the_solution():
 def test_the_validity_of_very_many_loads_takes_few_looks_inside(monkeypatch):
     """Whether a liner yields is asked of each load; where the stress lies is asked of a few contacts alone."""
     looks, forces = [], np.geomspace(1.0, 40_000.0, 20_000)
-    peak = stress_curve.largest_von_mises
-    monkeypatch.setattr(stress_curve, "largest_von_mises", lambda *all: looks.append(1) or peak(*all))
+    peak = subsurface.largest_von_mises
+    monkeypatch.setattr(subsurface, "largest_von_mises", lambda *all: looks.append(1) or peak(*all))
     found = bs.ExactCurve().press(JOINTS["shell"].replace(clearance=0.11), force=forces)
     first = int(np.argmin(found.valid))
     assert found.valid[:first].all()

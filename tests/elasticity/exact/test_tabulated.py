@@ -87,11 +87,11 @@ def test_a_joint_that_is_not_in_the_tables_is_refused():
     shell = bs.Layer(thickness=3.0, material=bs.TITANIUM)
     model = bs.Tabulated()
     for other, message in (
-        (replace(HIP, liner_thickness=200.0), "R2/L = 0.09: that is not in the tables: ask exact"),
+        (replace(HIP, liner_thickness=200.0), "R2/L = 0.09: outside the tables: use exact"),
         (replace(HIP, liner_thickness=0.5), "R2/L = 36"),
         (replace(HIP, liner=bs.Material(young=1000.0, poisson=0.4995)), "ν = 0.4995"),
         (replace(HIP, ball=bs.Material(young=20000.0, poisson=0.3)), "E/E_ball = 0.05"),
-        (replace(HIP, backing=(shell,)), "layers behind the liner = 1: .*ask exact"),
+        (replace(HIP, backing=(shell,)), "layers behind the liner = 1: .*use exact"),
         (replace(HIP, support=bs.Support.FREE), "a free outer surface is not in the tables"),
     ):
         with pytest.raises(ValueError, match=message):
@@ -135,7 +135,7 @@ def test_the_tables_are_small():
 
 @pytest.mark.long
 def test_the_builder_reproduces_the_shipped_profile():
-    built = build_tables._KINDS["profile"].fitted(lambda sample, liners, chunksize: map(sample, liners))
+    built = build_tables._TABLE_SPECS["profile"].fit(lambda sample, liners, chunksize: map(sample, liners))
     with np.load(build_tables.SHIPPED) as stored:
         np.testing.assert_allclose(built, stored["profile"], atol=1e-6)
 
@@ -150,7 +150,7 @@ def test_the_report_names_where_it_is_worst():
 def test_places_and_angles_are_inverse():
     place, ratio = np.linspace(-0.9, 1.0, 9), np.array([[0.2], [20.0]])
     np.testing.assert_allclose(
-        chebyshev.angle_place(chebyshev.angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
+        chebyshev.angle_coordinate(chebyshev.angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
     )
 
 

@@ -93,7 +93,7 @@ def test_the_mesh_is_the_one_that_answered(element):
     x, y = corners.transpose(2, 1, 0)
     assert np.all(np.sum(x * np.roll(y, -1, 0) - y * np.roll(x, -1, 0), axis=0) > 0)  # counterclockwise
     part = contact.section["liner"]
-    outline = {(round(a, 8), round(b, 8)) for a, b in part.place.T}
+    outline = {(round(a, 8), round(b, 8)) for a, b in part.position.T}
     liner = [row for head, rows in deck.blocks if head.endswith("ELSET=LINER") for row in rows]
     places = {tuple(np.round(deck.nodes[int(node)], 8) + 0.0) for row in liner for node in row[1:]}
     assert places <= outline
@@ -242,7 +242,7 @@ def test_a_chamfer_is_no_part_of_the_surface():
     [
         (
             lambda: bs.FiniteElement(spacing=COARSE, meshes=1).press(RIGID, force=np.array([1.0, 2.0])),
-            "a deck is for one",
+            "a deck needs one contact",
         ),
         (lambda: bs.FiniteElement(spacing=COARSE, meshes=1).press(RIGID, force=0.0), "under load"),
         (lambda: pressed(RIGID, gap=bs.CircularGap), "linear gap"),
@@ -321,10 +321,10 @@ DAT = """
 def test_the_end_of_each_step_is_read(tmp_path):
     path = tmp_path / "a.dat"
     path.write_text(DAT)
-    forces = ccx.printed(path, "PUSHED")
+    forces = ccx.read_printed(path, "PUSHED")
     assert {step: rows[0, 1] for step, rows in forces.items()} == {0: -1.0, 1: -2.0}
-    np.testing.assert_array_equal(ccx.printed(path, "BORE")[0][:, 0], [7, 12])
-    assert ccx.printed(tmp_path / "none.dat", "PUSHED") == {}
+    np.testing.assert_array_equal(ccx.read_printed(path, "BORE")[0][:, 0], [7, 12])
+    assert ccx.read_printed(tmp_path / "none.dat", "PUSHED") == {}
 
 
 def test_contact_pressures_are_told_from_other_results(tmp_path):
@@ -336,7 +336,7 @@ def test_contact_pressures_are_told_from_other_results(tmp_path):
     ]
     path = tmp_path / "a.frd"
     path.write_text("".join(blocks))
-    assert ccx.contact_pressures(path) == {0: {7: 4.5}}
+    assert ccx.read_contact_pressures(path) == {0: {7: 4.5}}
 
 
 def test_the_edge_is_where_the_gap_closes():

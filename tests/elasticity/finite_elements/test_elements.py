@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 from ballsocket.elasticity.finite_elements.bodies import ball_body, socket_body
-from ballsocket.elasticity.finite_elements.mesh import graded
+from ballsocket.elasticity.finite_elements.mesh import graded_points
 from ballsocket.elasticity.finite_elements.shapes import Resolution, SocketShape
 from ballsocket.evidence.element_checks import a_block, polar, pressed, strain_energy_error, thick_sphere_error
 from ballsocket.problem import Support
@@ -136,7 +136,7 @@ def test_the_ball_is_held_by_its_equator_and_free_along_it():
 
 @pytest.mark.parametrize("end", [3.0, -1.0])
 def test_graded_places_end_where_they_should_and_grow(end):
-    places = graded(1.0, end, 0.1, 1.3, 0.5)
+    places = graded_points(1.0, end, 0.1, 1.3, 0.5)
     assert places[0] == 1.0
     assert places[-1] == pytest.approx(end, rel=1e-14)
     steps = abs(np.diff(places))

@@ -1,1 +1,1 @@
-"""The exact linear-elastic answer, mode by mode, for a frictionless ball in a layered socket."""
+"""Exact linear-elastic solution of a frictionless ball in a layered socket, mode by mode."""

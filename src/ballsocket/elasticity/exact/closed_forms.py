@@ -1,4 +1,4 @@
-"""Closed forms of Σ (n + ½)^-j cos((n + ½) x), j = 1..6: what the kernel's expansion in 1/(n + ½) sums up to.
+"""Closed forms of Σ (n + ½)^-j cos((n + ½) x), j = 1..6: sums of the kernel's expansion in 1/(n + ½).
 
 Σ_j a_j Σ_n (n + ½)^-j cos((n + ½) x) = g(x²) ln|x| + h(x²) |x| + s(x²), polynomials g and h and a power series s.
 """
@@ -13,34 +13,36 @@ import numpy
 from ...core.arrays import Numbers
 
 ORDER = 6
-_TERMS = 30  # of the power series, which converge like (x/2π)²
+"""Number of terms of the kernel's expansion that are sum_series in closed form."""
+
+_MAX_TERMS = 30  # of the power series, which converge like (x/2π)²
 
 
 def logarithmic(a: Numbers) -> Numbers:
-    """g as a polynomial in x²."""
+    """Compute the coefficients of g, a polynomial in x²."""
     return numpy.array([-a[0], a[2] / 2, -a[4] / 24])
 
 
 def modular(a: Numbers) -> Numbers:
-    """h as a polynomial in x²."""
+    """Compute the coefficients of h, a polynomial in x²."""
     return -pi / 2 * numpy.array([a[1], -a[3] / 6, a[5] / 120])
 
 
 def smooth(a: Numbers, reach: float) -> Numbers:
-    """s as a polynomial in x², up to x = reach."""
-    terms = min(_TERMS, 4 + ceil(log(1e-17) / log(max((reach / (2 * pi)) ** 2, 1e-9))))
-    return _series()[:terms] @ a
+    """Compute the coefficients of s, a polynomial in x² that is accurate up to x = reach."""
+    terms = min(_MAX_TERMS, 4 + ceil(log(1e-17) / log(max((reach / (2 * pi)) ** 2, 1e-9))))
+    return _power_series()[:terms] @ a
 
 
 @cache
-def _series() -> Numbers:
-    """From a_1 .. a_6 to the coefficients of s."""
-    from scipy.special import zeta  # would double the time that importing the package takes
+def _power_series() -> Numbers:
+    """Compute the matrix from a_1 .. a_6 to the coefficients of s."""
+    from scipy.special import zeta  # a top-level import would double the import time of the package
 
-    k = numpy.arange(1, _TERMS - 2)
+    k = numpy.arange(1, _MAX_TERMS - 2)
     series = (1 - 2.0 ** (1 - 2 * k)) * zeta(2 * k) / k * (2 * pi) ** (-2.0 * k)
     twice = series / ((2 * k + 1) * (2 * k + 2))
-    s = numpy.zeros((_TERMS, ORDER))
+    s = numpy.zeros((_MAX_TERMS, ORDER))
     s[:3, 0] = log(4), 0, 0
     s[:3, 1] = pi**2 / 2, 0, 0
     s[:3, 2] = 7 * zeta(3), -3 / 4 - log(4) / 2, 0

@@ -1,4 +1,4 @@
-"""The exact answer to many loads on few joints: a curve of each joint, and then any number of loads."""
+"""Exact solution for many loads on few joints, interpolated on a curve of each joint."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from ...core.arrays import Array
 from ...core.checks import shown
 from ...problem import Joint
 from ...problem.gaps import LinearGap
+from .chebyshev_curve import ChebyshevCurve, fit_curve
 from .contact import CurveContact
-from .curve import Curve
-from .fitted import FittedCurve, fitted
-from .model import Exact, answer_of, curve_of
+from .load_curve import LoadCurve
+from .model import Exact, curve_of, make_answer
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExactCurve(ModelWrapper):
-    """`Exact` for many loads on few joints, backed ones too: about a millionth of a second a load.
+    """`Exact` for many loads on few joints: about a millionth of a second a load.
 
-    The first load on a joint costs 32 to 72 exact solutions, a hundredth of a second for most joints; series through
-    them in the half angle answer all loads, whether one or a million, alone or in company. They keep a tenth of the
-    model's tolerance, which `contact.error` tells; a joint on which they do not is solved load by load. The inside of
-    the socket is that of `Exact`.
+    The first load on a joint costs 32 to 72 exact solutions, a hundredth of a second for most joints. Chebyshev series
+    through them in the half angle give all further loads. They are accurate to a tenth of the model's tolerance, as
+    reported in `contact.error`. If a joint's series do not reach that, its loads are solved one by one. Stresses inside
+    the socket are those of `Exact`. Joints may have backing layers.
 
     Parameters
     ----------
     model : Exact
-        Of the linear gap.
+        A model with the linear gap.
 
     Raises
     ------
     TypeError
-        Another model.
+        The model is not an `Exact`.
     ValueError
-        A circular gap.
+        The model has a circular gap.
 
     Examples
     --------
@@ -59,14 +59,16 @@ class ExactCurve(ModelWrapper):
         if not isinstance(self.model, Exact):
             raise TypeError(f"model must be an Exact, got {shown(self.model)}")
         if self.model.gap is not LinearGap:
-            raise ValueError("a curve is that of the linear gap: ask Exact for the circular one")
+            raise ValueError("ExactCurve needs gap=LinearGap, got a circular gap: use Exact")
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        solution = solve_per_joint(self, joint, load, lambda one, loads: fitted_of(self.model, one).press(kind, loads))
-        return answer_of(solution, self.model.tolerance, load)
+        solution = solve_per_joint(
+            self, joint, load, lambda plain_joint, loads: chebyshev_curve_of(self.model, plain_joint).press(kind, loads)
+        )
+        return make_answer(solution, self.model.tolerance, load)
 
 
 @lru_cache(maxsize=256)
-def fitted_of(model: Exact, joint: Joint) -> Curve | FittedCurve:
-    """The series of a joint of plain numbers; kept, since more loads on it are likely."""
-    return fitted(curve_of(model, joint))
+def chebyshev_curve_of(model: Exact, joint: Joint) -> LoadCurve | ChebyshevCurve:
+    """Return the series of a joint of plain numbers, cached for further loads."""
+    return fit_curve(curve_of(model, joint))

@@ -47,10 +47,10 @@ class FreeFace:
             self.socket.shells,
             numpy.cumsum([self.socket.radius, *(s.thickness for s in self.socket.shells)]),
         )
-        nodes, weights = (numpy.array(part) for part in gauss_legendre(_RADIAL + 4))
+        nodes, weights = (numpy.array(values) for values in gauss_legendre(_RADIAL + 4))
         count, bubbles = len(shells), _RADIAL - 1
         r, w, f, slope, layer = [], [], [], [], []
-        shapes, rates = _shifted(nodes, _RADIAL + 1)
+        shapes, rates = _shifted_legendre(nodes, _RADIAL + 1)
         for number, shell in enumerate(shells):
             functions = numpy.zeros((2, len(nodes), count * _RADIAL))
             span = slice(count + number * bubbles, count + (number + 1) * bubbles)
@@ -78,8 +78,8 @@ class FreeFace:
             f.append(functions[0])
             slope.append(functions[1])
             layer.append(numpy.full(len(nodes), number))
-        parts = (numpy.concatenate(part) for part in (r, w, f, slope, layer))
-        return tuple(parts)  # type: ignore[return-value]
+        arrays = (numpy.concatenate(values) for values in (r, w, f, slope, layer))
+        return tuple(arrays)  # type: ignore[return-value]
 
     @cached_property
     def _stiffness(self) -> Numbers:
@@ -99,11 +99,11 @@ class FreeFace:
         def radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:
             return a.T @ ((w * factor)[:, None] * b)
 
-        both = radial(g, f, lame)
+        mixed = radial(g, f, lame)
         rr = numpy.kron(
-            radial(g, g, lame + 2 * shear) + 2 * (both + both.T) + radial(f, f, 4 * (lame + shear)), polar(P, P)
+            radial(g, g, lame + 2 * shear) + 2 * (mixed + mixed.T) + radial(f, f, 4 * (lame + shear)), polar(P, P)
         ) + numpy.kron(radial(f, f, shear), polar(P_rate, P_rate))
-        rp = numpy.kron(both + radial(f, f, 2 * (lame + shear)), polar(P, hoop)) + numpy.kron(
+        rp = numpy.kron(mixed + radial(f, f, 2 * (lame + shear)), polar(P, hoop)) + numpy.kron(
             radial(f, g - f, shear), polar(P_rate, Q)
         )
         pp = (
@@ -118,13 +118,13 @@ class FreeFace:
         """Work of -t on each function over 2π, per unit of p_n: (functions, modes)."""
         r, w, f, _, _ = self._radial
         n = numpy.arange(MODES)
-        P, slope = _at_equator(MODES)
+        P, slope = _legendre_at_equator(MODES)
         fields = self.socket.fields(n, r)
         factor = w * r
-        corner = _shifted(numpy.zeros(1), POLAR_TERMS)[0][0]
+        corner = _shifted_legendre(numpy.zeros(1), POLAR_TERMS)[0][0]
         sideways = (slope[:, None] * fields.sigma_rphi * factor) @ f  # dP_n/dφ = -slope
-        upward = -(P[:, None] * fields.sigma_phiphi * factor) @ f
-        return numpy.concatenate([numpy.kron(part, corner) for part in (sideways, upward)], axis=1).T
+        meridional = -(P[:, None] * fields.sigma_phiphi * factor) @ f
+        return numpy.concatenate([numpy.kron(work, corner) for work in (sideways, meridional)], axis=1).T
 
     @cached_property
     def solution(self) -> Numbers:
@@ -137,16 +137,19 @@ class FreeFace:
         r, _, f, slope, _ = (part[:count] for part in self._radial)
         radial, sideways = self.solution @ pressure
         P, P_rate, Q, Q_rate, Q_cot = _polar_functions(numpy.cos(angle))
-        outward = P @ (f @ radial).T
+        radial_displacement = P @ (f @ radial).T
         strain_r = P @ (slope @ radial).T
-        strain_phi, strain_theta = (outward + Q_rate @ (f @ sideways).T) / r, (outward + Q_cot @ (f @ sideways).T) / r
+        strain_phi, strain_theta = (
+            (radial_displacement + Q_rate @ (f @ sideways).T) / r,
+            (radial_displacement + Q_cot @ (f @ sideways).T) / r,
+        )
         shear = P_rate @ (f @ radial / r[:, None]).T + Q @ ((slope - f / r[:, None]) @ sideways).T
         lame, rigidity = _moduli(shell.young, shell.poisson)
-        spread = lame * (strain_r + strain_phi + strain_theta)
+        volumetric = lame * (strain_r + strain_phi + strain_theta)
         return Stress(
-            radial=spread + 2 * rigidity * strain_r,
-            meridional=spread + 2 * rigidity * strain_phi,
-            hoop=spread + 2 * rigidity * strain_theta,
+            radial=volumetric + 2 * rigidity * strain_r,
+            meridional=volumetric + 2 * rigidity * strain_phi,
+            hoop=volumetric + 2 * rigidity * strain_theta,
             shear=rigidity * shear,
         )
 
@@ -158,10 +161,10 @@ class FreeFace:
     @cached_property
     def bore(self) -> Numbers:
         """Coefficients of P_0, P_1, ... in the radial displacement of the bore, per unit of p_n: (terms, modes)."""
-        return _to_full_range() @ self.solution[0, 0]
+        return _full_range_coefficients() @ self.solution[0, 0]
 
 
-def _shifted(x: Numbers, count: int) -> tuple[Numbers, Numbers]:
+def _shifted_legendre(x: Numbers, count: int) -> tuple[Numbers, Numbers]:
     """Compute Legendre polynomials of 2x - 1 and their derivatives by x: (points, count)."""
     values = legendre.legvander(2 * x - 1, count - 1)
     rates = numpy.zeros_like(values)
@@ -172,7 +175,7 @@ def _shifted(x: Numbers, count: int) -> tuple[Numbers, Numbers]:
 
 def _polar_functions(x: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers, Numbers]:
     """Compute shapes of u_r and their φ-derivatives, then those of u_φ, their φ-derivatives and products with cot φ."""
-    P, rates = _shifted(x, POLAR_TERMS)
+    P, rates = _shifted_legendre(x, POLAR_TERMS)
     sine, cosine = numpy.sqrt(1 - x * x)[:, None], x[:, None]
     return P, -sine * rates, sine * P, cosine * P - sine**2 * rates, cosine * P
 
@@ -182,7 +185,7 @@ def _moduli(young: Any, poisson: Any) -> tuple[Any, Any]:
     return young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
 
 
-def _to_full_range() -> Numbers:
+def _full_range_coefficients() -> Numbers:
     """Compute the coefficients of P_n(x) in each polynomial P_k(2x - 1)."""
     x, weight = legendre.leggauss(POLAR_TERMS)
     waves = legendre.legvander(x, POLAR_TERMS - 1)
@@ -191,7 +194,7 @@ def _to_full_range() -> Numbers:
     )
 
 
-def _at_equator(count: int) -> tuple[Numbers, Numbers]:
+def _legendre_at_equator(count: int) -> tuple[Numbers, Numbers]:
     """Compute P_n(0) and P_n'(0)."""
     P, n = numpy.zeros(count), numpy.arange(count)
     P[0] = 1.0
@@ -201,7 +204,7 @@ def _at_equator(count: int) -> tuple[Numbers, Numbers]:
 
 
 @lru_cache(maxsize=8)
-def face_of(socket: Socket) -> FreeFace | None:
+def free_face_of(socket: Socket) -> FreeFace | None:
     """Return the free face of a socket; None for a socket that stands on its rim."""
     loose = socket.support is Support.FREE and socket.shells[-1].thickness < inf
     return None if loose else FreeFace(socket=socket)

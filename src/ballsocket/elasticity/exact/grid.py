@@ -1,7 +1,7 @@
-"""The points at which the contact equation is solved, and the weights of its singular integrals there.
+"""Quadrature points of the contact equation, and the weights of its singular integrals.
 
-An integral over [-ε, ε] with t = ε sin(πy/2), which tames the ends, is a sum over Gauss-Legendre points in y with
-product weights for ln|y - y'| and |y - y'|.
+The substitution t = ε sin(πy/2) removes the end singularities of an integral over [-ε, ε]. The integral becomes a
+sum over Gauss-Legendre points in y with product weights for ln|y - y'| and |y - y'|.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from ...core.arrays import Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Grid:
-    """Points t = ε sin(πy/2), y in (0, 1), at which functions on [0, ε] are known; and t = ε as one more target.
+class QuadratureGrid:
+    """Points t = ε sin(πy/2), y in (0, 1), where functions on [0, ε] are known; t = ε is one more target.
 
     Arrays over sources have 2 * points entries from -ε to ε; arrays over targets have points + 1, from 0 to ε.
     """
@@ -26,23 +26,23 @@ class Grid:
 
     @cached_property
     def nodes(self) -> tuple[Numbers, Numbers]:
-        """y of the sources, in (-1, 1), and their weights."""
+        """Source points y in (-1, 1) and their weights."""
         return numpy.polynomial.legendre.leggauss(2 * self.points)
 
     @property
     def right(self) -> tuple[Numbers, Numbers]:
-        """y of the points and their weights."""
+        """Positive source points y and their weights."""
         y, w = self.nodes
         return y[self.points :], w[self.points :]
 
     @property
     def weights(self) -> Numbers:
-        """Weights of the sources, in y."""
+        """Weights of the source points, in y."""
         return self.nodes[1]
 
     @cached_property
     def to_edge(self) -> Numbers:
-        """From an odd function of y at the points to its integral from there to y = 1."""
+        """Matrix from an odd function of y at the points to its integral from there to y = 1."""
         y, w = self.right
         degree = 2 * numpy.arange(self.points) + 1
         P = numpy.polynomial.legendre.legvander(y, 2 * self.points)
@@ -50,47 +50,49 @@ class Grid:
 
     @cached_property
     def slope(self) -> Numbers:
-        """dt/dy/ε of the sources."""
+        """Derivative dt/dy/ε at the sources."""
         return pi / 2 * numpy.cos(pi / 2 * self.nodes[0])
 
     @cached_property
     def _targets(self) -> Numbers:
+        """Target points y: the positive sources, then 1."""
         return numpy.append(self.nodes[0][self.points :], 1.0)
 
     @cached_property
-    def place(self) -> Numbers:
-        """t/ε of the targets."""
+    def position(self) -> Numbers:
+        """Relative position t/ε of the targets."""
         return numpy.sin(pi / 2 * self._targets)
 
     @cached_property
     def _stretch(self) -> Numbers:
-        """(t - s)/(y - y')/ε of targets and sources."""
+        """Ratio (t - s)/(y - y')/ε for targets and sources."""
         y, z = self._targets[:, None], self.nodes[0]
         return pi / 2 * numpy.cos(pi / 4 * (y + z)) * numpy.sinc((y - z) / 4)
 
     @cached_property
     def distance(self) -> Numbers:
-        """|t - s|/ε."""
+        """Distance |t - s|/ε between targets and sources."""
         return abs(self._targets[:, None] - self.nodes[0]) * self._stretch
 
     @cached_property
     def log_weights(self) -> Numbers:
-        """Weights of ln(|t - s|/ε), in y."""
-        return _from_moments(_log_moments, self) + self.weights * numpy.log(self._stretch)
+        """Product weights of ln(|t - s|/ε), in y."""
+        return _product_weights(_log_moments, self) + self.weights * numpy.log(self._stretch)
 
     @cached_property
     def modulus_weights(self) -> Numbers:
-        """Weights of |t - s|/ε, in y."""
-        return _from_moments(_modulus_moments, self) * self._stretch
+        """Product weights of |t - s|/ε, in y."""
+        return _product_weights(_modulus_moments, self) * self._stretch
 
 
 @cache
-def grid(points: int) -> Grid:
-    return Grid(points=points)
+def cached_grid(points: int) -> QuadratureGrid:
+    """Return the grid with this number of points, built once."""
+    return QuadratureGrid(points=points)
 
 
-def _from_moments(moments, grid: Grid) -> Numbers:  # type: ignore[no-untyped-def]
-    """Product weights: exact for polynomials in y, from ∫ kernel(y, y') P_l(y') dy'."""
+def _product_weights(moments, grid: QuadratureGrid) -> Numbers:  # type: ignore[no-untyped-def]
+    """Compute product weights that are exact for polynomials in y, from ∫ kernel(y, y') P_l(y') dy'."""
     size = 2 * grid.points
     z, w = grid.nodes
     projection = (numpy.arange(size)[:, None] + 0.5) * numpy.polynomial.legendre.legvander(z, size - 1).T * w
@@ -98,7 +100,7 @@ def _from_moments(moments, grid: Grid) -> Numbers:  # type: ignore[no-untyped-de
 
 
 def _log_moments(y: Numbers, size: int) -> Numbers:
-    """∫ ln|y - z| P_l(z) dz over [-1, 1]: 2 (Q_l+1 - Q_l-1)/(2l + 1)."""
+    """Compute ∫ ln|y - z| P_l(z) dz over [-1, 1]: 2 (Q_l+1 - Q_l-1)/(2l + 1)."""
     inside = y < 1
     Q = numpy.zeros((size + 1, len(y)))
     Q[0, inside] = numpy.arctanh(y[inside])
@@ -115,7 +117,7 @@ def _log_moments(y: Numbers, size: int) -> Numbers:
 
 
 def _modulus_moments(y: Numbers, size: int) -> Numbers:
-    """∫ |y - z| P_l(z) dz over [-1, 1]: twice the second antiderivative of P_l."""
+    """Compute ∫ |y - z| P_l(z) dz over [-1, 1]: twice the second antiderivative of P_l."""
     P = numpy.polynomial.legendre.legvander(y, size + 1)
     degree = numpy.arange(2, size)
     moments = numpy.empty((len(y), size))

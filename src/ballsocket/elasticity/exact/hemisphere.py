@@ -18,10 +18,10 @@ from numpy.polynomial import legendre
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem.gaps import LinearGap
-from .abel import State
-from .curve import Curve, window_of
-from .free_face import MODES, POLAR_TERMS, face_of
+from .abel import AbelState
+from .free_face import MODES, POLAR_TERMS, free_face_of
 from .kernel import Kernel
+from .load_curve import LoadCurve, window_of
 from .modes import Ball, Socket
 
 _ITERATIONS = 3
@@ -48,9 +48,11 @@ class HemisphereGap(LinearGap):
 
     @property
     def _orders(self) -> Numbers:
+        """Wave numbers n + ½."""
         return numpy.arange(self.extra.shape[1]) + 0.5
 
     def _sum(self, wave: numpy.ufunc, t: Numbers, factor: Numbers) -> Numbers:
+        """Sum the waves of the additional displacement, weighted with a factor."""
         total: Numbers = numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._orders))
         return total
 
@@ -58,13 +60,13 @@ class HemisphereGap(LinearGap):
 def response(socket: Socket, ball: Ball | None) -> Numbers:
     """Compute the modes of the additional displacement of both surfaces per mode of pressure: (MODES, MODES).
 
-    A socket that is free outside stands on its rim, which stays plane: it is half of a sphere that is pressed from both
-    sides, as the ball is.
+    A socket with a free outer surface stands on its rim, which stays plane. It is half of a sphere that is pressed from
+    both sides, as the ball is.
     """
     n = numpy.arange(MODES)
     signs = numpy.where(n % 2, -1.0, 1.0)
     total = numpy.zeros((MODES, MODES))
-    face = face_of(socket)
+    face = free_face_of(socket)
     if face is None:
         total += numpy.diag(signs * socket.compliance(n))
     else:
@@ -75,10 +77,10 @@ def response(socket: Socket, ball: Ball | None) -> Numbers:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class HemisphereState(State):
+class HemisphereState(AbelState):
     """Contacts on the hemisphere with the half angles of the contacts `closed` on the closed sphere."""
 
-    closed: State
+    closed: AbelState
 
     @property
     def _operators(self) -> tuple[Numbers, Numbers]:
@@ -93,19 +95,19 @@ class HemisphereState(State):
         return self.closed._edge_weights
 
 
-def on_hemisphere(closed: State, more: Numbers) -> State:
+def on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState:
     """Solve contacts of the same half angles on the hemisphere, with its `response`.
 
     The additional displacements and the pressures depend linearly on each other. A few fixed-point iterations with
     reduced-rank extrapolation solve this system.
     """
-    iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_modes(closed) @ more.T]
+    iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_modes(closed) @ extra_response.T]
     for _ in range(_ITERATIONS):
-        iterates.append(low_modes(_pressed(closed, iterates[-1])) @ more.T)
-    return _pressed(closed, _extrapolated(numpy.stack(iterates, axis=-1)))
+        iterates.append(low_modes(_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
+    return _hemisphere_state(closed, _extrapolate(numpy.stack(iterates, axis=-1)))
 
 
-def low_modes(state: State) -> Numbers:
+def low_modes(state: AbelState) -> Numbers:
     """Compute p_n in MPa for n below MODES: (contacts, modes)."""
     waves, sines = _waves(tuple(state.half_angle.tolist()))
     size = state.grid.points
@@ -132,7 +134,8 @@ def _even_legendre(count: int) -> Numbers:
     return even
 
 
-def _pressed(closed: State, extra: Numbers) -> State:
+def _hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
+    """Make contacts with additional displacements of the surfaces."""
     gap = closed.gap
     return HemisphereState(
         kernel=closed.kernel,
@@ -142,20 +145,20 @@ def _pressed(closed: State, extra: Numbers) -> State:
     )
 
 
-def _extrapolated(iterates: Numbers) -> Numbers:
+def _extrapolate(iterates: Numbers) -> Numbers:
     """Extrapolate iterates (contacts, terms, iterations) of linear maps by least squares of their differences."""
     steps = numpy.diff(iterates, axis=-1)
     scale = numpy.linalg.norm(steps, axis=(1, 2), keepdims=True) + 1e-300
     steps = steps / scale
     bends = numpy.diff(steps, axis=-1)
-    share = numpy.linalg.pinv(bends, rcond=1e-10) @ steps[..., :1]
-    limit: Numbers = iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ share)[..., 0]
+    weights = numpy.linalg.pinv(bends, rcond=1e-10) @ steps[..., :1]
+    limit: Numbers = iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ weights)[..., 0]
     return limit
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactSeries:
-    """Quantities of the contacts of one body as functions of x = ln ε, interpolated between a few contacts.
+    """Quantities of one body's contacts as functions of x = ln ε, interpolated between a few contacts.
 
     With X = c + d, the logarithms of d/X/(1 - cos ε), F/X/ε³ and p/X/ε vary little; they are cubics between `x`.
     """
@@ -166,6 +169,7 @@ class ContactSeries:
 
     @classmethod
     def of(cls, clearance: float, angle: Numbers, quantities: dict[str, Numbers]) -> ContactSeries:
+        """Make the series from quantities at half angles."""
         reach = clearance + quantities["indentation"]
         scales = {"indentation": 2 * numpy.sin(angle / 2) ** 2, "force": angle**3, "max_pressure": angle}
         logs = {name: numpy.log(values / reach / scales[name]) for name, values in quantities.items()}
@@ -173,7 +177,7 @@ class ContactSeries:
 
     @cached_property
     def _slopes(self) -> dict[str, Numbers]:
-        """Slopes of parabolas through three points."""
+        """Slopes at the knots, from parabolas through three points."""
         return {name: numpy.gradient(y, self.x, edge_order=2) for name, y in self.logs.items()}
 
     def values(self, x: Numbers) -> dict[str, Numbers]:
@@ -215,53 +219,57 @@ class Hemisphere:
     kernel: Kernel
 
     @cached_property
-    def _curve(self) -> Curve:
+    def _curve(self) -> LoadCurve:
+        """Load curve of the joint with unit clearance."""
         gap = LinearGap(clearance=1.0, socket_radius=self.kernel.socket.radius)
-        return Curve(kernel=self.kernel, gap=gap, tolerance=_TOLERANCE)
+        return LoadCurve(kernel=self.kernel, gap=gap, tolerance=_TOLERANCE)
 
     @cached_property
     def _response(self) -> Numbers:
+        """Additional displacement per mode of pressure."""
         return response(self.kernel.socket, self.kernel.ball)
 
     @cached_property
-    def _all(self) -> Bodies | None:
-        return self._solved(self._curve.knots)
+    def _knot_bodies(self) -> Bodies | None:
+        """Contacts of both bodies at all knots."""
+        return self._solve_bodies(self._curve.knots)
 
     @cached_property
     def _windows(self) -> dict[int, Bodies | None]:
+        """Contacts near the half angles solved so far, by the first knot."""
         return {}
 
     def _bodies(self, half_angle: Numbers) -> Bodies | None:
-        """Contacts of the closed sphere and of the hemisphere: a few near the half angles if these are close together.
+        """Return contacts of the closed sphere and of the hemisphere, only a few if the half angles are close together.
 
-        None where the hemisphere has too few contacts, or the numbers of the joint overflow.
+        The result is None if the hemisphere has too few contacts or the numbers of the joint overflow.
         """
         window = window_of(half_angle)
         try:
             if window is None:
-                return self._all
+                return self._knot_bodies
             if window.start not in self._windows:
                 closed = self._curve.knots_in(window)
-                self._windows[window.start] = self._all if closed is None else self._solved(closed)
+                self._windows[window.start] = self._knot_bodies if closed is None else self._solve_bodies(closed)
             return self._windows[window.start]
         except numpy.linalg.LinAlgError:
             return None
 
-    def _solved(self, closed: State) -> Bodies | None:
+    def _solve_bodies(self, closed: AbelState) -> Bodies | None:
         """Solve the contacts of the hemisphere with the half angles of those of the closed sphere."""
         free = on_hemisphere(closed, self._response)
         clearance, angle = closed.gap.clearance, closed.half_angle
-        both = [{name: getattr(state, name) for name in ("indentation", "force")} for state in (closed, free)]
-        for quantities, state in zip(both, (closed, free), strict=True):
-            quantities["max_pressure"] = _largest(state)
-        sound = numpy.min([value > 0 for value in both[1].values()], axis=0)
-        sound[1:] &= numpy.diff(both[1]["force"]) > 0  # rounding can break this close to the perfect fit
-        last = int(numpy.argmin(numpy.append(sound, False)))
-        if last < _MIN_CONTACTS:
+        quantity_sets = [{name: getattr(state, name) for name in ("indentation", "force")} for state in (closed, free)]
+        for quantities, state in zip(quantity_sets, (closed, free), strict=True):
+            quantities["max_pressure"] = _max_pressure(state)
+        valid = numpy.min([value > 0 for value in quantity_sets[1].values()], axis=0)
+        valid[1:] &= numpy.diff(quantity_sets[1]["force"]) > 0  # rounding can break this close to the perfect fit
+        count = int(numpy.argmin(numpy.append(valid, False)))
+        if count < _MIN_CONTACTS:
             return None
         first, second = (
-            ContactSeries.of(clearance, angle[:last], {name: value[:last] for name, value in quantities.items()})
-            for quantities in both
+            ContactSeries.of(clearance, angle[:count], {name: value[:count] for name, value in quantities.items()})
+            for quantities in quantity_sets
         )
         return first, second
 
@@ -293,9 +301,9 @@ CHANGES = ("indentation", "half_angle", "max_pressure", "stiffness")
 _MIN_CONTACTS, _MAX_SHARE, _NEWTON_STEPS, _RELATIVE_TOLERANCE, _TOLERANCE = 4, 1 - 1e-9, 4, 1e-3, 1e-3
 
 
-def _largest(state: State) -> Numbers:
+def _max_pressure(state: AbelState) -> Numbers:
     """Estimate the largest pressure: at the pole, or the largest at a few angles."""
-    if state.falls.all():
+    if state.decreases.all():
         return state.pole_pressure
     return state.pressure(state.half_angle * numpy.linspace(0.0, 0.95, 20)[:, None]).max(axis=0)
 

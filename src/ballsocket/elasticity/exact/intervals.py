@@ -1,147 +1,178 @@
-"""Integrals of the kernel over [-ε, ε]: what half angles and a grid ask for, whatever joint they belong to.
+"""Integrals of the kernel over [-ε, ε] for half angles on a grid, independent of the joint.
 
 ½ ∫ k(t - s) f(s) ds for even f and for odd f, as matrices (loads, points + 1, points) from f at the points to the
-integral at the points and at t = ε. They are linear in the kernel: in a_1 .. a_6 and in the rest r_n, see `kernel`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import ceil, pi
+from math import ceil, pi, prod
+from threading import local
 
 import numpy
 
 from ...core.arrays import Numbers
 from .closed_forms import ORDER, logarithmic, modular, smooth
-from .grid import Grid
-from .scratch import scratch
+from .grid import QuadratureGrid
 
 Operators = tuple[Numbers, Numbers]
 """Operators of even functions and of odd ones."""
 
-_BLOCK = 16_384  # waves at a time: what stays in the cache
+_BLOCK = 16_384  # waves in one block, which fits into the cache
 _PANEL_STEP = 8
 _LONGEST_PANEL = 96
-_KEPT = (32, 64, 128)  # so many waves are kept
+_CACHED_COUNTS = (32, 64, 128)  # numbers of waves that are cached
+_MAX_WORKSPACE = 1 << 18  # bytes of one reused array
+
+
+class _Workspace(local):
+    """Reusable arrays of one thread, by name."""
+
+    def __init__(self) -> None:
+        self.arrays: dict[str, numpy.ndarray] = {}
+
+
+_workspace = _Workspace()
+
+
+def workspace_array(name: str, shape: tuple[int, ...], dtype: type = float) -> numpy.ndarray:
+    """Return an uninitialised array, valid until the same thread requests that name again."""
+    size = prod(shape)
+    if size * numpy.dtype(dtype).itemsize > _MAX_WORKSPACE:
+        return numpy.empty(shape, dtype)
+    if name not in _workspace.arrays:
+        _workspace.arrays[name] = numpy.empty(_MAX_WORKSPACE, numpy.uint8)
+    return _workspace.arrays[name].view(dtype)[:size].reshape(shape)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Intervals:
-    """[-ε, ε] for half angles ε (loads,) on a grid."""
+    """Intervals [-ε, ε] for half angles ε (loads,) on a grid."""
 
     half_angle: Numbers
-    grid: Grid
+    grid: QuadratureGrid
 
-    def closed(self, a: Numbers) -> Operators:
-        """The operators of the closed forms with the coefficients a_1 .. a_6."""
+    def closed_operators(self, a: Numbers) -> Operators:
+        """Compute the operators of the closed forms with the coefficients a_1 .. a_6."""
         grid, edge = self.grid, self.half_angle[:, None, None]
-        square = numpy.multiply(edge, grid.distance, out=scratch("square", (edge.size, *grid.distance.shape)))
+        square = numpy.multiply(edge, grid.distance, out=workspace_array("square", (edge.size, *grid.distance.shape)))
         square *= square
         log_weights = grid.weights * numpy.log(edge)
-        weights = _horner("logarithmic", logarithmic(a), square)
-        weights *= numpy.add(log_weights, grid.log_weights, out=scratch("log weights", weights.shape))
-        part = _horner("other", modular(a), square)
-        part *= numpy.multiply(edge, grid.modulus_weights, out=scratch("modulus weights", weights.shape))
-        weights += part
-        part = _horner("other", smooth(a, 2 * float(self.half_angle.max(initial=0.0))), square)
-        part *= grid.weights
-        weights += part
+        weights = _evaluate_polynomial("logarithmic", logarithmic(a), square)
+        weights *= numpy.add(log_weights, grid.log_weights, out=workspace_array("log weights", weights.shape))
+        term = _evaluate_polynomial("term", modular(a), square)
+        term *= numpy.multiply(edge, grid.modulus_weights, out=workspace_array("modulus weights", weights.shape))
+        weights += term
+        term = _evaluate_polynomial("term", smooth(a, 2 * float(self.half_angle.max(initial=0.0))), square)
+        term *= grid.weights
+        weights += term
         weights *= edge * (grid.slope / 2)
         left, right = weights[..., : grid.points][..., ::-1], weights[..., grid.points :]
         return left + right, right - left
 
-    def add_rest(self, rest: Numbers, operators: Operators) -> None:
-        """Adds those of the rest r_n, in place."""
-        size = max(1, _BLOCK // (_fine(self.half_angle, self.grid, len(rest)).count * len(rest)))
+    def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
+        """Add the operators of the remainder r_n in place."""
+        size = max(1, _BLOCK // (_wave_panels(self.half_angle, self.grid, len(remainder)).count * len(remainder)))
         for first in range(0, len(self.half_angle), size):
             block = slice(first, first + size)
-            waves = _waves_between(self.half_angle[block], self.grid, len(rest))
-            _add(waves, rest, (operators[0][block], operators[1][block]))
+            waves = _waves_between(self.half_angle[block], self.grid, len(remainder))
+            _add_products(waves, remainder, (operators[0][block], operators[1][block]))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class KeptIntervals:
-    """`Intervals` that many joints ask for: what does not depend on the joint is computed once."""
+class CachedIntervals:
+    """`Intervals` shared by many joints: everything that does not depend on the joint is computed once."""
 
     half_angle: Numbers
-    grid: Grid
+    grid: QuadratureGrid
 
     @cached_property
-    def _fresh(self) -> Intervals:
+    def _intervals(self) -> Intervals:
+        """Intervals without a cache."""
         return Intervals(half_angle=self.half_angle, grid=self.grid)
 
     @cached_property
-    def _closed(self) -> Operators:
-        """The operators of each of the six closed forms, along a new last axis."""
-        parts = zip(*(self._fresh.closed(unit) for unit in numpy.eye(ORDER)), strict=True)
-        even, odd = (numpy.stack(part, axis=-1) for part in parts)
+    def _unit_operators(self) -> Operators:
+        """Operators of each of the six closed forms, along a new last axis."""
+        operators = zip(*(self._intervals.closed_operators(unit) for unit in numpy.eye(ORDER)), strict=True)
+        even, odd = (numpy.stack(stack, axis=-1) for stack in operators)
         return even, odd
 
     @cached_property
-    def _known(self) -> dict[int, tuple[Numbers, Numbers, Numbers, Numbers]]:
+    def _cached_waves(self) -> dict[int, tuple[Numbers, Numbers, Numbers, Numbers]]:
+        """Waves computed so far, by their number."""
         return {}
 
-    def closed(self, a: Numbers) -> Operators:
-        even, odd = self._closed
+    def closed_operators(self, a: Numbers) -> Operators:
+        even, odd = self._unit_operators
         return even @ a, odd @ a
 
-    def add_rest(self, rest: Numbers, operators: Operators) -> None:
-        if len(rest) > _KEPT[-1]:
-            self._fresh.add_rest(rest, operators)
+    def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
+        if len(remainder) > _CACHED_COUNTS[-1]:
+            self._intervals.add_remainder(remainder, operators)
             return
-        count = min(kept for kept in _KEPT if kept >= len(rest))
-        if count not in self._known:
+        count = min(cached for cached in _CACHED_COUNTS if cached >= len(remainder))
+        if count not in self._cached_waves:
             even, odd, even_back, odd_back = _waves_between(self.half_angle, self.grid, count)
-            self._known[count] = even.copy(), odd.copy(), even_back.copy(), odd_back.copy()
-        even, odd, even_back, odd_back = self._known[count]
-        some = slice(len(rest))
-        _add((even[..., some], odd[..., some], even_back[:, some], odd_back[:, some]), rest, operators)
+            self._cached_waves[count] = even.copy(), odd.copy(), even_back.copy(), odd_back.copy()
+        even, odd, even_back, odd_back = self._cached_waves[count]
+        first = slice(len(remainder))
+        _add_products(
+            (even[..., first], odd[..., first], even_back[:, first], odd_back[:, first]), remainder, operators
+        )
 
 
-def _add(waves: tuple[Numbers, Numbers, Numbers, Numbers], rest: Numbers, operators: Operators) -> None:
+def _add_products(waves: tuple[Numbers, Numbers, Numbers, Numbers], remainder: Numbers, operators: Operators) -> None:
+    """Add the products of waves and their integrals, weighted with the remainder."""
     even, odd, even_back, odd_back = waves
-    for whole, there, back in zip(operators, (even, odd), (even_back, odd_back), strict=True):
-        strong = numpy.multiply(there, rest, out=scratch("strong waves", there.shape))
-        whole += numpy.matmul(strong, back, out=scratch("rest", whole.shape))
+    for operator, wave, back in zip(operators, (even, odd), (even_back, odd_back), strict=True):
+        weighted = numpy.multiply(wave, remainder, out=workspace_array("weighted waves", wave.shape))
+        operator += numpy.matmul(weighted, back, out=workspace_array("remainder", operator.shape))
 
 
-def _waves_between(half_angle: Numbers, grid: Grid, count: int) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-    """The waves cos and sin of (n + ½) t at the targets (loads, points + 1, count), and the integrals of functions at
-    the points against them (loads, count, points). They are good until the next call.
+def _waves_between(half_angle: Numbers, grid: QuadratureGrid, count: int) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+    """Compute cos and sin of (n + ½) t at the targets, and integrals of functions at the points against them.
+    The shapes are (loads, points + 1, count) and (loads, count, points). The arrays are valid until the next call.
 
-    Waves are shorter than what the pressure needs, so they are integrated at points of their own.
+
+    Waves are shorter than the variations of the pressure, so they are integrated at their own points.
     """
     edge = half_angle[:, None]
-    fine = _fine(half_angle, grid, count)
-    even, odd = _waves("targets", edge * grid.place, count)
+    fine = _wave_panels(half_angle, grid, count)
+    even, odd = _waves("targets", edge * grid.position, count)
     odd *= edge[..., None]
     even *= edge[..., None]
-    fine_even, fine_odd = _waves("sources", edge * fine.place, count)
+    fine_even, fine_odd = _waves("sources", edge * fine.position, count)
     shape = (len(half_angle), count, grid.points)
-    back = numpy.matmul(fine_even.swapaxes(-1, -2), _even_between(grid, fine), out=scratch("even back", shape))
-    odd_back = numpy.matmul(fine_odd.swapaxes(-1, -2), _odd_between(grid, fine), out=scratch("odd back", shape))
+    back = numpy.matmul(
+        fine_even.swapaxes(-1, -2), _even_interpolation(grid, fine), out=workspace_array("even back", shape)
+    )
+    odd_back = numpy.matmul(
+        fine_odd.swapaxes(-1, -2), _odd_interpolation(grid, fine), out=workspace_array("odd back", shape)
+    )
     return even, odd, back, odd_back
 
 
-def _fine(half_angle: Numbers, grid: Grid, count: int) -> _Panels:
-    """Points for that many waves."""
-    return _panels(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
+def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Panels:
+    """Return quadrature panels that resolve this number of waves."""
+    return _panels_for(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
 
 
 def _waves(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
-    """cos and sin of (n + ½) angle for n below count, along a new last axis, good until that name is asked for."""
-    waves = scratch("waves", (*angle.shape, count), complex)
+    """Compute cos and sin of (n + ½) angle for n below count, valid until the next request of that name."""
+    waves = workspace_array("waves", (*angle.shape, count), complex)
     waves[..., 0] = numpy.exp(0.5j * angle)
     waves[..., 1:] = numpy.exp(1j * angle)[..., None]
     numpy.multiply.accumulate(waves, axis=-1, out=waves)
-    parts = scratch(f"cos at {name}", waves.shape), scratch(f"sin at {name}", waves.shape)
+    parts = workspace_array(f"cos at {name}", waves.shape), workspace_array(f"sin at {name}", waves.shape)
     parts[0][...], parts[1][...] = waves.real, waves.imag
     return parts
 
 
-def _horner(name: str, coefficients: Numbers, x: Numbers) -> Numbers:
-    total = scratch(name, x.shape)
+def _evaluate_polynomial(name: str, coefficients: Numbers, x: Numbers) -> Numbers:
+    """Evaluate a polynomial in x by Horner's rule."""
+    total = workspace_array(name, x.shape)
     total[...] = coefficients[-1]
     for coefficient in coefficients[-2::-1]:
         total *= x
@@ -158,29 +189,30 @@ class _Panels:
 
     @property
     def count(self) -> int:
+        """Number of points."""
         return self.panels * self.points
 
     @cached_property
     def nodes(self) -> tuple[Numbers, Numbers]:
-        """y and weights."""
+        """Points y and their weights."""
         x, w = numpy.polynomial.legendre.leggauss(self.points)
         y = (numpy.arange(self.panels)[:, None] + (1 + x) / 2).ravel() / self.panels
         return y, numpy.tile(w / (2 * self.panels), self.panels)
 
     @property
-    def place(self) -> Numbers:
-        """t/ε."""
+    def position(self) -> Numbers:
+        """Relative position t/ε of the points."""
         return numpy.sin(pi / 2 * self.nodes[0])
 
     @property
     def width(self) -> Numbers:
-        """Weights of integrals over t/ε."""
+        """Quadrature weights of integrals over t/ε."""
         y, w = self.nodes
         return pi / 2 * numpy.cos(pi / 2 * y) * w
 
 
-def _panels(points: float) -> _Panels:
-    """At least that many points, in steps so that few different sets are made."""
+def _panels_for(points: float) -> _Panels:
+    """Return panels with at least this number of points, rounded up so that few sets are built."""
     if points <= _LONGEST_PANEL:
         return _panels_of(1, _PANEL_STEP * ceil(points / _PANEL_STEP))
     return _panels_of(ceil(points / _LONGEST_PANEL), _LONGEST_PANEL)
@@ -188,22 +220,25 @@ def _panels(points: float) -> _Panels:
 
 @cache
 def _panels_of(panels: int, points: int) -> _Panels:
+    """Return the panels of this number and of these points each, built once."""
     return _Panels(panels=panels, points=points)
 
 
 @cache
-def _even_between(grid: Grid, fine: _Panels) -> Numbers:
-    """From an even function at the points of a grid to its weighted values at those of the panels."""
-    return _between(grid, fine, 0)
+def _even_interpolation(grid: QuadratureGrid, fine: _Panels) -> Numbers:
+    """Compute the matrix from an even function at the points of a grid to weighted values at the panels' points."""
+    return _interpolation(grid, fine, 0)
 
 
 @cache
-def _odd_between(grid: Grid, fine: _Panels) -> Numbers:
-    return _between(grid, fine, 1)
+def _odd_interpolation(grid: QuadratureGrid, fine: _Panels) -> Numbers:
+    """Compute the same matrix for an odd function."""
+    return _interpolation(grid, fine, 1)
 
 
-def _between(grid: Grid, fine: _Panels, parity: int) -> Numbers:
+def _interpolation(grid: QuadratureGrid, fine: _Panels, parity: int) -> Numbers:
+    """Interpolate by Legendre polynomials of one parity and apply the panels' weights."""
     y, w = grid.right
     degree = 2 * numpy.arange(grid.points) + parity
-    P, Q = (numpy.polynomial.legendre.legvander(part, 2 * grid.points)[:, degree] for part in (y, fine.nodes[0]))
+    P, Q = (numpy.polynomial.legendre.legvander(points, 2 * grid.points)[:, degree] for points in (y, fine.nodes[0]))
     return fine.width[:, None] * (Q @ ((2 * degree[:, None] + 1) * (w[:, None] * P).T))

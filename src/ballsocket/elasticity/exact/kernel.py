@@ -1,12 +1,13 @@
-"""The kernel of the contact equation and how it is integrated.
+"""Kernel of the contact equation.
 
-In Abel space (see `abel`) the ball and the socket act through k(x) = Σ ρ_n cos((n + ½) x), where ρ_n tells how far mode
+In Abel space (see `abel`) the ball and the socket act through k(x) = Σ ρ_n cos((n + ½) x). ρ_n measures how far mode
+n departs from a row of independent springs. Since ρ_n ~ Σ a_j (n + ½)^-j, the sum is split into
 n departs from a row of independent springs. Since ρ_n ~ Σ a_j (n + ½)^-j, the sum is split into
 
     k(x) = g(x²) ln|x| + h(x²) |x| + s(x²) + Σ r_n cos((n + ½) x),
 
-closed forms of Σ (n + ½)^-j cos((n + ½) x), j = 1..6, and a rest whose r_n fall like n^-7 or faster. How it is
-integrated is said in `grid` and `intervals`.
+closed forms of Σ (n + ½)^-j cos((n + ½) x), j = 1..6, and a remainder whose r_n decrease like n^-7 or faster. Its
+integration is described in `grid` and `intervals`.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ import numpy
 
 from ...core.arrays import Numbers
 from .closed_forms import ORDER
-from .intervals import Intervals, KeptIntervals, Operators
+from .intervals import CachedIntervals, Intervals, Operators
 from .modes import Ball, Socket
 
 
 @dataclass(frozen=True, kw_only=True)
 class Kernel:
-    """k(x) of a socket and a ball (None is rigid), to an absolute error of `tolerance`."""
+    """Kernel k(x) of a socket and a ball (None is rigid), to an absolute error of `tolerance`."""
 
     socket: Socket
     ball: Ball | None = None
@@ -33,11 +34,11 @@ class Kernel:
 
     @cached_property
     def compliance(self) -> float:
-        """C in mm/MPa: the common limit of c_n (n + ½) at high degrees."""
+        """Compliance C in mm/MPa: the common limit of c_n (n + ½) at high degrees."""
         return self.socket.asymptote + (0.0 if self.ball is None else self.ball.asymptote)
 
     def excess(self, degrees: Numbers) -> Numbers:
-        """ρ_n."""
+        """Compute the excess ρ_n of both bodies."""
         socket = self.socket.excess(degrees)
         if self.ball is None:
             return socket
@@ -46,7 +47,7 @@ class Kernel:
 
     @cached_property
     def expansion(self) -> Numbers:
-        """a_1 .. a_8."""
+        """Coefficients a_1 .. a_8 of the expansion of ρ_n in 1/(n + ½)."""
         socket = self.socket.expansion(ORDER + 2)
         if self.ball is None:
             return socket
@@ -54,15 +55,15 @@ class Kernel:
         return (1 - share) * socket + share * self.ball.expansion(ORDER + 2)
 
     @cached_property
-    def rest(self) -> Numbers:
-        """r_n, from n = 0 up to where it no longer counts."""
+    def remainder(self) -> Numbers:
+        """Remainders r_n, from n = 0 to the last one above the tolerance."""
         a = self.expansion
         tail = (abs(a[ORDER]) / (ORDER * self.tolerance)) ** (1 / ORDER)
         q = numpy.arange(max(ceil(tail), self.socket.reach(self.tolerance), 24)) + 0.5
         return self.excess((q - 0.5).astype(int)) - sum(a[j] * q ** -(j + 1.0) for j in range(ORDER))
 
-    def operators(self, intervals: Intervals | KeptIntervals) -> Operators:
-        """½ ∫ k(t - s) f(s) ds over [-ε, ε] for even f and for odd f, see `intervals`."""
-        found = intervals.closed(self.expansion[:ORDER])
-        intervals.add_rest(self.rest, found)
-        return found
+    def operators(self, intervals: Intervals | CachedIntervals) -> Operators:
+        """Compute ½ ∫ k(t - s) f(s) ds over [-ε, ε] for even f and for odd f, see `intervals`."""
+        operators = intervals.closed_operators(self.expansion[:ORDER])
+        intervals.add_remainder(self.remainder, operators)
+        return operators

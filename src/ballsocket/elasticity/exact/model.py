@@ -1,4 +1,4 @@
-"""The exact answer: an elastic ball in a layered elastic socket, loaded along an axis."""
+"""Exact solution of an elastic ball in a layered elastic socket, loaded along an axis."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from ...problem import Joint, Support
 from ...problem.gaps import CircularGap, LinearGap, check_gap
 from .contact import ElasticContact, NearHemisphere
-from .curve import Curve
 from .kernel import Kernel
+from .load_curve import LoadCurve
 from .modes import ball_of, socket_of
 
 
-def _locking(contact: Any) -> Array:
-    """Poisson's ratio of a liner between the ball and a rigid wall; less than that of one that can go elsewhere."""
+def _effective_poisson(contact: Any) -> Array:
+    """Return Poisson's ratio, limited to 0.4999 for a liner that can deform freely on one side."""
     joint = contact.joint
     nu = joint.liner.poisson
     if joint.backing or joint.support is Support.FREE:
@@ -37,13 +37,13 @@ class Exact(Model):
     """Linear elasticity without friction: liner and backing are closed concentric shells bonded to each other.
 
     The integral equation of the contact is solved in Abel space (see the docs, theory) to a requested tolerance.
-    Half angles up to 85 degrees; a solid elastic ball or a rigid one; NumPy inside, whatever arrays come in.
+    Half angles reach up to 85 degrees. The ball is solid and elastic, or rigid. All arrays are converted to NumPy.
 
     Parameters
     ----------
     tolerance : float
-        Relative, 1e-10 to 1e-2. `contact.error` estimates what was reached; where that is more, the status is
-        NOT_CONVERGED.
+        Relative tolerance, 1e-10 to 1e-2. `contact.error` estimates the error; where it exceeds the tolerance, the
+        status is NOT_CONVERGED.
     gap : type
         `LinearGap` (Eq. 6 of Heß & Forsbach 2021, default) or `CircularGap` (Eq. 5).
 
@@ -78,6 +78,7 @@ class Exact(Model):
 
     @property
     def title(self) -> str:
+        """Description of the model in one line."""
         shape = "" if self.gap is LinearGap else ", circular gap"
         return f"elastic ball and layered shell, integral equation{shape}"
 
@@ -87,34 +88,39 @@ class Exact(Model):
         Range(
             quantity="joint.clearance",
             low=0.0,
-            why="without clearance every load gives the same half angle, beyond 85°: ask cosine-limit",
+            why="without clearance every load gives the same half angle, beyond 85°: use cosine-limit",
         ),
         Range(
-            quantity=_locking,
+            quantity=_effective_poisson,
             symbol="ν",
             low=-1.0,
             high=0.49991,
-            why="between fixed walls a liner of ν = 0.5 does not give way to a uniform pressure: 0.4999 is solved",
+            why="a liner of ν = 0.5 between fixed walls is incompressible and cannot be indented: use at most 0.4999",
         ),
-        Range(quantity="joint.thickness_ratio", high=200.0, why="so thin a liner is not solved"),
+        Range(quantity="joint.thickness_ratio", high=200.0, why="the liner is too thin to be solved"),
     )
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        return (CLOSE_FIT, SMALL_STRAIN, _BODY) if self.gap is LinearGap else (SMALL_STRAIN, _BODY)
+        """Validity ranges; a circular gap needs no close fit."""
+        return (
+            (CLOSE_FIT, SMALL_STRAIN, _NEAR_HEMISPHERE) if self.gap is LinearGap else (SMALL_STRAIN, _NEAR_HEMISPHERE)
+        )
 
     reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        solution = solve_per_joint(self, joint, load, lambda one, loads: curve_of(self, one).press(kind, loads))
-        return answer_of(solution, self.tolerance, load)
+        solution = solve_per_joint(
+            self, joint, load, lambda plain_joint, loads: curve_of(self, plain_joint).press(kind, loads)
+        )
+        return make_answer(solution, self.tolerance, load)
 
 
-_BODY = NearHemisphere()
+_NEAR_HEMISPHERE = NearHemisphere()
 
 
-def answer_of(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
-    """The answer that a solution is, not converged where its own errors are more than the tolerance."""
+def make_answer(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
+    """Make the answer of a solution; errors beyond the tolerance count as not converged."""
     return SolverResult(
         laws=solution,
         force=solution.force,
@@ -124,8 +130,8 @@ def answer_of(solution: CombinedSolution, tolerance: float, load: Array) -> Solv
 
 
 @lru_cache(maxsize=256)
-def curve_of(model: Exact, joint: Joint) -> Curve:
-    """The curve of a joint of plain numbers; kept, since more loads on it are likely."""
+def curve_of(model: Exact, joint: Joint) -> LoadCurve:
+    """Return the load curve of a joint of plain numbers, cached for further loads."""
     kernel = Kernel(socket=socket_of(joint), ball=ball_of(joint), tolerance=max(1e-3 * model.tolerance, 1e-14))
     gap = model.gap(clearance=float(joint.clearance), socket_radius=float(joint.socket_radius))
-    return Curve(kernel=kernel, gap=gap, tolerance=model.tolerance)
+    return LoadCurve(kernel=kernel, gap=gap, tolerance=model.tolerance)

@@ -1,8 +1,8 @@
-"""How far the surfaces of a layered spherical socket and of a solid ball give way to each mode of pressure.
+"""Modal compliances of a layered spherical socket and of a solid ball.
 
 A frictionless pressure p_n P_n(cos φ) moves the loaded surface by c_n p_n P_n(cos φ) along the radius, away from the
-pressure: c_n is the modal compliance, in mm/MPa. For balls and infinite sockets it is rational in n; layers are
-passed one by one, see `waves`.
+pressure: c_n is the modal compliance, in mm/MPa. For balls and infinite sockets it is rational in n; layers are solved
+one by one, see `waves`.
 """
 
 from __future__ import annotations
@@ -13,12 +13,11 @@ from math import ceil, inf, isinf, log, log1p
 import numpy
 from numpy.typing import ArrayLike
 
-from ...core.arrays import Array
+from ...core.arrays import Array, Numbers
 from ...core.checks import require
 from ...core.quantities import MATERIAL
 from ...problem import Joint, Material, Support
-from .massive import asymptote_of, massive_excess, series
-from .waves import UNIT, GroundedLayer, fixed, free
+from .waves import UNIT, SupportedLayer, fixed_condition, free_condition
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +50,7 @@ class Shell:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fields:
-    """What each mode does inside a socket, per unit of p_n: rows are degrees, columns are radii.
+    """Displacements and stresses of each mode inside a socket, per unit of p_n: rows are degrees, columns are radii.
 
     With P = P_n(cos φ) and P' = dP/dφ, the sums over n of p_n times
 
@@ -81,11 +80,10 @@ class Socket:
     shells : tuple of Shell
         From the bore outwards; only the last may be infinite.
     support : Support
-        The outermost surface: FIXED (default) or FREE of traction. An infinite last layer is at rest at infinity.
+        Outermost surface: FIXED (default) or FREE of traction. An infinite last layer is fixed at infinity.
 
-        The mode n = 1 has a net force, which a free surface does not balance. It is then carried by a traction on the
-        outermost surface that has the same size and direction everywhere, and displacements are counted from the
-        mean translation of that surface.
+        The mode n = 1 has a net force, which a free surface does not balance. A traction on the outermost surface with
+        uniform size and direction then carries it. Displacements are counted from the mean translation of that surface.
 
     Raises
     ------
@@ -106,49 +104,49 @@ class Socket:
     def __post_init__(self) -> None:
         _check_radius(self.radius)
         require("number of shells", len(self.shells), len(self.shells) > 0, "a socket has at least one layer")
-        inside = max((shell.thickness for shell in self.shells[:-1]), default=0.0)
-        require("thickness", inside, inside < inf, "only the outermost layer may be infinite")
+        thickest_inner = max((shell.thickness for shell in self.shells[:-1]), default=0.0)
+        require("thickness", thickest_inner, thickest_inner < inf, "only the outermost layer may be infinite")
 
     @property
     def asymptote(self) -> float:
-        """C, the limit of c_n (n + ½): 2 (1 - ν²) R2/E of the innermost layer."""
+        """Limit C of c_n (n + ½): 2 (1 - ν²) R2/E of the innermost layer."""
         return asymptote_of(self.radius, self.shells[0].young, self.shells[0].poisson)
 
     def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
-        """c_n in mm/MPa: the pressure p_n P_n widens the bore by c_n p_n P_n."""
-        n, nu = _checked(degrees), self.shells[0].poisson
+        """Compute c_n in mm/MPa: the pressure p_n P_n widens the bore by c_n p_n P_n."""
+        n, nu = _check_degrees(degrees), self.shells[0].poisson
         P = 2 * (1 - nu) * n * n + (4 - 5 * nu) * n + (1 - nu)
         Q = (n + 2) * (n * n + n + 1 - nu * (2 * n + 1))
         c = numpy.asarray(self.asymptote / (2 * (1 - nu)) * P / Q)
-        near = n < self.reach(_NOTHING)
-        if near.any():
-            c[near] = -self.radius * self._layers(n[near])[0].compliance[0, 0]
+        layered = n < self.reach(_NEGLIGIBLE)
+        if layered.any():
+            c[layered] = -self.radius * self._layers(n[layered])[0].compliance[0, 0]
         return c
 
     def excess(self, degrees: ArrayLike) -> numpy.ndarray:
         """ρ_n = c_n (n + ½)/C - 1."""
-        n = _checked(degrees)
-        rho = massive_excess(n + 0.5, self.shells[0].poisson)
-        near = n < self.reach(_NOTHING)
-        if near.any():
-            share = self._layers(n[near])[0].share[0, 0]
-            rho[near] -= self.radius * share * (n[near] + 0.5) / self.asymptote
+        n = _check_degrees(degrees)
+        rho = homogeneous_excess(n + 0.5, self.shells[0].poisson)
+        layered = n < self.reach(_NEGLIGIBLE)
+        if layered.any():
+            correction = self._layers(n[layered])[0].layer_correction[0, 0]
+            rho[layered] -= self.radius * correction * (n[layered] + 0.5) / self.asymptote
         return rho
 
     def expansion(self, order: int) -> numpy.ndarray:
-        """a_1, ..., a_order of ρ_n ~ Σ a_j (n + ½)^-j: the series of the infinite socket of the innermost material.
+        """Compute a_1, ..., a_order of ρ_n ~ Σ a_j (n + ½)^-j, from the infinite socket of the innermost material.
 
-        That series converges for n >= 2; what the layers add to it is exponentially small, see `reach`.
+        That series converges for n >= 2; the contribution of the layers is exponentially small, see `reach`.
         """
-        return series(self.shells[0].poisson, order)
+        return homogeneous_expansion(self.shells[0].poisson, order)
 
     def reach(self, tolerance: float = 1e-12) -> int:
-        """The degree from which ρ_n is, within `tolerance`, that of the infinite socket of the innermost material."""
-        require("tolerance", tolerance, 0 < tolerance < 1, "a tolerance lies between 0 and 1")
+        """Return the degree from which the layers change ρ_n by less than `tolerance`."""
+        require("tolerance", tolerance, 0 < tolerance < 1, "a tolerance must lie between 0 and 1")
         shell = self.shells[0]
         if isinf(shell.thickness):
             return 0
-        # What lies behind the layer is between rigid and absent. A plane layer then departs by up to
+        # The backing is between rigid and absent. A plane layer then departs by up to
         # [(1 + 2x)² + k0²] exp(-2x), x = n ln(1 + L/R2), k0 = 3 - 4ν; curvature takes less than one degree more.
         k0 = 3 - 4 * shell.poisson
         x = 1.0
@@ -157,7 +155,7 @@ class Socket:
         return ceil(x / log1p(shell.thickness / self.radius)) + 2
 
     def fields(self, degrees: ArrayLike, radii: ArrayLike) -> Fields:
-        """Displacements and stresses of each mode at radii >= R2, per unit of p_n.
+        """Compute displacements and stresses of each mode at radii >= R2, per unit of p_n.
 
         Where two layers meet, the hoop stresses are those of the inner one.
 
@@ -166,33 +164,33 @@ class Socket:
         ValueError
             A radius in the bore or beyond the outermost surface.
         """
-        n, r = numpy.atleast_1d(_checked(degrees)), numpy.atleast_1d(numpy.asarray(radii, dtype=float))
+        n, r = numpy.atleast_1d(_check_degrees(degrees)), numpy.atleast_1d(numpy.asarray(radii, dtype=float))
         bounds = self._bounds
-        good = (r >= bounds[0] * (1 - _ROUNDING)) & (r <= bounds[-1] * (1 + _ROUNDING))
-        require("radii", r, good, f"the socket reaches from r = {bounds[0]:g} to {bounds[-1]:g} mm")
+        inside = (r >= bounds[0] * (1 - _ROUNDING)) & (r <= bounds[-1] * (1 + _ROUNDING))
+        require("radii", r, inside, f"the socket reaches from r = {bounds[0]:g} to {bounds[-1]:g} mm")
         r = numpy.clip(r, bounds[0], bounds[-1])
         layer_of = numpy.maximum(numpy.searchsorted(bounds, r) - 1, 0)
         load = numpy.stack([-self.radius + 0 * n, 0 * n])[:, None]
-        whole = numpy.empty((7, len(n), len(r)))
+        values = numpy.empty((7, len(n), len(r)))
         for number, layer in enumerate(self._layers(n)):
-            here = layer_of == number
-            whole[:, :, here] = layer.fields(load, r[here])
-            load = layer.passed_on(load)
-        return Fields(**dict(zip(Fields.__dataclass_fields__, whole, strict=True)))
+            columns = layer_of == number
+            values[:, :, columns] = layer.fields(load, r[columns])
+            load = layer.outer_traction(load)
+        return Fields(**dict(zip(Fields.__dataclass_fields__, values, strict=True)))
 
     @property
     def _bounds(self) -> numpy.ndarray:
-        """The radii of the bore, of the interfaces and of the outermost surface."""
+        """Radii of the bore, of the interfaces and of the outermost surface."""
         return numpy.cumsum([self.radius, *(shell.thickness for shell in self.shells)])
 
-    def _layers(self, n: numpy.ndarray) -> list[GroundedLayer]:
-        """From the bore outwards, each on what is behind it."""
-        loose = self.support is Support.FREE and not isinf(self.shells[-1].thickness)
-        ground = free(n) if loose else fixed()
-        layers: list[GroundedLayer] = []
+    def _layers(self, n: numpy.ndarray) -> list[SupportedLayer]:
+        """Return the layers from the bore outwards, each with the condition that its backing imposes."""
+        is_free = self.support is Support.FREE and not isinf(self.shells[-1].thickness)
+        condition = free_condition(n) if is_free else fixed_condition()
+        layers: list[SupportedLayer] = []
         for shell, inner in zip(self.shells[::-1], self._bounds[-2::-1], strict=True):
-            layers.insert(0, GroundedLayer(**vars(shell), inner=float(inner), n=n, ground=ground))
-            ground = UNIT, -layers[0].compliance
+            layers.insert(0, SupportedLayer(**vars(shell), inner=float(inner), n=n, condition=condition))
+            condition = UNIT, -layers[0].compliance
         return layers
 
 
@@ -200,9 +198,9 @@ class Socket:
 class Ball:
     """A solid elastic ball.
 
-    The mode n = 1 has a net force. Whatever balances it, as long as it is of the mode n = 1 too (a uniform body force,
-    say), moves the surface along the radius by a multiple of cos φ, as a translation does. So c_1 = 0 by definition,
-    and the position of the ball is that of the sphere that fits its deformed surface best.
+    The mode n = 1 has a net force. Any balancing load of the mode n = 1, such as a uniform body force, moves the
+    surface along the radius by a multiple of cos φ, as a translation does. So c_1 = 0 by definition. The position of
+    the ball is that of the sphere that fits its deformed surface best.
 
     Parameters
     ----------
@@ -232,12 +230,12 @@ class Ball:
 
     @property
     def asymptote(self) -> float:
-        """C, the limit of c_n (n + ½): 2 (1 - ν²) R1/E."""
+        """Limit C of c_n (n + ½): 2 (1 - ν²) R1/E."""
         return asymptote_of(self.radius, self.young, self.poisson)
 
     def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
-        """c_n in mm/MPa: the pressure p_n P_n makes the surface retreat by c_n p_n P_n."""
-        n, nu = _checked(degrees), self.poisson
+        """Compute c_n in mm/MPa: the pressure p_n P_n makes the surface retreat by c_n p_n P_n."""
+        n, nu = _check_degrees(degrees), self.poisson
         rigid = n == 1
         P = 2 * (1 - nu) * n * n + nu * n - (1 - 2 * nu)
         Q = (n - 1 + rigid) * (n * n + n + 1 + nu * (2 * n + 1))
@@ -245,17 +243,17 @@ class Ball:
 
     def excess(self, degrees: ArrayLike) -> numpy.ndarray:
         """ρ_n = c_n (n + ½)/C - 1."""
-        n = _checked(degrees)
+        n = _check_degrees(degrees)
         rigid = n == 1
-        return numpy.where(rigid, -1.0, massive_excess(-(n + rigid + 0.5), self.poisson))
+        return numpy.where(rigid, -1.0, homogeneous_excess(-(n + rigid + 0.5), self.poisson))
 
     def expansion(self, order: int) -> numpy.ndarray:
-        """a_1, ..., a_order of ρ_n = Σ a_j (n + ½)^-j, which converges for n >= 2."""
-        return series(self.poisson, order) * (-1.0) ** numpy.arange(1, order + 1)
+        """Compute a_1, ..., a_order of ρ_n = Σ a_j (n + ½)^-j, which converges for n >= 2."""
+        return homogeneous_expansion(self.poisson, order) * (-1.0) ** numpy.arange(1, order + 1)
 
 
 def socket_of(joint: Joint) -> Socket:
-    """The socket of a joint of plain numbers: its liner, its backing and its support.
+    """Make the socket of a joint of plain numbers from its liner, backing and support.
 
     Examples
     --------
@@ -269,32 +267,67 @@ def socket_of(joint: Joint) -> Socket:
 
 
 def ball_of(joint: Joint) -> Ball | None:
-    """The ball of a joint of plain numbers; None if it is rigid."""
+    """Make the ball of a joint of plain numbers; None if it is rigid."""
     if joint.ball is None:
         return None
     return Ball(radius=float(joint.ball_radius), young=float(joint.ball.young), poisson=float(joint.ball.poisson))
 
 
 def _shell(thickness: Array, material: Material) -> Shell:
+    """Make a shell of plain numbers."""
     return Shell(thickness=float(thickness), young=float(material.young), poisson=float(material.poisson))
 
 
-_NOTHING = 1e-17  # of the layers' share in ρ_n
-_ROUNDING = 1e-12  # of a radius
+_NEGLIGIBLE = 1e-17  # contribution of the layers to ρ_n
+_ROUNDING = 1e-12  # relative rounding error of a radius
 
 
 def _check_radius(radius: float) -> None:
+    """Raise ValueError unless a radius is positive and finite."""
     require("radius", radius, 0 < radius < inf, "a radius (mm) is above 0 and finite")
 
 
 def _check_material(young: float, poisson: float) -> None:
+    """Raise ValueError for moduli outside their ranges."""
     MATERIAL["young"].checked(young)
     MATERIAL["poisson"].checked(poisson)
 
 
-def _checked(degrees: ArrayLike) -> numpy.ndarray:
+def _check_degrees(degrees: ArrayLike) -> numpy.ndarray:
+    """Return degrees as floats; raise an error unless they are integers from 0 on."""
     n = numpy.asarray(degrees)
     if n.dtype.kind not in "iu":
         raise TypeError(f"degrees must be integers, got an array of {n.dtype}")
-    require("degrees", n, n >= 0, "a degree is 0 or more")
+    require("degrees", n, n >= 0, "a degree must be 0 or more")
     return n.astype(float)
+
+
+def asymptote_of(radius: float, young: float, poisson: float) -> float:
+    """Compute C in mm/MPa, the limit of c_n (n + ½) at high degrees, where a sphere is a half-space."""
+    return 2 * (1 - poisson**2) * radius / young
+
+
+def _polynomials(nu: float) -> tuple[list[float], list[float]]:
+    """Compute the polynomials of ρ in an infinite socket, in falling powers of q = n + ½.
+
+    The numerator begins with q², the denominator with q³. A ball has -q in place of q.
+    """
+    numerator = [-((1 - 2 * nu) ** 2) / (2 * (1 - nu)), -(4 - 17 * nu + 12 * nu**2) / (4 * (1 - nu)), -9 / 8]
+    denominator = [1.0, 3 / 2 - 2 * nu, 3 / 4 - 3 * nu, 9 / 8]  # (q + 3/2)(q² - 2νq + 3/4)
+    return numerator, denominator
+
+
+def homogeneous_excess(q: Numbers, nu: float) -> Numbers:
+    """Compute ρ_n = c_n (n + ½)/C - 1 of an infinite socket at q = n + ½, of a ball at q = -(n + ½)."""
+    numerator, _ = _polynomials(nu)
+    return numpy.asarray(numpy.polyval(numerator, q) / ((q + 1.5) * (q * (q - 2 * nu) + 0.75)))
+
+
+def homogeneous_expansion(nu: float, order: int) -> Numbers:
+    """Compute the quotient of the polynomials in powers of 1/q."""
+    numerator, denominator = _polynomials(nu)
+    a = [0.0, 0.0, 0.0]
+    for j in range(order):
+        earlier = denominator[1] * a[-1] + denominator[2] * a[-2] + denominator[3] * a[-3]
+        a.append((numerator[j] if j < 3 else 0.0) - earlier)
+    return numpy.array(a[3:])

@@ -1,8 +1,9 @@
-"""What a contact does to the socket: displacement of its surface, stresses inside, by the sum of modes."""
+"""Displacement of the socket's surface and stresses inside, by the sum of modes."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from math import inf, log1p, radians
 
@@ -11,43 +12,45 @@ import numpy
 from ...contact.strength import ball_stress_ratio
 from ...core.arrays import Numbers
 from ...core.stress import Peak, Stress
-from .abel import State
-from .free_face import face_of
+from .abel import AbelState
+from .free_face import free_face_of
 from .hemisphere import low_modes, on_hemisphere, response
 from .intervals import Intervals
+from .load_curve import LoadCurve
+from .tabulated.chebyshev import angle_at, angle_root
 
-NARROWEST = radians(1.0)
-"""The narrowest contact whose inside is summed."""
+MIN_HALF_ANGLE = radians(1.0)
+"""Half angle in rad of the narrowest contact whose interior is computed."""
 
-_WAVES = 600  # n ε up to which modes are summed at the surface
-_FEWEST, _MOST = 2000, 35_000
+_SURFACE_WAVES = 600  # n ε of the last mode at the surface
+_MIN_MODES, _MAX_MODES = 2000, 35_000
 
 
-def surface_displacement(state: State, angle: Numbers) -> Numbers:
-    """Radial displacement of the socket's surface in mm, outwards, of one contact; shape of `angle`."""
-    count = _modes(state, 0.0)
-    amplitudes = _tapered(state, count) * state.kernel.socket.compliance(numpy.arange(count))
+def surface_displacement(state: AbelState, angle: Numbers) -> Numbers:
+    """Compute the outward radial displacement of the socket's surface in mm for one contact; shape of `angle`."""
+    count = _mode_count(state, 0.0)
+    amplitudes = _taper_modes(state, count) * state.kernel.socket.compliance(numpy.arange(count))
     return (amplitudes @ _legendre(angle.ravel(), count)[0]).reshape(angle.shape)
 
 
-def stress(state: State, angle: Numbers, depth: Numbers) -> Stress:
-    """Stresses of one contact at polar angles (rad) and depths below the surface of the socket (mm)."""
+def stress(state: AbelState, angle: Numbers, depth: Numbers) -> Stress:
+    """Compute the stresses of one contact at polar angles (rad) and depths below the surface of the socket (mm)."""
     shallowest = float(numpy.min(depth, initial=inf))
-    return _summed(state, angle, depth, _modes(state, shallowest if shallowest < inf else 0.0))
+    return _sum_stresses(state, angle, depth, _mode_count(state, shallowest if shallowest < inf else 0.0))
 
 
-def _summed(state: State, angle: Numbers, depth: Numbers, count: int) -> Stress:
-    """Stresses from so many modes."""
+def _sum_stresses(state: AbelState, angle: Numbers, depth: Numbers, count: int) -> Stress:
+    """Compute stresses from this number of modes."""
     angle, depth = numpy.broadcast_arrays(angle, depth)
-    angles, which = numpy.unique(angle.ravel(), return_inverse=True)
-    depths, level = numpy.unique(depth.ravel(), return_inverse=True)
+    angles, column = numpy.unique(angle.ravel(), return_inverse=True)
+    depths, row = numpy.unique(depth.ravel(), return_inverse=True)
     fields = state.kernel.socket.fields(numpy.arange(count), state.gap.socket_radius + depths)
     P, slope = _legendre(angles, count)
-    modes = _tapered(state, count)
+    modes = _taper_modes(state, count)
 
     def total(field: Numbers, wave: Numbers) -> Numbers:
         table = (modes[:, None] * field).T @ wave  # depths by angles
-        return table[level.ravel(), which.ravel()].reshape(angle.shape)
+        return table[row.ravel(), column.ravel()].reshape(angle.shape)
 
     tilt = total(fields.sigma_cot, -numpy.cos(angles) * slope)
     return Stress(
@@ -58,107 +61,176 @@ def _summed(state: State, angle: Numbers, depth: Numbers, count: int) -> Stress:
     )
 
 
-def peak(state: State, thickness: float) -> Peak:
-    """The largest von Mises stress of one contact in a liner of that thickness, at the surface or below."""
-    angles, depths = _places(state, thickness)
-    for _ in range(_ROUNDS):
+def peak(state: AbelState, thickness: float) -> Peak:
+    """Find the largest von Mises stress of one contact in a liner of this thickness, at the surface or below."""
+    angles, depths = _search_grid(state, thickness)
+    for _ in range(_SEARCH_ROUNDS):
         values = stress(state, angles[:, None], depths).von_mises
         i, j = numpy.unravel_index(numpy.argmax(values), values.shape)
-        angles, depths = _around(angles, int(i)), _around(depths, int(j))
-        best = Peak(von_mises=float(values[i, j]), depth=float(depths[_HALF]), angle=float(angles[_HALF]))
-    return best
+        angles, depths = _refine(angles, int(i)), _refine(depths, int(j))
+        maximum = Peak(
+            von_mises=float(values[i, j]), depth=float(depths[_HALF_INTERVALS]), angle=float(angles[_HALF_INTERVALS])
+        )
+    return maximum
 
 
-def _places(state: State, thickness: float) -> tuple[Numbers, Numbers]:
-    """Where the largest stress is looked for at first: angles up to a little beyond the edge, and depths."""
+def _search_grid(state: AbelState, thickness: float) -> tuple[Numbers, Numbers]:
+    """Make the first search grid: angles to slightly beyond the edge, and depths."""
     angles = float(state.half_angle[0]) * numpy.linspace(0.0, 1.3, 27)
     deepest = min(thickness, 3 * state.gap.socket_radius * float(numpy.sin(state.half_angle[0])))
     return angles, deepest * numpy.linspace(0.0, 1.0, 26)
 
 
-def about_von_mises(state: State) -> Numbers:
-    """About what `largest_von_mises` says of each contact, within `OFF` of it: from an eighth of the modes."""
+def estimate_von_mises(state: AbelState) -> Numbers:
+    """Estimate the largest von Mises stress of each contact from an eighth of the modes.
+
+    The estimate differs from `largest_von_mises` by at most `VON_MISES_TOLERANCE`.
+    """
     values = state.max_pressure * ball_stress_ratio(state.kernel.socket.shells[0].poisson)
-    for number in numpy.flatnonzero(state.half_angle >= NARROWEST):
-        alone = state.alone(int(number))
-        angles, depths = _places(alone, alone.kernel.socket.shells[0].thickness)
-        count = _modes(alone, 0.0) // _FEWER
-        values[number] = _summed(alone, angles[::2, None], depths[::2], count).von_mises.max()
+    for number in numpy.flatnonzero(state.half_angle >= MIN_HALF_ANGLE):
+        contact = state.single(int(number))
+        angles, depths = _search_grid(contact, contact.kernel.socket.shells[0].thickness)
+        count = _mode_count(contact, 0.0) // _FEWER_MODES
+        values[number] = _sum_stresses(contact, angles[::2, None], depths[::2], count).von_mises.max()
     return values
 
 
-OFF, _FEWER = 0.1, 8
-_OFF_RIM = radians(85.0)  # the corner of the rim has no largest stress
+VON_MISES_TOLERANCE = 0.1
+"""Relative error of `estimate_von_mises`."""
+
+_FEWER_MODES = 8  # the estimate divides the number of modes by this
+_MAX_SEARCH_ANGLE = radians(85.0)  # the stress in the corner of the rim is unbounded
 
 
-def von_mises_change(closed: State, half_angle: float) -> float:
+def von_mises_change(closed: AbelState, half_angle: float) -> float:
     """Compute the relative change of the largest von Mises stress in the liner on the hemisphere.
 
-    Both stresses are the largest at a few angles and depths, from a quarter of the modes.
+    Both stresses are the largest at a few angles and depths, computed from a quarter of the modes.
     """
     kernel = closed.kernel
     intervals = Intervals(half_angle=numpy.array([half_angle]), grid=closed.grid)
     free = on_hemisphere(replace(closed, intervals=intervals), response(kernel.socket, kernel.ball))
-    angles = min(1.2 * float(closed.half_angle[0]), _OFF_RIM) * numpy.linspace(0.0, 1.0, 9)
-    face = face_of(kernel.socket)
+    angles = min(1.2 * float(closed.half_angle[0]), _MAX_SEARCH_ANGLE) * numpy.linspace(0.0, 1.0, 9)
+    face = free_face_of(kernel.socket)
     if face is None:
         return numpy.nan
     depths = face.liner_radii - kernel.socket.radius
-    count = min(_modes(closed, float(depths.min())), _modes(closed, 0.0) // 4)
-    before, after = (_summed(state, angles[:, None], depths, count) for state in (closed, free))
-    more = face.liner_stress(low_modes(free)[0], angles)
-    total = Stress(**{name: part + vars(more)[name] for name, part in vars(after).items()})
-    same_force = float(closed.force[0] / free.force[0])  # at one half angle all is proportional to the clearance
+    count = min(_mode_count(closed, float(depths.min())), _mode_count(closed, 0.0) // 4)
+    before, after = (_sum_stresses(state, angles[:, None], depths, count) for state in (closed, free))
+    release = face.liner_stress(low_modes(free)[0], angles)
+    total = Stress(**{name: values + vars(release)[name] for name, values in vars(after).items()})
+    same_force = float(closed.force[0] / free.force[0])  # at one half angle stresses are proportional to the clearance
     return same_force * float(total.von_mises.max() / before.von_mises.max()) - 1
 
 
-def largest_von_mises(state: State, reached: Numbers) -> Numbers:
-    """That in the liner of each contact that was reached (a mask), NaN of the others; of a narrow one as in a ball."""
+def largest_von_mises(state: AbelState, reached: Numbers) -> Numbers:
+    """Compute the largest von Mises stress in the liner for each contact in the mask, NaN for the others.
+
+    A narrow contact has the stress of a half-space under Hertz' pressure.
+    """
     liner = state.kernel.socket.shells[0]
     values = numpy.full(len(state.half_angle), numpy.nan)
     for number in numpy.flatnonzero(reached):
-        if state.half_angle[number] < NARROWEST:  # a half-space
+        if state.half_angle[number] < MIN_HALF_ANGLE:  # a half-space
             values[number] = state.max_pressure[number] * ball_stress_ratio(liner.poisson)
         else:
-            values[number] = peak(state.alone(int(number)), liner.thickness).von_mises
+            values[number] = peak(state.single(int(number)), liner.thickness).von_mises
     return values
 
 
-_HALF, _ROUNDS = 4, 4
+_HALF_INTERVALS, _SEARCH_ROUNDS = 4, 4
 
 
-def _around(values: Numbers, i: int) -> Numbers:
-    """A finer row from the neighbour below to the neighbour above."""
+def _refine(values: Numbers, i: int) -> Numbers:
+    """Make a finer row from the neighbour below index i to the neighbour above."""
     low, high = values[max(i - 1, 0)], values[min(i + 1, len(values) - 1)]
-    below = numpy.linspace(low, values[i], _HALF + 1)
-    return numpy.append(below, numpy.linspace(values[i], high, _HALF + 1)[1:])
+    below = numpy.linspace(low, values[i], _HALF_INTERVALS + 1)
+    return numpy.append(below, numpy.linspace(values[i], high, _HALF_INTERVALS + 1)[1:])
 
 
-def _modes(state: State, depth: float) -> int:
-    """How many modes are summed: enough waves over the contact, fewer where they fade like (1 + depth/R2)^-n."""
-    surface = numpy.clip(_WAVES / float(state.half_angle[0]), _FEWEST, _MOST)
-    fading = 35 / log1p(depth / state.gap.socket_radius) if depth > 0 else _MOST
-    return int(min(surface, max(fading, 200)))
+def _mode_count(state: AbelState, depth: float) -> int:
+    """Return the number of modes: enough over the contact, fewer where they decay like (1 + depth/R2)^-n."""
+    surface = numpy.clip(_SURFACE_WAVES / float(state.half_angle[0]), _MIN_MODES, _MAX_MODES)
+    decayed = 35 / log1p(depth / state.gap.socket_radius) if depth > 0 else _MAX_MODES
+    return int(min(surface, max(decayed, 200)))
 
 
-def _tapered(state: State, count: int) -> Numbers:
-    """p_n of one contact, the last half let out gently so that the sum does not ring."""
+def _taper_modes(state: AbelState, count: int) -> Numbers:
+    """Return p_n of one contact with a smooth taper over the last half, which avoids ringing of the sum."""
     n = numpy.arange(count)
     taper = numpy.cos(numpy.pi * numpy.clip(n / count - 0.5, 0.0, 0.5)) ** 2
     return state.modes(count)[0] * taper
 
 
 def _legendre(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
-    """P_n(cos φ) and dP_n/d(cos φ) for n below count, shape (count, angles)."""
+    """Compute P_n(cos φ) and dP_n/d(cos φ) for n below count, shape (count, angles)."""
     x, n = numpy.cos(angle), numpy.arange(count)[:, None]
     P, slope = numpy.empty((count, len(x))), numpy.zeros((count, len(x)))
     P[0], P[1] = 1.0, x
-    ahead, back, dropped = list((2 * n - 1) * x / numpy.maximum(n, 1)), P[0], numpy.empty(len(x))
-    for k, (here, there) in enumerate(pairwise(P[1:]), start=2):
-        numpy.multiply(ahead[k], here, out=there)
-        there -= numpy.multiply(back, 1 - 1 / k, out=dropped)
-        back = here
+    factors, previous, scaled = list((2 * n - 1) * x / numpy.maximum(n, 1)), P[0], numpy.empty(len(x))
+    for k, (current, following) in enumerate(pairwise(P[1:]), start=2):
+        numpy.multiply(factors[k], current, out=following)
+        following -= numpy.multiply(previous, 1 - 1 / k, out=scaled)
+        previous = current
     growth = (2 * n[1:] - 1) * P[:-1]
     for parity in (0, 1):  # each slope is that two degrees before, and (2n - 1) P_n-1
         slope[1 + parity :: 2] = numpy.cumsum(growth[parity::2], axis=0)
     return P, slope
+
+
+_STRESS_INTERVALS = 40  # between half angles where stresses are solved
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StressCurve:
+    """Ratio of the largest von Mises stress in the liner to the largest pressure along a load curve, to about 1e-3.
+
+    `points` is the number of quadrature points of each solution.
+    """
+
+    curve: LoadCurve
+    points: int
+
+    @property
+    def _ratio(self) -> float:
+        """Ratio R2/L."""
+        return self.curve.ratio
+
+    @cached_property
+    def _widest(self) -> float:
+        """Table coordinate of the widest contact."""
+        return float(angle_root(self.curve.widest, self._ratio))
+
+    def stress_ratio(self, angle: Numbers) -> Numbers:
+        """Interpolate the ratio of the largest von Mises stress to the largest pressure at half angles."""
+        position = numpy.clip(
+            (angle_root(angle, self._ratio) - self._roots[0]) / self._roots[1], 0.0, _STRESS_INTERVALS - 1e-9
+        )
+        first, fraction = position.astype(int), position % 1
+        low, high = (self._solved_ratios(number) for number in (first, first + 1))
+        return low + fraction * (high - low)
+
+    @property
+    def _roots(self) -> tuple[float, float]:
+        """First table coordinate where stresses are solved, and the step."""
+        first = min(float(angle_root(MIN_HALF_ANGLE, self._ratio)), self._widest)
+        return first, (self._widest - first) / _STRESS_INTERVALS
+
+    def _solved_ratios(self, numbers: Numbers) -> Numbers:
+        """Return the ratios at numbered half angles; each one is solved at its first use."""
+        unique, positions = numpy.unique(numbers, return_inverse=True)
+        return numpy.array([self._solve_ratio(int(number)) for number in unique])[positions.ravel()]
+
+    def _solve_ratio(self, number: int) -> float:
+        """Return the ratio at one of the half angles."""
+        if number not in self._cached_ratios:
+            root = self._roots[0] + number * self._roots[1]
+            angle = float(angle_at(2 * root - 1, self._ratio))
+            state = self.curve.state(numpy.array([min(angle, self.curve.widest)]), self.points)
+            self._cached_ratios[number] = float((largest_von_mises(state, numpy.array([True])) / state.max_pressure)[0])
+        return self._cached_ratios[number]
+
+    @cached_property
+    def _cached_ratios(self) -> dict[int, float]:
+        """Ratios solved so far."""
+        return {}

@@ -1,1 +1,1 @@
-"""Finite elements: the judge for rims, arcs of cover, liners that slide and shells that give way."""
+"""Contact by finite elements: reference for rims, arcs of cover, sliding liners and compliant shells."""

@@ -1,7 +1,8 @@
 """Ball and socket as elastic bodies with their supports.
 
-The ball is the half that faces the socket, held by its equator, which stays plane and is free along itself. The socket
-ends at its rim. Outside it is fixed; or free, and then it sits on its rim, which stays on its cone.
+The ball is the half that faces the socket, supported at its equator, which stays plane and is free to expand. The
+socket ends at its rim. Its outer surface is fixed; or it is free, and the socket stands on its rim, which stays on its
+cone.
 """
 
 from __future__ import annotations
@@ -13,67 +14,70 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...problem import Support
-from .condense import Body
-from .elasticity import Elastic
+from .condensation import CondensedBody
+from .elasticity import ElasticBlock
 from .mesh import Block, block
 from .shapes import Resolution, SocketShape, ball_corners
 
 
-def socket_body(shape: SocketShape, resolution: Resolution) -> Body:
-    """The socket, pressed from the inside."""
+def socket_body(shape: SocketShape, resolution: Resolution) -> CondensedBody:
+    """Make the socket, loaded on its bore."""
     angle, radii = shape.corners(resolution)
     mesh = socket_block(shape, angle, radii, resolution.order)
     outside = mesh.number[:, -1]
-    held = _axis_held(mesh)
+    fixed_unknowns = _axis_mask(mesh)
     if shape.support is Support.FIXED or shape.layers[-1][0] == inf:
-        held[2 * outside + 1] = True
-        held[2 * outside] |= not (shape.slides and len(radii) == 1)
+        fixed_unknowns[2 * outside + 1] = True
+        fixed_unknowns[2 * outside] |= not (shape.slides and len(radii) == 1)
     else:
-        outermost = mesh.strips[mesh.layer == len(radii) - 1][0]  # a liner that slides in it keeps its own rim free
-        held[2 * mesh.number[-1, outermost:]] = True
+        # the rim of a liner that slides in the outermost layer stays free
+        outermost = mesh.strips[mesh.layer == len(radii) - 1][0]
+        fixed_unknowns[2 * mesh.number[-1, outermost:]] = True
     bore = mesh.number[: int(numpy.searchsorted(mesh.angle, shape.reach + 1e-9)), 0]
-    return Body(elastic=socket_elastic(shape, mesh), held=held, contact=bore)
+    return CondensedBody(elastic=socket_elastic(shape, mesh), fixed_unknowns=fixed_unknowns, contact=bore)
 
 
 def socket_block(shape: SocketShape, angle: Numbers, radii: list[Numbers], order: int) -> Block:
-    """The socket's mesh from the corners of its elements; a liner that slides is parted from what is behind it."""
+    """Mesh the socket from the corners of its elements; a sliding liner has separate nodes."""
     return block(angle, radii, order, (1,) if shape.slides and len(radii) > 1 else ())
 
 
-def socket_elastic(shape: SocketShape, mesh: Block) -> Elastic:
-    """The socket's mesh with the materials of its layers."""
+def socket_elastic(shape: SocketShape, mesh: Block) -> ElasticBlock:
+    """Assign the materials of the layers to the socket's mesh."""
     young, poisson = (numpy.array([layer[i] for layer in shape.layers]) for i in (1, 2))
-    return Elastic(block=mesh, young=young, poisson=poisson)
+    return ElasticBlock(block=mesh, young=young, poisson=poisson)
 
 
-def ball_body(poisson: float, resolution: Resolution) -> Body:
-    """A ball of radius 1 and Young's modulus 1, pressed from the outside."""
+def ball_body(poisson: float, resolution: Resolution) -> CondensedBody:
+    """Make a ball of radius 1 and Young's modulus 1, loaded on its surface."""
     angle, radii = ball_corners(resolution)
     mesh = block(angle, [radii], resolution.order)
-    held = _axis_held(mesh)
-    held[2 * mesh.number[-1]] = True  # the equator stays plane
-    elastic = Elastic(block=mesh, young=numpy.ones(1), poisson=numpy.array([poisson]))
-    return Body(elastic=elastic, held=held, contact=mesh.number[:, -1])
+    fixed_unknowns = _axis_mask(mesh)
+    fixed_unknowns[2 * mesh.number[-1]] = True  # the equator stays plane
+    elastic = ElasticBlock(block=mesh, young=numpy.ones(1), poisson=numpy.array([poisson]))
+    return CondensedBody(elastic=elastic, fixed_unknowns=fixed_unknowns, contact=mesh.number[:, -1])
 
 
-def _axis_held(mesh: Block) -> Numbers:
-    held = numpy.zeros(2 * mesh.number.size, dtype=bool)
-    held[2 * mesh.number[0]] = True
-    return held
+def _axis_mask(mesh: Block) -> Numbers:
+    """Return the mask of unknowns that are zero on the axis."""
+    fixed_unknowns = numpy.zeros(2 * mesh.number.size, dtype=bool)
+    fixed_unknowns[2 * mesh.number[0]] = True
+    return fixed_unknowns
 
 
 @lru_cache(maxsize=64)
 def socket_compliance(shape: SocketShape, resolution: Resolution) -> tuple[Numbers, Numbers]:
-    """Angles of the bore's nodes, and their normal displacements by normal forces."""
-    return _condensed(socket_body(shape, resolution))
+    """Compute the angles of the bore's nodes, and their normal displacements by unit normal forces."""
+    return _condense(socket_body(shape, resolution))
 
 
 @lru_cache(maxsize=64)
 def ball_compliance(poisson: float, resolution: Resolution) -> tuple[Numbers, Numbers]:
-    """Angles of the nodes on the ball's surface, and their normal displacements by normal forces."""
-    return _condensed(ball_body(poisson, resolution))
+    """Compute the angles of the nodes on the ball's surface, and their normal displacements by unit normal forces."""
+    return _condense(ball_body(poisson, resolution))
 
 
-def _condensed(body: Body) -> tuple[Numbers, Numbers]:
+def _condense(body: CondensedBody) -> tuple[Numbers, Numbers]:
+    """Return angles and compliance of a body's contact nodes."""
     block = body.elastic.block
     return block.angle[: len(body.contact)], body.compliance()

@@ -1,4 +1,4 @@
-"""The answer of the finite elements: a contact that knows its own error, its mesh, and the inside of both bodies."""
+"""Contact by finite elements, with its error estimates, its mesh and the sections of both bodies."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from .memory import MeshSize, mesh_size
 
 if TYPE_CHECKING:
     from .section import Section
-    from .work import Solved
+    from .tangent import Solved
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class MeshedContact(SolvedContact):
-    """A contact that knows, where it is a single one, its mesh, displacements and stresses.
+    """Contact with its mesh, displacements and stresses, available for a single load.
 
     Attributes
     ----------
     error : dict
-        By name the relative error of each quantity at the given load, estimated from two meshes; NaN from one.
+        Relative error of each quantity by name at the applied load, estimated from two meshes; NaN with one mesh.
     """
 
     model: Any
@@ -49,26 +49,26 @@ class MeshedContact(SolvedContact):
 
     @property
     def von_mises_bounds(self) -> tuple[Array, Array]:
-        """What `von_mises` lies between, as far as that is known at once; near a rim that is nothing."""
-        least, most = super().von_mises_bounds
-        return (least, most) if self.model.cup == Cup() else (0.0 * least, most + inf)
+        """Bounds of `von_mises` without a section; near a rim there are none."""
+        lower, upper = super().von_mises_bounds
+        return (lower, upper) if self.model.cup == Cup() else (0.0 * lower, upper + inf)
 
-    def _joint_von_mises(self, place: Numbers, piece: JointContacts) -> Numbers:
+    def _joint_von_mises(self, index: Numbers, piece: JointContacts) -> Numbers:
         from .section import section
 
-        found = [
+        values = [
             nan
-            if one is None
+            if contact is None
             else section(
-                joint_at(self.joint, self.laws.shape, int(place[0])), self.model.cup, one
+                joint_at(self.joint, self.laws.shape, int(index[0])), self.model.cup, contact
             ).peak_stress.von_mises
-            for one in piece.state.solved
+            for contact in piece.state.solved
         ]
-        return numpy.array(found, dtype=float)
+        return numpy.array(values, dtype=float)
 
     @property
     def peak_stress(self) -> Peak:
-        """The largest von Mises stress in the liner, with its depth and polar angle, at the nodes of the mesh."""
+        """Largest von Mises stress in the liner, with its depth and polar angle, at the nodes of the mesh."""
         return self.section.peak_stress
 
     @property
@@ -78,7 +78,7 @@ class MeshedContact(SolvedContact):
 
     @property
     def mesh(self) -> MeshSize:
-        """Elements and nodes of both bodies, and the elements' size at the contact, of a single contact."""
+        """Size of the mesh of a single contact: elements and nodes of both bodies, element size at the contact."""
         pair = self._solved.pair
         return mesh_size(self._plain_joint, self.model.cup, pair.resolution, pair.ball_resolution)
 
@@ -90,10 +90,10 @@ class MeshedContact(SolvedContact):
     def _solved(self) -> Solved:
         solved: Solved | None = self.single_state.solved[0]
         if solved is None:
-            raise ValueError("displacements and stresses need a contact that has an answer")
+            raise ValueError("displacements and stresses need a contact with a solution")
         return solved
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON, with the error estimates and, of a single contact, the size of its mesh."""
+        """Return one dictionary for JSON, with the error estimates and the mesh size of a single contact."""
         single = self.laws.shape == () and not Status(self.status).failed and self.indentation > 0
         return {**super().summary(), **({"mesh": self.mesh.summary()} if single else {})}

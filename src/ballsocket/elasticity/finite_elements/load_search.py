@@ -1,4 +1,4 @@
-"""Contacts of one pair found by their load, from a few that are known."""
+"""Search of contacts by their load, between a few contacts of one surface pair."""
 
 from __future__ import annotations
 
@@ -10,106 +10,109 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from ...problem.gaps import Gap
-from .round_contact import Cap, cap
-from .surfaces import Pair
+from .round_contact import PartialContact, partial_contact
+from .surfaces import SurfacePair
 
-_RUNGS = 10
-_STEPS = 4
-_CLOSE = 1e-10  # of a load
+_SAMPLES = 10
+_SECANT_STEPS = 4
+_LOAD_TOLERANCE = 1e-10  # relative
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Ladder:
-    """The contacts of a pair between two half angles (rad)."""
+class ContactBracket:
+    """Contacts of a surface pair between two half angles (rad)."""
 
-    pair: Pair
+    pair: SurfacePair
     gap: Gap
     low: float
     high: float
 
     @cached_property
-    def _climbed(self) -> tuple[list[Cap], bool]:
-        """Contacts, each with more force and indentation than the one before; whether then comes the perfect fit.
+    def _sampled(self) -> tuple[list[PartialContact], bool]:
+        """Contacts of increasing force and indentation, and a flag that is true if the perfect fit comes next.
 
-        They may end earlier: where the rim gives way so much that a wider contact has less force, the ball leaves the
-        pole, and the contact is a cap no more.
+        The samples may end earlier. If the rim is so compliant that a wider contact has less force, the ball leaves the
+        pole and its contact area is not round any more.
         """
-        angles = numpy.geomspace(self.low, self.high, _RUNGS)
+        angles = numpy.geomspace(self.low, self.high, _SAMPLES)
         angles[-1] = self.high
-        rungs: list[Cap] = []
+        samples: list[PartialContact] = []
         for angle in angles:
-            one = cap(self.pair, self.gap, float(angle))
-            if not is_contact(one):
-                return rungs, True
-            if rungs and not (one.force > rungs[-1].force and one.indentation > rungs[-1].indentation):
-                return rungs, False
-            rungs.append(one)
-        return rungs, False
+            contact = partial_contact(self.pair, self.gap, float(angle))
+            if not is_pressed(contact):
+                return samples, True
+            if samples and not (contact.force > samples[-1].force and contact.indentation > samples[-1].indentation):
+                return samples, False
+            samples.append(contact)
+        return samples, False
 
     @property
-    def _rungs(self) -> list[Cap]:
-        return self._climbed[0]
+    def _samples(self) -> list[PartialContact]:
+        """Contacts of increasing force and indentation."""
+        return self._sampled[0]
 
     @cached_property
     def _curves(self) -> dict[str, PchipInterpolator]:
-        """ln ε by ln(load)."""
-        angles = numpy.log([one.half_angle for one in self._rungs])
+        """Interpolations of ln ε over ln(load)."""
+        angles = numpy.log([contact.half_angle for contact in self._samples])
         return {
-            kind: PchipInterpolator(numpy.log([getattr(one, kind) for one in self._rungs]), angles)
+            kind: PchipInterpolator(numpy.log([getattr(contact, kind) for contact in self._samples]), angles)
             for kind in ("force", "indentation")
         }
 
-    def falls_short(self, kind: str, load: float) -> bool:
-        """Whether even the widest contact has less than the load."""
-        return len(self._rungs) == _RUNGS and bool(getattr(self._rungs[-1], kind) < load)
+    def is_exceeded(self, kind: str, load: float) -> bool:
+        """Return True if even the widest contact has less than the load."""
+        return len(self._samples) == _SAMPLES and bool(getattr(self._samples[-1], kind) < load)
 
-    def guess(self, kind: str, load: float) -> float | None:
-        """About the half angle under a load; None where it lies outside the ladder."""
-        if len(self._rungs) < 2 or load < getattr(self._rungs[0], kind) or self.falls_short(kind, load):
+    def estimate_angle(self, kind: str, load: float) -> float | None:
+        """Estimate the half angle under a load; None outside the range."""
+        if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.is_exceeded(kind, load):
             return None
-        if load > getattr(self._rungs[-1], kind):  # short of the perfect fit, that is of the next rung
-            return self._rungs[-1].half_angle * (self.high / self.low) ** (0.5 / (_RUNGS - 1))
+        if load > getattr(self._samples[-1], kind):  # the perfect fit lies before the next sample
+            return self._samples[-1].half_angle * (self.high / self.low) ** (0.5 / (_SAMPLES - 1))
         return float(numpy.exp(self._curves[kind](numpy.log(load))))
 
-    def find(self, kind: str, load: float) -> Cap | None:
-        """The contact under a load, "force" or "indentation"; None where it lies outside the ladder."""
-        if len(self._rungs) < 2 or load < getattr(self._rungs[0], kind) or self.falls_short(kind, load):
+    def solve(self, kind: str, load: float) -> PartialContact | None:
+        """Solve the contact under a load, "force" or "indentation"; None outside the range."""
+        if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.is_exceeded(kind, load):
             return None
-        above = sum(getattr(rung, kind) <= load for rung in self._rungs)
-        if above == len(self._rungs):
-            _, fits = self._climbed  # before the perfect fit the load goes to infinity
-            return self._bracketed(kind, load, self._rungs[-1].half_angle, self.high) if fits else None
-        return self._quickly(kind, load) or self._bracketed(
-            kind, load, self._rungs[above - 1].half_angle, self._rungs[above].half_angle
+        above = sum(getattr(sample, kind) <= load for sample in self._samples)
+        if above == len(self._samples):
+            _, fits = self._sampled  # the load is infinite at the perfect fit
+            return self._solve_by_bisection(kind, load, self._samples[-1].half_angle, self.high) if fits else None
+        return self._solve_by_secant(kind, load) or self._solve_by_bisection(
+            kind, load, self._samples[above - 1].half_angle, self._samples[above].half_angle
         )
 
-    def _quickly(self, kind: str, load: float) -> Cap | None:
-        """By the secant method in the logarithms, from the curve through the rungs; None if that is slow."""
+    def _solve_by_secant(self, kind: str, load: float) -> PartialContact | None:
+        """Solve by the secant method in the logarithms; None if it does not converge in a few steps."""
         goal = numpy.log(load)
         angle, rise = float(self._curves[kind](goal)), float(self._curves[kind](goal, 1))
-        one, miss = self._missed(kind, goal, angle)
-        for _ in range(_STEPS):
-            if abs(miss) < _CLOSE:
-                return one
-            step, before = miss * rise, miss
+        contact, residual = self._residual(kind, goal, angle)
+        for _ in range(_SECANT_STEPS):
+            if abs(residual) < _LOAD_TOLERANCE:
+                return contact
+            step, previous = residual * rise, residual
             angle += step
-            one, miss = self._missed(kind, goal, angle)
-            rise = step / (before - miss) if miss != before else 0.0
+            contact, residual = self._residual(kind, goal, angle)
+            rise = step / (previous - residual) if residual != previous else 0.0
         return None
 
-    def _missed(self, kind: str, goal: float, log_angle: float) -> tuple[Cap, float]:
-        """The contact of a half angle, and by how much the logarithm of its load falls short."""
-        one = cap(self.pair, self.gap, min(float(numpy.exp(log_angle)), self.high))
-        return one, goal - float(numpy.log(getattr(one, kind)))
+    def _residual(self, kind: str, goal: float, log_angle: float) -> tuple[PartialContact, float]:
+        """Solve the contact of a half angle, and return the logarithmic deficit of its load."""
+        contact = partial_contact(self.pair, self.gap, min(float(numpy.exp(log_angle)), self.high))
+        return contact, goal - float(numpy.log(getattr(contact, kind)))
 
-    def _bracketed(self, kind: str, load: float, low: float, high: float) -> Cap:
-        def miss(angle: float) -> float:
-            one = cap(self.pair, self.gap, angle)
-            return float(1 - (load / getattr(one, kind)) ** 0.25) if is_contact(one) else 1.0
+    def _solve_by_bisection(self, kind: str, load: float, low: float, high: float) -> PartialContact:
+        """Solve by Brent's method between two half angles."""
 
-        return cap(self.pair, self.gap, brentq(miss, low, high, xtol=1e-14, rtol=1e-14))
+        def residual(angle: float) -> float:
+            contact = partial_contact(self.pair, self.gap, angle)
+            return float(1 - (load / getattr(contact, kind)) ** 0.25) if is_pressed(contact) else 1.0
+
+        return partial_contact(self.pair, self.gap, brentq(residual, low, high, xtol=1e-14, rtol=1e-14))
 
 
-def is_contact(one: Cap) -> bool:
-    """Whether anything presses: the contact is not wider than the perfect fit's."""
-    return bool(one.indentation > 0 and one.force > 0)
+def is_pressed(contact: PartialContact) -> bool:
+    """Return True for a contact with pressure, which is not wider than the perfect fit."""
+    return bool(contact.indentation > 0 and contact.force > 0)

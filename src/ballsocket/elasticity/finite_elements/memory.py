@@ -1,4 +1,4 @@
-"""How large a mesh is, before it is built."""
+"""Size of a mesh and its memory, before it is built."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ _GIB = 2**30
 
 @dataclass(frozen=True, kw_only=True)
 class MeshSize:
-    """How large a mesh is.
+    """Size of the meshes of both bodies.
 
     Attributes
     ----------
     elements, nodes : int
-        Of both bodies together.
+        Number of elements and of nodes in both bodies.
     largest : int
-        The nodes of the larger body.
+        Number of nodes of the larger body.
     element_size : float
-        Along the contact, in mm.
+        Element size along the contact in mm.
     """
 
     elements: int
@@ -33,12 +33,12 @@ class MeshSize:
     element_size: float
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return one dictionary for JSON."""
         return asdict(self)
 
 
 def mesh_size(joint: Joint, cup: Cup, resolution: Resolution, ball_resolution: Resolution) -> MeshSize:
-    """The size of a joint's meshes; nothing is built."""
+    """Compute the size of a joint's meshes without building them."""
     angle, radii = socket_shape(joint, cup).corners(resolution)
     counts = [(len(angle) - 1, sum(layer.shape[-1] - 1 for layer in radii))]
     if joint.ball is not None:
@@ -55,18 +55,18 @@ def mesh_size(joint: Joint, cup: Cup, resolution: Resolution, ball_resolution: R
 
 
 def check_memory(size: MeshSize, order: int) -> None:
-    """Raise ValueError where a mesh does not fit into the memory that is free."""
+    """Raise ValueError for a mesh that does not fit into the free memory."""
     import psutil
 
     needed, free = bytes_needed(size.largest, order), psutil.virtual_memory().available
     if needed > free:
         raise ValueError(
             f"a mesh of {size.elements} elements needs about {needed / _GIB:.2g} GiB of memory, and "
-            f"{free / _GIB:.2g} GiB are free: take larger elements"
+            f"{free / _GIB:.2g} GiB are free: use larger elements"
         )
 
 
 def bytes_needed(nodes: int, order: int) -> float:
-    """At the largest, for one body: both factors of nested dissection, and the element matrices."""
+    """Estimate the peak memory of one body: both factors of nested dissection, and the element matrices."""
     factors = 2 * 12 * 8 * 2 * nodes * log2(max(nodes, 2))
     return factors + 1000 * nodes * order

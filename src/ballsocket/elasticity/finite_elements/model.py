@@ -1,4 +1,4 @@
-"""The contact by finite elements: what the paper did with Abaqus, as one more model."""
+"""Contact by axisymmetric finite elements, as in the paper."""
 
 from __future__ import annotations
 
@@ -22,44 +22,44 @@ from .spacing import SPACINGS, Adapted, Element, Spacing
 
 
 def largest_poisson(contact: Any) -> Array:
-    """Poisson's ratio of the least compressible body."""
+    """Return Poisson's ratio of the least compressible body."""
     joint = contact.joint
-    others = [layer.material.poisson for layer in joint.backing]
+    ratios = [layer.material.poisson for layer in joint.backing]
     if joint.ball is not None:
-        others.append(joint.ball.poisson)
+        ratios.append(joint.ball.poisson)
     largest = joint.liner.poisson
-    for poisson in others:
+    for poisson in ratios:
         largest = arrays.where(poisson > largest, poisson, largest)
     return largest
 
 
 @dataclass(frozen=True, kw_only=True)
 class FiniteElement(Model):
-    """Axisymmetric finite elements: what the exact solution leaves out, a rim, a liner that slides, a shell that gives.
+    """Contact by axisymmetric finite elements, with a rim, a sliding liner or a compliant shell.
 
     Linear elasticity and small displacements, as in `Exact`; contact without friction and without penalty. The ball is
     the half that faces the socket, pushed by its equator, which stays plane. Each body is condensed once onto its
-    contact surface, after which every load takes milliseconds. NumPy inside, whatever arrays come in.
+    contact surface, after which every load takes milliseconds. All arrays are converted to NumPy.
 
     Parameters
     ----------
     cup : Cup
-        Arc of cover, chamfer, and whether the liner is bonded to its backing. A hemisphere by default. The load is
-        along the cup's own axis, wherever that faces: inclination, anteversion and side change nothing.
+        Arc of cover, chamfer, and interface of the liner to its backing. A hemisphere by default. The load is along the
+        cup's own axis: inclination, anteversion and side have no effect.
     spacing, ball_spacing : Adapted or Uniform
-        How fine the meshes of socket and ball are; they need not match. By default as fine as the contact asks for, and
-        the ball's (None) as the socket's.
+        Element sizes of socket and ball; the meshes need not match. The default adapts to the contact, and the ball's
+        default (None) is the socket's.
     element : Element
         BIQUADRATIC (default) or BILINEAR.
     meshes : int
-        2 (default) solves on a coarser mesh too and gives `contact.error`; 1 leaves that unknown, NaN.
+        2 (default) solves on a coarser mesh too and gives `contact.error`; 1 gives an error of NaN.
     gap : type
         `LinearGap` (Eq. 6 of Heß & Forsbach 2021, default) or `CircularGap` (Eq. 5).
 
     Raises
     ------
     ValueError
-        A number that is not allowed; at a press, a joint that cannot be meshed, or a mesh larger than the memory.
+        A number outside its range; at a press, a joint that cannot be meshed, or a mesh larger than the memory.
     TypeError
         A cup, spacing, element or gap of another type; a press inside `jax.jit` or `jax.grad`.
     ImportError
@@ -81,9 +81,9 @@ class FiniteElement(Model):
         kinds = {"cup": (Cup,), "spacing": SPACINGS, "ball_spacing": (*SPACINGS, type(None)), "element": (Element,)}
         for name, kind in kinds.items():
             if not isinstance(getattr(self, name), kind):
-                known = " or ".join(one.__name__.replace("NoneType", "None") for one in kind)
+                known = " or ".join(allowed.__name__.replace("NoneType", "None") for allowed in kind)
                 raise TypeError(f"{name} must be {known}, got {getattr(self, name)!r}")
-        require("meshes", self.meshes, self.meshes in (1, 2), "meshes are 1 (no error bars) or 2")
+        require("meshes", self.meshes, self.meshes in (1, 2), "meshes must be 1 (no error bars) or 2")
         check_gap(self.gap)
 
     contact_type: ClassVar[type[Contact]] = MeshedContact
@@ -94,6 +94,7 @@ class FiniteElement(Model):
 
     @property
     def title(self) -> str:
+        """Description of the model in one line."""
         return f"axisymmetric finite elements, {self.element.name.lower()}"
 
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "section 2.3"),)
@@ -102,7 +103,7 @@ class FiniteElement(Model):
         Range(
             quantity="joint.clearance",
             low=0.0,
-            why="without clearance every load has the same half angle: take a millionth of the radius",
+            why="without clearance every load has the same half angle: use a millionth of the radius",
         ),
         Range(
             quantity=largest_poisson,
@@ -111,7 +112,7 @@ class FiniteElement(Model):
             high=0.49995,
             why="an incompressible body has no bulk modulus: 0.4999 is solved",
         ),
-        Range(quantity="joint.thickness_ratio", high=200.0, why="so thin a liner is not meshed"),
+        Range(quantity="joint.thickness_ratio", high=200.0, why="the liner is too thin to be meshed"),
     )
     remarks: ClassVar[tuple[Remark, ...]] = body_remarks(
         "cut off at the plane of the socket's rim", "half a one on its equator"
@@ -123,17 +124,19 @@ class FiniteElement(Model):
 
     @property
     def validity(self) -> tuple[Range, ...]:
+        """Validity ranges; a circular gap needs no close fit."""
         return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
 
     def _law(self, joint: Joint) -> ForceLaw:
-        raise TypeError("finite elements are too noisy for a law, each load having a mesh of its own: ask exact")
+        raise TypeError("finite elements are too noisy for a law, because each load has its own mesh: use exact")
 
     def in_cup(self, cup: Cup) -> FiniteElement:
+        """Return the same model with another cup."""
         return replace(self, cup=cup)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")
-        from .solver import Settings, curve  # takes its time to import
+        from .solver import Settings, load_curve_of  # slow to import
 
         settings = Settings(
             cup=self.cup,
@@ -143,7 +146,9 @@ class FiniteElement(Model):
             meshes=self.meshes,
             gap=self.gap,
         )
-        solution = solve_per_joint(self, joint, load, lambda one, loads: curve(settings, one).press(kind, loads))
+        solution = solve_per_joint(
+            self, joint, load, lambda plain_joint, loads: load_curve_of(settings, plain_joint).press(kind, loads)
+        )
         return SolverResult(
             laws=solution,
             force=solution.force,

@@ -1,4 +1,4 @@
-"""What is being done, told to whoever wants to hear it while it lasts."""
+"""Progress messages of long finite element calculations."""
 
 from __future__ import annotations
 
@@ -7,22 +7,23 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 
-def _silent(_: str) -> None: ...
+def _silent(_: str) -> None:
+    """Ignore a message."""
 
 
-_LISTENER: ContextVar[Callable[[str], None]] = ContextVar("listener", default=_silent)
+_CALLBACK: ContextVar[Callable[[str], None]] = ContextVar("progress_callback", default=_silent)
 
 
-def tell(text: str) -> None:
-    """Say what is about to be done."""
-    _LISTENER.get()(text)
+def report_progress(text: str) -> None:
+    """Report the next step of a calculation."""
+    _CALLBACK.get()(text)
 
 
 @contextmanager
-def listening(listener: Callable[[str], None]) -> Iterator[None]:
-    """Inside, finite elements tell the listener in words what they are about to do."""
-    token = _LISTENER.set(listener)
+def progress_to(callback: Callable[[str], None]) -> Iterator[None]:
+    """Call a function with each progress message within the context."""
+    token = _CALLBACK.set(callback)
     try:
         yield
     finally:
-        _LISTENER.reset(token)
+        _CALLBACK.reset(token)

@@ -1,4 +1,4 @@
-"""Ball and socket as the mesh sees them, in units of the contact's radius and of the liner's Young's modulus."""
+"""Shapes of ball and socket in units of the contact's radius and of the liner's Young's modulus."""
 
 from __future__ import annotations
 
@@ -10,32 +10,32 @@ import numpy
 from ...core.arrays import Numbers
 from ...problem import Joint, Support
 from ...problem.cup import Cup, Interface
-from .mesh import bisected, graded, joined
+from .mesh import bisect_intervals, graded_points, join_points
 
-_CORE = 0.02  # of the ball, left out around its centre
-_FAR = 1e4  # of the bore's radius: where a massive socket is held
+_CORE_RADIUS = 0.02  # over the ball's radius: hole around its centre
+_MAX_RADIUS = 1e4  # over the bore's radius: outer radius of a massive socket
 
 
 @dataclass(frozen=True, kw_only=True)
 class Resolution:
-    """How finely both bodies are meshed.
+    """Element sizes of both bodies.
 
     Attributes
     ----------
     size : float
-        Of the elements along the contact and across it, in rad.
+        Size of the elements along the contact and across it, in rad.
     reach : float
-        Up to which angle they are that small.
+        Angle in rad up to which elements have this size.
     growth : float
-        How much longer each element is than the one before, away from the contact.
+        Ratio of the lengths of successive elements away from the contact.
     widest : float
         Longest element along the surface in rad.
     deepest : float
-        Longest element across a layer, as a share of its thickness.
+        Longest element across a layer, as a fraction of its thickness.
     order : int
         1 is bilinear, 2 biquadratic.
     halvings : int
-        How often every element is then cut in four.
+        Number of times that every element is divided in four.
     """
 
     size: float
@@ -46,33 +46,33 @@ class Resolution:
     order: int
     halvings: int = 0
 
-    def cut(self, corners: Numbers) -> Numbers:
-        """The corners with all halvings."""
+    def refine(self, corners: Numbers) -> Numbers:
+        """Apply all halvings to the corners."""
         for _ in range(self.halvings):
-            corners = bisected(corners)
+            corners = bisect_intervals(corners)
         return corners
 
     def angles(self, end: float) -> Numbers:
-        """Corners along the angle, from the pole to the end."""
+        """Compute the corners along the angle, from the pole to the end."""
         fine = min(self.reach, end)
-        near = numpy.linspace(0.0, fine, max(round(fine / self.size), 1) + 1)
+        fine_angles = numpy.linspace(0.0, fine, max(round(fine / self.size), 1) + 1)
         if end - fine < self.size / 2:
-            return numpy.linspace(0.0, end, len(near))
-        return joined([near, graded(fine, end, self.size * self.growth, self.growth, self.widest)])
+            return numpy.linspace(0.0, end, len(fine_angles))
+        return join_points([fine_angles, graded_points(fine, end, self.size * self.growth, self.growth, self.widest)])
 
 
 @dataclass(frozen=True, kw_only=True)
 class SocketShape:
-    """A socket of inner radius 1 and a liner of Young's modulus 1.
+    """Socket of inner radius 1 with a liner of Young's modulus 1.
 
     Attributes
     ----------
     layers : tuple of (outer radius, Young's modulus, Poisson's ratio)
-        From the liner outwards.
+        Layers from the liner outwards.
     rim, chamfer : float
         Polar angle of the rim in rad; of its inner edge.
     interface, support
-        What holds the liner on the next layer, and the outermost surface.
+        Interface of the liner to the next layer, and support of the outermost surface.
     """
 
     layers: tuple[tuple[float, float, float], ...]
@@ -83,49 +83,52 @@ class SocketShape:
 
     @property
     def reach(self) -> float:
-        """The angle at which the bore ends."""
+        """Angle at which the bore ends."""
         return self.rim - self.chamfer
 
     @property
     def slides(self) -> bool:
-        """Whether the liner slides on what is behind it."""
+        """True if the liner slides on its backing."""
         return self.interface is Interface.SLIDING
 
     def corners(self, resolution: Resolution) -> tuple[Numbers, list[Numbers]]:
-        """Corners of the elements: their angles, and the radii of each layer."""
-        angle = resolution.cut(self.to_rim(resolution.angles(self.reach), resolution.size))
+        """Compute the corners of the elements: their angles, and the radii of each layer."""
+        angle = resolution.refine(self.extend_to_rim(resolution.angles(self.reach), resolution.size))
         return angle, self.radii(angle, resolution)
 
-    def to_rim(self, angle: Numbers, size: float) -> Numbers:
-        """Corners along the bore, and on across the chamfer."""
+    def extend_to_rim(self, angle: Numbers, size: float) -> Numbers:
+        """Extend the corners along the bore by those across the chamfer."""
         if not self.chamfer:
             return angle
-        return joined([angle, graded(self.reach, self.rim, min(size, self.chamfer / 2), 1.0, inf)])
+        return join_points([angle, graded_points(self.reach, self.rim, min(size, self.chamfer / 2), 1.0, inf)])
 
     def radii(self, angle: Numbers, resolution: Resolution) -> list[Numbers]:
-        """Radii of the corners in each layer, finer towards the bore."""
+        """Compute the radii of the corners in each layer, finer towards the bore."""
         first, inner, radii = resolution.size, 1.0, []
         for outer, _, _ in self.layers:
-            thickness = min(outer, _FAR) - inner
+            thickness = min(outer, _MAX_RADIUS) - inner
             longest = inf if outer == inf else thickness * resolution.deepest
-            layer = graded(inner, inner + thickness, min(first, longest), resolution.growth, longest)
-            radii.append(resolution.cut(layer))
+            layer = graded_points(inner, inner + thickness, min(first, longest), resolution.growth, longest)
+            radii.append(resolution.refine(layer))
             first, inner = (layer[-1] - layer[-2]) * resolution.growth, float(layer[-1])
-        return [self._chamfered(angle, radii[0]), *radii[1:]]
+        return [self._chamfer_liner(angle, radii[0]), *radii[1:]]
 
-    def _chamfered(self, angle: Numbers, liner: Numbers) -> Numbers:
-        """The liner's radii, which follow the chamfer."""
+    def _chamfer_liner(self, angle: Numbers, liner: Numbers) -> Numbers:
+        """Adapt the liner's radii to the chamfer."""
         if not self.chamfer:
             return liner
-        cut = numpy.clip(angle - self.reach, 0.0, None)[:, None]
-        return liner + cut * (liner[-1] - liner) / (liner[-1] - liner[0])
+        depth = numpy.clip(angle - self.reach, 0.0, None)[:, None]
+        return liner + depth * (liner[-1] - liner) / (liner[-1] - liner[0])
 
 
 def socket_shape(joint: Joint, cup: Cup) -> SocketShape:
-    """The shape of a joint's socket, all numbers of the joint being plain."""
+    """Make the shape of the socket of a joint of plain numbers."""
     R2, outer, layers = float(joint.socket_radius), 1.0, []
-    every = [(joint.liner_thickness, joint.liner), *((layer.thickness, layer.material) for layer in joint.backing)]
-    for thickness, material in every:
+    thickness_and_material = [
+        (joint.liner_thickness, joint.liner),
+        *((layer.thickness, layer.material) for layer in joint.backing),
+    ]
+    for thickness, material in thickness_and_material:
         outer += float(thickness) / R2
         layers.append((outer, float(material.young) / float(joint.liner.young), float(material.poisson)))
     return SocketShape(
@@ -138,6 +141,6 @@ def socket_shape(joint: Joint, cup: Cup) -> SocketShape:
 
 
 def ball_corners(resolution: Resolution) -> tuple[Numbers, Numbers]:
-    """Corners of the ball's elements: angles, and radii from the inside out."""
-    radii = graded(1.0, _CORE, resolution.size, resolution.growth, resolution.deepest / 2)[::-1]
-    return resolution.cut(resolution.angles(pi / 2)), resolution.cut(radii)
+    """Compute the corners of the ball's elements: angles, and radii from the inside out."""
+    radii = graded_points(1.0, _CORE_RADIUS, resolution.size, resolution.growth, resolution.deepest / 2)[::-1]
+    return resolution.refine(resolution.angles(pi / 2)), resolution.refine(radii)

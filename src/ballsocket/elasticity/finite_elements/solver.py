@@ -1,4 +1,4 @@
-"""From a joint and the settings of the finite elements to the curve of its contacts."""
+"""Load curves of joints from the settings of the finite element model."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from ...problem import Joint, Support
 from ...problem.cup import Cup, Interface
 from ...problem.gaps import CircularGap, LinearGap
 from .bodies import ball_compliance, socket_compliance
-from .curve import COARSE, Curve
+from .load_curve import COARSE, MeshedLoadCurve
 from .memory import check_memory, mesh_size
-from .progress import tell
+from .progress import report_progress
 from .shapes import Resolution, socket_shape
 from .spacing import Spacing, Uniform
-from .surfaces import Pair, Surface
+from .surfaces import ContactSurface, SurfacePair
 
 LIMIT = radians(88.0)
-"""The widest contact where the socket reaches further."""
+"""Largest half angle in rad that is solved."""
 
-_BEYOND = 1.2  # of a class's widest contact: so far a pressure is looked for
+_REACH_FACTOR = 1.2  # of a class's widest contact: extent of its pressure nodes
 
-LEAST, MOST = 24, 100_000
-"""Elements of one size along the bore."""
+MIN_ELEMENTS, MAX_ELEMENTS = 24, 100_000
+"""Limits on the number of elements of one size along the bore."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """What a user chose of `FiniteElement`, by the same names; `order` is that of the elements."""
+    """Settings of `FiniteElement` by the same names; `order` is that of the elements."""
 
     cup: Cup
     spacing: Spacing
@@ -40,8 +40,8 @@ class Settings:
 
 
 @lru_cache(maxsize=32)
-def curve(settings: Settings, joint: Joint) -> Curve:
-    """The curve of a joint of plain numbers; kept, since more loads on it are likely."""
+def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
+    """Return the load curve of a joint of plain numbers, cached for further loads."""
     _check(settings, joint)
     radius, bore = float(joint.socket_radius), socket_shape(joint, settings.cup).reach
     ends_at_rim = bore <= pi / 2 + 1e-12
@@ -54,12 +54,14 @@ def curve(settings: Settings, joint: Joint) -> Curve:
         coarse = spacing.coarse(classes[number], radius, thickness, order)
         return coarse if mesh == COARSE else replace(coarse, halvings=1)
 
-    def pair(number: int, mesh: int) -> Pair:
-        socket, ball = (resolution(one, number, mesh) for one in (settings.spacing, settings.ball_spacing))
-        return _pair(settings, joint, socket, ball, min(_BEYOND * classes[number], widest))
+    def pair(number: int, mesh: int) -> SurfacePair:
+        socket, ball = (resolution(spacing, number, mesh) for spacing in (settings.spacing, settings.ball_spacing))
+        return _pair(settings, joint, socket, ball, min(_REACH_FACTOR * classes[number], widest))
 
     gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
-    return Curve(pairs=pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order)
+    return MeshedLoadCurve(
+        pairs=pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order
+    )
 
 
 def _check(settings: Settings, joint: Joint) -> None:
@@ -71,15 +73,22 @@ def _check(settings: Settings, joint: Joint) -> None:
 
 
 def check_cup(cup: Cup, joint: Joint) -> None:
-    """Raise ValueError for a cup that this joint cannot have."""
+    """Raise ValueError for a cup that does not fit the joint."""
     if cup.interface is Interface.SLIDING and not joint.backing:
         ground = joint.support is Support.FIXED and float(joint.liner_thickness) < inf
         if not ground:
-            raise ValueError("interface = 'sliding' is not allowed: there is nothing behind the liner to slide on")
+            raise ValueError("interface = 'sliding' needs a backing or a fixed outer surface behind the liner")
     chamfer, liner, bore = cup.chamfer, float(joint.liner_thickness), socket_shape(joint, cup).reach
-    require("chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer leaves a tenth of the liner, which is {liner:g} mm")
-    require("chamfer", chamfer, chamfer == 0 or chamfer > 1e-3 * liner, "a chamfer is 0 or a thousandth of the liner")
-    require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer leaves half of the bore")
+    require(
+        "chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer must leave a tenth of the liner thickness, {liner:g} mm"
+    )
+    require(
+        "chamfer",
+        chamfer,
+        chamfer == 0 or chamfer > 1e-3 * liner,
+        "a chamfer must be 0 or above a thousandth of the liner thickness",
+    )
+    require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer must leave half of the bore")
 
 
 def _check_size(size: float, joint: Joint, bore: float) -> None:
@@ -87,21 +96,25 @@ def _check_size(size: float, joint: Joint, bore: float) -> None:
     thicknesses = {"liner_thickness": joint.liner_thickness}
     thicknesses |= {f"backing[{number}].thickness": layer.thickness for number, layer in enumerate(joint.backing)}
     for name, thickness in thicknesses.items():
-        require(name, thickness, thickness >= 2 * size, f"elements of {size:g} mm need two of them in a layer")
-    allowed = f"the bore is {bore:.4g} mm long: it takes {LEAST} to {MOST} elements"
-    require("size", size, bore / MOST <= size <= bore / LEAST, allowed)
+        require(name, thickness, thickness >= 2 * size, f"a layer must have at least two elements of {size:g} mm")
+    allowed = f"the bore of {bore:.4g} mm allows {MIN_ELEMENTS} to {MAX_ELEMENTS} elements"
+    require("size", size, bore / MAX_ELEMENTS <= size <= bore / MIN_ELEMENTS, allowed)
 
 
-def _pair(settings: Settings, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float) -> Pair:
+def _pair(
+    settings: Settings, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float
+) -> SurfacePair:
     size = mesh_size(joint, settings.cup, resolution, ball_resolution)
     check_memory(size, resolution.order)
-    tell(f"condensing {size.elements} elements, {size.nodes} nodes")
+    report_progress(f"condensing {size.elements} elements, {size.nodes} nodes")
     R2, order = float(joint.socket_radius), resolution.order  # the ball, too, is pressed on a patch of the radius R2
     angle, compliance = socket_compliance(socket_shape(joint, settings.cup), resolution)
-    surfaces = [Surface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.liner.young)))]
+    surfaces = [ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.liner.young)))]
     if joint.ball is not None:
         angle, compliance = ball_compliance(float(joint.ball.poisson), ball_resolution)
-        surfaces.append(Surface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.ball.young))))
-    return Pair(
+        surfaces.append(
+            ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.ball.young)))
+        )
+    return SurfacePair(
         surfaces=tuple(surfaces), radius=R2, reach=reach, resolution=resolution, ball_resolution=ball_resolution
     )

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy
 
 from ...core.arrays import Numbers
-from ..finite_elements.mesh import with_middles
+from ..finite_elements.mesh import add_midpoints
 from .directions import unit_vectors
 
 
@@ -52,7 +52,7 @@ class Bricks:
     @cached_property
     def places(self) -> Numbers:
         """Where each node lies in mm: (3, polar, azimuth, radius)."""
-        polar, azimuth, radius = (with_middles(part, 2) for part in (self.polar, self.azimuth, self.radius))
+        polar, azimuth, radius = (add_midpoints(part, 2) for part in (self.polar, self.azimuth, self.radius))
         out = unit_vectors(polar[:, None], azimuth)
         return out[..., None] * radius + self.centre[:, None, None, None]
 

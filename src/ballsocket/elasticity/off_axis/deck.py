@@ -23,9 +23,9 @@ from ...core.checks import require
 from ...core.storage.atomic import write_text
 from ...problem import Joint
 from ...problem.cup import Cup, Interface
-from ..finite_elements.decks.calculix import last_words, printed, started
+from ..finite_elements.decks.calculix import last_output, read_printed, run_calculix
 from ..finite_elements.decks.deck import EXPECTED, NAME
-from ..finite_elements.mesh import graded, joined
+from ..finite_elements.mesh import graded_points, join_points
 from ..finite_elements.shapes import SocketShape, socket_shape
 from ..finite_elements.solver import check_cup
 from .bricks import Bricks
@@ -90,7 +90,7 @@ class TiltedDeck:
         for outer, _, _ in self._shape.layers:
             if outer == inf:
                 raise ValueError("a tilted deck has layers of finite thickness: give the outermost one a thickness")
-            layer = graded(inner, outer, min(first, (outer - inner) / 3), 1.5, (outer - inner) / 3)
+            layer = graded_points(inner, outer, min(first, (outer - inner) / 3), 1.5, (outer - inner) / 3)
             radii.append(layer * self._bore)
             inner, first = outer, float(layer[-1] - layer[-2]) * 1.5
         return radii
@@ -105,7 +105,7 @@ class TiltedDeck:
         return Bricks(
             polar=self._evenly(self._shape.reach),
             azimuth=self._evenly(pi),
-            radius=joined(self._layers),
+            radius=join_points(self._layers),
             centre=numpy.zeros(3),
         )
 
@@ -238,10 +238,10 @@ def run(folder: Path, *, threads: int = 1) -> Mapping[str, Any]:
         CalculiX failed; with its last words.
     """
     folder = Path(folder)
-    done = started(folder, threads)
-    forces = printed(folder / f"{NAME}.dat", "PUSHED")
+    done = run_calculix(folder, threads)
+    forces = read_printed(folder / f"{NAME}.dat", "PUSHED")
     if 0 not in forces:
-        raise RuntimeError(f"ccx ended with {done.returncode}: {last_words(done)}")
+        raise RuntimeError(f"ccx ended with {done.returncode}: {last_output(done)}")
     deck = json.loads((folder / EXPECTED).read_text(encoding="ascii"))
     x, _, z = 2 * forces[0][0] / deck["scale"]
     return {"force_vector": [float(x), 0.0, float(z)]}

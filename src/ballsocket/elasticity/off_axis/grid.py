@@ -15,7 +15,7 @@ import numpy
 import scipy.fft
 
 from ...core.arrays import Numbers
-from ..finite_elements.mesh import joined
+from ..finite_elements.mesh import join_points
 from .directions import unit_vectors
 
 _CUTS = numpy.array([0.5, 0.25, 0.25])
@@ -170,7 +170,7 @@ def _cut_grid(reach: float, width: float, cuts: Numbers) -> Grid:
     edges = numpy.linspace(0.0, reach, rings + 1)
     last = edges[-2] + numpy.append(0.0, numpy.cumsum(cuts)) * (reach - edges[-2])
     last[-1] = reach
-    return Grid(edges=joined([edges[:-1], last]), meridians=_meridians(width))
+    return Grid(edges=join_points([edges[:-1], last]), meridians=_meridians(width))
 
 
 def even_grid(reach: float, width: float) -> Grid:

@@ -19,7 +19,7 @@ from ...core.quantities import CUP
 from ...core.validity import Status, is_missing
 from ...problem import Joint
 from ...version import __version__
-from ..finite_elements.progress import tell
+from ..finite_elements.progress import report_progress
 from .contact import OffAxisContact
 from .model import Sphere, check_sphere
 
@@ -185,7 +185,7 @@ def orient(
     axes = [_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))]
     start, contacts = perf_counter(), []
     for number, angle in enumerate(axes[0]):
-        tell(f"inclination {number + 1} of {len(axes[0])}")
+        report_progress(f"inclination {number + 1} of {len(axes[0])}")
         contacts.append(_complete(model.press(joint, inclination=float(angle), anteversion=axes[1], **load)))
     return Orientations(
         model=model,

@@ -1,1 +1,1 @@
-"""The exact answer from small tables."""
+"""Exact solution interpolated from small tables."""

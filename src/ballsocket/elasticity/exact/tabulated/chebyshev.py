@@ -1,4 +1,4 @@
-"""The tables themselves: where liner, ball and half angle lie on the axes, and the Chebyshev series over them."""
+"""Tables of Chebyshev coefficients, and their coordinates for liner, ball and half angle."""
 
 from __future__ import annotations
 
@@ -18,76 +18,80 @@ from ....core.arrays import log as ln
 from ....core.input_files import open_input
 
 LIMIT = radians(85.0)
-"""The widest contact of the tables."""
+"""Largest half angle of the tables in rad."""
 
 POISSON = (-0.5, 0.4993)
+"""Range of ν in the tables, slightly wider than the model's domain."""
+
 THICKNESS_RATIO = (0.195, 20.5)
-"""The ends of the tables: a little more than is answered."""
+"""Range of R2/L in the tables, slightly wider than the model's domain."""
 
-STIFFEST_SHARE = 0.0275
-"""β/(1 + β) of the softest ball in the tables: E/E_ball 0.02 and a little more."""
+MAX_BALL_SHARE = 0.0275
+"""Ratio β/(1 + β) of the softest ball in the tables: E/E_ball slightly above 0.02."""
 
-NEAR, SHIFT = 0.8, 0.2
-"""Of the axes of ε and R2/L: what is tabulated is smooth in them. Tables belong to the axes they were built with."""
+ANGLE_SCALE, RATIO_SHIFT = 0.8, 0.2
+"""Scales of the coordinates of ε and R2/L; tables are valid for the scales they were built with."""
 
 WITH_BALL = {"rigid": "ball", "profile": "profile_ball"}
+"""Name of the table for an elastic ball, by that for a rigid one."""
 
 
-# The axes: places run from -1 to 1, and what is tabulated is smooth in them.
+# Coordinates run from -1 to 1; the tabulated functions are smooth in them.
 
 
-def poisson_place(poisson: Array) -> Array:
-    """ν as ln(1 - 2ν): stiffness falls by decades towards ν = 1/2."""
-    near, far = log(1 - 2 * POISSON[1]), log(1 - 2 * POISSON[0])
-    return (far + near - 2 * ln(1 - 2 * poisson)) / (far - near)
+def poisson_coordinate(poisson: Array) -> Array:
+    """Compute the coordinate of ν from ln(1 - 2ν): the compliance varies by decades towards ν = 1/2."""
+    low, high = log(1 - 2 * POISSON[1]), log(1 - 2 * POISSON[0])
+    return (high + low - 2 * ln(1 - 2 * poisson)) / (high - low)
 
 
-def thickness_place(ratio: Array) -> Array:
-    """R2/L as its shifted logarithm."""
-    low, high = (log(end + SHIFT) for end in THICKNESS_RATIO)
-    return (2 * ln(ratio + SHIFT) - low - high) / (high - low)
+def thickness_coordinate(ratio: Array) -> Array:
+    """Compute the coordinate of R2/L, a shifted logarithm."""
+    low, high = (log(end + RATIO_SHIFT) for end in THICKNESS_RATIO)
+    return (2 * ln(ratio + RATIO_SHIFT) - low - high) / (high - low)
 
 
-def angle_place(angle: Array, ratio: Array) -> Array:
-    """ε as the root of a logarithm: the root tames ε ln ε at a point contact, the logarithm follows L."""
+def angle_coordinate(angle: Array, ratio: Array) -> Array:
+    """Compute the coordinate of ε: a root removes ε ln ε of a point contact, a logarithm scales with L."""
     return 2 * angle_root(angle, ratio) - 1
 
 
 def angle_root(angle: Array, ratio: Array) -> Array:
-    """The root itself, from 0 to 1; of an angle as small as the rounding of 1 too."""
-    near = NEAR * (1 + ratio)
-    return sqrt(log1p(near * angle) / log1p(near * LIMIT))
+    """Compute the root in the coordinate of ε, from 0 to 1, accurate for tiny angles too."""
+    scale = ANGLE_SCALE * (1 + ratio)
+    return sqrt(log1p(scale * angle) / log1p(scale * LIMIT))
 
 
-def angle_at(place: Array, ratio: Array) -> Array:
-    """ε at a place."""
-    near, share = NEAR * (1 + ratio), (1 + place) / 2
-    return (exp(share * share * ln(1 + near * LIMIT)) - 1) / near
+def angle_at(coordinate: Array, ratio: Array) -> Array:
+    """Compute ε from its coordinate."""
+    scale, share = ANGLE_SCALE * (1 + ratio), (1 + coordinate) / 2
+    return (exp(share * share * ln(1 + scale * LIMIT)) - 1) / scale
 
 
 def ball_scale(poisson: Array, ratio: Array) -> Array:
-    """The ball's share of the compliance at which a thin liner begins to notice it."""
+    """Compute the ball's share of the compliance above which it affects a thin liner."""
     return 1.1 * sqrt(1 - 2 * poisson) / ratio
 
 
-def ball_place(share: Array, poisson: Array, ratio: Array) -> Array:
-    """The ball's share of the compliance, from -1 (rigid) to 1."""
+def ball_coordinate(share: Array, poisson: Array, ratio: Array) -> Array:
+    """Compute the coordinate of the ball's share of the compliance, from -1 (rigid) to 1."""
     scale = ball_scale(poisson, ratio)
-    return 2 * ln(1 + share / scale) / ln(1 + STIFFEST_SHARE / scale) - 1
+    return 2 * ln(1 + share / scale) / ln(1 + MAX_BALL_SHARE / scale) - 1
 
 
-def roundness(ball_poisson: Array) -> Array:
-    """What matters of the ball's ν: how a uniform pressure shrinks it."""
+def ball_shrinkage(ball_poisson: Array) -> Array:
+    """Compute the parameter of the ball's ν: its shrinkage under a uniform pressure."""
     return (1 - 2 * ball_poisson) / (1 - ball_poisson * ball_poisson)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Table:
-    """Curves over the half angle, as a sum of products of Chebyshev polynomials of the places of liner and ball.
+class ChebyshevTable:
+    """Functions of the half angle as sums of products of Chebyshev chebyshev_polynomials of liner and ball coordinates.
 
-    Few combinations of the products matter: those of `liner` (combinations, products) and, where there is a ball,
-    those of `ball` (combinations, products * combinations of the liner). `curves` (functions * angles, combinations)
-    turns them into Chebyshev coefficients. `counts` are the polynomials of ν, R2/L and the ball's two places.
+    Few combinations of the products matter: those of `liner` (combinations, products) and, for an elastic ball, those
+    of `ball` (combinations, products * combinations of the liner). `curves` (functions * angles, combinations)
+    turns them into Chebyshev coefficients. `counts` are the numbers of polynomials of ν, R2/L and the ball's two
+    coordinates.
     """
 
     counts: tuple[int, int, int, int]
@@ -96,30 +100,30 @@ class Table:
     curves: numpy.ndarray
     shape: tuple[int, int]
 
-    def of(self, places: list[Array]) -> Array:
-        """Chebyshev coefficients (functions, angles, joints) at the places of ν, R2/L and of the ball.
+    def coefficients_at(self, coordinates: list[Array]) -> Array:
+        """Compute Chebyshev coefficients (functions, angles, joints) at coordinates of ν, R2/L and the ball.
 
-        Places are (joints,), or (1,) where all joints have the same.
+        Coordinates have the shape (joints,), or (1,) if all joints have the same.
         """
-        first, second, *ball = (polynomials(*both) for both in zip(places, self.counts, strict=False))
-        found = _applied(own(self.liner, first), first, second)
+        first, second, *ball = (chebyshev_polynomials(*pair) for pair in zip(coordinates, self.counts, strict=False))
+        combinations = _apply_factors(as_like(self.liner, first), first, second)
         if ball:
-            found = _applied(own(self.ball, first), *ball, found)
-        return arrays.namespace(first).reshape(own(self.curves, first) @ found, (*self.shape, -1))
+            combinations = _apply_factors(as_like(self.ball, first), *ball, combinations)
+        return arrays.namespace(first).reshape(as_like(self.curves, first) @ combinations, (*self.shape, -1))
 
-    def of_one(self, places: list[float]) -> numpy.ndarray:
-        """Values (functions, angles) of one joint."""
-        first, second, *ball = (waves_at(*both) for both in zip(places, self.counts, strict=False))
-        found = self.liner @ numpy.outer(first, second).ravel()
+    def coefficients_of_one(self, coordinates: list[float]) -> numpy.ndarray:
+        """Compute the coefficients (functions, angles) of one joint."""
+        first, second, *ball = (chebyshev_values(*pair) for pair in zip(coordinates, self.counts, strict=False))
+        combinations = self.liner @ numpy.outer(first, second).ravel()
         if ball:
-            found = self.ball @ numpy.outer(numpy.outer(*ball), found).ravel()
-        return (self.curves @ found).reshape(self.shape)
+            combinations = self.ball @ numpy.outer(numpy.outer(*ball), combinations).ravel()
+        return (self.curves @ combinations).reshape(self.shape)
 
 
-def _applied(matrix: Array, *factors: Array) -> Array:
-    """matrix (rows, products) times all products of the rows of the factors (each its rows, joints or 1).
+def _apply_factors(matrix: Array, *factors: Array) -> Array:
+    """Multiply a matrix (rows, products) by all products of the rows of the factors (rows, joints or 1).
 
-    What is the same for all joints is taken into the matrix first: a sweep of one material costs a third.
+    Factors that all joints share are multiplied first, which makes a sweep of one material three times as fast.
     """
     xp = arrays.namespace(matrix)
     cube = xp.reshape(matrix, (-1, *(factor.shape[0] for factor in factors)))
@@ -135,45 +139,46 @@ def _applied(matrix: Array, *factors: Array) -> Array:
     return xp.reshape(cube, (matrix.shape[0], -1)) @ rows
 
 
-def polynomials(place: Array, count: int) -> Array:
-    """T_0 ... T_count-1 at places (n,), as rows: by recurrence in NumPy, in few steps to compile elsewhere."""
-    xp = arrays.namespace(place)
+def chebyshev_polynomials(coordinate: Array, count: int) -> Array:
+    """Compute T_0 ... T_count-1 at coordinates (n,), as rows."""
+    xp = arrays.namespace(coordinate)
     if xp is not numpy:
-        return cos(own(numpy.arange(count, dtype=float), place)[:, None] * xp.acos(place))
-    twice, rows = 2 * place, numpy.empty((count, *place.shape), dtype=place.dtype)
-    rows[0], rows[1:2] = 1.0, place
+        return cos(as_like(numpy.arange(count, dtype=float), coordinate)[:, None] * xp.acos(coordinate))
+    twice, rows = 2 * coordinate, numpy.empty((count, *coordinate.shape), dtype=coordinate.dtype)
+    rows[0], rows[1:2] = 1.0, coordinate
     for k in range(2, count):
         numpy.multiply(twice, rows[k - 1], out=rows[k])
         rows[k] -= rows[k - 2]
     return rows
 
 
-def places(count: int) -> Numbers:
-    """Chebyshev points from -1 to 1."""
+def chebyshev_points(count: int) -> Numbers:
+    """Return Chebyshev points from -1 to 1."""
     return -numpy.cos(pi * (numpy.arange(count) + 0.5) / count)
 
 
 def coefficients(values: Numbers, axis: int) -> Numbers:
-    """Coefficients of the polynomial through values at `places`."""
+    """Compute the Chebyshev coefficients of the polynomial through values at `chebyshev_points`."""
     count = values.shape[axis]
-    turn = pi * (numpy.arange(count) + 0.5) / count
-    matrix = numpy.cos(numpy.arange(count)[:, None] * (pi - turn)) * (2 / count)
+    angles = pi * (numpy.arange(count) + 0.5) / count
+    matrix = numpy.cos(numpy.arange(count)[:, None] * (pi - angles)) * (2 / count)
     matrix[0] /= 2
     return numpy.moveaxis(numpy.tensordot(matrix, values, (1, axis)), 0, axis)
 
 
-def waves_at(place: float, count: int) -> numpy.ndarray:
-    """T_0 ... T_count-1 at one place."""
-    return numpy.cos(_orders(count) * math.acos(min(max(place, -1.0), 1.0)))
+def chebyshev_values(coordinate: float, count: int) -> numpy.ndarray:
+    """Compute T_0 ... T_count-1 at one coordinate."""
+    return numpy.cos(_orders(count) * math.acos(min(max(coordinate, -1.0), 1.0)))
 
 
 @cache
 def _orders(count: int) -> numpy.ndarray:
+    """Return the orders 0 ... count - 1 as floats."""
     return numpy.arange(count, dtype=float)
 
 
-def own(values: numpy.ndarray, like: Array) -> Array:
-    """A table in the library, dtype and device of the caller."""
+def as_like(values: numpy.ndarray, like: Array) -> Array:
+    """Convert a table to the library, dtype and device of the caller's array."""
     xp = arrays.namespace(like)
     if xp is numpy and like.dtype == values.dtype:
         return values
@@ -181,15 +186,15 @@ def own(values: numpy.ndarray, like: Array) -> Array:
 
 
 @cache
-def tables(file: str = "") -> dict[str, Table]:
-    """The tables in a file, read when first asked for: "rigid", its "profile", and what a "ball" adds to each.
+def tables(file: str = "") -> dict[str, ChebyshevTable]:
+    """Read the tables of a file once: "rigid", its "profile", and the changes by a "ball".
 
     Raises
     ------
     ValueError
-        Another file.
+        The file holds no tables.
     OSError
-        It cannot be read.
+        The file cannot be read.
     """
     shipped = files("ballsocket") / "data" / "exact_tables.npz"
     with open_input(Path(file)) if file else shipped.open("rb") as stream:
@@ -200,27 +205,29 @@ def tables(file: str = "") -> dict[str, Table]:
     if set(stored) != {*WITH_BALL, *WITH_BALL.values()}:
         raise ValueError(f"{file} holds no tables")
     angles = {ball: stored[name].shape[-1] for name, ball in WITH_BALL.items()}
-    return {name: squeezed(values, angles.get(name, 0)) for name, values in stored.items()}
+    return {name: compress(values, angles.get(name, 0)) for name, values in stored.items()}
 
 
-def squeezed(coefficients: numpy.ndarray, angles: int = 0) -> Table:
-    """A table from coefficients (ν, R2/L, share, roundness, function, angle), with room for more `angles`.
+def compress(coefficients: numpy.ndarray, angles: int = 0) -> ChebyshevTable:
+    """Compress coefficients (ν, R2/L, ball share, ball ν, function, angle) to a table with at least `angles` angles.
 
-    Singular values that do not count are left out.
+    Negligible singular values are omitted.
     """
-    *counts, functions, given = coefficients.shape
-    whole = numpy.pad(coefficients.astype(float), (*[(0, 0)] * 5, (0, max(angles - given, 0))))
-    shape, balls = (functions, whole.shape[-1]), counts[2] * counts[3]
-    least = 5e-8 if coefficients.dtype == numpy.float64 else 2e-6  # in double, in single precision
-    liner, rest = _combined(whole.reshape(counts[0] * counts[1], -1), least)
-    rest = numpy.moveaxis(rest.reshape(len(rest), balls, prod(shape)), 0, 1).reshape(-1, prod(shape))
-    ball, curves = _combined(rest, least) if balls > 1 else (numpy.empty((0, 0)), rest)
+    *counts, functions, stored_angles = coefficients.shape
+    padded = numpy.pad(coefficients.astype(float), (*[(0, 0)] * 5, (0, max(angles - stored_angles, 0))))
+    shape, balls = (functions, padded.shape[-1]), counts[2] * counts[3]
+    threshold = 5e-8 if coefficients.dtype == numpy.float64 else 2e-6  # in double, in single precision
+    liner, remainder = _truncated_svd(padded.reshape(counts[0] * counts[1], -1), threshold)
+    remainder = numpy.moveaxis(remainder.reshape(len(remainder), balls, prod(shape)), 0, 1).reshape(-1, prod(shape))
+    ball, curves = _truncated_svd(remainder, threshold) if balls > 1 else (numpy.empty((0, 0)), remainder)
     factors = (numpy.ascontiguousarray(factor.T) for factor in (liner, ball, curves))
-    return Table(counts=tuple(counts), shape=shape, **dict(zip(("liner", "ball", "curves"), factors, strict=True)))
+    return ChebyshevTable(
+        counts=tuple(counts), shape=shape, **dict(zip(("liner", "ball", "curves"), factors, strict=True))
+    )
 
 
-def _combined(matrix: numpy.ndarray, least: float) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """Two factors of a matrix, narrow where its singular values allow."""
+def _truncated_svd(matrix: numpy.ndarray, threshold: float) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """Factor a matrix into two, without singular values up to the threshold."""
     left, sizes, right = numpy.linalg.svd(matrix, full_matrices=False)
-    kept = sizes > least
-    return left[:, kept] * sizes[kept], right[kept]
+    significant = sizes > threshold
+    return left[:, significant] * sizes[significant], right[significant]

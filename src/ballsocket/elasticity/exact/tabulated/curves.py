@@ -1,4 +1,4 @@
-"""The tabulated functions of joints: what one joint's curve looks like, for every bonded liner there is."""
+"""Tabulated functions of joints."""
 
 from __future__ import annotations
 
@@ -10,33 +10,44 @@ import numpy
 from ....core import arrays
 from ....core.arrays import Array
 from ....problem import Joint
-from .chebyshev import WITH_BALL, Table, ball_place, own, poisson_place, roundness, tables, thickness_place
-from .formulas import Curve, Scale, angle_of_force, angle_of_indentation, contact
+from .chebyshev import (
+    WITH_BALL,
+    ChebyshevTable,
+    as_like,
+    ball_coordinate,
+    ball_shrinkage,
+    poisson_coordinate,
+    tables,
+    thickness_coordinate,
+)
+from .formulas import CurveCoefficients, Scale, angle_of_force, angle_of_indentation, contact
 
 
 @dataclass(frozen=True, eq=False)
-class Curves:
-    """The curves of joints (joints,), one or as many as there are contacts (contacts,).
+class JointCurves:
+    """Tabulated functions of joints (joints,): one joint, or one for each contact (contacts,).
 
-    Where many contacts share few joints, `shared` are the curves of these, and `which` of them each contact has.
+    If many contacts share few joints, `shared` holds the functions of these joints and `indices` the joint of each
+    contact.
     """
 
     file: str
     joint: Joint
-    shared: Curves | None = None
-    which: Array | None = None
+    shared: JointCurves | None = None
+    indices: Array | None = None
 
-    def _taken(self, values: Array) -> Array:
-        """Columns of the shared joints, for each contact."""
-        return arrays.namespace(values).take(values, self.which, axis=-1)
+    def _take_shared(self, values: Array) -> Array:
+        """Take the column of each contact's joint."""
+        return arrays.namespace(values).take(values, self.indices, axis=-1)
 
     @cached_property
     def ratio(self) -> Array:
+        """Ratio R2/L."""
         return self.joint.thickness_ratio
 
     @cached_property
     def _softness(self) -> Array:
-        """β: compliance of the ball over that of the liner, at high degrees."""
+        """Ratio β of the compliance of the ball to that of the liner at high degrees."""
         ball, liner = self.joint.ball, self.joint.liner
         if ball is None:
             return 0.0 * self.ratio
@@ -45,81 +56,85 @@ class Curves:
 
     @cached_property
     def compliance(self) -> Array:
-        """C in mm/MPa."""
+        """Compliance C in mm/MPa."""
         liner = self.joint.liner
         return 2 * (1 - liner.poisson**2) * self.joint.socket_radius / liner.young * (1 + self._softness)
 
     @property
     def _is_one(self) -> bool:
-        """Whether they are of a joint of Python numbers, whose coefficients have no axis of joints."""
+        """True for one joint of Python numbers, whose coefficients have no axis of joints."""
         return type(self.joint.clearance) is float
 
     def series(self, name: str) -> Array:
-        """Coefficients (functions, angles, joints) of the table of that name and of what an elastic ball adds."""
+        """Compute coefficients (functions, angles, joints) of the table `name`, with the change by an elastic ball."""
         if self.shared is not None:
-            return self._taken(self.shared.series(name))
-        nu, shelf = self.joint.liner.poisson, tables(self.file)
-        places, of = [poisson_place(nu), thickness_place(self.ratio)], Table.of_one if self._is_one else Table.of
-        total = of(shelf[name], places)
+            return self._take_shared(self.shared.series(name))
+        nu, stored = self.joint.liner.poisson, tables(self.file)
+        coordinates = [poisson_coordinate(nu), thickness_coordinate(self.ratio)]
+        evaluate = ChebyshevTable.coefficients_of_one if self._is_one else ChebyshevTable.coefficients_at
+        total = evaluate(stored[name], coordinates)
         if self.joint.ball is not None:
             share = self._softness / (1 + self._softness)
-            soft = ball_place(share, nu, self.ratio)
-            added = of(shelf[WITH_BALL[name]], [*places, soft, roundness(self.joint.ball.poisson)])
+            soft = ball_coordinate(share, nu, self.ratio)
+            added = evaluate(stored[WITH_BALL[name]], [*coordinates, soft, ball_shrinkage(self.joint.ball.poisson)])
             total = total + (1 + soft) / 2 * added
         return total
 
     @cached_property
-    def three(self) -> Array:
-        return self.series("rigid") if self.shared is None else self._taken(self.shared.three)
+    def functions(self) -> Array:
+        """Coefficients of the functions functions."""
+        return self.series("rigid") if self.shared is None else self._take_shared(self.shared.functions)
 
     @cached_property
     def slopes(self) -> Array:
-        """Coefficients of the derivatives."""
+        """Coefficients of the derivatives of the functions functions."""
         if self.shared is not None:
-            return self._taken(self.shared.slopes)
-        xp = arrays.namespace(self.three)
-        flow = own(_derivative(self.three.shape[1]), self.three)
-        return xp.stack([flow @ self.three[row, ...] for row in range(3)])
+            return self._take_shared(self.shared.slopes)
+        xp = arrays.namespace(self.functions)
+        flow = as_like(_derivative(self.functions.shape[1]), self.functions)
+        return xp.stack([flow @ self.functions[row, ...] for row in range(3)])
 
     @cached_property
-    def curve(self) -> Curve:
-        """The functions."""
+    def curve(self) -> CurveCoefficients:
+        """Coefficients of the functions and their derivatives."""
         if self._is_one:
-            both = numpy.concatenate([self.three, self.three @ _derivative(self.three.shape[1]).T])
-            return Curve(self.ratio, both, both)
-        return Curve(self.ratio, self.three, self.slopes)
+            stacked = numpy.concatenate([self.functions, self.functions @ _derivative(self.functions.shape[1]).T])
+            return CurveCoefficients(self.ratio, stacked, stacked)
+        return CurveCoefficients(self.ratio, self.functions, self.slopes)
 
     @cached_property
     def scale(self) -> Scale:
+        """Scales that give the functions their units."""
         R2 = self.joint.socket_radius
         return Scale(self.joint.clearance, R2 * R2, self.compliance)
 
     def contact(self, angle: Array) -> tuple[Array, ...]:
-        """d, F, p0, dF/dd and dd/d(ln ε) at ε > 0."""
+        """Compute d, F, p0, dF/dd and dd/d(ln ε) at ε > 0."""
         return contact(angle, self.curve, self.scale)
 
-    def scaled(self, kind: str, load: Array) -> Array:
-        """F C/(R2² c) or d/c."""
+    def scaled_load(self, kind: str, load: Array) -> Array:
+        """Compute the dimensionless load F C/(R2² c) or d/c."""
         c, area, compliance = self.scale
         return load * compliance / (area * c) if kind == "force" else load / c
 
     def angle(self, kind: str, load: Array) -> Array:
-        """ε > 0 that belongs to a load > 0; NaN beyond the tables."""
-        return (angle_of_force if kind == "force" else angle_of_indentation)(self.scaled(kind, load), self.curve)
+        """Solve for ε > 0 of a load > 0; NaN beyond the tables."""
+        return (angle_of_force if kind == "force" else angle_of_indentation)(self.scaled_load(kind, load), self.curve)
 
 
 @lru_cache(maxsize=256)
-def curves_of_one(file: str, joint: Joint) -> Curves:
-    """Curves of a joint of Python numbers; kept, since more loads on it are likely."""
-    return Curves(file, joint)
+def curves_of_one(file: str, joint: Joint) -> JointCurves:
+    """Return the functions of a joint of Python numbers, cached for further loads."""
+    return JointCurves(file, joint)
 
 
 @cache
 def _derivative(count: int) -> numpy.ndarray:
-    """From the Chebyshev coefficients of a function to those of its derivative."""
+    """Compute the matrix from the Chebyshev coefficients of a function to those of its derivative."""
     square = numpy.zeros((count, count))
     square[:-1] = numpy.polynomial.chebyshev.chebder(numpy.eye(count))
     return square
 
 
-LITTLE = 1e-3
+SMALL_LOAD = 1e-3
+"""Load in place of one that is not positive."""

@@ -1,4 +1,4 @@
-"""The exact answer from small tables."""
+"""Exact solution interpolated from small tables."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
 from ....problem import Joint
 from .chebyshev import POISSON, THICKNESS_RATIO
-from .solution import Reading, reading, solution_of
+from .solution import CurveReader, curve_reader, solution_of
 
 
 def _ball_poisson(contact: Any) -> Array:
-    """ν of the ball; one that is as good as any for a rigid ball."""
+    """Return ν of the ball, or 0.3 for a rigid ball, whose ν has no effect."""
     joint = contact.joint
     return 0.3 + 0.0 * joint.liner.young if joint.ball is None else joint.ball.poisson + 0.0 * joint.liner.young
 
 
 def _layers(contact: Any) -> Array:
-    """How many layers are behind the liner, as stiff as they may be."""
+    """Count the layers behind the liner."""
     return len(contact.joint.backing) + 0.0 * contact.joint.liner.young
 
 
-_ASK = "that is not in the tables: ask exact"
+_NOT_TABULATED = "outside the tables: use exact"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tabulated(Model):
-    """`Exact` from tables, in any array library, differentiable and vectorised: about a millionth of a second a press.
+    """`Exact` interpolated from tables, in any array library, differentiable and vectorised: about 1 µs a press.
 
-    The linear gap (Eq. 6 of Heß & Forsbach 2021) and one liner bonded to something rigid. Half angles up to 85 degrees;
-    within 1e-5 of `Exact` for a rigid ball, within 2e-4 for an elastic one.
+    The tables hold the linear gap (Eq. 6 of Heß & Forsbach 2021) and one liner bonded to a rigid backing. Half angles
+    reach up to 85 degrees. Results are within 1e-5 of `Exact` for a rigid ball, within 2e-4 for an elastic one.
 
     Parameters
     ----------
     file : str
-        Tables made by `build.build`; those that come with the package by default.
+        Path of tables made by `build.build`; the default is the tables of the package.
 
     References
     ----------
@@ -56,13 +56,13 @@ class Tabulated(Model):
     title: ClassVar[str] = "elastic ball and bonded liner, from tables of the exact answer"
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(6)"), Source("goodman1965"))
     domain: ClassVar[tuple[Range, ...]] = (
-        Range(quantity="joint.clearance", low=0.0, why="no clearance: ask cosine-limit"),
-        Range(quantity="joint.liner.poisson", low=POISSON[0], high=POISSON[1], why=_ASK),
-        Range(quantity="joint.thickness_ratio", low=THICKNESS_RATIO[0], high=THICKNESS_RATIO[1], why=_ASK),
-        Range(quantity="joint.modulus_ratio", high=0.0201, why=_ASK),
-        Range(quantity=_ball_poisson, symbol="ν_ball", low=-0.01, high=0.501, why=_ASK),
-        Range(quantity=_layers, symbol="layers behind the liner", high=1.0, why=_ASK),
-        Range(quantity="joint.backing_ratio", high=1.0, why="a free outer surface is not in the tables: ask exact"),
+        Range(quantity="joint.clearance", low=0.0, why="no clearance: use cosine-limit"),
+        Range(quantity="joint.liner.poisson", low=POISSON[0], high=POISSON[1], why=_NOT_TABULATED),
+        Range(quantity="joint.thickness_ratio", low=THICKNESS_RATIO[0], high=THICKNESS_RATIO[1], why=_NOT_TABULATED),
+        Range(quantity="joint.modulus_ratio", high=0.0201, why=_NOT_TABULATED),
+        Range(quantity=_ball_poisson, symbol="ν_ball", low=-0.01, high=0.501, why=_NOT_TABULATED),
+        Range(quantity=_layers, symbol="layers behind the liner", high=1.0, why=_NOT_TABULATED),
+        Range(quantity="joint.backing_ratio", high=1.0, why="a free outer surface is not in the tables: use exact"),
     )
     validity: ClassVar[tuple[Range, ...]] = (
         Range(
@@ -70,7 +70,7 @@ class Tabulated(Model):
             symbol="ν_ball",
             low=0.15,
             high=0.4,
-            why="between three tabulated balls, 0.15, 0.27 and 0.38, the tables keep 2e-4",
+            why="the tables hold balls of ν 0.15, 0.27 and 0.38 and keep 2e-4 between them",
         ),
         SMALL_STRAIN,
         LIKE_HEMISPHERE,
@@ -80,10 +80,10 @@ class Tabulated(Model):
     promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        return self.answer(joint, kind, load, reading(kind))
+        return self.answer(joint, kind, load, curve_reader(kind))
 
-    def answer(self, joint: Joint, kind: str, load: Array, read: Reading) -> SolverResult:
-        """The answer to a load of one kind, where `read` finds the contacts on their joints' curves."""
+    def answer(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
+        """Solve loads of one kind; `read` finds the contacts on their joints' curves."""
         solution = solution_of(self.file, joint, load, read)
         d, F, _, _ = solution.values
         return SolverResult(
@@ -91,18 +91,21 @@ class Tabulated(Model):
             force=F,
             indentation=d,
             failures={
-                Status.NOT_CONVERGED: arrays.logical_not(_miss(kind, load, d, F) <= _rounded(load, d / joint.clearance))
+                Status.NOT_CONVERGED: arrays.logical_not(
+                    _relative_residual(kind, load, d, F) <= _rounding_error(load, d / joint.clearance)
+                )
             },
         )
 
 
-def _rounded(load: Array, depth: Array) -> Array:
-    """What a load may be missed by: near the perfect fit, d/c = `depth` to infinity, half angles hardly tell it."""
+def _rounding_error(load: Array, depth: Array) -> Array:
+    """Return the relative rounding error of a load, which grows near the perfect fit (d/c = `depth` to infinity)."""
     return arrays.machine_epsilon(load) * (1e4 + 1e2 * depth)
 
 
-def _miss(kind: str, load: Array, d: Array, F: Array) -> Array:
+def _relative_residual(kind: str, load: Array, d: Array, F: Array) -> Array:
+    """Compute the relative difference between the load and the solution; 0 for half angles."""
     if kind == "half_angle":
         return 0.0 * F
-    given = broadcast(load, F)
-    return abs((F if kind == "force" else d) - given) / safe_divisor(given)
+    target = broadcast(load, F)
+    return abs((F if kind == "force" else d) - target) / safe_divisor(target)

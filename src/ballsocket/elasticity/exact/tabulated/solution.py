@@ -1,4 +1,4 @@
-"""Contacts read from the tables: found by their loads, block by block, with their energy and their pressure."""
+"""Contacts interpolated from the tables by their loads, block by block, with energy and pressure."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ import numpy
 from ....core import arrays
 from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
 from ....problem import Joint
-from .chebyshev import LIMIT, angle_place, polynomials, waves_at
-from .curves import LITTLE, Curves, curves_of_one
-from .formulas import summed
+from .chebyshev import LIMIT, angle_coordinate, chebyshev_polynomials, chebyshev_values
+from .curves import SMALL_LOAD, JointCurves, curves_of_one
+from .formulas import sum_series
 
-_BLOCK = 2000  # contacts at a time: what stays in the cache; rows of a power of two would fall on each other there
+_BLOCK = 2000  # contacts in one block, which fits into the cache; powers of two collide in the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TableSolution:
-    """Contacts at the half angles that belong to the loads, as the `Laws` of the contact they belong to.
+    """Contacts at half angles, with the quantities that a `Contact` delegates to.
 
     `values` are d, F, p0 and dF/dd.
     """
@@ -34,61 +34,70 @@ class TableSolution:
 
     @property
     def half_angle(self) -> Array:
+        """Half angle ε in rad."""
         return self.angle
 
     @property
     def pole_pressure(self) -> Array:
+        """Pressure p0 at the pole in MPa."""
         return self.values[2]
 
     @property
     def max_pressure(self) -> Array:
-        """Largest pressure in MPa, the one at the pole: no joint of the tables has more elsewhere."""
+        """Largest pressure in MPa, which lies at the pole for all joints in the tables."""
         return self.values[2]
 
     @property
     def max_pressure_angle(self) -> Array:
+        """Polar angle of the largest pressure in rad: 0."""
         return 0.0 * self.angle
 
     @property
     def stiffness(self) -> Array:
+        """Stiffness dF/dd in N/mm."""
         return self.values[3]
 
     @property
     def foundation_modulus(self) -> Array:
+        """Foundation modulus p0/d in MPa/mm."""
         return where(self.values[0] == 0, inf, self.values[2] / safe_divisor(self.values[0]))
 
     @cached_property
     def energy(self) -> Array:
-        (energy,) = _in_blocks(self.file, self.joint, self.angle, _work)
+        """Energy ∫ F dd in N mm."""
+        (energy,) = _read_in_blocks(self.file, self.joint, self.angle, _work)
         return where(self.angle > 0, energy, 0.0 * self.angle)
 
     @property
     def pressure_integral(self) -> Array:
-        """From U = (d F - c ∫ p (1 - cos φ) dA)/2 and F = ∫ p cos φ dA."""
+        """Integral ∫ p dA in N, from U = (d F - c ∫ p (1 - cos φ) dA)/2 and F = ∫ p cos φ dA."""
         d, F, _, _ = self.values
         return F + (d * F - 2 * self.energy) / self.joint.clearance
 
     @cached_property
     def _profile(self) -> Array:
         """Chebyshev coefficients of p/(p0 sqrt(1 - v)) in 2v - 1 (first axis), v = sin²(φ/2)/sin²(ε/2)."""
-        (series,) = _in_blocks(self.file, self.joint, self.angle, _profile)
+        (series,) = _read_in_blocks(self.file, self.joint, self.angle, _profile)
         return series
 
     @cached_property
-    def _tilt(self) -> tuple[Array, Array]:
-        """What makes the profile 1 at the pole and carry F: p = p0 sqrt(1 - v) [q(v) + (first) + (second) v]."""
+    def _profile_correction(self) -> tuple[Array, Array]:
+        """Corrections a, b of the profile, for 1 at the pole and force F: p = p0 sqrt(1 - v) [q(v) + a + b v]."""
         q = [self._profile[k, ...] for k in range(self._profile.shape[0])]
         _, F, p0, _ = self.values
         height = sin(safe_divisor(self.angle) / 2) ** 2
         plain, tilted = _moments(len(q))
         carries = [even - 2 * height * odd for even, odd in zip(plain, tilted, strict=True)]
         lift = 1 - arrays.weighted_sum(q, [(-1.0) ** k for k in range(len(q))])
-        wanted = F / safe_divisor(4 * pi * self.joint.socket_radius**2 * p0 * height)
-        carried = sum((part * each for part, each in zip(q, carries, strict=False)), lift * carries[0])
-        return lift, (wanted - carried) / carries[-1]
+        target = F / safe_divisor(4 * pi * self.joint.socket_radius**2 * p0 * height)
+        carried = sum(
+            (coefficient * moment for coefficient, moment in zip(q, carries, strict=False)), lift * carries[0]
+        )
+        return lift, (target - carried) / carries[-1]
 
     def pressure(self, angle: Array) -> Array:
-        lift, tilt = self._tilt
+        """Compute p(φ) in MPa at angles (rad); 0 outside the contact."""
+        lift, tilt = self._profile_correction
         half, height = sin(angle / 2), sin(safe_divisor(self.angle) / 2) ** 2
         v = half * half / height
         total = _clenshaw(self._profile, clip(2 * v - 1, -1.0, 1.0)) + lift + tilt * v
@@ -97,23 +106,24 @@ class TableSolution:
 
 
 def _clenshaw(series: Array, x: Array) -> Array:
-    """Σ series[k] T_k(x)."""
-    ahead = here = 0.0 * x
+    """Sum series[k] T_k(x)."""
+    following = current = 0.0 * x
     for k in range(series.shape[0] - 1, 0, -1):
-        here, ahead = series[k, ...] + 2 * x * here - ahead, here
-    return series[0, ...] + x * here - ahead
+        current, following = series[k, ...] + 2 * x * current - following, current
+    return series[0, ...] + x * current - following
 
 
-def _profile(curves: Curves, angle: Array) -> tuple[Array]:
+def _profile(curves: JointCurves, angle: Array) -> tuple[Array]:
+    """Compute the Chebyshev coefficients of the pressure profile at half angles."""
     series = curves.series("profile")
     if series.ndim == 2:
-        return (series @ waves_at(angle_place(angle, curves.ratio), series.shape[1]),)
-    waves = polynomials(angle_place(angle, curves.ratio), series.shape[1])
-    return (arrays.namespace(angle).stack([summed(series[k, ...], waves) for k in range(series.shape[0])]),)
+        return (series @ chebyshev_values(angle_coordinate(angle, curves.ratio), series.shape[1]),)
+    waves = chebyshev_polynomials(angle_coordinate(angle, curves.ratio), series.shape[1])
+    return (arrays.namespace(angle).stack([sum_series(series[k, ...], waves) for k in range(series.shape[0])]),)
 
 
-def _work(curves: Curves, angle: Array) -> tuple[Array]:
-    """∫ F dd, with ε' = ε sin²(πy/2): a root at a point contact, and steep where the load becomes infinite."""
+def _work(curves: JointCurves, angle: Array) -> tuple[Array]:
+    """Integrate F dd with ε' = ε sin²(πy/2), which removes the singularities at both ends."""
     total = 0.0 * angle
     for node, weight in zip(*gauss_legendre(32), strict=True):
         _, F, _, _, deepening = curves.contact(angle * math.sin(pi / 2 * node) ** 2)
@@ -123,74 +133,78 @@ def _work(curves: Curves, angle: Array) -> tuple[Array]:
 
 @cache
 def _moments(size: int) -> tuple[list[float], list[float]]:
-    """∫ sqrt(1 - v) f dv and ∫ sqrt(1 - v) f v dv over [0, 1], for f = T_0(2v - 1) ... T_size-1 and then f = v."""
-    y, w = (numpy.array(part) for part in gauss_legendre(2 * size + 4))
+    """Compute ∫ sqrt(1 - v) f dv and ∫ sqrt(1 - v) f v dv over [0, 1] for f = T_0(2v - 1) ... T_size-1 and f = v."""
+    y, w = (numpy.array(function) for function in gauss_legendre(2 * size + 4))
     v, w = 1 - y * y, 2 * y * y * w
-    parts = [*numpy.polynomial.chebyshev.chebvander(2 * v - 1, size - 1).T, v]
-    return [float(w @ part) for part in parts], [float(w @ (part * v)) for part in parts]
+    functions = [*numpy.polynomial.chebyshev.chebvander(2 * v - 1, size - 1).T, v]
+    return [float(w @ function) for function in functions], [float(w @ (function * v)) for function in functions]
 
 
-Reading = Callable[[Curves, Array], tuple[Array, ...]]
-"""From the curves of joints and the loads of contacts (contacts,) to numbers of each contact."""
+CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
+"""Function of the curves of joints and the loads of contacts (contacts,) that returns arrays (contacts,)."""
 
 
-def solution_of(file: str, joint: Joint, load: Array, read: Reading) -> TableSolution:
-    """The contacts that belong to the loads, NaN where the tables end; `read` finds ε, d, F, p0 and dF/dd."""
-    found = _in_blocks(file, joint, load, read)
-    fits = arrays.logical_not(found[1] < 0)  # a ball that filled its socket at less has no wider contact
+def solution_of(file: str, joint: Joint, load: Array, read: CurveReader) -> TableSolution:
+    """Solve the contacts for loads, NaN beyond the tables; `read` returns ε, d, F, p0 and dF/dd."""
+    values = _read_in_blocks(file, joint, load, read)
+    fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
     angle, d, F, p0, stiffness = (
-        where(broadcast(load, part) > 0, where(fits, part, float("nan")), 0.0) for part in found
+        where(broadcast(load, value) > 0, where(fits, value, float("nan")), 0.0) for value in values
     )
     return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness))
 
 
-def reading(kind: str) -> Reading:
-    """ε, d, F, p0 and dF/dd of contacts by loads of one kind."""
+def curve_reader(kind: str) -> CurveReader:
+    """Return the reader of ε, d, F, p0 and dF/dd for loads of one kind."""
 
-    def read(curves: Curves, given: Array) -> tuple[Array, ...]:
-        angle = where(given <= LIMIT, given, float("nan")) if kind == "half_angle" else curves.angle(kind, given)
+    def read(curves: JointCurves, load: Array) -> tuple[Array, ...]:
+        angle = where(load <= LIMIT, load, float("nan")) if kind == "half_angle" else curves.angle(kind, load)
         return (angle, *curves.contact(angle)[:4])
 
     return read
 
 
-def _in_blocks(file: str, joint: Joint, load: Array, read: Reading) -> tuple[Array, ...]:
-    """read(curves, load) in the shape of the contacts, with a little in place of loads that are not above 0."""
+def _read_in_blocks(file: str, joint: Joint, load: Array, read: CurveReader) -> tuple[Array, ...]:
+    """Apply `read` block by block, in the shape of the contacts; loads that are not positive become a small one."""
     if type(load) is float:
-        return read(curves_of_one(file, joint), load if load > 0 else LITTLE)
+        return read(curves_of_one(file, joint), load if load > 0 else SMALL_LOAD)
     xp, numbers = arrays.namespace(load), joint.numbers()
     shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
-    if not prod(shape):  # the shape of nothing is that of something, cut off
-        one = xp.ones((1,), dtype=load.dtype)
-        some = read(Curves(file, joint.with_numbers([one for _ in numbers])), one)
-        return tuple(xp.reshape(part[..., :0], (*part.shape[:-1], *shape)) for part in some)
-    alone = all(prod(part.shape) == 1 for part in numbers)
-    shared, which = (None, None) if alone else _shared(file, joint, shape)
-    wide = (part if prod(part.shape) == 1 else arrays.broadcast_to(part, shape) for part in numbers)
-    flat = [xp.reshape(part, (-1,)) for part in wide]
-    loads = xp.reshape(arrays.broadcast_to(where(load > 0, load, LITTLE), shape), (-1,))
-    whole = Curves(file, joint.with_numbers(flat))
-    size = (4 if alone else 1) * (_BLOCK if xp is numpy else 64 * _BLOCK)
+    if not prod(shape):  # read one contact for the shape, and remove it
+        unit_load = xp.ones((1,), dtype=load.dtype)
+        single = read(JointCurves(file, joint.with_numbers([unit_load for _ in numbers])), unit_load)
+        return tuple(xp.reshape(part[..., :0], (*part.shape[:-1], *shape)) for part in single)
+    is_single_joint = all(prod(part.shape) == 1 for part in numbers)
+    shared, indices = (None, None) if is_single_joint else _shared_curves(file, joint, shape)
+    broadcasted = (part if prod(part.shape) == 1 else arrays.broadcast_to(part, shape) for part in numbers)
+    flat = [xp.reshape(part, (-1,)) for part in broadcasted]
+    loads = xp.reshape(arrays.broadcast_to(where(load > 0, load, SMALL_LOAD), shape), (-1,))
+    all_curves = JointCurves(file, joint.with_numbers(flat))
+    size = (4 if is_single_joint else 1) * (_BLOCK if xp is numpy else 64 * _BLOCK)
     results = []
     for first in range(0, max(prod(shape), 1), size):
         block = slice(first, min(first + size, prod(shape)))
-        here = None if which is None else which[block]
+        block_indices = None if indices is None else indices[block]
         parts = [part if part.shape[0] == 1 else part[block] for part in flat]
-        curves = whole if alone else Curves(file, joint.with_numbers(parts), shared, here)
+        curves = all_curves if is_single_joint else JointCurves(file, joint.with_numbers(parts), shared, block_indices)
         results.append(read(curves, loads[block]))
     joined = (xp.concat(parts, axis=-1) if len(parts) > 1 else parts[0] for parts in zip(*results, strict=True))
     return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)
 
 
-def _shared(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[Curves | None, Array | None]:
-    """The curves of the joints of a grid, and which of them each contact has: worth while in NumPy, from a few on."""
+def _shared_curves(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[JointCurves | None, Array | None]:
+    """Return the curves of the joints of a grid and the joint of each contact, or None if that does not save time."""
     numbers = joint.numbers()
     inner = numpy.broadcast_shapes(*(tuple(part.shape) for part in numbers))
-    if arrays.namespace(*numbers) is not numpy or prod(inner) * _FEW > prod(shape) or prod(inner) > _BLOCK:
+    if (
+        arrays.namespace(*numbers) is not numpy
+        or prod(inner) * _MIN_CONTACTS_PER_JOINT > prod(shape)
+        or prod(inner) > _BLOCK
+    ):
         return None, None
     flat = [numpy.broadcast_to(part, inner).ravel() for part in numbers]
-    which = numpy.broadcast_to(numpy.arange(prod(inner)).reshape(inner), shape).ravel()
-    return Curves(file, joint.with_numbers(flat)), which
+    indices = numpy.broadcast_to(numpy.arange(prod(inner)).reshape(inner), shape).ravel()
+    return JointCurves(file, joint.with_numbers(flat)), indices
 
 
-_FEW = 4  # contacts a joint
+_MIN_CONTACTS_PER_JOINT = 4

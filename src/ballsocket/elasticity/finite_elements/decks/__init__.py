@@ -1,1 +1,1 @@
-"""The finite-element model and its fields as files of other programs."""
+"""Input decks of finite element programs, and files of displacements and stresses."""

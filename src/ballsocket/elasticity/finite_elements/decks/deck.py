@@ -1,18 +1,18 @@
-"""The model of one contact as an input deck, on the mesh that answered, so that other programs can check the answer.
+"""Input decks of one contact on its own mesh, so that other finite element programs can check the result.
 
-x is the distance from the load axis, y points up; the ball is pushed down by its equator, which stays plane and is free
-along itself. Elements are CAX4 or, without the middle node of ours, CAX8R.
+x is the distance from the load axis, y points up. The ball is pushed down by its equator, which stays plane and can
+expand. Elements are CAX4 or CAX8R, which has no middle node.
 
-Contact of surfaces that move is not the linear problem that this package solves, but tends to it as the movements
-become small. So clearance and indentation are multiplied by a small scale, and what comes out is divided by it.
+A contact with moving surfaces is not the linear problem of this package, but tends to it for small displacements. The
+clearance and the indentation are therefore multiplied by a small scale, and the results are divided by it.
 
-CalculiX reads the deck as it is. By its manual Abaqus differs in three things (nobody has run it there yet): it wants
-`TOTALS=YES` for `TOTALS=ONLY` and `CDISP, CSTRESS` behind *CONTACT FILE, and its forces are those of the whole ring,
-where CalculiX calculates two degrees of it and prints a 180th.
+CalculiX reads the deck as it is. By its manual Abaqus differs in three points, which are not tested yet: it needs
+`TOTALS=YES` for `TOTALS=ONLY` and `CDISP, CSTRESS` after *CONTACT FILE. Its forces are those of the full ring, where
+CalculiX solves two degrees and prints a 180th of the force.
 
-CalculiX's contact is no judge of CAX4: it sees flat facets, which touch along their edges only. With 20 elements along
-the contact its force is 6 % too large, with 100, 200 of them 0.7 %, 0.3 %, and its pressures are several times ours.
-CAX8R has no such trouble.
+CalculiX's contact is inaccurate on CAX4, because it uses flat facets that touch along their edges only. With 20, 100
+and 200 elements along the contact its force is 6 %, 0.7 % and 0.3 % too large, and its pressures are several times too
+large. CAX8R has no such error.
 """
 
 from __future__ import annotations
@@ -34,70 +34,69 @@ from ....core.storage.atomic import write_text
 from ....problem.gaps import LinearGap
 from ....version import __version__
 from ..contact import MeshedContact
-from .bodies import Bodies, false_gap
-from .lines import contact_lines, material_lines, mesh_lines, step_lines, support_lines
-from .solid import TYPES
+from .bodies import DeckBodies, faceting_gap
+from .solid import TYPES, DeckBody, node_set
 
 NAME, EXPECTED = "ballsocket", "expected.json"
-"""Names of the deck, as CalculiX wants it, and of the file beside it."""
+"""Names of the deck for CalculiX, and of the file with the expected results."""
 
-MOST_STEPS = 1000
-"""Steps of a deck; our own answer to each is computed and written beside it."""
+MAX_STEPS = 1000
+"""Largest number of steps of a deck; the expected result of each is computed."""
 
-_STIFFER = 2000.0
-_FALSE = 2e-3  # of the indentation
-_WIDTH = 100
+_PENALTY_FACTOR = 2000.0
+_MAX_FACETING_GAP = 2e-3  # over the indentation
+_LINE_WIDTH = 100
 
 
 def deck_of(contact: MeshedContact, *, steps: int = 8, scale: float = 1e-3) -> Deck:
-    """The input deck of one contact.
+    """Make the input deck of one contact.
 
-    The gap between elements is that between spheres where both bodies have their nodes at the same angles, as they do
-    unless the contact is wide and a rim or chamfer near, or the ball has a spacing of its own. Elsewhere it is only as
-    good as the elements follow the sphere: parabolas do well, chords do not.
+    The gap between elements equals that between spheres if both bodies have their nodes at the same angles. They do
+    unless the contact is wide and near a rim or chamfer, or the ball has its own spacing. Elsewhere the gap is only as
+    accurate as the elements follow the sphere: parabolas do, chords do not.
 
     Parameters
     ----------
     contact : MeshedContact
         One contact under load, pressed by a `FiniteElement` with the linear gap.
     steps : int
-        Equal indentations up to the contact's own, one step each; 1 to `MOST_STEPS`.
+        Number of equal increments up to the contact's indentation; 1 to `MAX_STEPS`.
     scale : float
-        What clearance and indentation are multiplied by, above 0 and at most 1. 1 is the real geometry, whose answer
-        differs from ours by what small displacements leave out.
+        Factor on clearance and indentation, above 0 and at most 1. 1 is the real geometry, whose results include large
+        displacements.
 
     Raises
     ------
     ValueError
-        Several contacts, one without load or answer, a circular gap, surfaces that follow the sphere too
-        coarsely where they do not match, or a number that is not allowed.
+        Several contacts, one without load or solution, a circular gap, surfaces that follow the sphere too coarsely, or
+        a number outside its range.
     """
     if prod(contact.laws.shape) != 1:
-        raise ValueError(f"a deck is for one contact, not {contact.laws.shape}: press it alone")
-    good = isinstance(steps, int) and 1 <= steps <= MOST_STEPS
-    require("steps", steps, good, f"a deck has a whole number of steps, 1 to {MOST_STEPS}")
-    require("scale", scale, 0 < scale <= 1, "a scale lies above 0 and is at most 1")
+        raise ValueError(f"a deck needs one contact, got an array of shape {contact.laws.shape}: press a single load")
+    is_allowed = isinstance(steps, int) and 1 <= steps <= MAX_STEPS
+    require("steps", steps, is_allowed, f"steps must be an integer from 1 to {MAX_STEPS}")
+    require("scale", scale, 0 < scale <= 1, "a scale must be above 0 and at most 1")
     if contact.model.gap is not LinearGap:
-        raise ValueError("a deck tends to the linear gap: press with gap=LinearGap")
-    room = false_gap(contact._solved.pair) / (scale * contact._solved.indentation)
-    if room > _FALSE:
+        raise ValueError("a deck needs the linear gap: press with gap=LinearGap")
+    gap = faceting_gap(contact._solved.pair) / (scale * contact._solved.indentation)
+    if gap > _MAX_FACETING_GAP:
         raise ValueError(
-            f"elements of ball and socket do not match, which leaves a gap of {room:.1%} of the scaled indentation: "
-            "take smaller ones, Element.BIQUADRATIC, or a larger scale"
+            f"elements of ball and socket do not match, which leaves a gap of {gap:.1%} of the scaled indentation: "
+            "use smaller ones, Element.BIQUADRATIC, or a larger scale"
         )
     return Deck(contact=contact, steps=steps, scale=scale)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Deck:
-    """An input deck; see `deck_of`.
+    """Input deck of one contact; see `deck_of`.
 
     Attributes
     ----------
     contact : MeshedContact
     steps : int
     scale : float
-        What forces (N), pressures (MPa) and displacements (mm) of the deck are to be divided by.
+        Divisor for the forces (N), pressures (MPa) and displacements (mm) of the deck.
     """
 
     contact: MeshedContact
@@ -105,7 +104,7 @@ class Deck:
     scale: float
 
     def text(self) -> str:
-        """The deck, in ASCII."""
+        """Return the deck as ASCII text."""
         bodies = self._bodies
         lines = [*self._title(), *mesh_lines(bodies), *material_lines(bodies)]
         lines += [*contact_lines(bodies, self.slope), *support_lines(bodies)]
@@ -114,17 +113,17 @@ class Deck:
         return "\n".join(lines) + "\n"
 
     def write(self, folder: Path) -> Path:
-        """Write `ballsocket.inp` and `expected.json` into a folder, which is made; gives the path of the former.
+        """Write `ballsocket.inp` and `expected.json` into a new or existing folder; return the path of the former.
 
-        `expected.json` has the joint, the scale, the elements' type; our own answer of the real joint under "steps"
-        (`indentation` in mm, `force` in N, `max_pressure` and `pole_pressure` in MPa, `half_angle_deg`; null where
-        there is none); and the nodes of both surfaces with their angles in rad, under "bore" and "round". Each file
-        appears at once: an interrupted write leaves none.
+        `expected.json` has the joint, the scale, the element type and the expected results of the real joint under
+        "steps": `indentation` in mm, `force` in N, `max_pressure` and `pole_pressure` in MPa, `half_angle_deg`; null
+        for missing values. It lists the nodes of both surfaces with their angles in rad under "bore" and "round". Each
+        file is written atomically: an interrupted write leaves none.
 
         Raises
         ------
         OSError
-            A folder that cannot be written to.
+            The folder cannot be written to.
         """
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
@@ -132,41 +131,45 @@ class Deck:
         return write_text(folder / f"{NAME}.inp", self.text(), encoding="ascii")
 
     @cached_property
-    def _bodies(self) -> Bodies:
-        return Bodies(contact=self.contact, scale=self.scale)
+    def _bodies(self) -> DeckBodies:
+        """Both bodies of the deck."""
+        return DeckBodies(contact=self.contact, scale=self.scale)
 
-    # --- what is expected ---
+    # --- expected results ---
 
     @cached_property
     def expected(self) -> dict[str, Numbers]:
-        """Our own answer at each step (steps,), by name, with indentation in mm, force in N, pressures in MPa."""
-        answer = self.contact.model.press(self._bodies.joint, indentation=self._depths)
+        """Expected results at each step (steps,) by name, with indentation in mm, force in N, pressures in MPa."""
+        contact = self.contact.model.press(self._bodies.joint, indentation=self._depths)
         return {
             "indentation": self._depths,
-            "force": answer.force,
-            "max_pressure": answer.max_pressure,
-            "pole_pressure": answer.pole_pressure,
-            "half_angle_deg": numpy.degrees(answer.half_angle),
+            "force": contact.force,
+            "max_pressure": contact.max_pressure,
+            "pole_pressure": contact.pole_pressure,
+            "half_angle_deg": numpy.degrees(contact.half_angle),
         }
 
     @property
     def slope(self) -> float:
-        """The contact's penalty in MPa/mm.
+        """Contact penalty in MPa/mm.
 
-        The bodies overlap by pressure over slope. 2000 times the largest pressure per indentation of all steps makes
-        that a 2000th of the indentation or less, which takes about twice as much from the force: it was 0.05 %. Ten
-        times as much takes ten times less, but the nodal pressures zigzag more.
+        The bodies overlap by pressure over slope. The slope is 2000 times the largest ratio of pressure to indentation,
+        so the overlap is at most a 2000th of the indentation. The force error is about twice that; 0.05 % was measured.
+        A ten times larger slope has a ten times smaller error, but larger oscillations of the nodal pressures.
         """
-        return _STIFFER * float(numpy.nanmax(self.expected["max_pressure"] / self.expected["indentation"]))
+        return _PENALTY_FACTOR * float(numpy.nanmax(self.expected["max_pressure"] / self.expected["indentation"]))
 
     @property
     def _depths(self) -> Numbers:
+        """Indentations of the steps in mm."""
         return float(self._bodies.solved.indentation) * numpy.arange(1, self.steps + 1) / self.steps
 
     def _rows(self) -> list[list[float]]:
+        """Return one row of expected results for each step."""
         return numpy.stack(list(self.expected.values()), axis=-1).tolist()
 
     def _record(self) -> dict[str, Any]:
+        """Return the content of `expected.json`."""
         return {
             "ballsocket": __version__,
             "joint": self._bodies.joint.summary(),
@@ -180,15 +183,17 @@ class Deck:
             "round": self._bodies.ball.surface(),
         }
 
-    # --- what is said on top ---
+    # --- comments at the top ---
 
     def _title(self) -> Iterator[str]:
+        """Write the comment lines at the top of the deck."""
         for sentence in self._sentences():
-            yield from (f"** {line}" for line in wrap(sentence, _WIDTH))
+            yield from (f"** {line}" for line in wrap(sentence, _LINE_WIDTH))
         for number, row in enumerate(self._rows(), 1):
             yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
 
     def _sentences(self) -> Iterator[str]:
+        """Describe the deck in sentences."""
         cup = self.contact.model.cup
         joint = str(self._bodies.joint).encode("ascii", "replace").decode()
         yield f"ballsocket {__version__}: {joint}"
@@ -199,9 +204,88 @@ class Deck:
             "divide forces, pressures and displacements by it. CalculiX prints a 180th of the force."
         )
         if self._bodies.joint.ball is not None:
-            yield "The ball's modulus is multiplied by R2 over its radius here: it gives way like one of radius R2."
-        yield "Contact is without friction; its penalty takes less than 0.1 % from the force."
+            yield "The ball's modulus is multiplied by R2 over its radius, for the compliance of a ball of radius R2."
+        yield "Contact is without friction; its penalty reduces the force by less than 0.1 %."
         yield (
-            f"{self.steps} steps push the ball (set PUSHED) down by equal parts. Expected of the real joint: "
+            f"{self.steps} steps push the ball (set PUSHED) down by equal increments. Expected of the real joint: "
             "step, indentation (mm), force (N), pressure at the pole (MPa), half angle (deg)."
         )
+
+
+_INSIDE, _OUTSIDE = "S4", "S2"  # faces of elements
+
+
+def mesh_lines(bodies: DeckBodies) -> Iterator[str]:
+    """Write nodes and elements of both bodies, and the sets of contact nodes."""
+    yield "*NODE, NSET=ALL"
+    for body in (bodies.socket, bodies.ball):
+        yield from body.node_lines()
+    for body in (bodies.socket, bodies.ball):
+        yield from body.element_lines()
+    yield from node_set("BORE", bodies.socket.surface()["node"])
+    yield from node_set("ROUND", bodies.ball.surface()["node"])
+
+
+def material_lines(bodies: DeckBodies) -> Iterator[str]:
+    """Write a material for each set of elements."""
+    for name, (young, poisson) in bodies.materials.items():
+        yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {poisson:.12g}")
+        yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
+
+
+def contact_lines(bodies: DeckBodies, slope: float) -> Iterator[str]:
+    """Write the contact surfaces up to the last pressure node; the ball's is one element longer."""
+    yield "*SURFACE, NAME=LINED, TYPE=ELEMENT"
+    yield from (f"{element}, {_INSIDE}" for element in bodies.socket.contact_elements(bodies.reach, strip=0))
+    yield "*SURFACE, NAME=PRESSED, TYPE=ELEMENT"
+    yield from (f"{element}, {_OUTSIDE}" for element in bodies.ball.contact_elements(bodies.reach, strip=-1, extra=1))
+    yield from ("*SURFACE INTERACTION, NAME=TOUCH", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR")
+    yield from (f"{slope:.6g}", "*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "LINED, PRESSED")
+
+
+def support_lines(bodies: DeckBodies) -> Iterator[str]:
+    """Write the supports: directions x and y on the axis and for fixed nodes of the ball, else radius and angle."""
+    socket, ball = bodies.socket, bodies.ball
+    upright = [*socket.numbers(socket.on_axis & ~socket.fixed), *ball.numbers(ball.on_axis | ball.fixed)]
+    seated, rolling = socket.fixed_directions & ~socket.fixed & ~socket.on_axis
+    yield from node_set("PUSHED", ball.numbers(ball.fixed_directions[0] & (ball.fixed | ~ball.on_axis)))
+    yield from _polar_lines(socket, seated | rolling)
+    for name, directions, nodes in (
+        ("UPRIGHT", "1, 1", upright),
+        ("FIXED", "1, 2", socket.numbers(socket.fixed)),
+        ("SEATED", "2, 2", socket.numbers(seated)),
+        ("ROLLING", "1, 1", socket.numbers(rolling)),
+    ):
+        yield from _boundary_lines(name, directions, nodes)
+
+
+def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
+    """Write the polar directions (radius first) of supported and sliding nodes, and the sliding constraints."""
+    inner, outer = socket.sliding
+    polar = fixed_directions.copy()
+    polar[inner] = polar[outer] = True
+    numbers = socket.numbers(polar & ~socket.on_axis)
+    if numbers:
+        yield from node_set("POLAR", numbers)
+        yield from ("*TRANSFORM, NSET=POLAR, TYPE=C", "0., 0., 0., 0., 0., 1.")
+    if len(inner):
+        yield "*EQUATION"
+    for inner_node, outer_node in zip(inner, outer, strict=True):
+        direction = 2 if socket.on_axis[inner_node] else 1
+        yield from ("2", f"{socket.number[inner_node]}, {direction}, 1., {socket.number[outer_node]}, {direction}, -1.")
+
+
+def _boundary_lines(name: str, directions: str, nodes: list[int]) -> Iterator[str]:
+    """Write a named set of nodes and its boundary condition."""
+    if nodes:
+        yield from node_set(name, nodes)
+        yield from ("*BOUNDARY", f"{name}, {directions}")
+
+
+def step_lines(height: float) -> Iterator[str]:
+    """Write one step, which pushes the ball to a height (mm, negative is down), and its output requests."""
+    yield from ("*STEP, INC=100", "*STATIC", "1., 1.", "*BOUNDARY", f"PUSHED, 2, 2, {height:.13g}")
+    yield from ("*NODE PRINT, NSET=PUSHED, TOTALS=ONLY", "RF")
+    for surface in ("BORE", "ROUND"):
+        yield from (f"*NODE PRINT, NSET={surface}, GLOBAL=YES", "U")
+    yield from ("*CONTACT FILE", "CDIS, CSTR", "*END STEP")

@@ -1,4 +1,4 @@
-"""One body in a deck: its nodes and elements, with their numbers, as lines."""
+"""One body in an input deck: numbered nodes and elements, written as lines."""
 
 from __future__ import annotations
 
@@ -13,23 +13,24 @@ from ....core.arrays import Numbers
 from ..mesh import Block
 
 TYPES = {1: "CAX4", 2: "CAX8R"}
-"""What both programs call bilinear and biquadratic elements."""
+"""Names of bilinear and biquadratic elements in CalculiX and Abaqus."""
 
-_A_LINE = 16  # numbers
-_SAME = 1e-9  # rad
+_NUMBERS_PER_LINE = 16
+_ANGLE_TOLERANCE = 1e-9  # rad
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Solid:
-    """A body in the deck.
+class DeckBody:
+    """CondensedBody in the deck.
 
-    `names` are its layers; `held` (2, nodes) is along the angle and along the radius; `contact` are the nodes of its
-    surface; `radius` (mm) is that of the block's unit, and `drop` how far its centre lies below the socket's.
+    `names` are its layers; `fixed_directions` (2, nodes) is along the angle and along the radius. `contact` are the
+    nodes of its surface. `radius` (mm) is that of the block's unit, and `drop` the distance of its centre below the
+    socket's.
     """
 
     names: tuple[str, ...]
     block: Block
-    held: Numbers
+    fixed_directions: Numbers
     contact: Numbers
     radius: float
     drop: float = 0.0
@@ -37,71 +38,71 @@ class Solid:
     elements_before: int = 0
 
     @cached_property
-    def _rims(self) -> Numbers:
-        """Nodes of each element (4 or 8, elements), without the middle."""
+    def _outer_nodes(self) -> Numbers:
+        """Nodes of each element (4 or 8, elements), without the middle one."""
         return self.block.elements[: 4 * self.block.order]
 
     @cached_property
     def number(self) -> Numbers:
-        """Number in the deck of each node of the block, from 1 on; 0 for those in the middle of elements."""
+        """Number of each node of the block in the deck, from 1 on; 0 for nodes in the middle of elements."""
         used = numpy.zeros(self.block.number.size, dtype=bool)
-        used[self._rims] = True
+        used[self._outer_nodes] = True
         return numpy.where(used, self.nodes_before + numpy.cumsum(used), 0)
 
     @property
     def nodes(self) -> int:
-        """How many it has."""
+        """Number of nodes."""
         return int(numpy.count_nonzero(self.number))
 
     def numbers(self, chosen: Numbers) -> list[int]:
-        """Numbers in the deck of the nodes that a mask (nodes,) chooses; those in the middle of elements have none."""
+        """Return the numbers in the deck of the nodes in a mask (nodes,), without those in the middle of elements."""
         return self.number[chosen & (self.number > 0)].tolist()
 
     @cached_property
     def on_axis(self) -> Numbers:
-        """Whether each node lies on the load axis."""
-        on = numpy.zeros(self.block.number.size, dtype=bool)
-        on[self.block.number[0]] = True
-        return on
+        """Mask of the nodes on the load axis."""
+        mask = numpy.zeros(self.block.number.size, dtype=bool)
+        mask[self.block.number[0]] = True
+        return mask
 
     @property
     def fixed(self) -> Numbers:
-        """Whether each node is held in both directions."""
-        return self.held[0] & self.held[1]
+        """Mask of the nodes that are fixed in both directions."""
+        return self.fixed_directions[0] & self.fixed_directions[1]
 
     @property
     def sliding(self) -> tuple[Numbers, Numbers]:
-        """Nodes inside and outside of where layers slide."""
+        """Nodes on the inner and on the outer side of sliding interfaces."""
         columns = self.block.sliding
         return self.block.number[:, columns].ravel(), self.block.number[:, columns + 1].ravel()
 
     def surface(self) -> dict[str, list[Any]]:
-        """Numbers and angles of the nodes that may touch, from the pole on."""
+        """Return numbers and angles of the contact nodes, from the pole outwards."""
         return {"node": self.number[self.contact].tolist(), "angle": self.block.angle[: len(self.contact)].tolist()}
 
-    def touching(self, reach: float, *, strip: int, more: int = 0) -> Numbers:
-        """Numbers of the elements of a strip that begin before an angle, and of some more."""
+    def contact_elements(self, reach: float, *, strip: int, extra: int = 0) -> Numbers:
+        """Return the numbers of the elements of a strip that begin before an angle, and of a few extra ones."""
         corners, strips = self.block.angle[:: self.block.order], len(self.block.strips)
-        count = min(int(numpy.searchsorted(corners, reach - _SAME)) + more, len(corners) - 1)
+        count = min(int(numpy.searchsorted(corners, reach - _ANGLE_TOLERANCE)) + extra, len(corners) - 1)
         return self.elements_before + 1 + numpy.arange(count) * strips + strip % strips
 
     def node_lines(self) -> Iterator[str]:
-        """Twenty characters a number are all that CalculiX reads."""
+        """Write the nodes; CalculiX reads at most twenty characters a number."""
         across, below = self.radius * self.block.nodes
         for node in numpy.flatnonzero(self.number):
             yield f"{self.number[node]}, {across[node]:.14g}, {-below[node] - self.drop:.14g}"
 
     def element_lines(self) -> Iterator[str]:
-        """A headline for each layer, and a line for each of its elements."""
+        """Write a header for each layer, and a line for each of its elements."""
         for layer, name in enumerate(self.names):
             yield f"*ELEMENT, TYPE={TYPES[self.block.order]}, ELSET={name}"
             for element in numpy.flatnonzero(self.block.layers == layer):
-                nodes = self.number[self._rims[:, element]]
+                nodes = self.number[self._outer_nodes[:, element]]
                 yield ", ".join(map(str, [self.elements_before + 1 + element, *nodes]))
 
 
 def node_set(name: str, nodes: list[int]) -> Iterator[str]:
-    """The lines that give nodes a name."""
+    """Write a named set of nodes."""
     yield f"*NSET, NSET={name}"
-    for start in range(0, len(nodes), _A_LINE):
-        yield ", ".join(map(str, nodes[start : start + _A_LINE]))
+    for start in range(0, len(nodes), _NUMBERS_PER_LINE):
+        yield ", ".join(map(str, nodes[start : start + _NUMBERS_PER_LINE]))

@@ -1,4 +1,4 @@
-"""The inside of ball and socket as a VTK file, for ParaView and its like."""
+"""VTK files of displacements and stresses in ball and socket, for ParaView and similar programs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SUFFIXES = (".vtu", ".vtk")
 
 
 def check_suffix(path: Path) -> None:
-    """Raise ValueError unless `path` ends like a format that is written, in a folder that is there."""
+    """Raise ValueError unless `path` has the suffix of a VTK format and its folder exists."""
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{str(path)!r} must end in {', '.join(SUFFIXES)}")
     check_folder(path)
@@ -26,19 +26,19 @@ def write_vtk(section: Section, path: Path) -> None:
 
     x is the distance from the load axis, y the height above the centre of the socket, in mm. Point data are
     `displacement`, `von_mises`, and `radial`, `meridional`, `hoop` and `shear`, stresses in spherical directions. Cell
-    data are `part`, 0 for the first. The file appears at once: an interrupted write leaves none.
+    data are `part`, 0 for the first. The file is written atomically: an interrupted write leaves none.
 
     Parameters
     ----------
     section : Section
-        Of a `MeshedContact`.
+        Section of a `MeshedContact`.
     path : Path
-        Ends in .vtu or .vtk.
+        Path that ends in .vtu or .vtk.
 
     Raises
     ------
     ValueError
-        A path that ends like no known format.
+        The path has another suffix.
     ImportError
         meshio is not installed.
     """
@@ -46,8 +46,8 @@ def write_vtk(section: Section, path: Path) -> None:
     needs("fem", "meshio")
     import meshio
 
-    places = numpy.concatenate([part.place for part in section.parts], axis=1)
-    first = numpy.cumsum([0, *(part.place.shape[1] for part in section.parts)])
+    positions = numpy.concatenate([part.position for part in section.parts], axis=1)
+    first = numpy.cumsum([0, *(part.position.shape[1] for part in section.parts)])
     moved = numpy.concatenate([part.displacement for part in section.parts], axis=1)
     names = ("von_mises", "radial", "meridional", "hoop", "shear")
     stresses = {
@@ -58,7 +58,7 @@ def write_vtk(section: Section, path: Path) -> None:
         for part, start in zip(section.parts, first[:-1], strict=True)
     ]
     mesh = meshio.Mesh(
-        _in_space(places),
+        _in_space(positions),
         cells,
         point_data={"displacement": _in_space(moved), **stresses},
         cell_data={"part": [numpy.full(part.elements.shape[1], i) for i, part in enumerate(section.parts)]},
@@ -68,4 +68,5 @@ def write_vtk(section: Section, path: Path) -> None:
 
 
 def _in_space(plane: numpy.ndarray) -> numpy.ndarray:
+    """Add a zero third coordinate."""
     return numpy.column_stack([*plane, numpy.zeros(plane.shape[1])])

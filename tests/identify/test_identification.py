@@ -1,4 +1,4 @@
-"""From measurements to the numbers of a joint."""
+"""Identification of a joint from measurements."""
 
 import numpy as np
 import pytest
@@ -6,8 +6,8 @@ import pytest
 import ballsocket as bs
 from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
 from ballsocket.identify.experiment import Candidate, experiment
+from ballsocket.identify.jax_derivatives import by_tracing
 from ballsocket.identify.synthetic import drawn, trials
-from ballsocket.identify.tracing import by_tracing
 from ballsocket.output.identify_plots import fit_figure
 from ballsocket.studies import LogNormal, Normal
 
@@ -44,15 +44,15 @@ def identified(*data, free=FREE, model=MODEL, **words):
     ],
     ids=lambda data: "+".join(each.quantity for each in data),
 )
-def test_data_without_error_give_the_truth(data):
-    found = identified(*data)
-    assert found.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
-    assert found.told
-    assert found.spread == pytest.approx(0.0, abs=1e-4)
-    assert found.joint.clearance == pytest.approx(0.1, rel=1e-5)
+def test_data_without_error_identify_the_true_joint(data):
+    result = identified(*data)
+    assert result.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
+    assert result.identifiable
+    assert result.spread == pytest.approx(0.0, abs=1e-4)
+    assert result.joint.clearance == pytest.approx(0.1, rel=1e-5)
 
 
-def test_what_the_machine_adds_is_found_beside_the_joint():
+def test_errors_of_the_machine_are_identified_with_the_joint():
     machine = Machine(compliance=(0.0, 2e-5), offset=(-0.02, 0.02))
     read = TRUTH.indentation + 8e-6 * FORCE - 0.007
     by_force = measured("indentation", read, share=1e-3, machine=machine)
@@ -62,14 +62,14 @@ def test_what_the_machine_adds_is_found_beside_the_joint():
         assert identified(each, measured("area", share=1e-3)).point == pytest.approx(truth, rel=1e-4)
 
 
-def test_a_machine_whose_numbers_are_known_is_taken_off():
+def test_known_errors_of_the_machine_are_subtracted():
     machine = Machine(compliance=8e-6, offset=0.002)
     read = measured("indentation", TRUTH.indentation + 8e-6 * FORCE + 0.002, machine=machine)
     assert identified(read).point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
 
 
-def test_a_film_that_saturates_says_at_least():
-    """The values at its limit pull the answer down where they are taken at their word."""
+def test_values_of_a_saturated_film_are_lower_bounds():
+    """The modulus is too low if the values at the limit count as exact."""
     film = np.minimum(TRUTH.max_pressure, 7.0)
     free = {"liner.young": (400.0, 2000.0)}
     honest = identified(measured("max_pressure", film, saturation=7.0), free=free)
@@ -78,74 +78,74 @@ def test_a_film_that_saturates_says_at_least():
     assert taken.point["liner_young"] < 900.0
 
 
-def test_a_heavy_tail_bears_outliers():
+def test_outliers_have_little_influence_with_a_heavy_tail():
     random = np.random.default_rng(3)
     values = TRUTH.indentation * (1 + 0.01 * random.standard_normal(20))
     values[[4, 11, 17]] *= 1.5
     data = measured("indentation", values, share=0.01)
     normal, heavy = identified(data), identified(data, scatter=HeavyTailed())
-    errors = [abs(np.log(found.point["clearance"] / 0.1)) for found in (normal, heavy)]
+    errors = [abs(np.log(result.point["clearance"] / 0.1)) for result in (normal, heavy)]
     assert errors[1] < 0.5 * errors[0]
     assert any(note.startswith("value 18 of indentation is") for note in normal.notes)
     assert any("there are outliers" in note for note in normal.notes)
 
 
 @pytest.mark.parametrize("quantities", [("area",), ("max_pressure",), ("half_angle", "max_pressure")])
-def test_areas_and_pressures_tell_the_product_alone(quantities):
+def test_areas_and_pressures_identify_only_the_product(quantities):
     """Theory, 3g: of a rigid ball they depend on E c; only the socket's radius, R1 + c, hints at c."""
     random = np.random.default_rng(5)
     data = [measured(quantity, share=0.04, random=random) for quantity in quantities]
-    found = identified(*data, free={"clearance": (0.05, 0.2), "liner.young": (400.0, 2000.0)})
-    assert found.information.rank == 1
-    assert found.information.condition > 1e3
-    assert not found.told
-    assert np.isnan(found["clearance"].value)
-    assert np.isnan(found["liner.young"].value)
-    (product,) = found.information.products
+    result = identified(*data, free={"clearance": (0.05, 0.2), "liner.young": (400.0, 2000.0)})
+    assert result.information.rank == 1
+    assert result.information.condition > 1e3
+    assert not result.identifiable
+    assert np.isnan(result["clearance"].value)
+    assert np.isnan(result["liner.young"].value)
+    (product,) = result.information.products
     assert product.exponents == {"clearance": 1.0, "liner_young": 1.0}
     assert product.low < 100.0 < product.high < 1.2 * product.low
-    assert found.notes[0] == (
+    assert result.notes[0] == (
         "only clearance · liner_young is identifiable from these data, clearance and liner_young separately are not: "
         "measure indentation or free play"
     )
-    assert found.summary()["valid"] is False
-    assert found.summary()["estimates"][0]["value"] is None
+    assert result.summary()["valid"] is False
+    assert result.summary()["estimates"][0]["value"] is None
 
 
-def test_the_next_measurement_tells_as_much_as_it_was_expected_to():
+def test_the_gain_of_a_measurement_is_the_predicted_gain():
     areas = measured("area")
-    found = identified(areas)
-    gain = next(each for each in found.next.gains if each.candidate.quantity == "indentation")
-    more = identified(areas, gain.candidate.measured(MODEL.press(found.joint, force=gain.candidate.force).indentation))
+    result = identified(areas)
+    gain = next(each for each in result.next.gains if each.candidate.quantity == "indentation")
+    more = identified(areas, gain.candidate.measured(MODEL.press(result.joint, force=gain.candidate.force).indentation))
     grown = (
         np.linalg.slogdet(more.information.matrix + np.eye(2))[1]
-        - np.linalg.slogdet(found.information.matrix + np.eye(2))[1]
+        - np.linalg.slogdet(result.information.matrix + np.eye(2))[1]
     )
     assert gain.bits == pytest.approx(grown / np.log(4.0), rel=0.1)
-    assert more.told
-    assert gain.settles == ("clearance", "liner_young")
-    assert "area" not in found.next.settling
+    assert more.identifiable
+    assert gain.identifies == ("clearance", "liner_young")
+    assert "area" not in result.next.sufficient_quantities
 
 
-def test_a_candidate_that_tells_nothing_new_gains_nothing():
-    found = identified(measured("indentation", share=1e-4))
-    (gain,) = experiment(found, [Candidate("max_pressure", 1e6, 1000.0)]).gains
+def test_a_very_uncertain_candidate_gains_nothing():
+    result = identified(measured("indentation", share=1e-4))
+    (gain,) = experiment(result, [Candidate("max_pressure", 1e6, 1000.0)]).gains
     assert gain.bits < 1e-6
-    assert gain.left["clearance"] == pytest.approx(1.0, abs=1e-6)
+    assert gain.uncertainty_ratio["clearance"] == pytest.approx(1.0, abs=1e-6)
 
 
-def test_what_was_known_before_counts():
+def test_a_prior_distribution_makes_the_product_separable():
     known = {"clearance": Normal(mean=0.1, deviation=0.01), "liner.young": (400.0, 2000.0)}
-    found = identified(measured("area"), free=known)
-    assert found.told
-    assert found["clearance"].value == pytest.approx(0.1, abs=1e-3)
-    assert found["clearance"].high - found["clearance"].low == pytest.approx(2 * 1.96 * 0.01, rel=0.02)
-    assert found["liner.young"].value == pytest.approx(1000.0, rel=0.01)
+    result = identified(measured("area"), free=known)
+    assert result.identifiable
+    assert result["clearance"].value == pytest.approx(0.1, abs=1e-3)
+    assert result["clearance"].high - result["clearance"].low == pytest.approx(2 * 1.96 * 0.01, rel=0.02)
+    assert result["liner.young"].value == pytest.approx(1000.0, rel=0.01)
 
 
-def test_what_was_known_by_a_factor_counts_on_a_scale_of_ratios():
-    found = identified(measured("area"), free={**FREE, "clearance": LogNormal(median=0.1, factor=1.1)})
-    each = found["clearance"]
+def test_the_band_of_a_log_normal_prior_is_a_factor():
+    result = identified(measured("area"), free={**FREE, "clearance": LogNormal(median=0.1, factor=1.1)})
+    each = result["clearance"]
     assert (each.low, each.high) == pytest.approx((0.1 / 1.1**1.96, 0.1 * 1.1**1.96), rel=0.01)
 
 
@@ -154,14 +154,14 @@ def test_uncertain_loads_widen_the_band():
     unsure = identified(measured("indentation", share=1e-3, load_uncertainty=60.0))
     wide, narrow = (each["clearance"].high / each["clearance"].low for each in (unsure, sure))
     assert np.log(wide) > 2 * np.log(narrow)
-    offs = [drawn(found, np.random.default_rng(0))[0].values - TRUTH.indentation for found in (unsure, sure)]
+    offs = [drawn(result, np.random.default_rng(0))[0].values - TRUTH.indentation for result in (unsure, sure)]
     assert np.std(offs[0]) > 3 * np.std(offs[1])
 
 
-def test_bands_hold_the_truth_as_often_as_they_say():
+def test_bands_of_95_percent_hold_the_truth():
     """40 sets of data: fewer than 33 held of 40 bands of 95 % would be a chance of one in ten thousand."""
-    found = identified(measured("indentation", share=0.01), measured("max_pressure", saturation=8.0))
-    tried = trials(found, 40)
+    result = identified(measured("indentation", share=0.01), measured("max_pressure", saturation=8.0))
+    tried = trials(result, 40)
     assert min(tried.coverage.values()) >= 33 / 40
     assert max(map(abs, tried.bias.values())) < 0.15
 
@@ -177,103 +177,106 @@ def test_coverage_and_bias_over_two_hundred_synthetic_sets():
         assert abs(tried.bias[name]) < 0.1
 
 
-def test_the_posterior_agrees_with_the_bands_and_tells_how_it_converged():
+def test_the_posterior_agrees_with_the_bands():
     pytest.importorskip("emcee")
-    found = identified(measured("indentation", share=0.003, random=np.random.default_rng(8)))
-    posterior = found.posterior(1000)
+    result = identified(measured("indentation", share=0.003, random=np.random.default_rng(8)))
+    posterior = result.posterior(1000)
     assert posterior.converged
     assert min(posterior.effective.values()) >= 1000
     assert 0.2 < posterior.acceptance < 0.9
-    for name, each in found.estimates.items():
+    for name, each in result.estimates.items():
         np.testing.assert_allclose(posterior.band(name), (each.low, each.high), rtol=0.05)
     assert posterior.samples.shape == (1000, 2)
 
 
-def test_the_posterior_of_what_is_not_told_runs_along_the_product():
+def test_the_posterior_of_an_unidentifiable_pair_follows_the_product():
     pytest.importorskip("emcee")
-    found = identified(measured("area"))
-    clearance, young = found.posterior(500).samples.T
+    result = identified(measured("area"))
+    clearance, young = result.posterior(500).samples.T
     assert clearance.max() > 2 * clearance.min()
     np.testing.assert_allclose(clearance * young, 100.0, rtol=0.06)
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (
             {"uncertainty": -1e-3},
             r"indentation_uncertainty\[0\] = -0.001 (and .*)?is not allowed: an uncertainty is above",
         ),
         ({"uncertainty": [1e-3, 0.0]}, r"indentation_uncertainty\[1\] = 0 is not allowed"),
-        ({"uncertainty": [1e-3] * 3}, "indentation_uncertainty has 3 numbers beside 2 values"),
+        ({"uncertainty": [1e-3] * 3}, "indentation_uncertainty must have 1 or 2 numbers, got 3"),
         ({"values": [0.01, np.nan]}, "indentation has no number in row 2"),
-        ({"force": [0.0, 100.0]}, r"force\[0\] = 0 is not allowed: at first touch there is no indentation"),
+        ({"force": [0.0, 100.0]}, r"force\[0\] = 0 is not allowed: at first touch the indentation is 0"),
         ({"force": [-1.0, 100.0]}, r"force\[0\] = -1 is not allowed"),
         ({"indentation": 0.1}, "exactly one of force, indentation, half_angle is needed, got force, indentation"),
         ({"quantity": "indentations"}, "quantity 'indentations' is not known; did you mean 'indentation'?"),
-        ({"quantity": "area", "values": [10.0, 5000.0]}, r"area\[1\] = 5000 is not allowed: half of this ball has 2π"),
+        (
+            {"quantity": "area", "values": [10.0, 5000.0]},
+            r"area\[1\] = 5000 is not allowed: a contact area is below half of the ball, 2π",
+        ),
         ({"quantity": "half_angle", "values": [0.1, 30.0]}, r"half_angle\[1\] = 30 is not allowed: a half angle"),
-        ({"quantity": "area", "machine": Machine()}, "area has a machine, which belongs to an indentation"),
+        ({"quantity": "area", "machine": Machine()}, "area has a machine, but only indentations are read by one"),
         ({"quantity": "pressure"}, "pressure needs an angle"),
     ],
 )
-def test_data_that_cannot_be_are_refused(words, said):
+def test_impossible_data_are_refused(words, message):
     given = {"quantity": "indentation", "values": [0.01, 0.02], "uncertainty": 1e-3, "force": [100.0, 200.0]}
-    with pytest.raises(ValueError, match=said.replace("(and .*)?", ".*")):
+    with pytest.raises(ValueError, match=message.replace("(and .*)?", ".*")):
         identified(Measured(**{**given, **words}))
 
 
 @pytest.mark.parametrize(
-    ("free", "said"),
+    ("free", "message"),
     [
-        ({"clearence": (0.1, 0.2)}, "'clearence' among what can be found is not known; did you mean 'clearance'?"),
-        ({"clearance": (0.2, 0.1)}, r"clearance = \(0.2, 0.1\) is not allowed: two finite ends that go upwards"),
+        ({"clearence": (0.1, 0.2)}, "'clearence' among the unknowns is not known; did you mean 'clearance'?"),
+        ({"clearance": (0.2, 0.1)}, r"clearance = \(0.2, 0.1\) is not allowed: two finite ends in ascending order"),
         ({"clearance": 0.1}, "clearance = 0.1 must be two ends"),
         ({"clearance": (-0.1, 0.1)}, "clearance = -0.1 is not allowed: a radial clearance"),
-        ({}, "nothing is free"),
-        ({**FREE, "liner.poisson": (0.3, 0.4), "ball_radius": (15.0, 17.0)}, "3 values cannot tell 4 unknowns"),
+        ({}, "free has no unknowns"),
+        ({**FREE, "liner.poisson": (0.3, 0.4), "ball_radius": (15.0, 17.0)}, "3 values do not suffice for 4 unknowns"),
         ({"clearance": (0.1, 0.2), "diametral_clearance": (0.1, 0.2)}, "clearance"),
     ],
 )
-def test_unknowns_that_cannot_be_found_are_refused(free, said):
+def test_impossible_unknowns_are_refused(free, message):
     data = Measured(quantity="indentation", values=[0.01, 0.02, 0.03], uncertainty=1e-3, force=[100.0, 400.0, 900.0])
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         identified(data, free=free)
 
 
 @pytest.mark.parametrize(
-    ("model", "joint", "data", "said"),
+    ("model", "joint", "data", "message"),
     [
         ("tabulated", RIGID, measured("area"), r"model must be a model, such as bs.Tabulated\(\), got 'tabulated'"),
         (MODEL, "hip-36", measured("area"), "joint must be a Joint"),
-        (MODEL, RIGID.replace(clearance=np.array([0.1, 0.2])), measured("area"), "one joint is identified at a time"),
+        (MODEL, RIGID.replace(clearance=np.array([0.1, 0.2])), measured("area"), "identify one joint at a time"),
         (MODEL, RIGID, [3.0], "data must be sets of Measured, got 3.0"),
-        (MODEL, RIGID, [], "no data are given"),
+        (MODEL, RIGID, [], "data must have at least one set of measurements"),
     ],
 )
-def test_what_is_no_question_is_refused(model, joint, data, said):
-    with pytest.raises((TypeError, ValueError), match=said):
+def test_wrong_types_and_empty_data_are_refused(model, joint, data, message):
+    with pytest.raises((TypeError, ValueError), match=message):
         bs.identify(model, joint, data, FREE)
 
 
-def test_a_liner_whose_two_elastic_numbers_are_free_is_not_told_by_a_press():
-    """Poisson's ratio and the modulus make one stiffness: each value of the one has its own of the other."""
-    found = identified(measured("indentation"), free={**FREE, "liner.poisson": (0.3, 0.48)})
-    assert found.information.untold == ("liner_young", "liner_poisson")
-    assert found.information.rank == 2
-    assert found.notes[0].startswith(
+def test_modulus_and_poissons_ratio_are_not_identifiable_together():
+    """Poisson's ratio and the modulus combine to one stiffness."""
+    result = identified(measured("indentation"), free={**FREE, "liner.poisson": (0.3, 0.48)})
+    assert result.information.unidentifiable == ("liner_young", "liner_poisson")
+    assert result.information.rank == 2
+    assert result.notes[0].startswith(
         "liner_young and liner_poisson are not identifiable from these data; of the usual measurements "
     )
 
 
-def test_data_that_no_model_answers_are_told():
+def test_data_without_any_result_of_the_model_are_refused():
     data = Measured(quantity="indentation", values=0.01, uncertainty=1e-3, force=100.0)
-    with pytest.raises(ValueError, match="tabulated has no answer for all the data anywhere between the ends"):
+    with pytest.raises(ValueError, match="tabulated has no result for all the data anywhere within the ranges"):
         identified(data, free={"liner_thickness": (0.05, 0.1)}, model=bs.Tabulated())
 
 
 @pytest.mark.long
-def test_slopes_by_jax_are_those_of_differences_and_lead_to_the_same_point():
+def test_jax_and_differences_have_the_same_best_point():
     pytest.importorskip("jax")
     machine = Machine(compliance=(0.0, 2e-5), offset=0.002)
     read = TRUTH.indentation + 8e-6 * FORCE + 0.002
@@ -281,22 +284,22 @@ def test_slopes_by_jax_are_those_of_differences_and_lead_to_the_same_point():
         measured("indentation", read, share=1e-3, machine=machine),
         Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.004),
     ]
-    traced, found = identified(*data, slopes=by_tracing), identified(*data)
-    assert traced.point == pytest.approx(found.point, rel=1e-6)
-    np.testing.assert_allclose(traced.information.matrix, found.information.matrix, rtol=1e-3)
+    traced, result = identified(*data, slopes=by_tracing), identified(*data)
+    assert traced.point == pytest.approx(result.point, rel=1e-6)
+    np.testing.assert_allclose(traced.information.matrix, result.information.matrix, rtol=1e-3)
 
 
 def test_a_model_that_jax_cannot_trace_is_named():
-    with pytest.raises(ValueError, match="exact cannot be traced by JAX: take by_differences"):
+    with pytest.raises(ValueError, match="exact cannot be traced by JAX: use by_differences"):
         identified(measured("area"), model=bs.Exact(), slopes=by_tracing)
 
 
-def test_ones_own_quantity_is_read_from_contacts():
-    """The frequency of a small vibration about a load tells the stiffness there."""
-    own = oscillation(mass=1.0)
-    swings = own.read(TRUTH)
-    vibrations = Measured(quantity="frequency", own=own, values=swings, uncertainty=1.0, force=FORCE)
-    found = identified(vibrations, measured("area"))
-    assert found.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
-    assert drawn(found, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
-    assert fit_figure(found).axes[0].get_ylabel() == "frequency of oscillation f [Hz]"
+def test_a_custom_observable_is_read_from_contacts():
+    """The frequency of a small vibration about a load measures the stiffness there."""
+    observable = oscillation(mass=1.0)
+    swings = observable.read(TRUTH)
+    vibrations = Measured(quantity="frequency", observable=observable, values=swings, uncertainty=1.0, force=FORCE)
+    result = identified(vibrations, measured("area"))
+    assert result.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
+    assert drawn(result, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
+    assert fit_figure(result).axes[0].get_ylabel() == "frequency of oscillation f [Hz]"

@@ -1,0 +1,318 @@
+"""Load curve of a joint as Chebyshev series in the half angle, through a few dozen of its exact solutions.
+
+With X = c + d, known factors are divided out first, as in `tabulated`: under the linear gap everything is
+proportional to X, and a point contact has d ~ ε², F ~ ε³, p0 ~ ε, dF/dd ~ ε. The series use the tables' coordinate of
+ε up to the widest contact of the joint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+
+import numpy
+
+from ...contact.peak_pressure import PeakPressure, find_peak_pressure
+from ...contact.per_joint import JointContacts
+from ...core.arrays import Numbers
+from ...problem.gaps import Gap
+from .abel import ROUNDING, AbelState, pressure_of
+from .kernel import Kernel
+from .load_curve import LoadCurve, errors, log_slope
+from .subsurface import StressCurve
+from .tabulated.chebyshev import angle_at, angle_root, chebyshev_points, chebyshev_polynomials, coefficients
+from .tabulated.formulas import angle_derivative
+
+_TERMS, _POINTS, _ATTEMPTS = 32, 28, 4
+"""Number of contacts and of quadrature points each at first; half as many more of one of them at each attempt."""
+
+_TAIL_TERMS = 3  # last coefficients, from which the truncation error is estimated
+_MAX_LOG_SLOPE = 3.0  # bound on the difference of logarithmic slopes, besides that of X
+_NEAR_PERFECT_FIT = 1e-3  # c/X below which contacts by half angle may exceed the tolerance
+_BLOCK = 2000  # contacts in one block, which fits into the cache
+_POWERS = {"indentation": 2.0, "force": 3.0}  # of ε in the loads of a point contact
+_STARTS, _MIN_START, _NEWTON_STEPS, _ROUNDING = 800, 1e-9, 3, 1e-12
+
+LOGS = 2
+"""Number of functions that are logarithms."""
+
+_PRESSURE_RIPPLE = 1e-7  # relative ripple of a pressure from series
+
+
+def _functions(state: AbelState) -> Numbers:
+    """Compute ln of d/X/(1 - cos ε) and of F C/(R2² X ε³), then p0 C/(X ε), dF/dd C/(R2² ε), U/(F d) and ∫ p dA/F."""
+    angle, d, F, C = state.half_angle, state.indentation, state.force, state.kernel.compliance
+    reach, area = state.gap.clearance + d, state.gap.socket_radius**2
+    logs = numpy.log([d / reach / (2 * numpy.sin(angle / 2) ** 2), F * C / (area * reach * angle**3)])
+    pole, stiffness = state.pole_pressure * C / (reach * angle), state.stiffness * C / (area * angle)
+    return numpy.stack([*logs, pole, stiffness, state.energy / (F * d), state.pressure_integral / F])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChebyshevCurve:
+    """Force, indentation and half angle of one joint from Chebyshev series.
+
+    Attributes
+    ----------
+    curve : LoadCurve
+        Exact solutions of the joint.
+    knots : AbelState
+        Contacts that the series interpolate, at `chebyshev_points`.
+    """
+
+    curve: LoadCurve
+    knots: AbelState
+
+    def press(self, kind: str, load: Numbers) -> JointContacts:
+        """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
+        touching = load > 0
+        positive_load = load[touching]
+        angle = (
+            positive_load
+            if kind == "half_angle"
+            else _evaluate_in_blocks(lambda block: self._solve_angle(kind, block), positive_load)
+        )
+        reached = angle <= self.curve.widest
+        state = ChebyshevState(series=self, half_angle=numpy.where(reached, angle, self.curve.widest))
+        return JointContacts(
+            load=load, touching=touching, state=state, reached=reached, error=self._errors(kind, state)
+        )
+
+    def _errors(self, kind: str, state: ChebyshevState) -> dict[str, Numbers]:
+        """Estimate the relative error of each quantity at the applied load."""
+        # near the perfect fit X depends strongly on the half angle, but the half angle hardly on a load
+        sensitivity = 1.0 if kind == "half_angle" else _MAX_LOG_SLOPE / log_slope(kind, state)
+        series_error = sensitivity * state.reach_error + self.curve.kernel.tolerance
+        return {name: series_error * (name != kind) + error for name, error in errors(kind, state).items()}
+
+    @cached_property
+    def _widest_root(self) -> float:
+        """Table coordinate of the widest contact, from 0 to 1."""
+        return float(angle_root(self.curve.widest, self.curve.ratio))
+
+    @cached_property
+    def _series(self) -> Numbers:
+        """Coefficients (rows, terms) of the functions, then of the derivatives of the logarithms."""
+        series = coefficients(_functions(self.knots), 1)
+        slopes = numpy.zeros_like(series[:LOGS])
+        slopes[:, :-1] = numpy.polynomial.chebyshev.chebder(series[:LOGS], axis=1)
+        return numpy.concatenate([series, slopes])
+
+    @cached_property
+    def truncation(self) -> Numbers:
+        """Estimated truncation error of each function."""
+        return _TAIL_TERMS * numpy.max(abs(self._series[:-LOGS, -_TAIL_TERMS:]), axis=1)
+
+    @property
+    def is_accurate(self) -> bool:
+        """True if the errors are within the tolerance and loads increase with the half angle."""
+        state = ChebyshevState(series=self, half_angle=self.knots.half_angle)
+        load_errors = [error for kind in _POWERS for error in self._errors(kind, state).values()]
+        angle_errors = [
+            error[state.relative_clearance > _NEAR_PERFECT_FIT] for error in self._errors("half_angle", state).values()
+        ]
+        largest = max(numpy.max(error) for error in (*load_errors, *angle_errors))
+        return bool(
+            largest <= self.curve.tolerance and all(numpy.all(numpy.diff(x) > 0) for x in self._start_loads.values())
+        )
+
+    @cached_property
+    def expansion(self) -> Numbers:
+        """Coefficients (Legendre chebyshev_polynomials, terms) of G/sin s/X, see `abel`, as far as they count."""
+        reach = self.curve.gap.clearance + self.knots.indentation
+        scaled = coefficients((self.knots.expansion / reach[:, None]).T, 1)
+        return scaled[numpy.cumsum(abs(scaled[::-1]).max(axis=1))[::-1] > ROUNDING * abs(scaled).max()]
+
+    def functions_at(self, angle: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute the functions at ε (functions, contacts), and the slopes of the two logarithms by ln ε."""
+        rows = _evaluate_in_blocks(lambda block: self._series @ self.waves(block), angle)
+        slope = angle_derivative(angle, angle_root(angle, self.curve.ratio), self.curve.ratio) / self._widest_root
+        return rows[:-LOGS], rows[-LOGS:] * slope
+
+    def waves(self, angle: Numbers) -> Numbers:
+        """Compute Chebyshev chebyshev_polynomials (terms, contacts) at ε."""
+        return chebyshev_polynomials(
+            2 * angle_root(angle, self.curve.ratio) / self._widest_root - 1, self._series.shape[1]
+        )
+
+    @cached_property
+    def stress_curve(self) -> StressCurve:
+        """Von Mises stresses along the curve."""
+        return StressCurve(curve=self.curve, points=self.knots.grid.points)
+
+    @cached_property
+    def _starts(self) -> Numbers:
+        """Half angles of the first guesses, dense near a point contact and near the perfect fit."""
+        widest = self.curve.widest
+        small, last = numpy.geomspace(_MIN_START, 0.98 * widest, _STARTS), numpy.geomspace(0.02, 1e-8, _STARTS // 4)
+        return numpy.concatenate([small, widest * (1 - last[1:]), [widest]])
+
+    @cached_property
+    def _start_loads(self) -> dict[str, Numbers]:
+        """Values ln(load) of the first guesses."""
+        state = ChebyshevState(series=self, half_angle=self._starts)
+        return {kind: numpy.log(getattr(state, kind)) for kind in _POWERS}
+
+    def _solve_angle(self, kind: str, load: Numbers) -> Numbers:
+        """Solve for ε by Newton's method in the logarithms; infinite beyond the widest contact."""
+        start_loads, goal = self._start_loads[kind], numpy.log(load)
+        below = numpy.minimum(goal - start_loads[0], 0.0) / _POWERS[kind]
+        angle = numpy.exp(numpy.interp(goal, start_loads, numpy.log(self._starts)) + below)
+        for _ in range(_NEWTON_STEPS):
+            state = ChebyshevState(series=self, half_angle=angle)
+            step = (numpy.log(getattr(state, kind)) - goal) / log_slope(kind, state)
+            angle = numpy.minimum(angle * numpy.exp(-step), self.curve.widest)
+        return numpy.where(goal <= start_loads[-1] + _ROUNDING, angle, inf)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChebyshevState(PeakPressure):
+    """Contacts at half angles ε (contacts,) above 0, interpolated, with the quantities of an `AbelState`."""
+
+    series: ChebyshevCurve
+    half_angle: Numbers
+
+    @property
+    def kernel(self) -> Kernel:
+        """Kernel of the joint."""
+        return self.series.curve.kernel
+
+    @property
+    def gap(self) -> Gap:
+        """Gap of the joint."""
+        return self.series.curve.gap
+
+    @cached_property
+    def _functions(self) -> tuple[Numbers, Numbers]:
+        """Values of the functions, and slopes of the logarithms."""
+        return self.series.functions_at(self.half_angle)
+
+    @cached_property
+    def _closure(self) -> tuple[Numbers, Numbers]:
+        """Ratio d/X, which is 1 at the perfect fit, and its difference from 1."""
+        share = numpy.exp(self._functions[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
+        return share, 1 - share
+
+    @property
+    def relative_clearance(self) -> Numbers:
+        """Ratio c/X, from 1 down to 0 at the perfect fit."""
+        return self._closure[1]
+
+    @cached_property
+    def _reach(self) -> Numbers:
+        """Sum X = c + d in mm."""
+        return self.gap.clearance / self._closure[1]
+
+    @cached_property
+    def indentation(self) -> Numbers:
+        """Indentation d in mm."""
+        return self._reach * self._closure[0]
+
+    @cached_property
+    def widening(self) -> Numbers:
+        """Derivative dd/dε in mm/rad."""
+        rate = self._functions[1][0] / self.half_angle + 1 / numpy.tan(self.half_angle / 2)
+        return self._reach * self._closure[0] * rate / self._closure[1]
+
+    @cached_property
+    def _unit(self) -> Numbers:
+        """Pressure scale X ε/C in MPa."""
+        return self._reach * self.half_angle / self.kernel.compliance
+
+    @cached_property
+    def force(self) -> Numbers:
+        """Force F in N."""
+        radius = self.gap.socket_radius * self.half_angle
+        return numpy.exp(self._functions[0][1]) * self._unit * radius * radius
+
+    @cached_property
+    def pole_pressure(self) -> Numbers:
+        """Pressure p0 at the pole in MPa."""
+        return self._functions[0][2] * self._unit
+
+    @cached_property
+    def stiffness(self) -> Numbers:
+        """Stiffness dF/dd in N/mm."""
+        return self._functions[0][3] * self.gap.socket_radius**2 * self.half_angle / self.kernel.compliance
+
+    @cached_property
+    def energy(self) -> Numbers:
+        """Energy ∫ F dd in N mm."""
+        return self._functions[0][4] * self.force * self.indentation
+
+    @cached_property
+    def pressure_integral(self) -> Numbers:
+        """Integral ∫ p dA in N."""
+        return self._functions[0][5] * self.force
+
+    @cached_property
+    def error(self) -> Numbers:
+        """Relative error at ε and X, from the exact solutions and from truncation."""
+        truncation, values = self.series.truncation[:, None], abs(self._functions[0][LOGS:])
+        return (
+            numpy.max(truncation[:LOGS])
+            + numpy.max(truncation[LOGS:] / values, axis=0)
+            + numpy.max(self.series.knots.error)
+        )
+
+    @property
+    def reach_error(self) -> Numbers:
+        """Relative error of X at ε, equal to that of the distance to the perfect fit."""
+        return self.series.truncation[0] * self._closure[0] / self._closure[1]
+
+    @cached_property
+    def largest(self) -> tuple[Numbers, Numbers]:
+        """Largest pressure of each contact in MPa, and its polar angle in rad."""
+        if self.series.knots.decreases.all():
+            return self.pole_pressure, 0.0 * self.half_angle
+        return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_RIPPLE)
+
+    def largest_von_mises(self, reached: Numbers) -> Numbers:
+        """Interpolate the largest von Mises stress in the liner for each contact in the mask, NaN for the others."""
+        angle = self.half_angle[reached]
+        values = numpy.full(len(self.half_angle), numpy.nan)
+        values[reached] = self.series.stress_curve.stress_ratio(angle) * self.max_pressure[reached]
+        return values
+
+    @cached_property
+    def _expansion(self) -> Numbers:
+        """Coefficients of G/sin s/X at each contact."""
+        return self.series.expansion @ self.series.waves(self.half_angle)
+
+    def pressure(self, angle: Numbers) -> Numbers:
+        """Compute p(φ) in MPa at angles (any, contacts); 0 outside the contact."""
+        return pressure_of(self.half_angle, self._expansion, angle) * (self._reach / self.kernel.compliance)
+
+    def single(self, number: int) -> AbelState:
+        """Solve one of the contacts exactly."""
+        return self.series.curve.state(self.half_angle[number : number + 1], self.series.knots.grid.points)
+
+
+def fit_curve(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
+    """Fit series to a load curve to its tolerance; return the curve itself if that fails."""
+    terms, points = _TERMS, _POINTS
+    with numpy.errstate(all="ignore"):
+        for _ in range(_ATTEMPTS if curve.widest > 0 else 0):
+            candidate = ChebyshevCurve(curve=curve, knots=curve.state(_knots(curve, terms), points))
+            if candidate.is_accurate:
+                return candidate
+            needs_terms = numpy.max(candidate.truncation) > numpy.max(candidate.knots.error)
+            terms, points = (terms * 3 // 2, points) if needs_terms else (terms, points * 3 // 2)
+    return curve
+
+
+def _knots(curve: LoadCurve, terms: int) -> Numbers:
+    """Return half angles at `chebyshev_points` up to the widest contact."""
+    widest_root = float(angle_root(curve.widest, curve.ratio))
+    return angle_at(widest_root * (1 + chebyshev_points(terms)) - 1, curve.ratio)
+
+
+def _evaluate_in_blocks(function: Callable[[Numbers], Numbers], contacts: Numbers) -> Numbers:
+    """Evaluate a function of contacts (contacts,) in blocks that fit into the cache."""
+    if len(contacts) <= _BLOCK:
+        return function(contacts)
+    return numpy.concatenate(
+        [function(contacts[first : first + _BLOCK]) for first in range(0, len(contacts), _BLOCK)], axis=-1
+    )

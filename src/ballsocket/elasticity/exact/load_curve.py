@@ -1,0 +1,218 @@
+"""Contacts of one joint by half angle, force or indentation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from math import inf, radians
+from typing import Protocol
+
+import numpy
+
+from ...contact.per_joint import JointContacts
+from ...core.arrays import Numbers
+from ...problem.gaps import Gap
+from .abel import AbelState
+from .grid import cached_grid
+from .intervals import CachedIntervals, Intervals
+from .kernel import Kernel
+
+LIMIT = radians(85.0)
+"""Largest half angle in rad that is solved."""
+
+_GRIDS = (14, 20, 28, 40, 56, 80)  # numbers of points, increased until the error is small enough
+_COARSE_POINTS = 10
+_NEWTON_STEPS = 8
+_LOAD_TOLERANCE = 1e-10  # relative
+_SAFETY = 3.0  # factor on the difference of the two solutions of the equation
+_MAX_ANGLE = 1.03 * LIMIT  # of the contacts that are computed, to detect those that are too wide
+_DEGREES = (0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85)
+_ANGLES = numpy.append(numpy.radians(_DEGREES), _MAX_ANGLE)
+_KNOT_INTERVALS = CachedIntervals(half_angle=_ANGLES, grid=cached_grid(_COARSE_POINTS))
+_WINDOW, _WINDOW_STEP = 8, 4
+"""Number of knots in a window of half angles, and the step between windows."""
+
+_LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
+
+
+class CurvePoints(Protocol):
+    """Quantities of contacts that were solved, or interpolated on a curve."""
+
+    @property
+    def half_angle(self) -> Numbers: ...
+    @property
+    def indentation(self) -> Numbers: ...
+    @property
+    def force(self) -> Numbers: ...
+    @property
+    def stiffness(self) -> Numbers: ...
+    @property
+    def widening(self) -> Numbers: ...
+    @property
+    def error(self) -> Numbers: ...
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LoadCurve:
+    """Force, indentation and half angle of one joint, to a relative tolerance."""
+
+    kernel: Kernel
+    gap: Gap
+    tolerance: float
+
+    def press(self, kind: str, load: Numbers) -> JointContacts:
+        """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
+        touching = load > 0
+        positive_load = load[touching]
+        angle = (
+            positive_load
+            if kind == "half_angle" or self._widest_computed == 0
+            else self._estimate_angle(kind, positive_load)
+        )
+        for points in _GRIDS:
+            state, residual = self._solve(kind, positive_load, self._limit(angle), points)
+            reached = (state.half_angle <= LIMIT) & (state.half_angle < self._widest_computed) & _is_contact(state)
+            floor = residual + self.kernel.tolerance
+            error = {name: error + floor for name, error in errors(kind, state).items()}
+            if not any(numpy.any(values[reached] > self.tolerance) for values in error.values()):
+                break
+            angle = numpy.where(angle <= self._widest_computed, state.half_angle, angle)
+        return JointContacts(load=load, touching=touching, state=state, reached=reached, error=error)
+
+    def state(self, angle: Numbers, points: int) -> AbelState:
+        """Make the contacts of half angles, on a grid with this number of points."""
+        return AbelState(
+            kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points))
+        )
+
+    def _solve(self, kind: str, load: Numbers, angle: Numbers, points: int) -> tuple[AbelState, Numbers]:
+        """Solve for half angles by Newton's method in the logarithms; return the state and the residual."""
+        state = self.state(angle, points)
+        if kind == "half_angle":
+            return state, numpy.zeros_like(load)
+        for _ in range(_NEWTON_STEPS):
+            residual = numpy.log(_LAWS[kind](state) / load)
+            if not numpy.any(abs(residual) > _LOAD_TOLERANCE):
+                break
+            step = numpy.clip(residual / log_slope(kind, state), -0.5, 0.5)
+            state = self.state(self._limit(state.half_angle * numpy.exp(-step)), points)
+        return state, abs(residual)
+
+    def _limit(self, angle: Numbers) -> Numbers:
+        """Limit angles to the largest one that is computed; NaN becomes that angle too."""
+        return numpy.where(angle < self._widest_computed, angle, self._widest_computed)
+
+    @cached_property
+    def _widest_computed(self) -> float:
+        """Widest half angle that is computed: slightly beyond the limit, or just before the perfect fit.
+
+        At the perfect fit the indentation is infinite; wider contacts do not exist.
+        """
+        is_contact = _is_contact(self._knot_state)
+        if is_contact.all():
+            return _MAX_ANGLE
+        first = int(numpy.argmin(is_contact))
+        low, high = (_ANGLES[first - 1] if first else 0.0), _ANGLES[first]
+        for _ in range(16):
+            middle = (low + high) / 2
+            low, high = (
+                (middle, high) if _is_contact(self.state(numpy.array([middle]), _GRIDS[0])).all() else (low, middle)
+            )
+        return float(low)
+
+    @property
+    def ratio(self) -> float:
+        """Ratio R2/L of socket radius and liner thickness."""
+        return self.gap.socket_radius / self.kernel.socket.shells[0].thickness
+
+    @property
+    def widest(self) -> float:
+        """Largest half angle in rad with a solution."""
+        return min(LIMIT, self._widest_computed)
+
+    @cached_property
+    def _knot_state(self) -> AbelState:
+        """Contacts at all knots."""
+        return AbelState(kernel=self.kernel, gap=self.gap, intervals=_KNOT_INTERVALS)
+
+    @cached_property
+    def knots(self) -> AbelState:
+        """A few contacts up to the widest one, all of them valid."""
+        if self._widest_computed == _MAX_ANGLE:
+            return self._knot_state
+        inside = _ANGLES[self._widest_computed > _ANGLES]
+        margin = self._widest_computed - inside.max(initial=0.0)
+        return self.state(
+            numpy.append(inside, self._widest_computed - margin * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE_POINTS
+        )
+
+    def knots_in(self, window: slice) -> AbelState | None:
+        """Return the contacts at some of the knots, or None if one of them is not valid."""
+        state = AbelState(kernel=self.kernel, gap=self.gap, intervals=_window_intervals(window.start, window.stop))
+        return state if _is_contact(state).all() else None
+
+    @cached_property
+    def _knots(self) -> dict[str, tuple[Numbers, Numbers, Numbers]]:
+        """Values ln(load), ln ε and their slope at the knots."""
+        coarse = self.knots
+        y = numpy.log(coarse.half_angle)
+        return {kind: (numpy.log(law(coarse)), y, 1 / log_slope(kind, coarse)) for kind, law in _LAWS.items()}
+
+    def _estimate_angle(self, kind: str, load: Numbers) -> Numbers:
+        """Estimate the half angle by cubics between the knots, or by a power law below the first."""
+        x, y, slope = self._knots[kind]
+        goal = numpy.log(load)
+        i = numpy.clip(numpy.searchsorted(x, goal) - 1, 0, len(x) - 2)
+        width, t = x[i + 1] - x[i], (goal - x[i]) / (x[i + 1] - x[i])
+        cubic = (
+            y[i] * (1 + 2 * t) * (1 - t) ** 2
+            + y[i + 1] * t * t * (3 - 2 * t)
+            + width * t * (1 - t) * (slope[i] * (1 - t) - slope[i + 1] * t)
+        )
+        bounded = numpy.clip(cubic, y[i], y[i + 1])
+        return numpy.exp(numpy.where(t < 0, y[0] + slope[0] * (goal - x[0]), bounded))
+
+
+def window_of(angle: Numbers) -> slice | None:
+    """Return the knots around half angles in a narrow range, with two or more on each side; else None."""
+    index = numpy.searchsorted(_ANGLES, angle)
+    start = int(max(index.min() - 2, 0) // _WINDOW_STEP * _WINDOW_STEP)
+    stop = start + _WINDOW
+    return slice(start, stop) if index.max() + 2 < stop <= len(_ANGLES) else None
+
+
+@cache
+def _window_intervals(start: int, stop: int) -> CachedIntervals:
+    """Return the intervals of some knots, built once."""
+    return CachedIntervals(half_angle=_ANGLES[start:stop], grid=cached_grid(_COARSE_POINTS))
+
+
+def _is_contact(state: AbelState) -> Numbers:
+    """Check that contacts exist and are finite: a contact beyond the perfect fit is neither."""
+    with numpy.errstate(invalid="ignore", over="ignore", under="ignore"):
+        work = state.indentation * state.force  # infinite or zero before any of the other quantities
+        return (state.indentation > 0) & (state.pole_pressure > 0) & (work > 0) & (work < inf)
+
+
+def log_slope(kind: str, state: CurvePoints) -> Numbers:
+    """Compute d ln(load)/d ln ε for loads of one kind."""
+    deepening = state.half_angle * state.widening
+    return deepening / state.indentation if kind == "indentation" else deepening * state.stiffness / state.force
+
+
+def errors(kind: str, state: CurvePoints) -> dict[str, Numbers]:
+    """Estimate the relative error of each quantity at the applied load."""
+    state_error = _SAFETY * state.error
+    slopes = {name: log_slope(name, state) for name in _LAWS}
+    shift = state_error / slopes[kind] if kind in _LAWS else 0.0 * state_error
+    errors = {name: state_error + shift * slope for name, slope in slopes.items()}
+    errors["half_angle"] = shift
+    errors.update(
+        dict.fromkeys(
+            ("max_pressure", "pole_pressure", "stiffness", "pressure_integral"), state_error + shift * slopes["force"]
+        )
+    )
+    errors["energy"] = errors["force"] + errors["indentation"]
+    if kind in errors:
+        errors[kind] = 0.0 * state_error
+    return errors

@@ -1,0 +1,95 @@
+"""Condensation of a body onto its contact surface.
+
+The nodes of a structured block are ordered by nested dissection, which needs no graph here: halve the longer side and
+place the line between the halves last. The contact's normal displacements come at the very end. The last block of the
+factors is then the factored Schur complement, the stiffness at the contact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy
+from scipy.sparse.linalg import splu
+
+from ...core.arrays import Numbers
+from .elasticity import ElasticBlock
+
+_MAX_LEAF_SIZE = 24  # nodes in a part that is not halved further
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CondensedBody:
+    """ElasticBlock block with supports, and normal loads on its contact surface.
+
+    Parameters
+    ----------
+    elastic : ElasticBlock
+    held : array of bool (unknowns,)
+        Mask of the unknowns that the supports fix to zero.
+    contact : array (nodes,)
+        Nodes of the contact surface, from the pole outwards.
+    """
+
+    elastic: ElasticBlock
+    fixed_unknowns: Numbers
+    contact: Numbers
+
+    @property
+    def normals(self) -> Numbers:
+        """Normal displacements that the contact loads, as numbers of unknowns."""
+        return 2 * self.contact + 1
+
+    @cached_property
+    def _order(self) -> Numbers:
+        """Free unknowns, those of the contact last."""
+        block = self.elastic.block
+        grid = numpy.arange(len(block.angle) * (block.level[-1] + 1)).reshape(len(block.angle), -1)
+        rank = numpy.empty(grid.size, dtype=int)
+        rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
+        of_node = rank[grid[:, block.level]].ravel()
+        free = numpy.unique(self.elastic.unknowns)
+        free = free[~self.fixed_unknowns[free] & ~numpy.isin(free, self.normals)]
+        return numpy.concatenate([free[numpy.argsort(of_node[free // 2], kind="stable")], self.normals])
+
+    def _factors(self) -> Any:
+        """Factor the stiffness matrix in the order of `_order`."""
+        ordered = self.elastic.matrix()[self._order][:, self._order].tocsc()
+        return splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+    def compliance(self) -> Numbers:
+        """Compute the normal displacements of the contact's nodes by unit normal forces on them."""
+        factors, count = self._factors(), len(self.contact)
+        stiffness = factors.L[-count:, -count:].toarray() @ factors.U[-count:, -count:].toarray()
+        return numpy.linalg.inv((stiffness + stiffness.T) / 2)
+
+    def displacements(self, forces: Numbers) -> Numbers:
+        """Compute u_φ and u_r of all nodes, shape (nodes, 2), by normal forces on the contact's nodes."""
+        load = numpy.zeros(len(self._order))
+        load[-len(self.contact) :] = forces
+        solution = numpy.zeros(len(self.fixed_unknowns))
+        solution[self._order] = self._factors().solve(load)
+        for column in self.elastic.block.sliding:
+            number = self.elastic.block.number
+            solution[2 * number[:, column + 1] + 1] = solution[2 * number[:, column] + 1]
+        return solution.reshape(-1, 2)
+
+
+def nested_dissection(nodes: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Numbers:
+    """Order the nodes of a grid by nested dissection; only lines between elements separate the halves.
+
+    `start` is the index of the part's first node in the full grid.
+    """
+    if nodes.size <= _MAX_LEAF_SIZE or min(nodes.shape) <= 2:
+        return nodes.ravel()
+    along = 0 if nodes.shape[0] >= nodes.shape[1] else 1
+    lines = nodes if along == 0 else nodes.T
+    middle = len(lines) // 2
+    middle += (start[along] + middle) % order  # counted in the full block
+    second_start = (start[0] + middle + 1, start[1]) if along == 0 else (start[0], start[1] + middle + 1)
+    first, second = (half if along == 0 else half.T for half in (lines[:middle], lines[middle + 1 :]))
+    return numpy.concatenate(
+        [nested_dissection(first, order, start), nested_dissection(second, order, second_start), lines[middle]]
+    )

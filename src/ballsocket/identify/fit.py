@@ -1,0 +1,151 @@
+"""A fitted model: best point, information, estimates with bands, and residuals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf
+from typing import Any
+
+import numpy
+
+from ..contact import Model
+from ..core.arrays import Numbers
+from ..core.deprecation import RenamedAttribute, renamed_arguments
+from ..problem import Joint
+from ..studies.parameters import varied
+from .estimates import Estimate
+from .forward_model import insert_numbers, split_numbers
+from .information import Information
+from .measured import Measured
+from .misfit import FitResult, Misfit
+from .unknowns import ParameterTransform, Unknown
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FittedModel:
+    """A model that is fitted to data.
+
+    Attributes
+    ----------
+    misfit : Misfit
+        Data, model and unknowns.
+    best : FitResult
+        Point of the smallest misfit.
+    information : Information
+        Information at that point, and profile intervals of the unknowns.
+    """
+
+    misfit: Misfit
+    best: FitResult
+    information: Information
+    scales = RenamedAttribute("transform")
+
+    @property
+    def model(self) -> Model:
+        """Model with the numbers of the best point."""
+        return insert_numbers(self.misfit.forward.model, split_numbers(self.point)[1])
+
+    @property
+    def data(self) -> tuple[Measured, ...]:
+        """Sets of measurements."""
+        return self.misfit.forward.data
+
+    @property
+    def transform(self) -> ParameterTransform:
+        """Transform between values of the unknowns and theta."""
+        return self.misfit.transform
+
+    @cached_property
+    def point(self) -> dict[str, float]:
+        """Best values by unknown in mm, N, MPa, rad; other values fit as well where an unknown is unidentifiable."""
+        values = self.transform.values(self.best.theta).tolist()
+        return dict(zip(self.transform.names, values, strict=True))
+
+    @property
+    def joint(self) -> Joint:
+        """Joint with the numbers of the best point."""
+        return varied(self.misfit.forward.joint, split_numbers(self.point)[0])[0]
+
+    @cached_property
+    def estimates(self) -> dict[str, Estimate]:
+        """Estimates with bands of 95 % by unknown; an unidentifiable unknown has no value."""
+        return {unknown.name: self._estimate(index) for index, unknown in enumerate(self.transform.unknowns)}
+
+    def _estimate(self, index: int) -> Estimate:
+        """Compute the estimate of one unknown."""
+        unknown, information = self.transform.unknowns[index], self.information
+        interval, name = information.intervals[index], unknown.name
+        ends = (interval.low, interval.high)
+        low, high = (_snapped(unknown, self.transform.values(end.theta)[index]) for end in ends)
+        value = float("nan") if name in information.unidentifiable else self.point[name]
+        width, limits = information.deviations[name], information.limited_by(name)
+        return Estimate(name, unknown.quantity.unit, value, low, high, width, limits)
+
+    def __getitem__(self, name: str) -> Estimate:
+        key = name.replace(".", "_")
+        return self.estimates[key if key in self.estimates else name]
+
+    @cached_property
+    def answers(self) -> tuple[Numbers, ...]:
+        """Results of the model at the best point, a row for each set of data."""
+        results = self.misfit.forward.at(self.transform.values(self.best.theta[None]))[0]
+        return self._by_set(results)
+
+    @renamed_arguments(place="index")
+    def curve(self, index: int, count: int = 60) -> tuple[Numbers, Numbers]:
+        """Compute the fitted curve of a data set that has no angles.
+
+        Parameters
+        ----------
+        index : int
+            Index of the data set.
+        count : int
+            Number of points.
+
+        Returns
+        -------
+        loads : array (count,)
+            Loads from the least to the largest of the data set.
+        results : array (count,)
+            Results of the model at the best point.
+        """
+        measured = self.data[index]
+        loads = numpy.linspace(measured.loads.min(), measured.loads.max(), count)
+        changes: dict[str, Any] = {measured.load: loads, "values": numpy.ones(count), "saturation": inf}
+        ascending = numpy.argsort(measured.loads)
+        order = numpy.interp(loads, measured.loads[ascending], measured.order[ascending])
+        row = replace(measured, uncertainty=1.0, load_uncertainty=0.0, order=order, **changes)
+        forward = replace(self.misfit.forward, data=(row,))
+        return loads, forward.at(self.transform.values(self.best.theta[None]))[0]
+
+    @property
+    def residuals(self) -> tuple[Numbers, ...]:
+        """Values less results in stated uncertainties, a row for each set; for a saturated value its shortfall."""
+        z = self.misfit.widening * self.misfit.standard(numpy.concatenate(self.answers))
+        return self._by_set(numpy.where(self.misfit.saturated, numpy.maximum(-z, 0.0), -z))
+
+    def _by_set(self, row: Numbers) -> tuple[Numbers, ...]:
+        """Split numbers (data,) into a row for each set."""
+        return tuple(numpy.split(row, numpy.cumsum([len(measured) for measured in self.data])[:-1]))
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom: values less the unknowns without a stated distribution."""
+        return self.misfit.freedom
+
+    @property
+    def spread(self) -> float:
+        """Root of χ² over the degrees of freedom (Birge's ratio): 1 for right uncertainties; NaN without freedom."""
+        total = sum(float(numpy.sum(row**2)) for row in self.residuals)
+        return (total / self.freedom) ** 0.5 if self.freedom > 0 else float("nan")
+
+    @property
+    def identifiable(self) -> bool:
+        """True if every unknown without a stated distribution is identifiable."""
+        return not self.information.unidentifiable
+
+
+def _snapped(unknown: Unknown, value: float) -> float:
+    """Return the end of a band, snapped to the end of the range within rounding."""
+    return next((end for end in (unknown.low, unknown.high) if abs(value - end) <= 1e-9 * abs(end)), float(value))

@@ -1,0 +1,199 @@
+"""Forward model of an identification: results for all data at many values of the unknowns at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf
+
+import numpy
+
+from ..contact import Contact, Model
+from ..core import arrays
+from ..core.arrays import Array
+from ..core.quantities import PARTS
+from ..core.validity import OutsideDomainError
+from ..problem import Joint
+from ..studies.parameters import varied
+from .measured import Measured
+from .registry import JOINT_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS
+
+Columns = Mapping[str, Array]
+"""Numbers by name, each of shape (points, 1)."""
+
+_NEWTON_ITERATIONS = 3  # for the force of a compliant machine; its compliance is small
+
+
+def split_numbers(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Select the numbers of the joint and those of the model by name; those of a machine are in neither."""
+    joint = {name: value for name, value in values.items() if name in JOINT_NUMBERS}
+    return joint, {name: value for name, value in values.items() if name in MODEL_NUMBERS}
+
+
+def insert_numbers(model: Model, values: Mapping[str, Array]) -> Model:
+    """Return the model with other values of its numbers, by name."""
+    for name, value in values.items():
+        model = MODEL_NUMBERS[name].inserted(model, value)
+    return model
+
+
+@dataclass(frozen=True, eq=False)
+class ForwardModel:
+    """Results of a model in the order of the data, one data set after the other.
+
+    Attributes
+    ----------
+    model : Model
+    joint : Joint
+        Joint with the numbers that are not unknown.
+    data : tuple of Measured
+    names : tuple of str
+        Names of the unknowns.
+    """
+
+    model: Model
+    joint: Joint
+    data: tuple[Measured, ...]
+    names: tuple[str, ...]
+    _known_errors: dict[str, float] = field(init=False)
+
+    def __post_init__(self) -> None:
+        known: dict[str, float] = {}
+        for measured in self.data:
+            known |= measured.machine.known()
+        object.__setattr__(self, "_known_errors", known)
+
+    def at(self, values: Array, load_perturbation: float = 0.0) -> Array:
+        """Compute the results (points, data) at values (points, unknowns); NaN where the model has no result.
+
+        Values may be of any array library. `load_perturbation` is a relative change of every load.
+        """
+        columns = {name: values[:, index : index + 1] for index, name in enumerate(self.names)}
+        of_joint, of_model = split_numbers(columns)
+        joint, possible = varied(self.joint, of_joint)
+        pressed = _PressedPoints(insert_numbers(self.model, of_model), joint, self._known_errors | columns)
+        rows = self._rows(pressed, 1 + load_perturbation)
+        xp = arrays.namespace(values)
+        rows = [xp.broadcast_to(xp.asarray(row), (len(values), row.shape[-1])) for row in rows]
+        return arrays.where(possible, xp.concat(rows, axis=1), float("nan"))
+
+    def _rows(self, pressed: _PressedPoints, factor: float) -> list[Array]:
+        """Compute the results of each data set; sets with the same kind of load share one press."""
+        rows: dict[int, Array] = {}
+        for kind in dict.fromkeys(measured.load for measured in self.data):
+            indices = [index for index, measured in enumerate(self.data) if measured.load == kind]
+            shared = [index for index in indices if not _is_load_read_by_machine(self.data[index])]
+            if not kind:
+                rows |= {index: _joint_number(pressed.joint, self.data[index]) for index in indices}
+                continue
+            if shared:
+                rows |= self._rows_of_one_press(pressed, kind, shared, factor)
+            for index in set(indices) - set(shared):
+                rows[index] = pressed.at_read_indentation(self.data[index], factor)
+        return [rows[index] for index in range(len(self.data))]
+
+    def _rows_of_one_press(
+        self, pressed: _PressedPoints, kind: str, indices: list[int], factor: float
+    ) -> dict[int, Array]:
+        loads = factor * numpy.concatenate([self.data[index].loads for index in indices])
+        contact, rows, start = pressed.press(kind, loads), {}, 0
+        for index in indices:
+            measured = self.data[index]
+            span = slice(start, start + len(measured))
+            start += len(measured)
+            rows[index] = pressed.reading(contact, len(loads), measured, span)
+        return rows
+
+
+@dataclass(frozen=True, eq=False)
+class _PressedPoints:
+    """Joints, model and errors of machines at many values of the unknowns."""
+
+    model: Model
+    joint: Joint
+    errors: Columns
+
+    def press(self, kind: str, load: Array) -> Contact | None:
+        """Press by one kind of load; None if the model has no result for any of the points."""
+        load_by_kind = {kind: arrays.namespace(*self.joint.numbers()).asarray(load)}
+        try:
+            return self.model.press(self.joint, **load_by_kind)
+        except OutsideDomainError:
+            return None
+
+    def reading(self, contact: Contact | None, count: int, measured: Measured, span: slice) -> Array:
+        """Compute the readings of a data set from its span of `count` contacts."""
+        if contact is None:
+            return numpy.full((1, len(measured)), numpy.nan)
+        return _quantity(contact, count, measured, span) + self._added(measured, contact, span)
+
+    def at_read_indentation(self, measured: Measured, factor: float) -> Array:
+        """Compute results at measured indentations, corrected for the errors of the machine."""
+        zero = self._error(measured, 0.0, depends_on_force=False)
+        force: Array = measured.values if measured.quantity == "force" else 0.0 * measured.values
+        contact = self.press("indentation", _not_negative(factor * measured.loads - zero))
+        for _ in range(_NEWTON_ITERATIONS if measured.machine.depends_on_force else 0):
+            error = self._error(measured, force, depends_on_force=True)
+            contact = self.press("indentation", _not_negative(factor * measured.loads - zero - error))
+            if contact is not None:
+                stiffness = arrays.where(arrays.isfinite(contact.stiffness), contact.stiffness, 0.0)
+                force = force - (force - contact.force) / (1 + self._error_slope(measured, force) * stiffness)
+        return self.reading(contact, len(measured), measured, slice(None))
+
+    def _added(self, measured: Measured, contact: Contact, span: slice) -> Array:
+        """Compute the addition of the machine to an indentation."""
+        if measured.quantity != "indentation" or not measured.machine.name:
+            return 0.0
+        force = _as_rows(contact.force)[:, span]
+        return self._error(measured, force, depends_on_force=True) + self._error(measured, 0.0, depends_on_force=False)
+
+    def _error(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
+        """Sum the errors of the machine that depend on the force, or those that do not."""
+        return sum(
+            self.errors[measured.machine.key(name)] * error.effect(force, measured.order)
+            for name, error in MACHINE_ERRORS.items()
+            if (error.slope is not None) == depends_on_force
+        )
+
+    def _error_slope(self, measured: Measured, force: Array) -> Array:
+        """Compute the derivative of the errors of the machine with respect to the force."""
+        return sum(
+            self.errors[measured.machine.key(name)] * error.slope(force, measured.order)
+            for name, error in MACHINE_ERRORS.items()
+            if error.slope is not None
+        )
+
+
+def _is_load_read_by_machine(measured: Measured) -> bool:
+    return measured.load == "indentation" and bool(measured.machine.name)
+
+
+def _not_negative(indentation: Array) -> Array:
+    return arrays.clip(indentation, 0.0, inf)
+
+
+def _quantity(contact: Contact, count: int, measured: Measured, span: slice) -> Array:
+    """Read the quantity of a data set from its span of `count` contacts."""
+    if measured.observable is not None:
+        return _as_rows(measured.observable.read(contact))[:, span]
+    if measured.quantity != "pressure":
+        return _as_rows(getattr(contact, measured.quantity))[:, span]
+    angle = numpy.zeros(count)
+    angle[span] = measured.angle
+    return _as_rows(contact.pressure(arrays.namespace(contact.force).asarray(angle)))[:, span]
+
+
+def _as_rows(values: Array) -> Array:
+    return values[None, :] if len(values.shape) == 1 else values
+
+
+def _joint_number(joint: Joint, measured: Measured) -> Array:
+    """Read a number of the joint, once for each value of the data set."""
+    if measured.quantity in PARTS:
+        part, _, number = measured.quantity.partition("_")
+        value = getattr(getattr(joint, part), number)
+    else:
+        value = getattr(joint, measured.quantity)
+    if arrays.is_plain(value):
+        return numpy.full((1, len(measured)), value)
+    return value + numpy.zeros(len(measured))

@@ -1,0 +1,157 @@
+"""Identification of joint parameters from measurements, with bands and identifiability."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy
+
+from ..contact import Model
+from ..contact.assembly import check_joint
+from ..core.arrays import Numbers, is_plain
+from ..core.checks import shown
+from ..core.deprecation import renamed_names
+from ..problem import Joint
+from .bands import compute_bands
+from .forward_model import ForwardModel
+from .measured import Measured
+from .misfit import FitResult, Misfit, Slopes, by_differences
+from .result import IdentificationResult
+from .scatter import NormalScatter, ScatterModel
+from .search import find_best_fit
+from .unknowns import ParameterTransform, Prior, Unknown, unknowns_of
+
+_NORMAL = NormalScatter()
+_LOAD_ITERATIONS = 2  # fits with weights that depend on the best point, for uncertain loads
+_LOAD_STEP = 1e-3  # relative change of the loads for central differences
+
+
+def identify(
+    model: Model,
+    joint: Joint,
+    data: Measured | Sequence[Measured],
+    free: Mapping[str, Prior],
+    *,
+    scatter: ScatterModel = _NORMAL,
+    slopes: Slopes = by_differences,
+    seed: int = 0,
+) -> IdentificationResult:
+    """Identify joint parameters from measurements, with bands and identifiability.
+
+    The method is maximum likelihood, with the stated distributions of unknowns, by least squares after a global search.
+    Bands of 95 % come from the profile likelihood. They widen if the data scatter more than stated.
+
+    Parameters
+    ----------
+    model : Model
+        Model of the contact.
+    joint : Joint
+        Joint of plain numbers; those that are not free are constant.
+    data : Measured, or several
+        Sets of measurements with at least as many values as there are unknowns.
+    free : mapping of str to (low, high), or Normal, LogNormal, Rectangular
+        Unknowns by name, with two ends in mm, N, MPa, or with a prior distribution. A name is that of a number of the
+        joint ("clearance", "liner_young" or "liner.young") or of the model ("work_of_adhesion"). Unknown errors of a
+        machine are stated by the `Machine` of the data.
+    scatter : ScatterModel
+        `NormalScatter()`, or `HeavyTailed()` for data with outliers.
+    slopes : callable
+        Derivatives: `by_differences`, or `by_tracing` with JAX (`ballsocket.identify.jax_derivatives`).
+    seed : int
+        Seed of the search for a start.
+
+    Returns
+    -------
+    IdentificationResult
+
+    Raises
+    ------
+    ValueError
+        An unknown name, a number that the model does not have, an empty range, fewer values than unknowns, data that
+        no contact can give, or ranges without any result of the model for all data.
+    TypeError
+        A wrong type of model, joint or data.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.identify import Measured
+    >>> press = Measured(quantity="indentation", force=[500.0, 1500.0, 3000.0], values=[0.0130, 0.0261, 0.0408],
+    ...     uncertainty=0.0002)
+    >>> result = bs.identify(bs.HessForsbach(), bs.joints["hess-forsbach"], press, {"clearance": (0.02, 0.3)})
+    >>> round(result["clearance"].value, 2)
+    0.1
+    """
+    check_joint(joint)
+    if not isinstance(model, Model):
+        raise TypeError(f"model must be a model, such as bs.Tabulated(), got {shown(model)}")
+    if not all(map(is_plain, joint.numbers())):
+        raise ValueError("joint must have plain numbers, got arrays: identify one joint at a time")
+    sets = _sets(data)
+    unknowns = unknowns_of(free, [measured.machine for measured in sets], model)
+    _check(sets, joint, unknowns)
+    forward = ForwardModel(model, joint, sets, tuple(unknown.name for unknown in unknowns))
+    uncertainty = _concatenated(measured.uncertainty for measured in sets)
+    misfit = Misfit(forward, ParameterTransform(unknowns), scatter, slopes, uncertainty)
+    best = find_best_fit(misfit, seed)
+    uncertain_loads = any(measured.load and measured.load_uncertainty.any() for measured in sets)
+    for _ in range(_LOAD_ITERATIONS if uncertain_loads else 0):
+        misfit = replace(misfit, uncertainty=_uncertainty_with_loads(misfit, best))
+        best = find_best_fit(misfit, seed)
+    return IdentificationResult(*compute_bands(misfit, best))
+
+
+def _uncertainty_with_loads(misfit: Misfit, best: FitResult) -> Numbers:
+    """Combine the uncertainties of values and loads, by the slope of the results with respect to the loads."""
+    data, values = misfit.forward.data, misfit.transform.values(best.theta[None])
+    above, below = (misfit.forward.at(values, load_perturbation=side * _LOAD_STEP)[0] for side in (1, -1))
+    slope = (above - below) / (2 * _LOAD_STEP)  # by ln of the load
+    of_loads = _concatenated(_relative_load_uncertainty(measured) for measured in data)
+    of_values = _concatenated(measured.uncertainty for measured in data)
+    return numpy.hypot(of_values, numpy.where(of_loads > 0, slope * of_loads, 0.0))
+
+
+def _relative_load_uncertainty(measured: Measured) -> Numbers:
+    """Compute the uncertainty of the loads over the loads; 0 for a quantity of the joint."""
+    if not measured.load:
+        return numpy.zeros(len(measured))
+    loads = measured.loads
+    return numpy.where(loads > 0, measured.load_uncertainty / numpy.where(loads > 0, loads, 1.0), 0.0)
+
+
+def _concatenated(rows: Iterable[Numbers]) -> Numbers:
+    return numpy.concatenate(list(rows))
+
+
+def _sets(data: Any) -> tuple[Measured, ...]:
+    """Return the data sets; raise TypeError for other data."""
+    sets = tuple(data) if isinstance(data, list | tuple) else (data,)
+    if not sets:
+        raise ValueError("data must have at least one set of measurements, got none")
+    for measured in sets:
+        if not isinstance(measured, Measured):
+            raise TypeError(f"data must be sets of Measured, got {shown(measured)}")
+    return sets
+
+
+def _check(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
+    """Raise ValueError for no unknowns, impossible areas, or fewer values than unknowns."""
+    if not unknowns:
+        raise ValueError("free has no unknowns: name at least one with two ends, such as clearance")
+    for measured in data:
+        measured.check_within(joint)
+    count = sum(map(len, data))
+    ranges = [unknown.name for unknown in unknowns if not unknown.known]
+    if count < len(ranges):
+        raise ValueError(
+            f"{count} values do not suffice for {len(ranges)} unknowns ({', '.join(ranges)}): measure more values, or "
+            "free fewer unknowns"
+        )
+
+
+__getattr__ = renamed_names(
+    __name__,
+    {"Identified": "IdentificationResult", "Estimate": "ballsocket.identify.estimates.Estimate"},
+)

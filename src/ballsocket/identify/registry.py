@@ -1,0 +1,41 @@
+"""Registry of the unknowns of an identification: numbers of the joint, of the model and of the machine.
+
+A new number of a model or error of a machine is one file that defines it, and one line in a tuple below. It is then
+available in Python, in files and on the command line, in tables, notes, figures and JSON.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from ..core.quantities import Quantity
+from ..studies.parameters import AIMS, LOADS, PARAMETERS
+from .machine_errors import COMPLIANCE, DRIFT, OFFSET, MachineError
+from .model_numbers import WORK_OF_ADHESION, ModelNumber
+
+_MODEL_NUMBERS = (
+    WORK_OF_ADHESION,
+)  # fmt: skip
+
+_MACHINE_ERRORS = (
+    COMPLIANCE,
+    OFFSET,
+    DRIFT,
+)
+
+MODEL_NUMBERS: Mapping[str, ModelNumber] = MappingProxyType({number.name: number for number in _MODEL_NUMBERS})
+"""Numbers of models by name."""
+
+MACHINE_ERRORS: Mapping[str, MachineError] = MappingProxyType({error.name: error for error in _MACHINE_ERRORS})
+"""Errors of machines by name."""
+
+JOINT_NUMBERS: Mapping[str, Quantity] = MappingProxyType(
+    {name: quantity for name, quantity in PARAMETERS.items() if name not in LOADS and name not in AIMS}
+)
+"""Numbers of the joint by their names in studies."""
+
+FREE_NUMBERS: Mapping[str, Quantity] = MappingProxyType(
+    {**JOINT_NUMBERS, **{name: number.quantity for name, number in MODEL_NUMBERS.items()}}
+)
+"""Unknowns that a caller or a file names as free; those of a machine are stated by the machine."""

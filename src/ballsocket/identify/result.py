@@ -1,0 +1,240 @@
+"""Result of an identification: a fitted model with its sensitivities, notes, next measurement and posterior."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy
+
+from ..core.deprecation import RenamedAttribute
+from .estimates import Estimate
+from .experiment import Experiment, experiment
+from .fit import FittedModel
+from .measured import MEASURED
+from .posterior import Posterior, posterior
+from .sensitivity import Sensitivity, sensitivities
+
+_OUTLIER_RESIDUAL = 4.0  # residual in uncertainties from which a value is named
+_MAX_OUTLIERS = 5  # largest number of values that are named
+_MIN_PROBABILITY = 1e-3  # probability of the scatter below which a note is made
+_MAX_SHIFT_RATIO = 0.5  # shift over half a band, about one standard uncertainty, above which a machine error is noted
+_MIN_NOTED_WIDENING = 1.05  # smallest noted factor on the uncertainties
+_END_TOLERANCE = 1e-6  # distance in theta from the end of a range
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class IdentificationResult(FittedModel):
+    """Joint parameters identified from measurements.
+
+    Attributes
+    ----------
+    misfit : Misfit
+        Data, model and unknowns.
+    best : FitResult
+        Point of the smallest misfit.
+    information : Information
+        Information at that point, and profile intervals of the unknowns.
+    """
+
+    told = RenamedAttribute("identifiable")
+
+    @cached_property
+    def sensitivity(self) -> tuple[Sensitivity, ...]:
+        """Shifts of the estimates by machine errors of assumed size: zero offset, compliance and drift."""
+        return sensitivities(self)
+
+    def shift_ratio(self, error: Sensitivity, name: str) -> float:
+        """Compute the ratio of a shift to half the width of the band; 0 for an unidentifiable unknown."""
+        estimate = self.estimates[name]
+        return 2 * abs(error.shifts[name]) / (estimate.high - estimate.low) if estimate.identifiable else 0.0
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """Notes on identifiability, ends of ranges, fit, machine errors, and validity of the model."""
+        writers = (
+            _identifiability_notes,
+            _band_notes,
+            _search_notes,
+            _range_notes,
+            _fit_notes,
+            _machine_notes,
+            _validity_notes,
+        )
+        return tuple(note for write in writers for note in write(self))
+
+    @cached_property
+    def next(self) -> Experiment:
+        """Expected gains of the standard measurements over the loads of the data; see `experiment`."""
+        return experiment(self)
+
+    def posterior(self, samples: int = 4000, seed: int = 0) -> Posterior:
+        """Sample the posterior by Markov chains; see `ballsocket.identify.posterior.posterior`."""
+        return posterior(self, samples, seed)
+
+    def summary(self) -> dict[str, Any]:
+        """Return one dictionary for JSON in mm, N, MPa, rad."""
+        return {
+            "model": self.model.name,
+            "valid": self.identifiable and self.best.converged,
+            "converged": self.best.converged,
+            "estimates": [estimate.summary() for estimate in self.estimates.values()],
+            "products": [product.summary() for product in self.information.products],
+            "information": {
+                "rank": self.information.rank,
+                "unknowns": len(self.transform.names),
+                "condition": _finite(self.information.condition),
+                "eigenvalues": self.information.eigenvalues.tolist(),
+                "unidentifiable": list(self.information.unidentifiable),
+            },
+            "sensitivity": [error.summary() for error in self.sensitivity],
+            "spread": _finite(self.spread),
+            "widening": self.misfit.widening,
+            "degrees_of_freedom": self.freedom,
+            "data": [
+                {"name": measured.name, "quantity": measured.quantity, "residuals": row.tolist()}
+                for measured, row in zip(self.data, self.residuals, strict=True)
+            ],
+            "notes": list(self.notes),
+            "sources": [source.key for source in self.model.sources],
+        }
+
+    def __repr__(self) -> str:
+        rows = [f"{estimate.name} {_value_and_band(estimate)}" for estimate in self.estimates.values()]
+        products = [
+            f"{product.name} = {product.value:.4g} {product.unit} ({product.low:.4g} to {product.high:.4g})"
+            for product in self.information.products
+        ]
+        return "\n".join([*rows, *products, *self.notes])
+
+
+def _value_and_band(estimate: Estimate) -> str:
+    """Write a value and its band with their unit."""
+    unit = f" {estimate.unit}" if estimate.unit != "1" else ""
+    band = f"{estimate.low:.4g} to {estimate.high:.4g}{unit}"
+    return f"= {estimate.value:.4g}{unit} ({band})" if estimate.identifiable else f"is not identifiable: {band}"
+
+
+def _finite(number: float) -> float | None:
+    """Return a finite number, else None."""
+    return number if abs(number) < float("inf") else None
+
+
+def _identifiability_notes(result: IdentificationResult) -> Iterator[str]:
+    """Note the unidentifiable unknowns, and the measurements that would identify them."""
+    unidentifiable = result.information.unidentifiable
+    if not unidentifiable:
+        return
+    products = result.information.products
+    mixed = {name for product in products for name in product.exponents}
+    separate = [name for name in result.transform.names if name in {*unidentifiable, *mixed}]
+    if products:
+        names, verb = _and([product.name for product in products]), "is" if len(products) == 1 else "are"
+        note = f"only {names} {verb} identifiable from these data, {_and(separate)} separately are not"
+    else:
+        note = f"{_and(separate)} {'is' if len(separate) == 1 else 'are'} not identifiable from these data"
+    measured = {row.quantity for row in result.data}
+    sufficient = [_title(name) for name in result.next.sufficient_quantities if name not in measured]
+    if sufficient:
+        yield f"{note}: measure {_or(sufficient)}"
+    elif result.next.gains:
+        best = _title(result.next.best.candidate.quantity)
+        yield f"{note}; of the usual measurements {best} would add most, though not enough"
+    else:
+        yield note
+
+
+def _band_notes(result: IdentificationResult) -> Iterator[str]:
+    """Note the bands that end at the end of a range."""
+    for name, estimate in result.estimates.items():
+        if name not in estimate.limited_by:
+            continue
+        unknown = result.transform.unknowns[result.transform.names.index(name)]
+        pairs = ((estimate.low, unknown.low), (estimate.high, unknown.high))
+        ends = [f"{end:g}" for end, range_end in pairs if end == range_end]
+        if ends:
+            yield f"the band of {name} ends at {_and(ends)}, the end of its range"
+        else:
+            yield f"the band of {name} ends where {result.model.name} has no result for all the data"
+    for name, estimate in result.estimates.items():
+        if estimate.limited_by and name not in estimate.limited_by:
+            yield f"the band of {name} ends where the range of {_and(estimate.limited_by)} ends"
+
+
+def _title(quantity: str) -> str:
+    return "free play" if quantity == "diametral_clearance" else MEASURED[quantity].title
+
+
+def _or(names: Sequence[str]) -> str:
+    return " or ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
+
+
+def _and(names: Sequence[str]) -> str:
+    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
+
+
+def _search_notes(result: IdentificationResult) -> Iterator[str]:
+    """Note a search without convergence, and other points with nearly the same misfit."""
+    if not result.best.converged:
+        yield "the search did not converge: the numbers are those of its last step"
+    if result.best.rivals and result.identifiable:
+        yield "another point fits the data about as well: sample the posterior"
+
+
+def _range_notes(result: IdentificationResult) -> Iterator[str]:
+    """Note the best values that lie at the end of their range."""
+    theta = result.best.theta
+    for index, unknown in enumerate(result.transform.unknowns):
+        for side, end in ((-1, unknown.low), (1, unknown.high)):
+            at_end = abs(theta[index] - unknown.to_scale(end) / unknown.span) < _END_TOLERANCE
+            if at_end and not unknown.is_physical(side, theta[index]):
+                yield f"the best {unknown.name} is {end:g}, the end of its range: widen the range, or check the data"
+
+
+def _fit_notes(result: IdentificationResult) -> Iterator[str]:
+    """Note outliers, a scatter larger than stated, and the factor on the uncertainties."""
+    from scipy.stats import chi2
+
+    outliers = [
+        (measured, row, float(residual))
+        for measured, residuals in zip(result.data, result.residuals, strict=True)
+        for row, residual in enumerate(residuals)
+        if abs(residual) > _OUTLIER_RESIDUAL
+    ]
+    for measured, row, residual in sorted(outliers, key=lambda outlier: -abs(outlier[2]))[:_MAX_OUTLIERS]:
+        name = measured.name or measured.quantity
+        yield f"value {row + 1} of {name} is {residual:+.3g} uncertainties from the result"
+    if result.freedom > 0 and chi2.sf(result.spread**2 * result.freedom, result.freedom) < _MIN_PROBABILITY:
+        yield (
+            f"the data scatter {result.spread:.3g} times as far as their stated uncertainties: these are too small, "
+            "there are outliers (HeavyTailed), or the model is not valid"
+        )
+    if result.misfit.widening > _MIN_NOTED_WIDENING:
+        yield f"bands are {result.misfit.widening:.3g} times as wide as the stated uncertainties make them"
+
+
+def _machine_notes(result: IdentificationResult) -> Iterator[str]:
+    """Note the machine errors that shift an estimate by a standard uncertainty or more."""
+    numbers = [unknown.name for unknown in result.transform.unknowns if not unknown.of_machine]
+    for error in result.sensitivity if numbers else ():
+        ratio, name = max((result.shift_ratio(error, name), name) for name in numbers)
+        if ratio > _MAX_SHIFT_RATIO:
+            unit = result.transform.unknowns[result.transform.names.index(name)].quantity.shown
+            shift = f"{unit.factor * error.shifts[name]:+.3g} {unit.text}".strip()
+            yield (
+                f"{error.title} would move {name} by {shift}, {ratio:.1f} times half its band: "
+                f"measure it, or make {error.part} an unknown of the machine"
+            )
+
+
+def _validity_notes(result: IdentificationResult) -> Iterator[str]:
+    """List the notes of the model at the loads of the data."""
+    notes: dict[str, None] = {}
+    for measured in result.data:
+        if measured.load:
+            load = numpy.maximum(measured.loads, 0.0) if measured.load == "indentation" else measured.loads
+            contact = result.model.press(result.joint, **{measured.load: load})
+            notes |= dict.fromkeys(note for note in contact.notes if note != contact.utilisation_note)
+    yield from notes

@@ -1,0 +1,222 @@
+"""Assembled contacts: statuses, solutions of many joints, the largest pressure, and text of contacts."""
+
+from dataclasses import replace
+from math import inf, nan
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.contact import closed_sphere, describe
+from ballsocket.contact.assembly import SolverResult, as_arrays, broadcast_load, make_contact, make_scalar_contact
+from ballsocket.contact.peak_pressure import find_peak_pressure
+from ballsocket.contact.per_joint import JointContacts, joint_at, solve_per_joint
+from ballsocket.core.validity import Status
+
+from ..joints import HIP
+
+MODEL = bs.HessForsbach()
+LAWS = SimpleNamespace(half_angle=0.5)
+
+
+def assembled(kind, force, indentation, failures, load=None):
+    """Assemble one contact by arrays and by numbers; both must agree."""
+    value = {"force": force, "indentation": indentation, "half_angle": 0.5}[kind] if load is None else load
+    number = SolverResult(laws=LAWS, force=force, indentation=indentation, failures=failures)
+    alone = make_scalar_contact(MODEL, bs.Contact, HIP, kind, value, number)
+    masks = {status: np.array([bool(mask)]) for status, mask in failures.items()}
+    result = SolverResult(laws=LAWS, force=np.array([force]), indentation=np.array([indentation]), failures=masks)
+    _, joint, loads = as_arrays(HIP, np.array([value]))
+    many = make_contact(MODEL, bs.Contact, joint, kind, loads, np.array([True]), result, False)
+    assert (alone.force, alone.indentation) == pytest.approx((many.force[0], many.indentation[0]), nan_ok=True)
+    assert alone.status == many.status[0]
+    return alone
+
+
+def test_a_solved_point_has_its_numbers():
+    contact = assembled("half_angle", 3.0, 0.1, {})
+    assert (contact.force, contact.indentation, contact.status) == (3.0, 0.1, Status.OK)
+
+
+@pytest.mark.parametrize(
+    ("failures", "status"),
+    [
+        ({Status.BEYOND_EQUATOR: True}, Status.BEYOND_EQUATOR),
+        ({Status.AT_RIM: True, Status.BEYOND_EQUATOR: True}, Status.AT_RIM),
+        ({Status.NOT_ROUND: True, Status.AT_RIM: True}, Status.NOT_ROUND),
+        ({Status.NOT_CONVERGED: True, Status.NOT_ROUND: True}, Status.NOT_CONVERGED),
+        ({Status.DISLOCATED: True, Status.NOT_CONVERGED: True}, Status.DISLOCATED),
+        ({Status.NOT_CONVERGED: False}, Status.OK),
+    ],
+)
+def test_the_most_severe_failure_is_the_status(failures, status):
+    contact = assembled("half_angle", 3.0, 0.1, failures)
+    assert contact.status == status
+    assert np.isnan(contact.force) == status.failed
+
+
+def test_a_failed_point_keeps_its_load():
+    for kind in ("force", "indentation"):
+        contact = assembled(kind, 3.0, 0.1, {Status.NOT_CONVERGED: True})
+        assert np.isnan([contact.force, contact.indentation]).tolist() == [kind != "force", kind != "indentation"]
+    for number in (nan, inf):
+        contact = assembled("force", 3.0, number, {}, load=5.0)
+        assert (contact.force, contact.status) == (5.0, Status.NOT_REACHED)
+
+
+def test_points_outside_the_domain_have_no_result():
+    result = SolverResult(laws=LAWS, force=np.array([1.0, 2.0]), indentation=np.array([0.1, 0.2]))
+    _, joint, load = as_arrays(HIP, np.array([0.1, 0.2]))
+    contact = make_contact(MODEL, bs.Contact, joint, "indentation", load, np.array([True, False]), result, False)
+    assert contact.status.tolist() == [0, int(Status.OUTSIDE_DOMAIN)]
+    np.testing.assert_array_equal(np.isnan(contact.force), [False, True])
+
+
+def test_loads_broadcast_against_strengths():
+    assert broadcast_load(3.0, (1.0, 2)) == 3.0
+    assert broadcast_load(3.0, (np.ones(4),)).shape == (4,)
+    plain, joint, load = as_arrays(HIP, 3.0)
+    assert plain
+    assert load.dtype == joint.ball_radius.dtype == np.float64
+    assert not as_arrays(HIP, 3.0, np.ones(2))[0]
+    assert not as_arrays(replace(HIP, clearance=np.array([0.1])), 3.0)[0]
+
+
+def doubled(joint, load, extra):
+    """Solve for a state whose force is the load times the clearance, plus an extra number."""
+    touching, reached = load > 0, (load > 0)[load > 0] & (load[load > 0] < 100)
+    force = load[touching] * joint.clearance + extra[touching]
+    state = SimpleNamespace(force=force, pressure=lambda angle: force * angle)
+    return JointContacts(load=load, touching=touching, state=state, reached=reached, error={"force": 0.01 * force})
+
+
+def test_joints_are_solved_once_with_all_of_their_loads():
+    calls = []
+
+    def solve(joint, load, extra):
+        calls.append((joint.clearance, load.tolist()))
+        return doubled(joint, load, extra)
+
+    joint = replace(HIP, clearance=np.array([0.1, 0.2, 0.1, 0.2]))
+    solution = solve_per_joint(bs.Exact(), joint, np.array([1.0, 2.0, 3.0, 0.0]), solve, np.array(10.0))
+    assert sorted(calls) == [(0.1, [1.0, 3.0]), (0.2, [2.0, 0.0])]
+    np.testing.assert_allclose(solution.force, [10.1, 10.4, 10.3, 0.0])
+    np.testing.assert_allclose(solution.pressure(np.array([[0.5], [2.0]])), np.outer([0.5, 2.0], solution.force))
+    np.testing.assert_allclose(solution.pressure(np.array(0.5)), 0.5 * solution.force)
+    np.testing.assert_allclose(solution.spread(lambda piece: piece.error["force"]), 0.01 * solution.force)
+    assert joint_at(joint, (4,), 1).clearance == 0.2
+    assert joint_at(replace(HIP, clearance=np.array([[0.1], [0.3]])), (2, 5), 7).clearance == 0.3
+
+
+def test_unreached_loads_and_joints_outside_the_domain_are_nan():
+    joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=np.array([0.3, 0.5, 0.3])))
+    solution = solve_per_joint(bs.Exact(), joint, np.array([1.0, 1.0, 200.0]), doubled, np.array(0.0))
+    np.testing.assert_allclose(solution.force, [0.1, np.nan, np.nan])
+    single = solve_per_joint(bs.Exact(), HIP, np.array(2.0), doubled, np.array(0.0))
+    assert single.force.shape == ()
+    assert single.force == pytest.approx(0.2)
+
+
+def test_foundation_modulus_is_pole_pressure_over_indentation():
+    contact = bs.Exact().press(HIP, indentation=np.array([0.0, 0.05, 0.1]))
+    assert contact.foundation_modulus[0] == np.inf
+    np.testing.assert_allclose(contact.foundation_modulus[1:], contact.pole_pressure[1:] / np.array([0.05, 0.1]))
+    np.testing.assert_allclose(contact.laws.worst, np.max(list(contact.error.values()), axis=0))
+
+
+def test_solutions_of_one_contact_need_one_contact():
+    many = bs.Exact().press(HIP, force=np.array([1.0, 2.0]))
+    with pytest.raises(ValueError, match=r"displacements and stresses are for one contact, got the shape \(2,\)"):
+        _ = many.single_state
+    for alone in (bs.Exact().press(HIP, force=0.0), bs.Exact().press(HIP, half_angle=1.569)):
+        with pytest.raises(ValueError, match="displacements and stresses need a contact under load"):
+            _ = alone.single_state
+    assert bs.Exact().press(HIP, force=3000.0).summary()["error"]["force"] < 1e-3
+
+
+@pytest.mark.parametrize("peak", [0.0, 0.3, 0.62, 0.9])
+def test_the_largest_pressure_is_found_on_a_profile(peak):
+    """Pressure falls with the squared distance from its peak, relative to the half angle."""
+    edge = np.array([0.5, 1.0, 1.2])
+
+    def pressure(angle):
+        return 10.0 - (angle / edge - peak) ** 2
+
+    largest, angle = find_peak_pressure(pressure, pressure(0.0 * edge), edge, 1e-9)
+    np.testing.assert_allclose(angle / edge, peak, atol=1e-3)
+    np.testing.assert_allclose(largest, 10.0, rtol=1e-7)
+
+
+def test_an_excess_within_the_noise_counts_as_the_pole():
+    edge = np.array([1.0])
+    largest, angle = find_peak_pressure(lambda a: 1.0 + 1e-5 * a * (1 - a), np.ones(1), edge, 1e-4)
+    assert (largest, angle) == (1.0, 0.0)
+    largest, angle = find_peak_pressure(lambda a: 1.0 + 1e-5 * a * (1 - a), np.ones(1), edge, 1e-7)
+    assert angle == pytest.approx(0.5, abs=1e-3)
+    assert largest == pytest.approx(1.0 + 0.25e-5, abs=1e-10)
+
+
+def test_numbers_are_printed_with_their_range():
+    assert describe.number_text(1 / 3, 4, "-") == "0.3333"
+    assert describe.number_text(np.array([1.0, np.nan, 2.5]), 3, "-") == "1 to 2.5"
+    assert describe.number_text(np.array([2.0, 2.0]), 3, "-") == "2"
+    assert describe.number_text(nan, 3, "-") == "-"
+    assert describe.count_text(True) == "yes"
+    assert describe.count_text(np.array([False])) == "no"
+    assert describe.count_text(np.array([True, False, True])) == "2 of 3"
+
+
+def test_one_contact_is_printed_with_six_digits_and_many_with_five():
+    force = 1234.56789
+    assert "1234.57 N" in repr(MODEL.press(HIP, force=force))
+    assert "1234.6 to 2469.1 N" in repr(MODEL.press(HIP, force=np.array([force, 2 * force])))
+    text = repr(MODEL.press(HIP, force=force))
+    assert [line.split()[0] for line in text.splitlines()[1:]][-2:] == ["utilisation", "valid"]
+    assert "utilisation" not in repr(
+        MODEL.press(replace(HIP, liner=HIP.liner.without_strengths(), ball=None), force=1.0)
+    )
+    table = MODEL.press(HIP, force=force)._repr_html_()
+    assert "<td style='text-align:left'>half angle</td>" in table
+    assert "<b>hess-forsbach</b>" in table
+
+
+def test_columns_convert_units():
+    contact = MODEL.press(HIP, force=3000.0)
+    by_name = {column.attribute: column for column in describe.COLUMNS}
+    assert by_name["half_angle"].of(contact) == pytest.approx(np.degrees(contact.half_angle))
+    assert by_name["half_angle"].name == "half_angle_deg"
+    assert (by_name["area"].head, by_name["area"].label) == ("A [mm²]", "contact area A [mm²]")
+    assert str(by_name["force"].of(MODEL.press(HIP, force=-0.0))) == "0.0"
+
+
+def test_exponents_of_polynomials_have_a_limited_sum():
+    exponents = closed_sphere.powers(2)
+    assert exponents[:4] == ((0, 0, 0), (0, 0, 1), (0, 0, 2), (0, 1, 0))
+    assert len(exponents) == 10
+    assert max(map(sum, exponents)) == 2
+
+
+def test_variables_of_the_hemisphere_estimate_are_clipped():
+    angle, ratio, poisson = closed_sphere.variables(0.5, 0.3, 4.0)
+    assert (angle, ratio, poisson) == pytest.approx((0.5, np.log(4.0), np.log(0.22)))
+    low = closed_sphere.variables(0.0, -0.9, 0.01)
+    assert low == pytest.approx((np.radians(3.0), np.log(0.2), np.log(0.52)))
+    high = closed_sphere.variables(1.5, 0.4999, 100.0)
+    assert high == pytest.approx((np.radians(83.0), np.log(20.0), np.log(0.52 - 0.499)))
+
+
+@pytest.mark.parametrize("ball", [None, bs.COCR])
+@pytest.mark.parametrize("load", [500.0, 3000.0])
+def test_estimated_change_on_a_hemisphere_is_that_of_the_exact_solution(ball, load):
+    joint = replace(bs.joints["hip-28"], ball=ball)
+    contact = bs.Exact().press(joint, force=load)
+    assert closed_sphere.indentation_change(contact) == pytest.approx(
+        contact.hemisphere["indentation"], rel=0.3, abs=1e-4
+    )
+    largest = max(abs(value) for value in contact.hemisphere.values())
+    assert closed_sphere.largest_change(contact) == pytest.approx(largest, rel=0.4, abs=2e-4)
+    softer = replace(joint, ball=bs.Material(young=50e3, poisson=0.3))
+    soft = bs.Exact().press(softer, force=load)
+    per_ratio = (closed_sphere.indentation_change(soft) - closed_sphere.indentation_change(contact)) / 0.02
+    assert per_ratio > 0

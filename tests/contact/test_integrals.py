@@ -1,0 +1,138 @@
+"""Integrals and vectors of a contact: friction torque, force vector, pressure in directions, area and ratios."""
+
+from dataclasses import replace
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from ..joints import HIP
+
+CONTACT = bs.HessForsbach().press(HIP, force=3000.0)
+MODELS = pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Bartel(), bs.Exact()], ids=lambda model: model.name)
+
+
+def sphere_integral(contact, function, planar=False):
+    """Integrate pressure times a function of angle and azimuth over the contact by a fine midpoint rule."""
+    count, turns = 2000, 720
+    s = (np.arange(count) + 0.5) / count
+    angle = contact.half_angle * np.sin(pi / 2 * s)
+    width = contact.half_angle * pi / 2 * np.cos(pi / 2 * s) / count
+    azimuth = 2 * pi * (np.arange(turns) + 0.5) / turns
+    mean = function(angle[:, None], azimuth).mean(axis=1)
+    arc = angle if planar else np.sin(angle)
+    return 2 * pi * contact.joint.socket_radius**2 * np.sum(contact.pressure(angle) * arc * width * mean)
+
+
+@MODELS
+def test_vertical_component_of_the_pressure_is_the_force(model):
+    contact = model.press(HIP, force=3000.0)
+    total = sphere_integral(contact, lambda angle, azimuth: np.cos(angle) + 0.0 * azimuth)
+    assert total == pytest.approx(3000.0, rel=1e-4)
+    assert sphere_integral(contact, lambda angle, azimuth: 1.0 + 0.0 * angle * azimuth) == pytest.approx(
+        contact.pressure_integral, rel=1e-4
+    )
+
+
+@pytest.mark.parametrize("axis", [0.0, 0.4, 1.1, pi / 2, 2.5])
+def test_friction_torque_is_the_integral_of_pressure_times_lever(axis):
+    def lever(angle, azimuth):
+        cosine = np.cos(angle) * cos(axis) + np.sin(angle) * np.cos(azimuth) * sin(axis)
+        return np.sqrt(1 - cosine**2)
+
+    expected = 0.1 * HIP.ball_radius * sphere_integral(CONTACT, lever)
+    assert CONTACT.friction_torque(0.1, axis) == pytest.approx(expected, rel=1e-4)
+
+
+def test_spin_torque_of_hertz_is_three_sixteenths_pi():
+    """τ = 3π/16 μ F a for spin about the axis of a flat circle of radius a, here on the radius of the ball."""
+    joint = replace(HIP, clearance=2.0)
+    contact = bs.Hertz().press(joint, force=10.0)
+    radius = joint.ball_radius * contact.half_angle
+    assert contact.friction_torque(0.2, 0.0) == pytest.approx(3 * pi / 16 * 0.2 * 10.0 * radius, rel=2e-3)
+
+
+def test_friction_torque_has_the_shape_of_contact_and_coefficient():
+    contact = bs.HessForsbach().press(HIP, force=np.array([1000.0, 3000.0]))
+    torque = contact.friction_torque(0.1)
+    assert torque.shape == (2,)
+    assert torque[1] == pytest.approx(CONTACT.friction_torque(0.1), rel=1e-12)
+    assert type(CONTACT.friction_torque(0.1)) is float
+    assert CONTACT.friction_torque(0.0) == 0.0
+    with pytest.raises(ValueError, match="axis_angle = 90 is not allowed: it is in radians; 90 degrees are 1.571"):
+        CONTACT.friction_torque(0.1, 90.0)
+
+
+@MODELS
+def test_force_vector_points_back_to_the_centre(model):
+    depth = 0.06
+    direction = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [-2 / 3, 1 / 3, 2 / 3]])
+    displacement = (HIP.clearance + depth) * direction
+    force = model.force_vector(HIP, displacement)
+    magnitude = model.press(HIP, indentation=depth).force
+    np.testing.assert_allclose(force, -magnitude * direction, rtol=1e-6, atol=1e-9 * magnitude)
+
+
+def test_force_vector_is_zero_within_the_clearance():
+    displacement = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0999], [0.05, 0.0, 0.05], [0.0, 0.1001, 0.0]])
+    force = bs.HessForsbach().force_vector(HIP, displacement)
+    np.testing.assert_array_equal(force[:3], 0.0)
+    assert force[3, 1] < 0.0
+    fitted = replace(HIP, clearance=0.0)
+    np.testing.assert_array_equal(bs.HessForsbach().force_vector(fitted, np.zeros(3)), 0.0)
+
+
+def test_pressure_in_directions_is_that_of_their_angle():
+    angle = np.array([0.0, 0.2, 0.5, 1.2])
+    direction = np.stack([np.sin(angle) * 0.6, np.sin(angle) * 0.8, np.cos(angle)], axis=-1)
+    np.testing.assert_allclose(CONTACT.pressure_at(direction), CONTACT.pressure(angle), rtol=1e-12)
+    assert CONTACT.pressure_at(direction)[3] == 0.0
+    for wrong in (2.0 * direction, 1.001 * direction, 0.999 * direction):
+        with pytest.raises(ValueError, match="a direction is a unit vector"):
+            CONTACT.pressure_at(wrong)
+    CONTACT.pressure_at((1 + 1e-7) * direction)
+
+
+def test_pressure_of_angles_in_degrees_is_rejected():
+    with pytest.raises(ValueError, match="angle = 45 is not allowed: .* 45 degrees are 0.7854 radians"):
+        CONTACT.pressure(45.0)
+    assert CONTACT.pressure(-0.3) == CONTACT.pressure(0.3)
+    assert type(CONTACT.pressure(0.3)) is float
+
+
+def test_areas_of_caps():
+    angle = np.array([0.0, 0.3, 1.2])
+    contact = bs.HessForsbach().press(HIP, half_angle=angle)
+    np.testing.assert_allclose(contact.area, 2 * pi * 17.9**2 * (1 - np.cos(angle)), rtol=1e-12)
+
+
+def test_ratios_of_lengths():
+    contact = bs.HessForsbach().press(HIP, indentation=np.array([0.05, 0.0]))
+    np.testing.assert_allclose(contact.indentation_ratio, [0.05 / 6.75, 0.0])
+    np.testing.assert_allclose(contact.depth_ratio, [0.05 / 6.75, 0.0])
+    np.testing.assert_allclose(contact.conformity, [2.0, np.inf])
+    thick = bs.HessForsbach().press(replace(HIP, liner_thickness=30.0), indentation=0.05)
+    assert thick.depth_ratio == pytest.approx(0.05 / 18.0)
+    assert thick.indentation_ratio == pytest.approx(0.05 / 30.0)
+
+
+def test_energy_is_the_work_of_the_force():
+    d = np.linspace(0.0, 0.1, 2001)
+    contact = bs.HessForsbach().press(HIP, indentation=d)
+    work = np.concatenate([[0.0], np.cumsum((contact.force[1:] + contact.force[:-1]) / 2 * np.diff(d))])
+    np.testing.assert_allclose(contact.energy, work, rtol=1e-5, atol=1e-4)
+    slope = np.gradient(contact.force, d)
+    np.testing.assert_allclose(contact.stiffness[5:-5], slope[5:-5], rtol=1e-4)
+
+
+def test_old_names_of_attributes_warn():
+    for old, new in (
+        ("von_mises_between", "von_mises_bounds"),
+        ("utilisation_between", "utilisation_bounds"),
+    ):
+        with pytest.warns(DeprecationWarning, match=f"Contact.{old} is deprecated: use {new}"):
+            assert getattr(CONTACT, old) == getattr(CONTACT, new)
+    with pytest.warns(DeprecationWarning, match="of_numbers is deprecated: use accepts_floats"):
+        assert bs.HessForsbach().of_numbers is True

@@ -1,0 +1,99 @@
+"""Bracketed Newton iteration: roots of increasing functions, of numbers and of arrays."""
+
+import numpy as np
+import pytest
+
+from ballsocket.contact.roots import bracketed, increasing_root, root_of_number
+
+
+def cube(x):
+    return x * x * x, 3 * x * x
+
+
+def steep(x):
+    """Increase from -1 to 1 within 1e-3 of x = 0.3; Newton steps from outside leave the bracket."""
+    bend = 1e4 * (x - 0.3)
+    return np.arctan(bend), 1e4 / (1 + bend * bend)
+
+
+def flat(x):
+    """Have no slope below x = 1."""
+    above = np.maximum(x - 1.0, 0.0)
+    return above * above, 2 * above
+
+
+CASES = {
+    "cube": (cube, 5.0, 0.0, 4.0, 1.0, 5.0 ** (1 / 3)),
+    "start at zero slope": (cube, 5.0, 0.0, 4.0, 0.0, 5.0 ** (1 / 3)),
+    "steep": (steep, 0.5, -1.0, 2.0, 1.5, 0.3 + np.tan(0.5) * 1e-4),
+    "flat": (flat, 4.0, 0.0, 10.0, 0.5, 3.0),
+    "below the bracket": (cube, -1.0, 1.0, 4.0, 2.0, 1.0),
+    "above the bracket": (cube, 100.0, 1.0, 4.0, 2.0, 4.0),
+    "at the upper end": (cube, 64.0, 1.0, 4.0, 1.0, 4.0),
+    "negative": (cube, -8.0, -3.0, -1.0, -1.5, -2.0),
+}
+
+
+@pytest.mark.parametrize(("law", "target", "low", "high", "start", "root"), CASES.values(), ids=CASES)
+def test_roots_of_numbers_and_arrays(law, target, low, high, start, root):
+    tolerance = 1e-6
+    number = increasing_root(law, target, low, high, start)
+    assert np.ndim(number) == 0
+    assert number == pytest.approx(root, rel=tolerance)
+    values = increasing_root(law, *(np.full(3, value) for value in (target, low, high, start)))
+    np.testing.assert_allclose(values, root, rtol=tolerance)
+
+
+def test_roots_of_different_targets_converge_together():
+    targets = np.array([1e-6, 1.0, 27.0, 64.0, 1e3])
+    roots = increasing_root(cube, targets, np.zeros(5), np.full(5, 20.0), np.full(5, 5.0))
+    np.testing.assert_allclose(roots, np.cbrt(targets), rtol=1e-7)
+
+
+def test_further_arguments_reach_the_law():
+    def scaled(x, factor, offset):
+        return factor * x + offset, factor + 0.0 * x
+
+    assert increasing_root(scaled, 7.0, 0.0, 10.0, 1.0, arguments=(2.0, 1.0)) == pytest.approx(3.0)
+    found = increasing_root(scaled, np.array([7.0]), np.zeros(1), np.full(1, 10.0), np.ones(1), arguments=(2.0, 1.0))
+    assert found == pytest.approx(3.0)
+
+
+def test_the_number_of_evaluations_is_limited():
+    calls = []
+
+    def counted(x):
+        calls.append(x)
+        return cube(x)
+
+    root_of_number(counted, 5.0, 0.0, 4.0, 4.0, (), 3, 1e-8)
+    assert len(calls) == 3
+    calls.clear()
+    root_of_number(counted, 5.0, 0.0, 4.0, 4.0, (), 60, 1e-8)
+    assert len(calls) <= 8  # quadratic convergence
+    calls.clear()
+    loose = root_of_number(counted, 5.0, 0.0, 4.0, 4.0, (), 60, 0.1)
+    assert len(calls) <= 5
+    assert loose == pytest.approx(5.0 ** (1 / 3), rel=0.02)
+    calls.clear()
+    increasing_root(counted, np.full(2, 5.0), np.zeros(2), np.full(2, 4.0), np.full(2, 4.0), steps=2)
+    assert len(calls) == 2
+
+
+def test_one_step_shrinks_the_bracket():
+    x, low, high, fresh, moved = bracketed(
+        cube, 8.0, (), 1e-8, np.array([1.0, 3.0, 2.0]), np.zeros(3), np.full(3, 4.0), np.array([True, True, True])
+    )
+    np.testing.assert_allclose(x, [1 + 7 / 3, 3 - 19 / 27, 2.0])
+    np.testing.assert_array_equal(low, [1.0, 0.0, 2.0])
+    np.testing.assert_array_equal(high, [4.0, 3.0, 2.0])
+    np.testing.assert_array_equal(moved, [True, True, False])
+    assert fresh.tolist() == [True, False, False]
+
+
+def test_steps_out_of_the_bracket_try_its_end_and_then_its_middle():
+    far = (np.array([0.1]), np.zeros(1), np.full(1, 4.0))
+    x, *_ = bracketed(cube, 8.0, (), 1e-8, *far, np.array([True]))
+    assert x == [4.0]
+    x, *_ = bracketed(cube, 8.0, (), 1e-8, *far, np.array([False]))
+    assert x == pytest.approx([(0.1 + 4.0) / 2])

@@ -1,0 +1,136 @@
+"""Functions of numbers and arrays: equal values for floats, NumPy, JAX and PyTorch; no NaN in gradients."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ballsocket.core import arrays
+
+VALUES = np.array([0.0, 0.2, 0.7, 1.0, 2.5])
+UNARY = ("exp", "log1p", "sin", "cos", "tan", "atan", "asinh", "sqrt")
+
+
+@pytest.mark.parametrize("name", UNARY)
+def test_functions_of_floats_and_arrays_agree(name):
+    function, expected = getattr(arrays, name), getattr(np, {"atan": "arctan", "asinh": "arcsinh"}.get(name, name))
+    np.testing.assert_allclose(function(VALUES), expected(VALUES), rtol=1e-15)
+    for value in VALUES.tolist():
+        assert type(function(value)) is float
+        assert function(value) == pytest.approx(float(expected(value)), rel=1e-15)
+
+
+def test_floats_outside_a_domain_become_nan_or_infinite():
+    assert arrays.exp(1000.0) == math.inf
+    assert arrays.log(0.0) == -math.inf
+    assert math.isnan(arrays.log(-1.0))
+    assert math.isnan(arrays.asin(1.5))
+    assert math.isnan(arrays.sqrt(-1.0))
+    assert math.isnan(arrays.power(-1.0, 1.5))
+    assert arrays.sqrt(0.0) == arrays.power(0.0, 1.5) == 0.0
+
+
+def test_powers_and_angles_of_points():
+    assert arrays.power(4.0, 1.5) == 8.0
+    np.testing.assert_allclose(arrays.power(np.array([0.0, 4.0]), 1.5), [0.0, 8.0])
+    assert arrays.atan2(1.0, -1.0) == pytest.approx(0.75 * math.pi)
+    np.testing.assert_allclose(arrays.atan2(np.array([1.0, -1.0]), -1.0), [0.75 * math.pi, -0.75 * math.pi])
+
+
+def test_masks_select_and_invert():
+    assert arrays.where(True, 1.0, 2.0) == 1.0
+    assert arrays.where(False, 1.0, 2.0) == 2.0
+    mask = np.array([True, False])
+    np.testing.assert_array_equal(arrays.where(mask, 1.0, 2.0), [1.0, 2.0])
+    np.testing.assert_array_equal(arrays.logical_not(mask), [False, True])
+    assert arrays.logical_not(True) == False  # noqa: E712
+    assert arrays.all_true(True) is True
+    assert arrays.all_true(mask) is False
+    assert arrays.all_true(np.array([True, True])) is True
+
+
+def test_values_are_limited_and_tested_for_finiteness():
+    assert [arrays.clip(x, 0.5, 1.0) for x in (0.2, 0.7, 2.0)] == [0.5, 0.7, 1.0]
+    np.testing.assert_array_equal(arrays.clip(VALUES, 0.5, 1.0), [0.5, 0.5, 0.7, 1.0, 1.0])
+    np.testing.assert_array_equal(arrays.isfinite(np.array([1.0, np.inf, np.nan])), [True, False, False])
+    assert arrays.isfinite(1.0)
+    assert not arrays.isfinite(math.inf)
+
+
+def test_safe_divisor_replaces_elements_that_are_not_positive():
+    np.testing.assert_array_equal(arrays.safe_divisor(np.array([-1.0, 0.0, 0.5])), [1.0, 1.0, 0.5])
+    assert arrays.safe_divisor(0.0) == 1.0
+    assert arrays.safe_divisor(2.0) == 2.0
+
+
+def test_rounding_error_is_that_of_the_dtype():
+    assert arrays.machine_epsilon(1.0) == 2.0**-52
+    assert arrays.machine_epsilon(np.ones(2)) == 2.0**-52
+    assert arrays.machine_epsilon(np.ones(2, dtype=np.float32)) == 2.0**-23
+
+
+def test_common_arrays_have_the_dtype_of_the_arrays():
+    one, two = arrays.to_common_arrays([1, 2], np.ones(2, dtype=np.float32))
+    assert one.dtype == two.dtype == np.float32
+    single, number = arrays.to_common_arrays(np.ones(2, dtype=np.float32), 3)
+    assert (single.dtype, number.dtype) == (np.float32, np.float32)
+    integers, number = arrays.to_common_arrays(np.array([1, 2]), 0.5)
+    assert integers.dtype == number.dtype == np.float64
+    plain = arrays.to_common_arrays(1, 2.5)
+    assert [value.dtype for value in plain] == [np.float64, np.float64]
+    with pytest.raises(TypeError, match="all arrays must be of one library, got array_api_strict.Array, n"):
+        arrays.namespace(np.ones(1), pytest.importorskip("array_api_strict").ones(1))
+
+
+def test_broadcasting_keeps_floats_and_shapes():
+    assert arrays.broadcast(1.0, 2.0) == 1.0
+    assert type(arrays.broadcast(1.0, 2.0)) is float
+    assert arrays.broadcast(np.ones(3), np.ones((2, 1))).shape == (2, 3)
+    x = np.ones(3)
+    assert arrays.broadcast_to(x, (3,)) is x
+
+
+def test_quadrature_is_exact_for_polynomials():
+    for degree in range(8):
+        assert arrays.integral(lambda x, n=degree: x**n, 4) == pytest.approx(1 / (degree + 1), rel=1e-13)
+    nodes, weights = arrays.gauss_legendre(5)
+    assert sum(weights) == pytest.approx(1.0, rel=1e-14)
+    assert all(0 < node < 1 for node in nodes)
+    np.testing.assert_allclose(arrays.weighted_sum([VALUES, 2 * VALUES], [3.0, 0.5]), 4 * VALUES)
+
+
+def test_lists_for_json_have_no_nan_and_no_infinity():
+    assert arrays.to_list(np.array([[1.0, np.nan], [np.inf, -np.inf]])) == [[1.0, None], ["inf", "inf"]]
+    assert arrays.to_list(2.5) == 2.5
+    assert arrays.to_list(np.array([True, False])) == [True, False]
+
+
+def test_plain_numbers_are_numbers_without_a_library():
+    assert all(map(arrays.is_plain, (1, 2.0, np.float64(3.0), True)))
+    assert not any(map(arrays.is_plain, (np.ones(1), "1", np.float32(1.0))))
+
+
+def test_gradients_of_roots_and_powers_are_zero_at_zero():
+    jax = pytest.importorskip("jax")
+    assert jax.grad(arrays.sqrt)(0.0) == 0.0
+    assert jax.grad(lambda x: arrays.power(x, 0.5))(0.0) == 0.0
+    assert jax.grad(arrays.sqrt)(4.0) == pytest.approx(0.25)
+    assert jax.grad(lambda x: arrays.power(x, 1.5))(4.0) == pytest.approx(3.0)
+    assert float(arrays.sqrt(jax.numpy.asarray(0.0))) == 0.0
+    assert float(arrays.power(jax.numpy.asarray(0.0), 0.5)) == 0.0
+
+
+def test_traced_values_are_unknown():
+    jax = pytest.importorskip("jax")
+    seen = {}
+
+    @jax.jit
+    def traced(x):
+        seen["values"] = arrays.concrete_values(x)
+        seen["truth"] = arrays.all_true(x > 0)
+        return arrays.stop_gradient(x) * x
+
+    assert traced(3.0) == 9.0
+    assert seen == {"values": None, "truth": None}
+    assert jax.grad(traced)(3.0) == 3.0
+    assert arrays.concrete_values(np.ones(2)).tolist() == [1.0, 1.0]

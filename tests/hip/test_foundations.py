@@ -1,0 +1,204 @@
+"""Foundations of the socket, contact shares, interpolation to the ball and film formulas in small exact cases."""
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.elasticity.off_axis.grid import even_grid, grid
+from ballsocket.hip import Lubricant
+from ballsocket.hip.ball_wear import ball_directions, interpolation_at
+from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
+from ballsocket.hip.film import film_thickness
+from ballsocket.hip.simulation import _halving_error, check_cycles
+from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, spring_foundation, subset_neighbours
+
+from .test_wear import hip
+
+CELLS = grid(radians(90.0), radians(6.0))
+SPRINGS = spring_foundation(CELLS, modulus=100.0, clearance=0.1, socket_radius=14.1)
+TILTED = np.array([[0.0, 0.0, 1000.0], [300.0, 0.0, 900.0], [0.0, -200.0, 400.0]])
+
+
+def socket_force(foundation, equilibrium):
+    return np.einsum("tp,kp,p->tk", equilibrium.pressure, foundation.normals, foundation.areas)
+
+
+def test_cells_cover_the_bore():
+    assert SPRINGS.areas.sum() == pytest.approx(2 * np.pi * 14.1**2, rel=1e-12)
+    assert np.linalg.norm(SPRINGS.directions, axis=0) == pytest.approx(1.0, rel=1e-12)
+    assert (SPRINGS.max_stiffness, SPRINGS.edge_inset) == (100.0, 0.0)
+
+
+def test_pressures_of_springs_balance_the_loads():
+    depth = np.zeros(len(SPRINGS.areas))
+    solved = SPRINGS.solve_equilibrium(TILTED, depth)
+    assert solved.converged
+    assert socket_force(SPRINGS, solved) == pytest.approx(TILTED, abs=1e-7 * 1000)
+    overlap = solved.displacement @ SPRINGS.normals - 0.1
+    assert solved.pressure == pytest.approx(100.0 * overlap.clip(0.0), rel=1e-12)
+    assert solved.displacement[0, :2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_lateral_spring_carries_its_part_of_the_load():
+    stiffness = np.diag([500.0, 0.0, 0.0])
+    solved = SPRINGS.solve_equilibrium(TILTED, np.zeros(len(SPRINGS.areas)), None, stiffness)
+    expected = TILTED - solved.displacement @ stiffness
+    assert socket_force(SPRINGS, solved) == pytest.approx(expected, abs=1e-7 * 1000)
+    assert solved.displacement[1, 0] * 500.0 > 10.0
+
+
+def test_an_evenly_worn_bore_is_a_larger_clearance():
+    worn = SPRINGS.solve_equilibrium(TILTED, np.full(len(SPRINGS.areas), 0.05))
+    larger = replace(SPRINGS, clearance=0.15).solve_equilibrium(TILTED, np.zeros(len(SPRINGS.areas)))
+    assert worn.pressure == pytest.approx(larger.pressure, rel=1e-9, abs=1e-12)
+
+
+def test_a_start_without_contact_finds_the_same_equilibrium():
+    depth = np.zeros(len(SPRINGS.areas))
+    solved = SPRINGS.solve_equilibrium(TILTED, depth)
+    far = replace(solved, displacement=-0.2 * TILTED / 1000.0)
+    again = SPRINGS.solve_equilibrium(TILTED, depth, far)
+    assert again.converged
+    assert again.pressure == pytest.approx(solved.pressure, rel=1e-6, abs=1e-6)
+
+
+def test_cells_near_contact_are_bounded_by_the_margin_of_the_largest_overlap():
+    depth = np.zeros(len(SPRINGS.areas))
+    solved = SPRINGS.solve_equilibrium(TILTED, depth)
+    overlap = (solved.displacement @ SPRINGS.normals).max(axis=0) - 0.1
+    for margin in (0.0, 0.3, 1.0):
+        expected = overlap > -margin * overlap.max()
+        assert (SPRINGS.cells_near_contact(solved, depth, margin) == expected).all()
+    part = np.flatnonzero(SPRINGS.cells_near_contact(solved, depth, 0.3))
+    alone = SPRINGS.select_cells(part)
+    assert alone.solve_equilibrium(TILTED, depth[part]).pressure == pytest.approx(solved.pressure[:, part], rel=1e-9)
+    assert alone.neighbours.max() < len(part)
+
+
+def test_a_straight_edge_cuts_cells_in_proportion():
+    neighbours = np.array([[[0, 0, 1, 2], [1, 2, 3, 3]], [[0, 1, 2, 3]] * 2])
+    level = np.array([[3.0, 1.0, -1.0, -3.0], [2.5, 0.5, -1.5, -3.5], [1.0, 1.0, 1.0, 1.0]])
+    shares = contact_shares(level, neighbours, 0.0)
+    assert shares[0] == pytest.approx([1.0, 1.0, 0.0, 0.0])
+    assert shares[1] == pytest.approx([1.0, 0.75, 0.0, 0.0])
+    assert shares[2] == pytest.approx(1.0)
+    assert contact_shares(level, neighbours, 0.25)[1] == pytest.approx([1.0, 0.5, 0.0, 0.0])
+
+
+def test_neighbours_cross_the_pole_and_end_at_the_rim():
+    pairs = grid_neighbours(CELLS)
+    rings, meridians = CELLS.rings, CELLS.meridians
+    cells = np.arange(rings * meridians).reshape(rings, meridians)
+    (before, after), (left, right) = (pair.reshape(2, rings, meridians) for pair in pairs)
+    assert (before[1:] == cells[:-1]).all()
+    assert (after[:-1] == cells[1:]).all()
+    assert (after[-1] == cells[-1]).all()
+    assert before[0, 0] == cells[0, meridians // 2]
+    assert {left[3, 0], right[3, 0]} == {cells[3, 1], cells[3, -1]}
+    subset = subset_neighbours(pairs, cells[2:4].ravel())
+    assert (subset[0, 0].reshape(2, -1)[0] == np.arange(meridians)).all()  # outside the subset: the cell itself
+    assert (subset[0, 1].reshape(2, -1)[0] == meridians + np.arange(meridians)).all()
+
+
+def test_interpolation_is_exact_at_centres_and_for_fields_of_the_polar_angle():
+    sphere = even_grid(np.pi, radians(10.0))
+    centres = interpolation_at(sphere, sphere.middles.reshape(3, 1, -1))
+    field = np.random.default_rng(3).normal(size=(1, sphere.rings * sphere.meridians))
+    assert centres.interpolate(field) == pytest.approx(field, rel=1e-9, abs=1e-9)
+    polar = np.repeat(sphere.polar, sphere.meridians)[None]
+    angles = np.linspace(0.4, 2.7, 17)
+    for azimuth in (0.0, 2.0, -3.0):
+        points = np.stack([np.sin(angles) * np.cos(azimuth), np.sin(angles) * np.sin(azimuth), np.cos(angles)])
+        between = interpolation_at(sphere, points[:, None])
+        assert between.weights.sum(axis=-1) == pytest.approx(1.0)
+        assert between.interpolate(polar)[0] == pytest.approx(angles, rel=1e-12)
+
+
+def test_points_beyond_the_grid_have_no_weight():
+    low = np.array([np.sin(1.7), 0.0, np.cos(1.7)])[:, None, None]
+    assert interpolation_at(CELLS, low).weights.sum() == 0
+
+
+def test_cells_of_the_ball_have_their_axis_to_the_front():
+    sphere = even_grid(np.pi, radians(10.0))
+    directions = ball_directions(sphere)
+    x, y, z = sphere.middles.reshape(3, -1)
+    assert (directions == np.stack([y, z, x])).all()
+
+
+def test_smoothing_conserves_volume_and_removes_waves_of_the_grid():
+    smooth = GridSmoothing(grid=CELLS)
+    field = np.random.default_rng(4).normal(size=(CELLS.rings, CELLS.meridians))
+    assert (smooth(field) * CELLS.areas).sum() == pytest.approx((field * CELLS.areas).sum(), rel=1e-9)
+    assert smooth(np.ones_like(field)) == pytest.approx(1.0)
+    checkerboard = (-1.0) ** np.arange(CELLS.meridians) * np.ones((CELLS.rings, 1))
+    assert abs(smooth(checkerboard)[-3]).max() < 1e-9
+
+
+def test_load_levels_interpolate_every_load_of_one_direction():
+    sizes = np.linspace(10.0, 3000.0, 50)
+    loads = sizes[:, None] * np.array([0.0, 0.6, 0.8])
+    levels = interpolate_loads(loads)
+    assert len(levels.loads) == 12
+    assert levels.weights.sum(axis=1) == pytest.approx(1.0)
+    assert levels.interpolate(levels.loads) == pytest.approx(loads, rel=1e-12)
+    magnitudes = np.linalg.norm(levels.loads, axis=1)
+    assert (magnitudes[0], magnitudes[-1]) == pytest.approx((10.0, 3000.0))
+    assert (np.diff(magnitudes, n=2) > 0).all()  # closer to each other at small loads
+    assert len(interpolate_loads(loads[:12]).loads) == 12
+    turned = loads.copy()
+    turned[3] = [1.0, 0.0, 50.0]
+    assert len(interpolate_loads(turned).loads) == 50
+    same = interpolate_loads(np.tile([0.0, 0.0, 500.0], (40, 1)))
+    assert same.loads.tolist() == [[0.0, 0.0, 500.0]]
+    assert same.interpolate(same.loads) == pytest.approx(np.tile([0.0, 0.0, 500.0], (40, 1)))
+
+
+def test_film_thickness_is_that_of_hamrock_and_dowson():
+    joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.Material(young=1000.0, poisson=0.4))
+    least, central = film_thickness(joint, np.array([1000.0]), np.array([2.0]), 2.5e-3)
+    radius, modulus = 14.0 * 14.1 / 0.1, 2 * 1000.0 / (1 - 0.16)
+    speed, load = 2.5e-9 * 2.0 * 14.0 / 2 / (modulus * radius), 1000.0 / (modulus * radius**2)
+    assert least[0] == pytest.approx(2.80 * radius * speed**0.65 * load**-0.21, rel=1e-12)
+    assert central[0] == pytest.approx(3.34 * radius * speed**0.64 * load**-0.22, rel=1e-12)
+    soft_ball = replace(joint, ball=bs.Material(young=1000.0, poisson=0.4))
+    assert film_thickness(soft_ball, np.array([1000.0]), np.array([2.0]), 2.5e-3)[0][0] > least[0]
+    closed = replace(joint, clearance=0.0)
+    assert np.isnan(film_thickness(closed, np.array([1000.0]), np.array([2.0]), 2.5e-3)).all()
+
+
+def test_film_of_a_cycle_has_consistent_ratio_power_and_heat():
+    use = hip()
+    film = use.film(Lubricant(ball_roughness=3e-5, cup_roughness=4e-5, friction=0.1))
+    assert film.ratio == pytest.approx(film.least / 5e-5, rel=1e-12)
+    assert film.heat == pytest.approx((film.power * use.cycle.seconds[use.loaded]).sum(), rel=1e-12)
+    assert film.heat == pytest.approx(0.1 * use.first.work, rel=1e-9)
+    double = use.film(Lubricant(friction=0.2))
+    assert double.moment == pytest.approx(2 * film.moment, rel=1e-12)
+    regimes = {0.99: "boundary", 1.0: "mixed", 2.99: "mixed", 3.0: "full"}
+    for ratio, regime in regimes.items():
+        assert replace(film, ratio=np.array([0.1, ratio])).regime == regime
+
+
+@pytest.mark.parametrize("name", ["ball_roughness", "cup_roughness", "viscosity", "friction"])
+def test_lubricants_outside_their_limits_are_refused(name):
+    with pytest.raises(ValueError, match=f"{name} = -1 is not allowed"):
+        Lubricant(**{name: -1.0})
+
+
+def test_numerical_errors_follow_from_halved_steps():
+    ratio = 1 / (1 - 2**-1.5)
+    assert _halving_error([1.0, 1.1, 1.2]) == pytest.approx(ratio * 0.2 / 1.2)
+    assert _halving_error([1.0, 0.9, 1.0]) == pytest.approx(ratio * 0.2)
+    assert _halving_error([0.0, 0.0, 0.0]) == 0.0
+
+
+def test_cycle_counts_are_sorted_and_end_with_the_total():
+    assert check_cycles(5.0, [3, 1, 3]) == [1.0, 3.0, 5.0]
+    assert check_cycles(5.0, [0, 5]) == [0.0, 5.0]
+    for cycles, counts in ((0.0, []), (float("inf"), []), (5.0, [5.1]), (5.0, [-1])):
+        with pytest.raises(ValueError, match="is not allowed"):
+            check_cycles(cycles, counts)

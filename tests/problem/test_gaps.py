@@ -1,0 +1,96 @@
+"""Displacements that a rigid ball prescribes, and their Abel transforms."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from ballsocket.problem.gaps import CircularGap, LinearGap, check_gap
+
+ANGLES = np.array([0.05, 0.4, 0.9, 1.3])
+GAPS = [LinearGap(clearance=0.3, socket_radius=18.0), CircularGap(clearance=0.3, socket_radius=18.0)]
+EACH_GAP = pytest.mark.parametrize("gap", GAPS, ids=lambda gap: type(gap).__name__)
+DEPTH = 0.25
+
+
+def abel(function, t):
+    """Compute d/dt ∫ u sin φ dφ / sqrt(2 (cos φ - cos t)) over [0, t], with s² = cos φ - cos t."""
+
+    def integral(end):
+        def integrand(s):
+            return function(np.arccos(np.cos(end) + s * s))
+
+        return np.sqrt(2) * quad(integrand, 0.0, np.sqrt(1 - np.cos(end)), epsabs=1e-13)[0]
+
+    step = 1e-4
+    return (integral(t - 2 * step) - 8 * integral(t - step) + 8 * integral(t + step) - integral(t + 2 * step)) / (
+        12 * step
+    )
+
+
+@EACH_GAP
+def test_displacement_of_the_pole_is_the_indentation(gap):
+    assert gap.displacement(0.0, DEPTH) == pytest.approx(DEPTH, rel=1e-14)
+
+
+def test_linear_displacement_is_equation_6():
+    expected = DEPTH * np.cos(ANGLES) - 0.3 * (1 - np.cos(ANGLES))
+    np.testing.assert_allclose(GAPS[0].displacement(ANGLES, DEPTH), expected, rtol=1e-12)
+
+
+def test_circular_displacement_is_equation_5():
+    e = 0.3 + DEPTH
+    expected = e * np.cos(ANGLES) + np.sqrt(17.7**2 - e**2 * np.sin(ANGLES) ** 2) - 18.0
+    np.testing.assert_allclose(GAPS[1].displacement(ANGLES, DEPTH), expected, rtol=1e-10, atol=1e-13)
+
+
+def test_circular_displacement_is_nan_beyond_the_ball():
+    with np.errstate(invalid="ignore"):
+        assert np.isnan(CircularGap(clearance=1.0, socket_radius=2.0).displacement(np.pi / 2, 0.5))
+
+
+@EACH_GAP
+def test_transform_is_the_abel_transform_of_the_displacement(gap):
+    expected = [abel(lambda angle: gap.displacement(angle, DEPTH), t) for t in ANGLES]
+    np.testing.assert_allclose(gap.transform(ANGLES, DEPTH), expected, rtol=1e-7, atol=1e-9)
+
+
+@EACH_GAP
+def test_slope_is_the_derivative_of_the_transform(gap):
+    step = 1e-5
+    expected = (gap.transform(ANGLES + step, DEPTH) - gap.transform(ANGLES - step, DEPTH)) / (2 * step)
+    np.testing.assert_allclose(gap.slope(ANGLES, DEPTH), expected, rtol=1e-7, atol=1e-9)
+
+
+@EACH_GAP
+def test_indentation_derivative_is_that_of_the_transform(gap):
+    step = 1e-5
+    expected = (gap.transform(ANGLES, DEPTH + step) - gap.transform(ANGLES, DEPTH - step)) / (2 * step)
+    np.testing.assert_allclose(gap.indentation_derivative(ANGLES, DEPTH), expected, rtol=1e-7, atol=1e-9)
+
+
+@EACH_GAP
+def test_transforms_take_an_indentation_for_each_angle(gap):
+    depths = np.array([0.1, 0.2, 0.4, 0.3])
+    for function in (gap.transform, gap.slope, gap.indentation_derivative):
+        together = function(ANGLES, depths)
+        alone = [function(ANGLES[i : i + 1], depths[i : i + 1])[0] for i in range(4)]
+        np.testing.assert_allclose(together, alone, rtol=1e-12)
+
+
+def test_gaps_agree_for_small_indentations():
+    """The circular gap differs from the linear one by the square of (c + d) over R2."""
+    linear, circular = (kind(clearance=1e-4, socket_radius=18.0) for kind in (LinearGap, CircularGap))
+    np.testing.assert_allclose(
+        circular.displacement(ANGLES, 2e-4), linear.displacement(ANGLES, 2e-4), rtol=0.0, atol=(3e-4) ** 2 / 17
+    )
+    assert LinearGap.steps == 1
+    assert LinearGap.conservative
+    assert not CircularGap.conservative
+
+
+def test_other_gaps_are_rejected():
+    check_gap(LinearGap)
+    check_gap(CircularGap)
+    for value in (GAPS[0], "linear", None):
+        with pytest.raises(TypeError, match="gap must be LinearGap or CircularGap, got "):
+            check_gap(value)

@@ -1,0 +1,175 @@
+"""Lengths of joints from every combination of radii, diameters and clearances; ratios and numbers of joints."""
+
+import json
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.problem.dimensions import check_unique_lengths, derive_lengths
+from ballsocket.problem.values import larger, short_text
+
+SHELL = bs.Layer(thickness=4.0, material=bs.TITANIUM)
+BONE = bs.Layer(thickness=inf, material=bs.CANCELLOUS_BONE)
+EQUAL = {
+    "radius and clearance": {"ball_radius": 17.0, "clearance": 0.25},
+    "radius and socket": {"ball_radius": 17.0, "socket_radius": 17.25},
+    "socket and clearance": {"socket_radius": 17.25, "clearance": 0.25},
+    "diameter and diametral clearance": {"head_diameter": 34.0, "diametral_clearance": 0.5},
+    "diameter and socket": {"head_diameter": 34.0, "socket_radius": 17.25},
+    "socket and diametral clearance": {"socket_radius": 17.25, "diametral_clearance": 0.5},
+}
+THICKNESSES = {
+    "thickness": {"liner_thickness": 5.5},
+    "outer radius": {"outer_radius": 22.75},
+    "outer diameter": {"outer_diameter": 45.5},
+}
+
+
+@pytest.mark.parametrize("thickness", THICKNESSES.values(), ids=THICKNESSES)
+@pytest.mark.parametrize("radii", EQUAL.values(), ids=EQUAL)
+def test_all_combinations_of_lengths_give_the_same_joint(radii, thickness):
+    joint = bs.Joint(**radii, **thickness, liner=bs.UHMWPE)
+    assert (joint.ball_radius, joint.clearance, joint.liner_thickness) == pytest.approx((17.0, 0.25, 5.5), rel=1e-13)
+    assert joint.socket_radius == pytest.approx(17.25)
+    assert joint.head_diameter == pytest.approx(34.0)
+    assert joint.diametral_clearance == pytest.approx(0.5)
+    assert joint.interference == pytest.approx(-0.25)
+    assert joint.outer_radius == pytest.approx(22.75)
+    assert joint.outer_diameter == pytest.approx(45.5)
+    assert joint.thickness_ratio == pytest.approx(17.25 / 5.5)
+    assert joint.clearance_ratio == pytest.approx(0.25 / 17.25)
+
+
+def test_outer_radius_includes_the_shell_but_no_infinite_layer():
+    joint = bs.Joint(ball_radius=17.0, clearance=0.25, outer_radius=22.75, liner=bs.UHMWPE, backing=(SHELL, BONE))
+    assert joint.liner_thickness == pytest.approx(1.5)
+    assert joint.shell == 4.0
+    on_bone = bs.Joint(ball_radius=17.0, clearance=0.25, outer_radius=22.75, liner=bs.UHMWPE, backing=(BONE,))
+    assert on_bone.liner_thickness == pytest.approx(5.5)
+    assert on_bone.shell == 0.0
+    thick = bs.Layer(thickness=np.array([2.0, inf]), material=bs.TITANIUM)
+    several = bs.Joint(ball_radius=17.0, clearance=0.25, liner_thickness=5.0, liner=bs.UHMWPE, backing=(thick,))
+    np.testing.assert_array_equal(several.shell, [2.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        (("ball_radius", "head_diameter"), "ball_radius and head_diameter are one too many: either fixes the other"),
+        (("clearance", "interference"), "clearance and interference are one too many"),
+        (("liner_thickness", "outer_diameter"), "outer_diameter and liner_thickness are one too many"),
+        (
+            ("head_diameter", "socket_radius", "clearance"),
+            "head_diameter, socket_radius and clearance are one too many: any two of them fix the third",
+        ),
+    ],
+)
+def test_redundant_lengths_are_rejected(names, message):
+    with pytest.raises(ValueError, match=message):
+        check_unique_lengths(names)
+    check_unique_lengths(names[:1])
+
+
+def test_replaced_lengths_keep_the_others():
+    current = {"ball_radius": 17.0, "clearance": 0.25, "liner_thickness": 5.5}
+    cases = {
+        ("head_diameter", 36.0): (18.0, 0.25, 5.5),
+        ("socket_radius", 17.5): (17.0, 0.5, 5.5),
+        ("diametral_clearance", 0.2): (17.0, 0.1, 5.5),
+        ("outer_radius", 23.25): (17.0, 0.25, 6.0),
+        ("interference", 0.05): (17.0, -0.05, 5.5),
+    }
+    for (name, value), expected in cases.items():
+        assert tuple(derive_lengths({name: value}, current, 0.0).values()) == pytest.approx(expected, rel=1e-13)
+    both = derive_lengths({"socket_radius": 18.0, "clearance": 0.1, "outer_radius": 24.0}, current, 1.0)
+    assert tuple(both.values()) == pytest.approx((17.9, 0.1, 5.0), rel=1e-13)
+    assert both["ball_radius"] == 17.9  # without the digits of rounding
+
+
+def test_an_interference_is_a_negative_clearance_of_at_most_a_tenth_of_the_radius():
+    joint = bs.Joint(ball_radius=17.0, interference=0.05, liner_thickness=5.5, liner=bs.UHMWPE)
+    assert joint.clearance == -0.05
+    assert joint.interference == 0.05
+    assert joint.replace(liner_thickness=4.0).interference == 0.05
+    assert bs.Joint(ball_radius=10.0, interference=1.0, liner_thickness=5.5, liner=bs.UHMWPE).socket_radius == 9.0
+    with pytest.raises(ValueError, match="interference = 1.1 is not allowed: it is at most a tenth"):
+        bs.Joint(ball_radius=10.0, interference=1.1, liner_thickness=5.5, liner=bs.UHMWPE)
+    with pytest.raises(ValueError, match="clearance = -0.5 is not allowed"):
+        bs.Joint(ball_radius=17.0, socket_radius=16.5, liner_thickness=5.5, liner=bs.UHMWPE)
+
+
+def test_ratios_of_moduli():
+    soft = bs.Material(young=500.0, poisson=0.4)
+    joint = bs.Joint(ball_radius=17.0, clearance=0.25, liner_thickness=5.5, liner=soft, ball=bs.STEEL)
+    assert joint.modulus_ratio == 500.0 / 230000.0
+    assert replace(joint, ball=None).modulus_ratio == 0.0
+    assert joint.backing_ratio == 0.0
+    layered = replace(joint, backing=(SHELL, bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)))
+    assert layered.backing_ratio == pytest.approx(500.0 / 2300.0)
+    assert replace(layered, support=bs.Support.FREE).backing_ratio == inf
+    assert joint.effective_modulus == pytest.approx(1 / ((1 - 0.4**2) / 500.0 + (1 - 0.3**2) / 230000.0), rel=1e-14)
+    assert replace(joint, ball=None).effective_modulus == pytest.approx(500.0 / (1 - 0.4**2), rel=1e-14)
+
+
+def test_numbers_are_restored_in_their_order():
+    joint = bs.Joint(
+        ball_radius=17, clearance=0.25, liner_thickness=5.5, liner=bs.UHMWPE, ball=bs.COCR, backing=(SHELL, BONE)
+    )
+    numbers = joint.numbers()
+    assert numbers == (17, 0.25, 5.5, 1000.0, 0.4, 230000.0, 0.3, 4.0, 110000.0, 0.3, inf, 500.0, 0.2)
+    doubled = joint.with_numbers([2 * number for number in numbers])
+    assert doubled.numbers() == tuple(2 * number for number in numbers)
+    assert doubled.ball.young == 460000.0
+    assert doubled.backing[1].material.poisson == 0.4
+    assert type(joint.with_floats().ball_radius) is float
+    floats = joint.with_floats()
+    assert floats.with_floats() is floats
+    rigid = replace(joint, ball=None)
+    assert rigid.with_numbers(rigid.numbers()) == rigid
+
+
+def test_strengths_are_listed_and_removed():
+    liner = bs.Material(young=1.0, poisson=0.3, yield_stress=2.0, fatigue_limit=1.0, proportional_limit=0.5)
+    assert liner.strengths == {"yield_stress": 2.0, "fatigue_limit": 1.0}
+    assert liner.stress_limits == {"proportional_limit": 0.5, "yield_stress": 2.0, "fatigue_limit": 1.0}
+    joint = bs.Joint(ball_radius=17.0, clearance=0.1, liner_thickness=5.0, liner=liner, ball=bs.COCR, backing=(SHELL,))
+    assert sorted(joint.strengths()) == [0.5, 1.0, 2.0, 517.0]
+    bare = joint.without_strengths()
+    assert bare.strengths() == ()
+    assert bare.backing[0].material.stress_limits == {}
+    assert bare.numbers() == joint.numbers()
+    assert json.loads(json.dumps(liner.summary())) == {
+        "name": "",
+        "young": 1.0,
+        "poisson": 0.3,
+        "proportional_limit": 0.5,
+        "yield_stress": 2.0,
+        "fatigue_limit": 1.0,
+    }
+
+
+def test_short_text_has_six_digits():
+    assert short_text(1 / 3) == "0.333333"
+    assert short_text(np.ones((2, 3))) == "<array 2x3>"
+    assert short_text(1000000.0) == "1e+06"
+
+
+def test_larger_selects_elementwise():
+    assert larger(2.0, 3) == 3
+    assert larger(3.0, 2.0) == 3.0
+    np.testing.assert_array_equal(larger(np.array([1.0, 4.0]), np.array([2.0, 3.0])), [2.0, 4.0])
+    np.testing.assert_array_equal(larger(np.array([1.0, 4.0]), 2.0), [2.0, 4.0])
+
+
+def test_texts_of_joints():
+    joint = bs.Joint(ball_radius=17.0, clearance=0.25, liner_thickness=inf, liner=bs.UHMWPE, name="test")
+    assert joint.dimensions == "R1 17 mm, clearance 0.25 mm, massive socket"
+    assert str(joint) == f"test: {joint.dimensions} of {bs.UHMWPE}; ball rigid"
+    assert str(BONE).startswith("a massive body of cancellous bone (E 500 MPa, nu 0.2)")
+    summary = joint.summary()
+    assert summary["liner_thickness"] == "inf"
+    assert summary["socket_radius"] == 17.25
+    assert (summary["ball"], summary["backing"], summary["support"]) == (None, [], "fixed")
