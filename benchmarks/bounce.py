@@ -16,7 +16,7 @@ from time import perf_counter
 import numpy
 
 import ballsocket as bs
-from ballsocket.export import TARGETS, Job
+from ballsocket.export import TARGETS, ExportJob
 
 from . import tools
 from .report import Report, Rows
@@ -41,7 +41,7 @@ def measure() -> Report:
     with TemporaryDirectory() as made:
         folder = Path(made)
         for target in TARGETS.values():
-            target.write(Job(element=bounce.element, name=tools.NAME, depth=0.05), folder)
+            target.write(ExportJob(element=bounce.element, name=tools.NAME, depth=0.05), folder)
         reference = tools.python(bounce, folder)
         for program, needed in PROGRAMS.items():
             name = program.__name__.replace("_", " ")

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy
 
-from ballsocket.export import TARGETS, Job
+from ballsocket.export import TARGETS, ExportJob
 
 from . import tools
 from .report import Report, Rows
@@ -93,7 +93,7 @@ class Answer:
 def in_exudyn(name: str, duration: float, step: float, samples: int) -> Answer:
     """The mechanism in Exudyn, with the exported `law`, or with its own hollow `sphere` and the k and n of that law."""
     with TemporaryDirectory() as made:
-        TARGETS["exudyn"].write(Job(element=BAR.ELEMENT, name=NAME, depth=DEPTH), Path(made))
+        TARGETS["exudyn"].write(ExportJob(element=BAR.ELEMENT, name=NAME, depth=DEPTH), Path(made))
         with tools.module(Path(made), f"{NAME}_exudyn") as joint:
             sphere = partial(joint.add_hollow_sphere, **RESTITUTION)
             add = {"law": joint.add_joint, "sphere": sphere}[name]

@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import ballsocket as bs
-from ballsocket.export import TARGETS, Job
+from ballsocket.export import TARGETS, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.fmu import Fmu
 from ballsocket.models.modulus import bonded_layer
@@ -56,7 +56,7 @@ def measure() -> Report | str:
     with TemporaryDirectory() as made:
         folder = Path(made)
         for target in TARGETS.values():
-            target.write(Job(element=ELEMENT, name=tools.NAME, depth=0.05), folder)
+            target.write(ExportJob(element=ELEMENT, name=tools.NAME, depth=0.05), folder)
         work: dict[str, tuple[Work, int]] = {
             "FMI 3, one set and one get of nine numbers": (_fmu(folder), CALLS),
             "OpenSim, a force: the expression": (_expression(folder), CALLS),
@@ -153,7 +153,7 @@ def _towards_half() -> Rows:
         joint = JOINT.replace(liner=bs.Material(young=1000.0, poisson=poisson), ball=None)
         exact = float(bs.Exact().press(joint, indentation=DEPTH).force)
         with TemporaryDirectory() as made:
-            job = Job(element=bs.ForceElement(bs.Exact(), joint), name=tools.NAME, depth=1.25 * DEPTH)
+            job = ExportJob(element=bs.ForceElement(bs.Exact(), joint), name=tools.NAME, depth=1.25 * DEPTH)
             TARGETS["opensim"].write(job, Path(made))
             ours = _opensim_force(Path(made))(DEPTH)
         K = float(bonded_layer(joint))

@@ -53,7 +53,9 @@ print(f"scan: radius {scan.radius:.3f} mm, {1e3 * scan.roughness:.1f} µm off th
 
 forms = {
     "round": None,
-    "worn by 50 µm along the load": bs.Worn(of=lambda n: 0.05 * np.clip(np.tensordot(WAY, n, 1), 0.0, 1.0) ** 2),
+    "worn by 50 µm along the load": bs.BoreDeviation(
+        of=lambda n: 0.05 * np.clip(np.tensordot(WAY, n, 1), 0.0, 1.0) ** 2
+    ),
     "waves of 4 µm": bs.DepthTable(polar=polar, azimuth=azimuth, values=waves),
     "a scan of three lobes": scan,
 }
@@ -69,7 +71,7 @@ for name, contact in contacts.items():
 squeeze = np.linspace(0.0, 0.15, 6)
 ways = {"in the plane of load and axis": 0.0, "across it": np.pi / 2}
 pinched = {
-    name: [replace(sphere, worn=bs.Pinched(squeeze=s, direction=way)).press(hip, **LOAD).max_pressure for s in squeeze]
+    name: [replace(sphere, worn=bs.OvalBore(squeeze=s, direction=way)).press(hip, **LOAD).max_pressure for s in squeeze]
     for name, way in ways.items()
 }
 

@@ -100,7 +100,7 @@ def test_a_scan_beyond_all_bounds_is_refused_by_its_points(tmp_path, capfd):
     with pytest.raises(ValueError, match=r"points of bore.obj.* is not allowed: coordinates \(mm\) are at most 1e\+06"):
         read_scan(tmp_path / "bore.obj")
     (tmp_path / "bore.stl").write_bytes(b"solid \xff")
-    with pytest.raises(ValueError, match="bore.stl is no mesh that can be read"):
+    with pytest.raises(ValueError, match="bore.stl cannot be read as a mesh"):
         read_scan(tmp_path / "bore.stl")
     assert capfd.readouterr() == ("", "")
 

@@ -26,9 +26,11 @@ from .elasticity.exact.tabulated.model import Tabulated
 from .elasticity.finite_elements.model import FiniteElement
 from .elasticity.finite_elements.spacing import Adapted, Element, Uniform
 from .elasticity.off_axis import (
+    BoreDeviation,
     ClosedShell,
     DepthTable,
     Orientations,
+    OvalBore,
     Pinched,
     Preload,
     RealCup,
@@ -95,7 +97,9 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "Material",
     "Side",
     "Support",
+    "BoreDeviation",
     "Worn",
+    "OvalBore",
     "Pinched",
     "DepthTable",
     "read_scan",

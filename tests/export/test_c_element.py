@@ -150,7 +150,7 @@ def test_parameters_that_are_not_allowed_have_a_sentence(plain):
 
 @pytest.mark.parametrize("name", ["", "two words", "1st", "a-b"])
 def test_names_that_c_does_not_allow_are_refused(name):
-    with pytest.raises(ValueError, match="name must be letters"):
+    with pytest.raises(ValueError, match="name must start with a letter"):
         CElement(element=ForceElement(bs.HessForsbach(), HIP), name=name)
 
 

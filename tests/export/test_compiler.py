@@ -9,7 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.dynamics import ForceElement
-from ballsocket.export import TARGETS, Job
+from ballsocket.export import TARGETS, ExportJob
 from ballsocket.export.compiler import THIS_PLATFORM, NoCompiler, Platform, compile_library, library_platform
 from ballsocket.export.fmu import Fmu
 
@@ -77,10 +77,10 @@ def test_an_fmu_files_the_binary_of_a_cross_compiler_under_its_platform(version,
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
 def test_a_library_for_another_platform_is_not_left_for_a_program_of_this_machine(cross_compiler, tmp_path):
-    job = Job(element=ELEMENT, name="hip", depth=0.05)
+    job = ExportJob(element=ELEMENT, name="hip", depth=0.05)
     _, missing = TARGETS["drake"].write(job, tmp_path / "hip")
-    assert f"builds for x86_64-windows, not for this machine, {THIS_PLATFORM}; the sources are there" in missing
-    assert not (tmp_path / "hip" / job.words["library"]).exists()
+    assert f"builds for x86_64-windows, not for this machine, {THIS_PLATFORM}; the sources are written" in missing
+    assert not (tmp_path / "hip" / job.template_context["library"]).exists()
 
 
 @pytest.mark.skipif(shutil.which("true") is None, reason="there is no command that writes nothing")

@@ -1,4 +1,4 @@
-"""The element as an FMU: what it holds, that hosts accept it, and that it answers as the element in Python."""
+"""The element as an FMU: what it holds, that hosts accept it, and that it reference_loads as the element in Python."""
 
 import re
 import zipfile
@@ -12,7 +12,7 @@ import ballsocket as bs
 from ballsocket.dynamics import Damping, ForceElement, Friction
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.fmu import Fmu, write_cross_check
-from ballsocket.export.fmu.cross_check import answers, in_si, trajectory
+from ballsocket.export.fmu.cross_check import in_si, reference_loads, trajectory
 
 from ..cli.command import run
 from ..joints import HIP
@@ -64,7 +64,10 @@ def test_a_compiler_that_is_not_there_is_a_sentence_and_the_sources_are_written(
     monkeypatch.setenv("CC", "no-such-compiler")
     done = run("fmu", str(EXAMPLES / "hip.toml"), "--out", str(tmp_path / "my-hip.fmu"), "--fmi", str(version))
     assert done.returncode == 0
-    assert "CC is 'no-such-compiler', which is not there; the sources are there, the binary is not" in done.stderr
+    assert (
+        "CC is 'no-such-compiler', which is not installed; the archive contains the sources without a binary"
+        in done.stderr
+    )
     with zipfile.ZipFile(tmp_path / "my-hip.fmu") as archive:
         assert "sources/my_hip.c" in archive.namelist()
         assert not any(name.startswith("binaries") for name in archive.namelist())
@@ -89,7 +92,7 @@ def test_the_files_of_the_cross_check_say_what_the_element_answers(folder):
     assert (folder / "hip3_in.csv").read_text().startswith('"time","position[1]",')
     state = trajectory(ELEMENT, given["time"])
     assert_array_equal(given["velocity[3]"], in_si(state)[:, 5])
-    assert_array_equal(reference["max_pressure"], answers(ELEMENT, state)[:, 8])
+    assert_array_equal(reference["max_pressure"], reference_loads(ELEMENT, state)[:, 8])
     assert 0 < np.count_nonzero(reference["energy"]) < len(reference)  # it touches and leaves
     options = (folder / "hip3_ref.opt").read_text()
     assert [line.split(",")[0] for line in options.splitlines()] == ["StartTime", "StopTime", "StepSize", "RelTol"]
@@ -106,7 +109,7 @@ def test_the_velocity_of_the_trajectory_is_that_of_its_position():
     [
         (("--out", "hip.zip"), "out 'hip.zip' must end in .fmu"),
         (("--out", "nowhere/hip.fmu"), "'nowhere' is no folder to write hip.fmu into"),
-        (("--out", "hip.fmu", "--fmi", "4"), "FMI version = 4 is not allowed: 2 and 3 are written"),
+        (("--out", "hip.fmu", "--fmi", "4"), "FMI version = 4 is not allowed: 2 or 3"),
         (("--out", "hip.fmu", "--model", "fem"), "finite elements are too noisy for a law"),
         (("--out", "hip.fmu", "--hysteresis", "-1"), "hysteresis"),
         (("--out", "hip.fmu", "--restitution", "0.5"), "a restitution and the speed of its impact belong together"),
@@ -153,7 +156,7 @@ def test_fmpy_runs_it_to_the_reference(version, kind, late, folder, fmpy):
     path = str(folder / f"hip{version}.fmu")
     given, reference = table(folder / f"hip{version}_in.csv"), table(folder / f"hip{version}_ref.csv")
     found = fmpy.simulate_fmu(path, fmi_type=kind, input=given, stop_time=0.1, output_interval=1e-3)
-    for name in reference.dtype.names[1:]:  # a step of a co-simulation answers to what went in before it
+    for name in reference.dtype.names[1:]:  # a step of a co-simulation reference_loads to what went in before it
         wanted = reference[name][: len(reference) - late]
         assert_allclose(found[name][late:], wanted, rtol=1e-12, atol=1e-12 * abs(wanted).max())
 
@@ -237,7 +240,7 @@ def test_a_step_through_the_wall_is_discarded_and_a_law_beyond_its_validity_is_t
     for depth in (1e-3, 2e-3):
         host.set(position=(0.0, 0.0, depth))
         assert host.get("energy")[0] == GOOD
-    assert [text.partition(" beyond")[0] for _, text in host.said] == ["hess-forsbach does not trust itself"]
+    assert [text.partition(" beyond")[0] for _, text in host.said] == ["hess-forsbach is not valid"]
 
 
 @needs_compiler

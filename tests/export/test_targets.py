@@ -15,10 +15,10 @@ from scipy.integrate import solve_ivp
 import ballsocket as bs
 from ballsocket.cli.force_elements import ElementWords, identifier
 from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
-from ballsocket.export import TARGETS, CElement, Job
+from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.law_fit import expression_fit, power_fit
-from ballsocket.export.trusted import trusted_depth
+from ballsocket.export.validity_depth import valid_depth
 from ballsocket.io.joint_file import JointFile
 
 from ..cli.command import run
@@ -35,7 +35,7 @@ IN_MM = (0.01, 0.0, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0)
 
 
 def written(target, element, folder, name="bouncing", depth=0.05):
-    return TARGETS[target].write(Job(element=element, name=name, depth=depth), folder)
+    return TARGETS[target].write(ExportJob(element=element, name=name, depth=depth), folder)
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +107,7 @@ def test_the_expression_of_a_closed_form_is_the_closed_form():
 def test_one_expression_holds_any_law_as_deep_as_its_model_is_valid():
     fit = expression_fit(TABULATED, 0.05)
     assert fit.error < 1e-5
-    assert_allclose(fit.depth, 1e-3 * trusted_depth(TABULATED))
+    assert_allclose(fit.depth, 1e-3 * valid_depth(TABULATED))
     depths = np.array([2e-4, 0.011, 0.049, 0.99e3 * fit.depth])
     forces = fit(1e-3 * (HIP.clearance + depths))
     assert_allclose(forces, TABULATED.potential(depths)[1], rtol=2 * fit.error)
@@ -202,7 +202,7 @@ def test_every_target_takes_a_joint_without_a_load_and_says_what_is_missing(targ
     names = done.stdout.removeprefix("hip: ").strip().split(", ")
     assert all((tmp_path / "hip" / name).stat().st_size > 100 for name in names)
     compiled = target in ("mujoco", "drake", "exudyn")
-    assert ("the sources are there" in done.stderr) == compiled
+    assert ("the sources are written" in done.stderr) == compiled
     for path in (tmp_path / "hip").glob("*.py"):
         compile(path.read_text(), path.name, "exec")
     for path in (tmp_path / "hip").glob("*.[ox][sm][il]*"):
@@ -211,9 +211,9 @@ def test_every_target_takes_a_joint_without_a_load_and_says_what_is_missing(targ
 
 def test_what_a_program_has_no_words_for_is_said(tmp_path):
     element = ForceElement(bs.HessForsbach(), HIP, damping=Damping(time=1e-4), friction=LOSSY.friction, cup=bs.Cup())
-    lost = "friction and a liner that takes its time and the cup's rim: left out"
+    lost = "friction and the retardation time of the liner and the rim of the cup: omitted"
     for target in ("c", "modelica", "opensim", "table"):
-        wanted = f"{target} has no words for {lost}" if target in ("opensim", "table") else ""
+        wanted = f"{target} cannot represent {lost}" if target in ("opensim", "table") else ""
         assert written(target, element, tmp_path, name="lost")[1] == wanted
     assert written("opensim", DAMPED, tmp_path)[1] == written("table", PLAIN, tmp_path)[1] == ""
 
@@ -229,7 +229,7 @@ def test_a_name_is_no_word_of_the_languages_it_is_written_in(name, taken):
 def test_what_is_no_command_is_a_sentence_and_the_sources_are_there(variable, value, tmp_path, monkeypatch):
     monkeypatch.setenv(variable, value)
     paths, missing = written("drake", PLAIN, tmp_path)
-    assert f'{variable} is "\'", which is no command; the sources are there' in missing
+    assert f'{variable} is "\'", which is not a valid command; the sources are written' in missing
     assert all(path.exists() for path in paths)
 
 
@@ -255,8 +255,8 @@ def test_what_is_not_allowed_is_one_sentence(words, said, tmp_path):
 @pytest.mark.parametrize(
     ("element", "said"),
     [
-        (ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05)), "bristles have a state, and what"),
-        (ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP), "a ball that sticks has a state, and what"),
+        (ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05)), "bristles have a state; "),
+        (ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP), "a ball that sticks has a state; "),
     ],
 )
 def test_a_state_is_something_that_nothing_exported_or_compiled_has(element, said):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.off_axis.grid import even_grid, grid
+from ballsocket.elasticity.off_axis.grid import even_grid, graded_grid
 from ballsocket.hip import Lubricant
 from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
@@ -17,7 +17,7 @@ from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, sp
 
 from .test_wear import hip
 
-CELLS = grid(radians(90.0), radians(6.0))
+CELLS = graded_grid(radians(90.0), radians(6.0))
 SPRINGS = spring_foundation(CELLS, modulus=100.0, clearance=0.1, socket_radius=14.1)
 TILTED = np.array([[0.0, 0.0, 1000.0], [300.0, 0.0, 900.0], [0.0, -200.0, 400.0]])
 

@@ -106,7 +106,7 @@ def test_worn_bore_has_the_contact_of_the_off_axis_model():
     def depth(n):
         return between((np.arctan2(np.hypot(n[0], n[1]), n[2]), np.arctan2(n[1], n[0]) % (2 * np.pi)))
 
-    sphere = bs.Sphere(cup=TILTED, surface=bs.Springs(), worn=bs.Worn(of=depth))
+    sphere = bs.Sphere(cup=TILTED, surface=bs.Springs(), worn=bs.BoreDeviation(of=depth))
     largest = int(use.cycle.force_magnitudes.argmax())
     contact = sphere.press(use.joint, force=use.cycle.force_magnitudes[largest])
     mine = use.solve_equilibrium(report.wear.ravel())

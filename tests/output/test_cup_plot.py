@@ -174,6 +174,6 @@ def test_a_view_in_three_dimensions(contact, tmp_path):
 def test_a_preloaded_ball_at_rest_is_drawn_without_a_load():
     joint = bs.Joint(ball_radius=13.5, interference=0.05, liner_thickness=2.5, liner=bs.POM, ball=bs.STEEL)
     sphere = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(240.0)), ring_width=WIDE)
-    cup_map = cup_figure(bs.Preload(model=sphere, joint=joint).rest).axes[0]
+    cup_map = cup_figure(bs.Preload(model=sphere, joint=joint).equilibrium).axes[0]
     assert "load" not in labels(cup_map)
     assert "rim" in labels(cup_map)

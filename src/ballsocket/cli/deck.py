@@ -66,7 +66,7 @@ def _tilted(file: JointFile, load: dict[str, float], tilt: float, out: Path, mes
         tilt=tilt,
         element_size=size / float(file.joint.socket_radius),
     )
-    echo_path(made.write(out), f": {made.ball.count} nodes, rigid ball")
+    echo_path(made.write(out), f": {made.ball.last_number} nodes, rigid ball")
     if run:
         print_tilted_rival(made.expected["force_vector"], run_ccx(out)["force_vector"])
 

@@ -8,19 +8,18 @@ from typing import Annotated
 import typer
 
 from ..core.checks import known_name
+from ..export.targets import TARGETS, ExportJob
 from .force_elements import ElementWords, identifier
 from .groups import grouped
 from .root import app, complain, echo_path
 from .words import JointWords
-
-_TARGETS = "c, opensim, mujoco, drake, exudyn, modelica or table"
 
 
 @app.command()
 @grouped
 def export(
     *,
-    target: Annotated[str, typer.Argument(help=f"The program: {_TARGETS}.")],
+    target: Annotated[str, typer.Argument(help=f"Program: {', '.join(TARGETS)}.")],
     joint: Annotated[str | None, typer.Argument(help="A joint file (TOML), or the name of a preset.")] = None,
     words: JointWords,
     element: ElementWords,
@@ -30,7 +29,6 @@ def export(
 ) -> None:
     """Write a joint as a force element for another program, with what that needs around it."""
     from ..export.law_fit import depth_of
-    from ..export.targets import TARGETS, Job
 
     chosen = TARGETS[known_name("target", target, TARGETS)]
     nearest = next(path for path in (out, *out.parents, Path()) if path.exists())
@@ -38,7 +36,7 @@ def export(
         raise ValueError(f"{str(nearest)!r} is a file; a folder is needed")
     file = words.or_named(joint)
     made = element.element(file)
-    job = Job(element=made, name=identifier(out), depth=depth_of(made, file.load))
+    job = ExportJob(element=made, name=identifier(out), depth=depth_of(made, file.load))
     paths, missing = chosen.write(job, out)
     echo_path(out, f": {', '.join(path.relative_to(out).as_posix() for path in paths)}")
     if missing:

@@ -19,6 +19,20 @@ from typing import Any, ParamSpec, TypeVar
 P = ParamSpec("P")
 T = TypeVar("T")
 
+_OFF_AXIS_MODULES = {
+    **dict.fromkeys(("harmonics", "real_cup", "rings_of_modes"), "ring_matrices"),
+    **dict.fromkeys(("loads", "rim"), "load_cases"),
+    **dict.fromkeys(("forms", "worn"), "bore_shapes"),
+    "balance": "equilibrium",
+    "bricks": "deck",
+    "edges": "surfaces",
+    "patch": "contact_patch",
+    "search": "bore_contact",
+    "solver": "pressure_solver",
+    "states": "contact_states",
+}
+"""New names of the modules of `ballsocket.sphere`."""
+
 MOVED = {
     **{f"ballsocket.{name}": f"ballsocket.core.{name}" for name in ("arrays", "checks", "kinds", "quantities")},
     **{f"ballsocket.{name}": f"ballsocket.core.{name}" for name in ("sources", "stress", "validity", "input_files")},
@@ -71,6 +85,14 @@ MOVED = {
     "ballsocket.identify.profile": "ballsocket.identify.bands",
     "ballsocket.identify.remarks": "ballsocket.identify.result",
     "ballsocket.identify.tracing": "ballsocket.identify.jax_derivatives",
+    **{f"ballsocket.sphere.{old}": f"ballsocket.elasticity.off_axis.{new}" for old, new in _OFF_AXIS_MODULES.items()},
+    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.load" for name in ("brushed", "touch")},
+    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.reaction" for name in ("rim", "smooth")},
+    "ballsocket.dynamics.side_curves": "ballsocket.dynamics.element",
+    "ballsocket.export.recording": "ballsocket.export.c_element",
+    "ballsocket.export.slopes": "ballsocket.export.recorder",
+    "ballsocket.export.tables": "ballsocket.export.targets",
+    "ballsocket.export.trusted": "ballsocket.export.validity_depth",
 }
 """New path of each package or module that moved; the modules of a package move with it."""
 

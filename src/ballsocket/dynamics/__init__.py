@@ -6,10 +6,9 @@ from .damping import Damping, Flores, Gonthier, HuntCrossley, LankaraniNikravesh
 from .drop_test import Identified, from_bounces, from_restitution
 from .element import ForceElement
 from .friction import Friction
-from .load import Load
+from .load import Load, Touch
 from .motion import Motion, simulate
 from .prony import Prony
-from .touch import Touch
 from .viscoelastic import Viscoelastic
 
 __all__ = [

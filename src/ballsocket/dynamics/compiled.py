@@ -20,7 +20,7 @@ from ..core.arrays import Numbers
 from ..models import kinematics
 from ..models.kinematics import Kinematics
 from ..problem import Joint
-from . import friction, potential, reaction, rim, smooth, stepping
+from . import friction, potential, reaction, stepping
 from .element import ForceElement
 from .load import Load
 from .potential import CurvePotential, SpringPotential, energy_curve
@@ -63,7 +63,7 @@ class CompiledElement:
 
     def __post_init__(self) -> None:
         if self.element.remembers:
-            raise ValueError(f"{self.element.remembers}, and what is compiled has none: ask the element itself")
+            raise ValueError(f"{self.element.remembers}; compiled elements have no state, use the element itself")
 
     def __call__(self, position: Any, velocity: Any = (0.0, 0.0, 0.0), spin: Any = (0.0, 0.0, 0.0)) -> Load:
         """The load at a state as the element itself has it."""
@@ -160,12 +160,12 @@ def _batch() -> Any:
             last = min(first + _BLOCK, len(energy))
             for i in range(first, last):
                 place = reaction.place_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                U, F, k = potential(smooth.ramp(place.indentation, constants.smoothing)[0])
+                U, F, k = potential(reaction.ramp(place.indentation, constants.smoothing)[0])
                 known[i - first, 0], known[i - first, 1], known[i - first, 2] = U, F, k
             for i in range(first, last):
                 place = reaction.place_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
                 slopes = known[i - first, 0], known[i - first, 1], known[i - first, 2]
-                rounded = smooth.ramp(place.indentation, constants.smoothing)
+                rounded = reaction.ramp(place.indentation, constants.smoothing)
                 contact = reaction.stored(place, rounded, slopes, constants)
                 v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
                 w = spin[i, 0], spin[i, 1], spin[i, 2]
@@ -185,10 +185,10 @@ def _march() -> Any:
 for _formula in (
     kinematics.linear_energy,
     kinematics.circular_energy,
-    smooth.ramp,
-    smooth.positive,
-    smooth._rounded,
-    rim.share,
+    reaction.ramp,
+    reaction.positive,
+    reaction._rounded,
+    reaction.rim_share,
     friction.grip,
     friction.drill_lever,
     friction.coefficient_at,

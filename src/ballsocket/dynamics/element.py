@@ -10,7 +10,7 @@ import numpy
 
 from ..contact import Model
 from ..contact.assembly import check_joint
-from ..contact.law import CurveLaw
+from ..contact.law import CurveLaw, curve_law
 from ..core import arrays
 from ..core.arrays import Array, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
@@ -18,14 +18,12 @@ from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
 from .bristles import Bristles
-from .brushed import brushed
 from .damping import Damping
 from .friction import Friction
-from .load import Load
+from .load import Load, brushed
 from .matrices import vector
-from .potential import Potential, potential_of
+from .potential import Potential, potential_of, slopes_of_array
 from .reaction import APART, Constants, Place, Three, elastic, place_of, reaction
-from .side_curves import curve_of, read
 from .sticking import sticking_potential, undamped_pull
 from .watch import Watch
 
@@ -225,15 +223,15 @@ class ForceElement:
     @cached_property
     def curves(self) -> tuple[CurveLaw, CurveLaw]:
         """Half angle (rad) and largest pressure (MPa) over the indentation, as curves of ln over ln."""
-        return curve_of(self.model, self.joint, "half_angle"), curve_of(self.model, self.joint, "max_pressure")
+        return _curve_of(self.model, self.joint, "half_angle"), _curve_of(self.model, self.joint, "max_pressure")
 
     def half_angle(self, indentation: Array) -> Array:
         """ε in rad of an indentation in mm; 0 where nothing touches."""
-        return read(self.curves[0], indentation)
+        return _read(self.curves[0], indentation)
 
     def max_pressure(self, indentation: Array) -> Array:
         """In MPa of an indentation in mm; 0 where nothing touches."""
-        return read(self.curves[1], indentation)
+        return _read(self.curves[1], indentation)
 
 
 def three(value: Any, name: str = "a state") -> Three:
@@ -258,3 +256,20 @@ def _beside(position: Any, value: Any) -> Any:
 
 def _components(value: Any) -> Three:
     return value[..., 0], value[..., 1], value[..., 2]
+
+
+def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
+    """A quantity of a contact over the indentation, up to the socket's radius."""
+    whole = joint.with_floats()
+    shallowest = 1e-6 * (whole.clearance or whole.socket_radius)
+    return curve_law(
+        lambda depths: getattr(model.press(whole, indentation=depths), quantity), shallowest, whole.socket_radius
+    )
+
+
+def _read(curve: CurveLaw, indentation: Array) -> Array:
+    """The curve at indentations of any sign: 0 where nothing touches, NaN beyond its end."""
+    if type(indentation) is float:
+        return curve(indentation)[0]
+    ends = curve.shallowest, curve.deepest, curve.first, curve.density
+    return where(indentation > 0.0, slopes_of_array(indentation, *ends, curve.pieces)[0], 0.0)

@@ -1,23 +1,69 @@
-"""What a force element answers: force and moment on both bodies, the energy, and how they change."""
+"""Load of a force element at a state: force and moment on both bodies, energy, derivatives, and the contact state."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from enum import IntEnum
 from functools import partial, wraps
 from math import degrees
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy
 
 from ..core import arrays
-from ..core.arrays import Array, to_list
+from ..core.arrays import Array, Numbers, sqrt, to_list, where
+from ..core.checks import shown
 from . import reaction as formulas
+from .bristles import Bristles, Four, bent
 from .matrices import damping_matrix, matrix, vector
-from .reaction import Elastic, Place, Three
-from .touch import ROOM, Touch, status_of, told
+from .reaction import Constants, Elastic, Place, Three, pressed, sliding
 
-if TYPE_CHECKING:
-    from .element import ForceElement
+
+class Touch(IntEnum):
+    """What a force element finds at a state. Arrays hold its codes."""
+
+    FREE = 0
+    CONTACT = 1
+    AT_RIM = 2
+    OVER_RIM = 3
+    THROUGH_WALL = 4
+    NO_NUMBER = 5
+
+    @property
+    def sentence(self) -> str:
+        return _SENTENCES[self]
+
+    @property
+    def failed(self) -> bool:
+        """Whether there is no answer: the step that led here is to be taken again, shorter."""
+        return self >= Touch.THROUGH_WALL
+
+
+_SENTENCES = {
+    Touch.FREE: "nothing touches",
+    Touch.CONTACT: "the ball touches the socket",
+    Touch.AT_RIM: "the contact reaches the rim, which carries a part of it",
+    Touch.OVER_RIM: "the ball has left the cup over its rim, and nothing carries it",
+    Touch.THROUGH_WALL: "the ball is deeper than the wall, or the model, goes: a shorter step is needed",
+    Touch.NO_NUMBER: "the state is no finite number, or too large a one",
+}
+
+
+ROOM = 1e8
+"""Numbers of a state are too large if this times the sum of their squares is none."""
+
+
+class LoadedElement(Protocol):
+    """Force element as its loads use it."""
+
+    @property
+    def constants(self) -> Constants: ...
+    @property
+    def stretch(self) -> float: ...
+    @property
+    def wall(self) -> float: ...
+    def half_angle(self, indentation: Array) -> Array: ...
+    def max_pressure(self, indentation: Array) -> Array: ...
 
 
 def _quiet(formula: Callable[[Load], Any]) -> Callable[[Load], Any]:
@@ -53,7 +99,7 @@ class Load(NamedTuple):
     force: Any
     moment: Any
     energy: Array
-    element: ForceElement
+    element: LoadedElement
     place: Place
     contact: Elastic
     position: Three
@@ -165,3 +211,77 @@ class Load(NamedTuple):
 
 def _listed(value: Any) -> Any:
     return [to_list(part) for part in value] if type(value) is tuple else to_list(value)
+
+
+def status_of(place: Place, contact: Elastic, known: Array, given: Constants) -> Touch | Array:
+    """A `Touch`, or an array of its codes."""
+    d, s = place.indentation, contact.covered
+    none = 0.0 * where(known, d, 0.0)
+    touching = d > -given.smoothing
+    code = where(touching, none + 1.0, none)
+    code = where(touching & (s < 1.0), none + float(Touch.AT_RIM), code)
+    code = where(
+        (d > given.wall) | (touching & (contact.normal != contact.normal)), none + float(Touch.THROUGH_WALL), code
+    )
+    code = where(touching & (s <= -1.0), none + float(Touch.OVER_RIM), code)
+    code = where(known, code, none + float(Touch.NO_NUMBER))
+    if type(code) is float:
+        return Touch(int(code))
+    xp = arrays.namespace(code)
+    return xp.astype(code, xp.int8)
+
+
+def told(load: Load) -> tuple[str, ...]:
+    """A sentence for each kind of state that is to be told, with the first of its states."""
+    codes = numpy.atleast_1d(arrays.to_numpy(load.status)).ravel()
+    return tuple(_told(load, codes, touch) for touch in list(Touch)[2:] if (codes == touch).any())
+
+
+def _told(load: Load, codes: Numbers, touch: Touch) -> str:
+    numbers = numpy.flatnonzero(codes == touch)
+    x, y, z, d = (_at(part, codes, numbers[0]) for part in (*load.position, load.indentation))
+    many = "" if codes.size == 1 else f"{len(numbers)} of {codes.size}: "
+    state = f"r = ({x:.6g}, {y:.6g}, {z:.6g}) mm, d = {d:.6g} mm"
+    return f"{many}{touch.sentence}; {state}, and there is an answer up to {load.element.wall:.6g} mm"
+
+
+def _at(part: Array, codes: Numbers, number: int) -> float:
+    return float(numpy.broadcast_to(arrays.to_numpy(part), codes.shape).ravel()[number])
+
+
+def brushed(load: Load, bristles: Bristles, deflection: Any) -> Load:
+    """A load without friction, and what the bristles add to it."""
+    place, given = load.place, load.element.constants
+    speed = sum(rate * way for rate, way in zip(load.velocity, place[1:4], strict=True))
+    slip = sliding(place, pressed(load.contact, speed, given), load.velocity, load.spin, given)
+    force, rate, lost = bent(place, slip, _four(load, deflection), bristles)
+    N, R1, n = slip.normal, given.ball_radius, place[1:4]
+    rubbing = [-N * part for part in force[:3]]
+    drill = -N * sqrt(slip.lever_squared) * force[3]
+    turned = _cross(n, rubbing)
+    kind = type(load.force)
+    return load._replace(
+        force=vector(kind, *(a + b for a, b in zip(_components(load.force), rubbing, strict=True))),
+        moment=vector(kind, *(R1 * a + drill * way for a, way in zip(turned, n, strict=True))),
+        deflection_rate=vector(kind, *rate),
+        rubbed=N * lost,
+    )
+
+
+def _four(load: Load, deflection: Any) -> Four:
+    if type(load.force) is not tuple and type(deflection) in (tuple, list):
+        deflection = numpy.asarray(deflection, dtype=float)
+        deflection = arrays.namespace(load.force).asarray(deflection, dtype=load.force.dtype)
+    parts = tuple(deflection) if type(deflection) in (tuple, list) else tuple(deflection[..., i] for i in range(4))
+    if len(parts) != 4:
+        raise ValueError(f"bristles have four deflections, x, y, z and about the load, got {shown(deflection)}")
+    a, b, c, d = (part + 0.0 for part in parts)
+    return a, b, c, d
+
+
+def _components(packed: Any) -> Any:
+    return packed if type(packed) is tuple else [packed[..., axis] for axis in range(3)]
+
+
+def _cross(a: Any, b: Any) -> Any:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]

@@ -9,8 +9,7 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array, where
 from . import friction
-from .reaction import ROUNDED, Constants, Elastic, Place, Sliding, Three, pressed, sliding, versine
-from .smooth import ramp
+from .reaction import ROUNDED, Constants, Elastic, Place, Sliding, Three, pressed, ramp, sliding, versine
 
 
 def vector(kind: type, *components: Array) -> Any:

@@ -15,9 +15,8 @@ from ..core.sources import Source
 from . import stepping
 from .carried import Carrier, pull_of
 from .element import ForceElement, three
-from .load import Load
+from .load import Load, Touch
 from .stepping import Ball
-from .touch import Touch
 
 TONNE = 1e-3
 """Of a kilogram, so that N, mm and s fit each other."""

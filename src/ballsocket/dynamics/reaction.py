@@ -6,13 +6,11 @@ All forces act on the ball, moments about its centre; the socket is met by the s
 
 from __future__ import annotations
 
-from math import nan
+from math import nan, pi
 from typing import NamedTuple
 
-from ..core.arrays import Array, atan2, safe_divisor, sqrt, where
+from ..core.arrays import Array, atan2, clip, safe_divisor, sqrt, where
 from . import friction
-from .rim import share
-from .smooth import positive, ramp
 
 Three = tuple[Array, Array, Array]
 
@@ -123,7 +121,7 @@ def covered(
     epsilon = where(touching, atan2(w, c + 0.0 * w), 1.0)
     first, second = c / (g * w), -c * (2.0 * g * g - c * c) / (g * g * w * w * w)
     s = (given.rim - gamma) / epsilon
-    W, W1, W2 = share(s)
+    W, W1, W2 = rim_share(s)
     U, F, k = where(s > -1.0, U, 0.0), where(s > -1.0, F, 0.0), where(s > -1.0, k, 0.0)
     s1, s2 = -s * first / epsilon, s * (2.0 * first * first / epsilon - second) / epsilon
     # slopes of U W(s) over the depth and γ, over which s falls by 1/ε
@@ -286,3 +284,39 @@ def tangent(place: Place, contact: Elastic, given: Constants) -> tuple[Array, ..
         yz = yz + A * (ny * pz + nz * py) - B * ny * nz + C * py * pz
         zx = zx + A * (nz * px + nx * pz) - B * nz * nx + C * pz * px
     return xx, yy, zz, xy, yz, zx
+
+
+def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
+    """Return max(y, 0) and its two derivatives, rounded off between -width and width by a polynomial."""
+    if width == 0.0:
+        none = 0.0 * y
+        return where(y > 0.0, y, none), where(y >= 0.0, none + 1.0, none), none
+    t = clip((y + width) / (2.0 * width), 0.0, 1.0)
+    bend = 15.0 * t * t * (1.0 - t) * (1.0 - t) / width
+    return where(y >= width, y, 2.0 * width * _rounded(t)), t * t * t * (10.0 - 15.0 * t + 6.0 * t * t), bend
+
+
+def positive(y: Array, width: Array) -> Array:
+    """Return the value of `ramp` for a width that may be an array, 0 included."""
+    span = where(width > 0.0, width, 1.0)
+    t = clip((y + width) / (2.0 * span), 0.0, 1.0)
+    return where(y >= width, y, 2.0 * width * _rounded(t))
+
+
+def _rounded(t: Array) -> Array:
+    # ∫ (10 t³ - 15 t⁴ + 6 t⁵) dt
+    return t * t * t * t * (2.5 - 3.0 * t + t * t)
+
+
+def rim_share(place: Array) -> tuple[Array, Array, Array]:
+    """Return the energy share W(s) of a contact that a straight rim cuts, with its first and second derivative.
+
+    s is the distance of the rim from the patch centre over the half angle: W is 1 from s = 1 and 0 up to s = -1. The
+    energy of radial springs under a small patch is the marginal of (1 - x² - y²)² over a disc.
+    """
+    s = clip(place, -1.0, 1.0)
+    square = clip(1.0 - s * s, 0.0, 1.0)
+    root = sqrt(square)
+    W = 0.5 + (atan2(s, root) + s * root * (33.0 + s * s * (8.0 * s * s - 26.0)) / 15.0) / pi
+    slope = 16.0 / (5.0 * pi) * square * square * root
+    return clip(W, 0.0, 1.0), slope, -16.0 / pi * s * square * root

@@ -1,6 +1,10 @@
-"""The force element for other programs: as sources of C, as an FMU, and in the words of the tools people use."""
+"""Force elements for other programs: C sources, FMUs, and files for multibody codes."""
 
 from .c_element import CElement
-from .targets import TARGETS, Job, Target
+from .target import ExportJob, Target
+from .targets import TARGETS
 
-__all__ = ["TARGETS", "CElement", "Job", "Target"]
+Job = ExportJob
+"""Name of `ExportJob` in version 1.0."""
+
+__all__ = ["TARGETS", "CElement", "ExportJob", "Job", "Target"]

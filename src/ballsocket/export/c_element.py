@@ -1,41 +1,147 @@
-"""A force element in C: a source and a header that need nothing but a compiler of C99."""
+"""Force element as C99 source and header without other dependencies."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.resources import files
+from itertools import chain
 from pathlib import Path
 from string import Template
+from typing import Any
 
 from ..contact.law import CurveLaw
-from ..core.arrays import Numbers
+from ..core.arrays import Numbers, isfinite, where
 from ..core.storage.atomic import write_text
-from ..dynamics import ForceElement, Touch
+from ..dynamics import ForceElement, Touch, reaction
+from ..dynamics.load import status_of
+from ..dynamics.potential import CurvePotential, energy_curve
+from ..dynamics.reaction import Constants, Elastic, Place, Three
 from ..version import __version__
 from .c_text import c_number, c_statements
-from .recording import Recording
+from .recorder import Part, Recorded, Tape, directional_derivatives
 from .tunable import TUNABLES
 
-BAD_PARAMETER = 6
-"""Beside the codes of `Touch`: a parameter that is not allowed."""
+ENERGY, HALF_ANGLE, MAX_PRESSURE = "energy_curve", "half_angle_curve", "max_pressure_curve"
+STATE = ("position", "velocity", "spin")
+Outputs = dict[str, Part]
+"""Recorded quantities by the C expression that receives them."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recording:
+    """Formulas of a force element, recorded for an unknown state and tunable parameters.
+
+    Attributes
+    ----------
+    element : ForceElement
+    tape : Tape
+    """
+
+    element: ForceElement
+    tape: Tape = field(default_factory=Tape)
+
+    @cached_property
+    def state(self) -> tuple[Three, Three, Three]:
+        """Position, velocity and spin."""
+        x, v, w = (tuple(self.tape.input(f"{name}[{axis}]") for axis in range(3)) for name in STATE)
+        return x, v, w  # type: ignore[return-value]
+
+    @cached_property
+    def constants(self) -> Constants:
+        """Constants of the element; tunable ones are inputs of the tape."""
+        tuned: dict[str, Any] = {
+            parameter.constant: self.tape.input(f"p->{parameter.name}", tunable=True) for parameter in TUNABLES
+        }
+        tuned["static"] = where(tuned["static"] > tuned["sliding"], tuned["static"], tuned["sliding"])
+        return self.element.constants._replace(**tuned)
+
+    @cached_property
+    def curves(self) -> dict[str, CurveLaw]:
+        """Tabulated curves that the C program evaluates, by name."""
+        half_angle, max_pressure = self.element.curves
+        curves = {HALF_ANGLE: half_angle, MAX_PRESSURE: max_pressure}
+        potential = self.element.potential
+        if isinstance(potential, CurvePotential):
+            curves[ENERGY] = potential.curve
+        elif not _can_be_recorded(potential):
+            law = self.element.model.law(self.element.joint)
+            curves[ENERGY] = energy_curve(law, half_angle.shallowest, self.element.wall)
+        return curves
+
+    @cached_property
+    def place(self) -> Place:
+        return reaction.place_of(*self.state[0], self.constants.clearance)
+
+    @cached_property
+    def contact(self) -> Elastic:
+        return reaction.elastic(self._potential, self.place, self.constants)
+
+    def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
+        if ENERGY in self.curves:
+            energy, force, stiffness = self.tape.curve(ENERGY, depth, 3)
+            return energy, force, stiffness
+        return self.element.potential(depth)
+
+    @cached_property
+    def load(self) -> Outputs:
+        """Force, moment and energy."""
+        parts = reaction.reaction(self.place, self.contact, *self.state[1:], self.constants)
+        return {**_numbered("force", parts[:3]), **_numbered("moment", parts[3:]), "*energy": self.contact.energy}
+
+    @cached_property
+    def pressed(self) -> Outputs:
+        """Half angle and largest pressure."""
+        depth = self.place.indentation
+        angle, pressure = (self.tape.curve(name, depth, 1)[0] for name in (HALF_ANGLE, MAX_PRESSURE))
+        return {"*half_angle": angle, "*max_pressure": pressure}
+
+    @cached_property
+    def status(self) -> Outputs:
+        """Code of the `ContactState`."""
+        return {"status": status_of(self.place, self.contact, isfinite(self.place.distance), self.constants)}
+
+    @cached_property
+    def tangent(self) -> Outputs:
+        """Nine components of the tangent stiffness ∂²U/∂r²."""
+        xx, yy, zz, xy, yz, zx = reaction.tangent(self.place, self.contact, self.constants)
+        return _numbered("tangent", (xx, xy, zx, xy, yy, yz, zx, yz, zz))
+
+    @cached_property
+    def slope(self) -> Outputs:
+        """Derivatives of load, half angle and pressure in a direction of the state."""
+        names = (f"way[{number}]" for number in range(9))
+        direction = {part: self.tape.input(name) for part, name in zip(chain(*self.state), names, strict=True)}
+        return _numbered("slope", directional_derivatives([*self.load.values(), *self.pressed.values()], direction))
+
+
+def _numbered(name: str, parts: Any) -> Outputs:
+    return {f"{name}[{number}]": part for number, part in enumerate(parts)}
+
+
+def _can_be_recorded(potential: Any) -> bool:
+    try:
+        potential(Tape().input("depth"))
+    except (TypeError, AttributeError, ValueError):  # iterations and data-dependent branches
+        return False
+    return True
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CElement:
-    """A force element as a program in C.
+    """Force element as a C program.
 
     Parameters
     ----------
     element : ForceElement
     name : str
-        With which all names in the program begin, so that two joints can live in one program: letters, digits and _.
+        Prefix of all names in the program, so that one program can hold two joints: letters, digits and _.
 
     Raises
     ------
     ValueError
-        A name that C does not allow; bristles, or what sticks, which have a state.
+        A name that C does not allow; an element with a state (bristles or adhesion).
 
     Examples
     --------
@@ -51,36 +157,40 @@ class CElement:
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]{0,40}", self.name):
-            raise ValueError(f"name must be letters, digits and _ that C can begin a name with, got {self.name!r:.60}")
+            raise ValueError(
+                f"name must start with a letter or _ and hold letters, digits and _, got {self.name!r:.60}"
+            )
         if self.element.remembers:
-            raise ValueError(f"{self.element.remembers}, and what is exported has none")
+            raise ValueError(f"{self.element.remembers}; exported elements have no state")
 
     @cached_property
     def recording(self) -> Recording:
-        """The formulas."""
+        """Recorded formulas of the element."""
         return Recording(element=self.element)
 
     @property
     def header(self) -> str:
-        """What other programs include."""
-        fields = "\n".join(f"    double {each.name}; /* {each.unit}: {each.meaning} */" for each in TUNABLES)
+        """Text of the header that other programs include."""
+        fields = "\n".join(
+            f"    double {parameter.name}; /* {parameter.unit}: {parameter.meaning} */" for parameter in TUNABLES
+        )
         codes = "\n".join(f"    {self.name.upper()}_{touch.name} = {touch.value}," for touch in Touch)
-        words = {"name": self.name, "NAME": self.name.upper(), **self.about}
-        return filled("element.h", fields=fields, codes=codes, **words)
+        names = {"name": self.name, "NAME": self.name.upper()}
+        return fill_template("element.h", fields=fields, codes=codes, **names, **self.about)
 
     @property
     def source(self) -> str:
-        """The program."""
-        recording, given = self.recording, self.element.constants
-        return filled(
+        """Text of the C program."""
+        recording, constants = self.recording, self.element.constants
+        return fill_template(
             "element.c",
             name=self.name,
             NAME=self.name.upper(),
-            along=_text("curve.c"),
+            along=_template("curve.c"),
             curves="\n".join(_curve(name, curve) for name, curve in sorted(recording.curves.items())),
-            defaults=", ".join(c_number(getattr(given, each.constant)) for each in TUNABLES),
-            checks="\n".join(_check(each.name, each.above) for each in TUNABLES),
-            first_touch=c_number(given.clearance - given.smoothing),
+            defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
+            checks="\n".join(_check(parameter.name, parameter.above) for parameter in TUNABLES),
+            first_touch=c_number(constants.clearance - constants.smoothing),
             load=c_statements({**recording.status, **recording.load}),
             pressed=c_statements({**recording.status, **recording.pressed}),
             tangent=c_statements({**recording.status, **recording.tangent}),
@@ -103,18 +213,20 @@ class CElement:
 
     @property
     def about(self) -> dict[str, str]:
+        """Version, model and joint for comments in generated files."""
         joint = re.sub(r"[^\x20-\x7e]|\*/|/\*|--|\\", "?", repr(self.element.joint.with_floats()))
         return {"version": __version__, "model": self.element.model.name, "joint": joint}
 
 
 def _check(name: str, above: bool) -> str:
-    least, allowed = (">", "above 0") if above else (">=", "0 or more")
-    good = f"p->{name} {least} 0.0 && p->{name} < INFINITY"
-    return f'    if (!({good})) return "{name} must be finite and {allowed}";'
+    """Write the C statement that rejects a parameter outside its range."""
+    operator, allowed = (">", "above 0") if above else (">=", "0 or more")
+    condition = f"p->{name} {operator} 0.0 && p->{name} < INFINITY"
+    return f'    if (!({condition})) return "{name} must be finite and {allowed}";'
 
 
 def _curve(name: str, curve: CurveLaw) -> str:
-    """The numbers of a curve."""
+    """Write the coefficients of a curve as C arrays with their evaluation function."""
     pieces: Numbers = curve.pieces
     rows = ",\n".join("    " + ", ".join(map(c_number, row)) for row in pieces.tolist())
     ends = ", ".join(map(c_number, (curve.shallowest, curve.deepest, curve.first, curve.density)))
@@ -125,10 +237,10 @@ def _curve(name: str, curve: CurveLaw) -> str:
     )
 
 
-def _text(name: str) -> str:
+def _template(name: str) -> str:
     return (files(__package__) / "templates" / name).read_text(encoding="utf-8")
 
 
-def filled(template: str, **words: str) -> str:
-    """A text of this package with words put into it."""
-    return Template(_text(template)).substitute(words)
+def fill_template(template: str, **values: str) -> str:
+    """Fill a template of this package with values."""
+    return Template(_template(template)).substitute(values)

@@ -1,4 +1,4 @@
-"""A tape as statements of C."""
+"""C statements of a recorded tape."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from .recorder import BOOLEAN, CURVE_SLOPES, Part, Recorded
 
-_BETWEEN = {"&": "&&", "|": "||"}
+_C_OPERATORS = {"&": "&&", "|": "||"}
 
 
 def c_number(value: float) -> str:
-    """A number of C that is the same to the last digit."""
+    """Write a number in C without loss of digits."""
     if math.isnan(value):
         return "NAN"
     if math.isinf(value):
@@ -21,34 +21,34 @@ def c_number(value: float) -> str:
 
 
 def c_statements(targets: Mapping[str, Part]) -> str:
-    """The statements that calculate parts, and put each where its name says."""
-    steps = _needed(list(targets.values()))
-    lines = [line for step in steps for line in _lines(step)]
-    lines += [f"{name} = {_c(part)};" for name, part in targets.items()]
+    """Write the statements that compute each target and assign it to its C expression."""
+    steps = _required_steps(list(targets.values()))
+    lines = [line for step in steps for line in _statements(step)]
+    lines += [f"{name} = {_c_operand(part)};" for name, part in targets.items()]
     return "\n".join(f"    {line}" for line in lines)
 
 
-def _needed(parts: Sequence[Part]) -> list[Recorded]:
-    """The steps that parts depend on, in their order."""
-    found: dict[int, Recorded] = {}
-    waiting = list(parts)
-    while waiting:
-        part = waiting.pop()
-        if isinstance(part, Recorded) and part.number not in found:
-            found[part.number] = part
-            waiting.extend(part.parts)
-    return [found[number] for number in sorted(found)]
+def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
+    """Return the steps that some parts depend on, in the order of the tape."""
+    required: dict[int, Recorded] = {}
+    pending = list(parts)
+    while pending:
+        part = pending.pop()
+        if isinstance(part, Recorded) and part.number not in required:
+            required[part.number] = part
+            pending.extend(part.parts)
+    return [required[number] for number in sorted(required)]
 
 
-def _lines(step: Recorded) -> Iterator[str]:
+def _statements(step: Recorded) -> Iterator[str]:
     if step.step == "input":
         return
     if step.step == "curve":
-        yield f"double {_c(step)}[{CURVE_SLOPES}];"
-        yield f"{step.about}({_c(step.parts[0])}, {_c(step)});"
+        yield f"double {_c_operand(step)}[{CURVE_SLOPES}];"
+        yield f"{step.about}({_c_operand(step.parts[0])}, {_c_operand(step)});"
         return
     kind = "int" if step.step in BOOLEAN else "double"
-    yield f"const {kind} {_c(step)} = {_expression(step, [_c(part) for part in step.parts])};"
+    yield f"const {kind} {_c_operand(step)} = {_expression(step, [_c_operand(part) for part in step.parts])};"
 
 
 def _expression(step: Recorded, parts: list[str]) -> str:
@@ -61,11 +61,11 @@ def _expression(step: Recorded, parts: list[str]) -> str:
     if step.step == "not":
         return f"!{parts[0]}"
     if len(parts) == 2 and not step.step.isalnum():
-        return f"{parts[0]} {_BETWEEN.get(step.step, step.step)} {parts[1]}"
+        return f"{parts[0]} {_C_OPERATORS.get(step.step, step.step)} {parts[1]}"
     return f"{step.step}({', '.join(parts)})"
 
 
-def _c(part: Part) -> str:
+def _c_operand(part: Part) -> str:
     if not isinstance(part, Recorded):
         return c_number(part)
     return str(part.about) if part.step == "input" else f"t{part.number}"

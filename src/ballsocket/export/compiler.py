@@ -12,10 +12,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-_NAMES = ("cc", "gcc", "clang")
-_SHARED = ("-shared",) if sys.platform == "win32" else ("-fPIC", "-shared")
+_COMPILER_NAMES = ("cc", "gcc", "clang")
+_SHARED_LIBRARY_FLAGS = ("-shared",) if sys.platform == "win32" else ("-fPIC", "-shared")
 _SYSTEMS = {"linux": "linux", "darwin": "darwin", "win32": "windows"}
-_ENDINGS = {"windows": ".dll", "darwin": ".dylib"}
+_LIBRARY_ENDINGS = {"windows": ".dll", "darwin": ".dylib"}
 _PROCESSORS = {"amd64": "x86_64", "arm64": "aarch64", "i386": "x86", "i686": "x86"}
 _BITS = {"x86_64": 64, "aarch64": 64, "x86": 32}
 
@@ -44,7 +44,7 @@ class Platform:
 
     @property
     def library_ending(self) -> str:
-        return _ENDINGS.get(self.system, ".so")
+        return _LIBRARY_ENDINGS.get(self.system, ".so")
 
 
 def _this_platform() -> Platform:
@@ -64,25 +64,29 @@ _MACH_O_PROCESSORS: Mapping[int, str] = {0x01000007: "x86_64", 0x0100000C: "aarc
 
 
 class NoCompiler(RuntimeError):  # noqa: N818 - a sentence for people
-    """There is no compiler of C, or it does not do its work."""
+    """Missing or failing C compiler."""
 
 
 def compiler() -> list[str]:
-    """The command of the compiler: that of the environment's CC, or the first of cc, gcc and clang.
+    """Return the command of the C compiler: the variable CC, or the first of cc, gcc and clang.
 
     Raises
     ------
     NoCompiler
-        None of them is there.
+        No compiler is installed.
     """
-    chosen = _words("CC")
+    chosen = _arguments("CC")
     if chosen and shutil.which(chosen[0]):
         return chosen
-    found = next(filter(None, map(shutil.which, _NAMES)), None)
-    if chosen or found is None:
-        names = f"CC is {chosen[0]!r}, which is not there" if chosen else f"none of {', '.join(_NAMES)} is there"
-        raise NoCompiler(f"no compiler of C: {names}")
-    return [found]
+    installed = next(filter(None, map(shutil.which, _COMPILER_NAMES)), None)
+    if chosen or installed is None:
+        names = (
+            f"CC is {chosen[0]!r}, which is not installed"
+            if chosen
+            else f"none of {', '.join(_COMPILER_NAMES)} is installed"
+        )
+        raise NoCompiler(f"no C compiler: {names}")
+    return [installed]
 
 
 def compile_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Platform:
@@ -98,20 +102,31 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
     NoCompiler
         A missing compiler, a failed one (with its first error message), or an unknown output format.
     """
-    flags = _words("CFLAGS")
-    words = [*compiler(), "-std=c99", "-O2", *flags, *_SHARED, *options, *sources, "-o", str(library), "-lm"]
+    flags = _arguments("CFLAGS")
+    command = [
+        *compiler(),
+        "-std=c99",
+        "-O2",
+        *flags,
+        *_SHARED_LIBRARY_FLAGS,
+        *options,
+        *sources,
+        "-o",
+        str(library),
+        "-lm",
+    ]
     try:
-        finished = subprocess.run(words, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
+        finished = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise NoCompiler(f"the compiler {words[0]} could not be run: {error}") from error
+        raise NoCompiler(f"the compiler {command[0]} could not be run: {error}") from error
     if finished.returncode:
         lines = finished.stderr.splitlines() or ["it printed no message"]
         message = next((line for line in lines if "error" in line), lines[0])
-        raise NoCompiler(f"the compiler {words[0]} ended with {finished.returncode}: {message:.200}")
+        raise NoCompiler(f"the compiler {command[0]} ended with {finished.returncode}: {message:.200}")
     try:
         return library_platform((folder / library).read_bytes())
     except (OSError, ValueError) as error:
-        raise NoCompiler(f"the compiler {words[0]} wrote no usable library: {error}") from error
+        raise NoCompiler(f"the compiler {command[0]} wrote no usable library: {error}") from error
 
 
 def shared_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Path:
@@ -151,10 +166,10 @@ def library_platform(header: bytes) -> Platform:
     return Platform(system=system, processor=machines[machine])
 
 
-def _words(name: str) -> list[str]:
-    """A variable of the environment as the words of a command."""
+def _arguments(name: str) -> list[str]:
+    """Split an environment variable into the arguments of a command."""
     value = os.environ.get(name, "")
     try:
         return shlex.split(value)
     except ValueError as error:
-        raise NoCompiler(f"no compiler of C: {name} is {value!r:.60}, which is no command") from error
+        raise NoCompiler(f"no C compiler: {name} is {value!r:.60}, which is not a valid command") from error

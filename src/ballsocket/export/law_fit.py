@@ -1,4 +1,4 @@
-"""A law as other programs can take it: a power of the indentation, and one expression; with how far it is off."""
+"""Force laws fitted by a power of the indentation or by one expression, with their errors."""
 
 from __future__ import annotations
 
@@ -10,16 +10,24 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers
 from ..dynamics import ForceElement
-from .trusted import trusted_depth
+from .validity_depth import valid_depth
 
-_POINTS, _DEGREE = 400, 18
+_SAMPLES = 400
+"""Number of indentations of a fit."""
+
+_DEGREE = 18
+"""Degree of the fitted polynomial."""
+
 _NEGLIGIBLE_ERROR = 1e-6
-_FROM = 0.05  # of the depth: below, a law of touch-down is a power of its own
+"""Relative error of the force without a note."""
+
+_LOWEST_FITTED_SHARE = 0.05
+"""Smallest fitted indentation as a fraction of the depth."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PowerFit:
-    """F = k d^n, with the largest error over the largest force up to a depth.
+    """Power law F = k d^n, with its largest error relative to the force at the depth of the fit.
 
     Attributes
     ----------
@@ -38,27 +46,27 @@ class PowerFit:
 
 
 def power_fit(element: ForceElement, depth: float) -> PowerFit:
-    """The k and n that come nearest up to a depth: the smallest largest error, over the force there."""
-    d = depth * numpy.linspace(_FROM, 1.0, _POINTS)
+    """Fit F = k d^n up to a depth in mm; the largest error is minimal."""
+    d = depth * numpy.linspace(_LOWEST_FITTED_SHARE, 1.0, _SAMPLES)
     F = element.potential(d)[1]
-    exponent = _smallest(lambda n: _power(d, F, n)[1])
-    k, error = _power(d, F, exponent)
+    exponent = _minimum(lambda n: _best_stiffness(d, F, n)[1])
+    k, error = _best_stiffness(d, F, exponent)
     return PowerFit(stiffness=k, exponent=exponent, depth=depth, error=error / float(F[-1]))
 
 
-def _power(d: Numbers, F: Numbers, n: float) -> tuple[float, float]:
-    """The best k of an exponent, and its largest error in N."""
+def _best_stiffness(d: Numbers, F: Numbers, n: float) -> tuple[float, float]:
+    """Return the k of an exponent with the smallest largest error, and this error in N."""
     shape = (d / d[-1]) ** n
-    k = _smallest(lambda k: float(numpy.max(abs(k * shape - F))), 0.5 * float(F[-1]), 2.0 * float(F[-1]))
+    k = _minimum(lambda k: float(numpy.max(abs(k * shape - F))), 0.5 * float(F[-1]), 2.0 * float(F[-1]))
     return k / float(d[-1]) ** n, float(numpy.max(abs(k * shape - F)))
 
 
-def _smallest(of: Callable[[float], float], low: float = 0.5, high: float = 4.0) -> float:
-    """Where a function that falls and rises again is smallest, by golden section."""
-    share = (5.0**0.5 - 1.0) / 2.0
+def _minimum(function: Callable[[float], float], low: float = 0.5, high: float = 4.0) -> float:
+    """Find the minimum of a function with one minimum, by golden-section search."""
+    ratio = (5.0**0.5 - 1.0) / 2.0
     for _ in range(60):
-        left, right = high - share * (high - low), low + share * (high - low)
-        low, high = (low, right) if of(left) < of(right) else (left, high)
+        inner_low, inner_high = high - ratio * (high - low), low + ratio * (high - low)
+        low, high = (low, inner_high) if function(inner_low) < function(inner_high) else (inner_low, high)
     return (low + high) / 2.0
 
 
@@ -144,15 +152,15 @@ def _springs(d: Numbers, c: float) -> Numbers:
 def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
     """Fit one expression to a law, up to `depth` in mm or the valid depth of its model, whichever is more."""
     c, R2 = element.constants.clearance, element.constants.socket_radius
-    fitted_depth = max(depth, trusted_depth(element))
+    fitted_depth = max(depth, valid_depth(element))
     d = numpy.geomspace(1e-3 * fitted_depth, fitted_depth, 997)
     forces = element.potential(d)[1]
     ratio = forces / _springs(d, c)
-    words = {"clearance": 1e-3 * c, "depth": 1e-3 * fitted_depth}
+    lengths = {"clearance": 1e-3 * c, "depth": 1e-3 * fitted_depth}
     if c > 0.0 and numpy.ptp(ratio) < 1e-12 * ratio[0]:
-        fit = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **words)
+        fit = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **lengths)
     else:
-        fit = _fitted(element, fitted_depth, c or 1e-3 * R2, words)
+        fit = _fit_exponential(element, fitted_depth, c or 1e-3 * R2, lengths)
     deeper = numpy.linspace(fitted_depth, max(min(2.0 * fitted_depth, element.wall), fitted_depth), 100)
     return replace(fit, error=_largest_error(fit, element, d), error_beyond=_largest_error(fit, element, deeper))
 
@@ -163,8 +171,9 @@ def _largest_error(fit: ExpressionFit, element: ForceElement, d: Numbers) -> flo
     return float(numpy.nanmax(abs(fit(1e-3 * (element.constants.clearance + d)) / forces - 1.0)))
 
 
-def _fitted(element: ForceElement, depth: float, h: float, words: dict[str, float]) -> ExpressionFit:
-    t = numpy.linspace(0.0, 1.0, _POINTS + 1)[1:] * (depth / (depth + h)) ** 0.5
+def _fit_exponential(element: ForceElement, depth: float, h: float, lengths: dict[str, float]) -> ExpressionFit:
+    """Fit a power of the indentation times the exponential of a polynomial."""
+    t = numpy.linspace(0.0, 1.0, _SAMPLES + 1)[1:] * (depth / (depth + h)) ** 0.5
     d = h * t * t / (1.0 - t * t)
     _, force, stiffness = element.potential(d)
     power = round(2.0 * float(stiffness[0] * d[0] / force[0])) / 2.0
@@ -175,13 +184,13 @@ def _fitted(element: ForceElement, depth: float, h: float, words: dict[str, floa
         power=power,
         power_beyond=float(stiffness[-1] * d[-1] / force[-1]),
         coefficients=tuple(map(float, fit[1:])),
-        **words,
+        **lengths,
     )
 
 
 def depth_of(element: ForceElement, load: dict[str, float]) -> float:
-    """How deep a law is asked for: to a load, or without one as far as the model trusts itself; in mm."""
+    """Return the depth in mm that a fit covers: that of a load, else the largest valid one."""
     if load:
         model: Model = element.model
         return float(model.press(element.joint.with_floats(), **load).indentation)
-    return trusted_depth(element) or element.wall
+    return valid_depth(element) or element.wall

@@ -1,44 +1,52 @@
-"""Formulas written down while they are calculated: what a program in C is made of.
+"""Operator-overloading recorder: formulas evaluated on unknown numbers leave a tape of their steps.
 
-The formulas of this package run on anything that follows the array API standard. Here they run on numbers that are not
-known yet, and each step that they take is noted.
+The formulas of this package run on anything that follows the array API standard. Here they run on `Recorded` numbers,
+and the tape is written as C. `directional_derivatives` applies the chain rule to it.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
+
+from ..core.arrays import cos, sin, sqrt
 
 Part = Any
 """A `Recorded`, or a Python number."""
 
-BOOLEAN = frozenset(("<", "<=", ">", ">=", "==", "!=", "&", "|", "not", "isfinite"))
-_GENERAL = {">": True, ">=": True, "!=": True, "==": False, "<": False, "<=": False}
+Slope = Part | None
+"""Derivative of a part; None where the part is constant."""
 
+BOOLEAN = frozenset(("<", "<=", ">", ">=", "==", "!=", "&", "|", "not", "isfinite"))
+"""Steps whose result is true or false."""
+
+_GENERAL_TRUTH = {">": True, ">=": True, "!=": True, "==": False, "<": False, "<=": False}
+"""Results of comparisons of a tunable parameter with 0 in the general case."""
 
 CURVE_SLOPES = 4
-"""A curve gives its value and the next slopes."""
+"""Number of values that a curve returns: itself and its derivatives."""
 
 
 @dataclass(eq=False)
 class Tape:
-    """The steps of a calculation in their order; the same step is noted once."""
+    """Steps of a calculation in their order, each one recorded once."""
 
     steps: list[Recorded] = field(default_factory=list)
     _known: dict[tuple[Any, ...], Recorded] = field(default_factory=dict)
 
     def input(self, name: str, tunable: bool = False) -> Recorded:
-        """A number that is given later; of one that is `tunable` formulas may ask whether it is 0: it may be any."""
-        return self.note("input", (), name, tunable=tunable)
+        """Record an input; formulas may compare a `tunable` one with 0 and get the general case."""
+        return self.record("input", (), name, tunable=tunable)
 
     def curve(self, name: str, x: Recorded, slopes: int) -> tuple[Recorded, ...]:
-        """A curve's value and its slopes."""
-        looked_up = self.note("curve", (x,), name)
-        return tuple(self.note("slope", (looked_up,), order) for order in range(slopes))
+        """Record the evaluation of a curve: its value and its derivatives."""
+        looked_up = self.record("curve", (x,), name)
+        return tuple(self.record("slope", (looked_up,), order) for order in range(slopes))
 
-    def note(self, step: str, parts: tuple[Part, ...], about: Any = None, *, tunable: bool | None = None) -> Recorded:
+    def record(self, step: str, parts: tuple[Part, ...], about: Any = None, *, tunable: bool | None = None) -> Recorded:
+        """Return the step with these parts; record it if it is new."""
         key = (step, about, *((id(part) if isinstance(part, Recorded) else ("number", part)) for part in parts))
         if key not in self._known:
             if tunable is None:
@@ -50,7 +58,7 @@ class Tape:
 
 
 class Recorded:
-    """A number that is not known yet: a step of a tape, and the parts that it takes."""
+    """Unknown number: a step of a tape, and the parts that it operates on."""
 
     __slots__ = ("about", "number", "parts", "step", "tape", "tunable")
     dtype = "float64"
@@ -63,9 +71,9 @@ class Recorded:
         return _NAMESPACE
 
     def __bool__(self) -> bool:
-        if self.tunable and self.step in _GENERAL:
-            return _GENERAL[self.step]
-        raise TypeError("a formula that goes different ways for different states cannot be written down")
+        if self.tunable and self.step in _GENERAL_TRUTH:
+            return _GENERAL_TRUTH[self.step]
+        raise TypeError("data-dependent branches cannot be exported; use where()")
 
     def __hash__(self) -> int:
         return id(self)
@@ -73,75 +81,75 @@ class Recorded:
     def __pow__(self, exponent: float) -> Part:
         if exponent in (1, 2, 3):
             return math.prod([self] * (int(exponent) - 1), start=self)
-        return self.tape.note("pow", (self, float(exponent)))
+        return self.tape.record("pow", (self, float(exponent)))
 
     def __neg__(self) -> Recorded:
-        return self.tape.note("neg", (self,))
+        return self.tape.record("neg", (self,))
 
     def __abs__(self) -> Recorded:
-        return self.tape.note("fabs", (self,))
+        return self.tape.record("fabs", (self,))
 
-    def __add__(self, other: Part) -> Recorded:
-        return self.tape.note("+", (self, other))
+    def __add__(self, operand: Part) -> Recorded:
+        return self.tape.record("+", (self, operand))
 
-    def __radd__(self, other: Part) -> Recorded:
-        return self.tape.note("+", (other, self))
+    def __radd__(self, operand: Part) -> Recorded:
+        return self.tape.record("+", (operand, self))
 
-    def __sub__(self, other: Part) -> Recorded:
-        return self.tape.note("-", (self, other))
+    def __sub__(self, operand: Part) -> Recorded:
+        return self.tape.record("-", (self, operand))
 
-    def __rsub__(self, other: Part) -> Recorded:
-        return self.tape.note("-", (other, self))
+    def __rsub__(self, operand: Part) -> Recorded:
+        return self.tape.record("-", (operand, self))
 
-    def __mul__(self, other: Part) -> Recorded:
-        return self.tape.note("*", (self, other))
+    def __mul__(self, operand: Part) -> Recorded:
+        return self.tape.record("*", (self, operand))
 
-    def __rmul__(self, other: Part) -> Recorded:
-        return self.tape.note("*", (other, self))
+    def __rmul__(self, operand: Part) -> Recorded:
+        return self.tape.record("*", (operand, self))
 
-    def __truediv__(self, other: Part) -> Recorded:
-        return self.tape.note("/", (self, other))
+    def __truediv__(self, operand: Part) -> Recorded:
+        return self.tape.record("/", (self, operand))
 
-    def __rtruediv__(self, other: Part) -> Recorded:
-        return self.tape.note("/", (other, self))
+    def __rtruediv__(self, operand: Part) -> Recorded:
+        return self.tape.record("/", (operand, self))
 
-    def __lt__(self, other: Part) -> Recorded:
-        return self.tape.note("<", (self, other))
+    def __lt__(self, operand: Part) -> Recorded:
+        return self.tape.record("<", (self, operand))
 
-    def __le__(self, other: Part) -> Recorded:
-        return self.tape.note("<=", (self, other))
+    def __le__(self, operand: Part) -> Recorded:
+        return self.tape.record("<=", (self, operand))
 
-    def __gt__(self, other: Part) -> Recorded:
-        return self.tape.note(">", (self, other))
+    def __gt__(self, operand: Part) -> Recorded:
+        return self.tape.record(">", (self, operand))
 
-    def __ge__(self, other: Part) -> Recorded:
-        return self.tape.note(">=", (self, other))
+    def __ge__(self, operand: Part) -> Recorded:
+        return self.tape.record(">=", (self, operand))
 
-    def __eq__(self, other: Part) -> Recorded:  # type: ignore[override]
-        return self.tape.note("==", (self, other))
+    def __eq__(self, operand: Part) -> Recorded:  # type: ignore[override]
+        return self.tape.record("==", (self, operand))
 
-    def __ne__(self, other: Part) -> Recorded:  # type: ignore[override]
-        return self.tape.note("!=", (self, other))
+    def __ne__(self, operand: Part) -> Recorded:  # type: ignore[override]
+        return self.tape.record("!=", (self, operand))
 
-    def __and__(self, other: Part) -> Recorded:
-        return self.tape.note("&", (self, other))
+    def __and__(self, operand: Part) -> Recorded:
+        return self.tape.record("&", (self, operand))
 
-    def __or__(self, other: Part) -> Recorded:
-        return self.tape.note("|", (self, other))
+    def __or__(self, operand: Part) -> Recorded:
+        return self.tape.record("|", (self, operand))
 
-    def __xor__(self, other: bool) -> Recorded:
-        return self.tape.note("not", (self,)) if other else self
+    def __xor__(self, negate: bool) -> Recorded:
+        return self.tape.record("not", (self,)) if negate else self
 
 
-def where(condition: Part, this: Part, that: Part) -> Part:
-    """One of two parts."""
+def where(condition: Part, if_true: Part, if_false: Part) -> Part:
+    """Select one of two parts by a condition."""
     if isinstance(condition, bool):
-        return this if condition else that
-    return condition.tape.note("where", (condition, this, that))
+        return if_true if condition else if_false
+    return condition.tape.record("where", (condition, if_true, if_false))
 
 
 def _clip(x: Part, low: float, high: float) -> Part:
-    """Between two ends, either of which may be infinite; no number stays none."""
+    """Limit a part to an interval whose ends may be infinite; NaN stays NaN."""
     if low > -math.inf:
         x = where(x < low, low, x)
     return where(x > high, high, x) if high < math.inf else x
@@ -150,13 +158,13 @@ def _clip(x: Part, low: float, high: float) -> Part:
 def _function(name: str) -> Callable[..., Recorded]:
     def function(*parts: Part) -> Recorded:
         tape = next(part.tape for part in parts if isinstance(part, Recorded))
-        return tape.note(name, parts)
+        return tape.record(name, parts)
 
     return function
 
 
 class _Namespace:
-    """The functions of the array API that formulas ask for."""
+    """Functions of the array API that formulas use."""
 
     __name__ = "recorded"
     int8 = "int8"
@@ -175,6 +183,78 @@ class _Namespace:
 
 FUNCTIONS = {name: name for name in ("sqrt", "exp", "log", "log1p", "sin", "cos", "tan", "atan2")}
 FUNCTIONS |= {name: name for name in ("atan", "asin", "acos", "asinh", "tanh")} | {"abs": "fabs"}
-"""By their names in the array API: their names in C."""
+"""C names of functions by their names in the array API."""
 
 _NAMESPACE = _Namespace()
+
+
+def directional_derivatives(parts: Sequence[Part], direction: Mapping[Recorded, Part]) -> list[Part]:
+    """Record the derivatives of parts with respect to the inputs in a direction."""
+    slopes: dict[int, Slope] = {variable.number: rate for variable, rate in direction.items()}
+    recorded = [part for part in parts if isinstance(part, Recorded)]
+    for step in list(recorded[0].tape.steps) if recorded else ():
+        if step.number not in slopes:
+            slopes[step.number] = (
+                None if step.step in BOOLEAN else _chain_rule(step, [_slope_of(part, slopes) for part in step.parts])
+            )
+    return [0.0 if (slope := _slope_of(part, slopes)) is None else slope for part in parts]
+
+
+def _slope_of(part: Part, slopes: Mapping[int, Slope]) -> Slope:
+    return slopes[part.number] if isinstance(part, Recorded) else None
+
+
+def _chain_rule(step: Recorded, slopes: list[Slope]) -> Slope:
+    """Record the derivative of a step from those of its parts."""
+    if all(slope is None for slope in slopes):
+        return None
+    if step.step == "where":
+        if_true, if_false = (0.0 if slope is None else slope for slope in slopes[1:])
+        return None if slopes[1] is None and slopes[2] is None else where(step.parts[0], if_true, if_false)
+    if step.step == "curve":
+        return slopes[0]
+    if step.step == "slope":
+        return step.tape.record("slope", step.parts, step.about + 1) * slopes[0]
+    total: Slope = None
+    for rate, slope in zip(_PARTIAL_DERIVATIVES[step.step](step, *step.parts), slopes, strict=True):
+        total = total if slope is None else _sum(total, _product(rate, slope))
+    return total
+
+
+def _sum(total: Slope, term: Part) -> Part:
+    return term if total is None else total + term
+
+
+def _product(rate: Part, slope: Part) -> Part:
+    if not isinstance(rate, Recorded) and abs(rate) == 1.0:
+        return slope if rate > 0 else -slope
+    return rate * slope
+
+
+def _inverse_root(a: Part) -> Part:
+    # formulas clip their arguments at the ends, where the slope of the clipped formula is 0
+    return where(a * a < 1.0, 1.0 / sqrt(1.0 - a * a), 0.0)
+
+
+_PARTIAL_DERIVATIVES: Mapping[str, Callable[..., tuple[Part, ...]]] = {
+    "+": lambda y, a, b: (1.0, 1.0),
+    "-": lambda y, a, b: (1.0, -1.0),
+    "*": lambda y, a, b: (b, a),
+    "/": lambda y, a, b: (1.0 / b, -y / b),
+    "neg": lambda y, a: (-1.0,),
+    "fabs": lambda y, a: (where(a < 0.0, -1.0, 1.0),),
+    "pow": lambda y, a, n: (n * y / a, 0.0),
+    "sqrt": lambda y, a: (0.5 / y,),
+    "exp": lambda y, a: (y,),
+    "log": lambda y, a: (1.0 / a,),
+    "log1p": lambda y, a: (1.0 / (1.0 + a),),
+    "sin": lambda y, a: (cos(a),),
+    "cos": lambda y, a: (-sin(a),),
+    "tan": lambda y, a: (1.0 + y * y,),
+    "tanh": lambda y, a: (1.0 - y * y,),
+    "atan": lambda y, a: (1.0 / (1.0 + a * a),),
+    "asin": lambda y, a: (_inverse_root(a),),
+    "acos": lambda y, a: (-_inverse_root(a),),
+    "asinh": lambda y, a: (1.0 / sqrt(1.0 + a * a),),
+    "atan2": lambda y, a, b: (b / (a * a + b * b), -a / (a * a + b * b)),
+}

@@ -1,172 +1,82 @@
-"""The programs that a joint can be exported to, and the files that each of them is given."""
+"""Programs that a joint can be exported to, and the files written for each of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..core.storage.atomic import write_text
-from ..dynamics import ForceElement, Touch
-from ..dynamics.reaction import Constants
+import numpy
+
+from ..dynamics import ForceElement
 from ..version import __version__
-from .c_element import CElement, filled
+from .c_element import fill_template
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
-from .law_fit import ExpressionFit, PowerFit, expression_fit, power_fit
-from .tables import law_table, power_words
+from .law_fit import PowerFit
+from .target import FEATURES, ExportJob, Target, Texts
 from .tunable import TUNABLES
 
-Texts = Mapping[str, str]
+_LINE_OF_CENTRES = tuple(name for name in FEATURES if name != "damping")
+"""Features that one force along the line of centres cannot represent."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Job:
-    """What is exported: an element, the name of its files, and up to what indentation (mm) a fit is to be good."""
-
-    element: ForceElement
-    name: str
-    depth: float
-
-    @cached_property
-    def program(self) -> CElement:
-        return CElement(element=self.element, name=self.name)
-
-    @cached_property
-    def power(self) -> PowerFit:
-        return power_fit(self.element, self.depth)
-
-    @cached_property
-    def expression(self) -> ExpressionFit:
-        return expression_fit(self.element, self.depth)
-
-    @property
-    def words(self) -> dict[str, str]:
-        """What the texts are filled with."""
-        return {
-            **self.program.about,
-            "name": self.name,
-            "NAME": self.name.upper(),
-            "library": f"_{self.name}{LIBRARY_ENDING}",
-            "plugin": f"_{self.name}_plugin{LIBRARY_ENDING}",
-            "parameters": str(len(TUNABLES)),
-            "units": ", ".join(repr(each.si) for each in TUNABLES),
-            "tunables": ", ".join(each.name for each in TUNABLES),
-            "failed": str(Touch.THROUGH_WALL.value),
-        }
-
-    def program_texts(self) -> dict[str, str]:
-        return {f"{self.name}.h": self.program.header, f"{self.name}.c": self.program.source}
+def _module(job: ExportJob) -> dict[str, str]:
+    return {**job.program_texts(), f"{job.name}.py": fill_template("module.py.txt", **job.template_context)}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Target:
-    """Program that joints are exported to.
-
-    Attributes
-    ----------
-    name, title : str
-    texts : function
-        The files of a job, by name.
-    compiled : function
-        Compiles the libraries of the program into a folder; returns a note on missing ones.
-    note : function
-        Note on the accuracy of a job's files; empty without one.
-    without : tuple of str
-        Features that the program cannot represent, by the names of `_LOSSES`.
-    """
-
-    name: str
-    title: str
-    texts: Callable[[Job], Texts]
-    compiled: Callable[[Job, Path], str] = lambda job, folder: ""
-    note: Callable[[Job], str] = lambda job: ""
-    without: tuple[str, ...] = ()
-
-    def write(self, job: Job, folder: Path) -> tuple[list[Path], str]:
-        """Write the files into a folder; return their paths and notes on missing or limited features.
-
-        Raises
-        ------
-        OSError
-            A folder that cannot be made, or written to.
-        """
-        folder.mkdir(parents=True, exist_ok=True)
-        paths = []
-        for name, text in self.texts(job).items():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            paths.append(write_text(folder / name, text))
-        return paths, "; ".join(filter(None, (self.compiled(job, folder), self._left_out(job), self.note(job))))
-
-    def _left_out(self, job: Job) -> str:
-        lost = [name for name in self.without if _LOSSES[name](job.element.constants)]
-        return f"{self.name} has no words for {' and '.join(lost)}: left out" if lost else ""
-
-
-_LOSSES: Mapping[str, Callable[[Constants], bool]] = {
-    "friction": lambda given: given.static + given.viscous > 0.0,
-    "damping": lambda given: given.hysteresis > 0.0,
-    "a liner that takes its time": lambda given: given.time > 0.0,
-    "the cup's rim": lambda given: given.rim > 0.0,
-    "a smooth touch-down": lambda given: given.smoothing > 0.0,
-}
-_LINE_OF_CENTRES = tuple(name for name in _LOSSES if name != "damping")
-
-
-def _module(job: Job) -> dict[str, str]:
-    return {**job.program_texts(), f"{job.name}.py": filled("module.py.txt", **job.words)}
-
-
-def _library(job: Job, folder: Path) -> str:
-    """The library that the module in Python loads."""
+def _library(job: ExportJob, folder: Path) -> str:
+    """Compile the library that the Python module loads; return a note if that fails."""
     try:
-        shared_library([f"{job.name}.c"], Path(job.words["library"]), folder)
-    except NoCompiler as missing:
-        return f"{missing}; the sources are there, and compiled where they are first used"
+        shared_library([f"{job.name}.c"], Path(job.template_context["library"]), folder)
+    except NoCompiler as error:
+        return f"{error}; the sources are written and will be compiled at first use"
     return ""
 
 
-def _opensim(job: Job) -> Texts:
+def _opensim(job: ExportJob) -> Texts:
     fit, element = job.expression, job.element
-    near = fit.range_note or f"within {100 * fit.error:.1g} % of the law"
-    lost = element.damping.hysteresis if element.damping else 0.0
-    expression = fit.text("d", "ddot", 1e3 * lost)
+    accuracy = fit.range_note or f"within {100 * fit.error:.1g} % of the law"
+    hysteresis = element.damping.hysteresis if element.damping else 0.0
+    expression = fit.text("d", "ddot", 1e3 * hysteresis)
     ball = repr(0.4 * (1e-3 * element.constants.ball_radius) ** 2)
-    return {f"{job.name}.osim": filled("opensim.osim", expression=expression, nearness=near, inertia=ball, **job.words)}
-
-
-def _mujoco(job: Job) -> Texts:
-    radius = repr(1e-3 * job.element.constants.ball_radius)
     return {
-        **_module(job),
-        f"{job.name}_mujoco.c": filled("mujoco.c", **job.words),
-        f"{job.name}_mujoco.py": filled("mujoco.py.txt", **job.words),
-        f"{job.name}.xml": filled("mujoco.xml", ball_radius=radius, **job.words),
+        f"{job.name}.osim": fill_template(
+            "opensim.osim", expression=expression, nearness=accuracy, inertia=ball, **job.template_context
+        )
     }
 
 
-def _plugin(job: Job, folder: Path) -> str:
-    """The library, and the plug-in where MuJoCo is there to compile it with."""
-    missing, found = _library(job, folder), find_spec("mujoco")
-    if missing or found is None or not found.submodule_search_locations:
-        return missing or "mujoco is not installed, whose headers the plug-in needs; its source is there"
-    room = Path(found.submodule_search_locations[0])
-    linked = next(iter(sorted(room.glob(f"libmujoco*{LIBRARY_ENDING}*"))), None)
+def _mujoco(job: ExportJob) -> Texts:
+    radius = repr(1e-3 * job.element.constants.ball_radius)
+    return {
+        **_module(job),
+        f"{job.name}_mujoco.c": fill_template("mujoco.c", **job.template_context),
+        f"{job.name}_mujoco.py": fill_template("mujoco.py.txt", **job.template_context),
+        f"{job.name}.xml": fill_template("mujoco.xml", ball_radius=radius, **job.template_context),
+    }
+
+
+def _plugin(job: ExportJob, folder: Path) -> str:
+    """Compile the library, and the plug-in if MuJoCo is installed; return a note if one is missing."""
+    missing, mujoco = _library(job, folder), find_spec("mujoco")
+    if missing or mujoco is None or not mujoco.submodule_search_locations:
+        return missing or "the plug-in is not compiled: mujoco, whose headers it needs, is not installed"
+    package = Path(mujoco.submodule_search_locations[0])
+    linked = next(iter(sorted(package.glob(f"libmujoco*{LIBRARY_ENDING}*"))), None)
     sources = [f"{job.name}.c", f"{job.name}_mujoco.c", *([str(linked)] if linked else [])]
-    options = ("-isystem", str(room / "include"), f"-Wl,-rpath,{room}")
+    options = ("-isystem", str(package / "include"), f"-Wl,-rpath,{package}")
     try:
-        shared_library(sources, Path(job.words["plugin"]), folder, options)
+        shared_library(sources, Path(job.template_context["plugin"]), folder, options)
     except NoCompiler as error:
-        return f"{error}; the source of the plug-in is there"
+        return f"{error}; the plug-in is not compiled, its source is written"
     return ""
 
 
-def _drake(job: Job) -> Texts:
-    return {**_module(job), f"{job.name}_drake.py": filled("drake.py.txt", **job.words)}
+def _drake(job: ExportJob) -> Texts:
+    return {**_module(job), f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context)}
 
 
-def _exudyn(job: Job) -> Texts:
+def _exudyn(job: ExportJob) -> Texts:
     power, constants = job.power, job.element.constants
     fit = {
         "stiffness": repr(power.stiffness * 1e3**power.exponent),
@@ -176,37 +86,72 @@ def _exudyn(job: Job) -> Texts:
         "ball_radius": repr(1e-3 * constants.ball_radius),
         "socket_radius": repr(1e-3 * constants.socket_radius),
     }
-    return {**_module(job), f"{job.name}_exudyn.py": filled("exudyn.py.txt", **fit, **job.words)}
+    return {**_module(job), f"{job.name}_exudyn.py": fill_template("exudyn.py.txt", **fit, **job.template_context)}
 
 
-def _modelica(job: Job) -> Texts:
+def _modelica(job: ExportJob) -> Texts:
     constants = job.element.constants
-    declared = "\n".join(
-        f'    parameter Real {each.name}(unit="{each.si_unit}", min=0) = {start * each.si!r} "{each.meaning}";'
-        for each in TUNABLES
-        for start in (getattr(constants, each.constant),)
+    declarations = "\n".join(
+        f'    parameter Real {number.name}(unit="{number.si_unit}", min=0) = {start * number.si!r} "{number.meaning}";'
+        for number in TUNABLES
+        for start in (getattr(constants, number.constant),)
     )
-    copied = "\n".join(f"    p.{each.name} = own[{number}];" for number, each in enumerate(TUNABLES))
-    names = ", ".join(each.name for each in TUNABLES)
-    include = f"{job.name}/Resources/Include"
+    copies = "\n".join(f"    p.{parameter.name} = own[{index}];" for index, parameter in enumerate(TUNABLES))
+    names = ", ".join(parameter.name for parameter in TUNABLES)
+    include, context = f"{job.name}/Resources/Include", job.template_context
     return {
-        f"{job.name}/package.mo": filled("modelica.mo", declared=declared, names=names, **job.words),
-        f"{include}/{job.name}_modelica.c": filled("modelica.c", copied=copied, **job.words),
+        f"{job.name}/package.mo": fill_template(
+            "modelica.mo", declared=declarations, names=names, **job.template_context
+        ),
+        f"{include}/{job.name}_modelica.c": fill_template("modelica.c", copied=copies, **context),
         **{f"{include}/{name}": text for name, text in job.program_texts().items()},
     }
 
 
-def _table(job: Job) -> Texts:
+def _table(job: ExportJob) -> Texts:
     return {
-        f"{job.name}_law.csv": law_table(job.element, job.depth),
-        f"{job.name}_power.txt": power_words(job.element, job.power, __version__),
+        f"{job.name}_law.csv": _law_table(job.element, job.depth),
+        f"{job.name}_power.txt": _power_law(job.element, job.power, __version__),
     }
+
+
+_TABLE_ROWS = 201
+"""Number of indentations in a table of the law."""
+
+_COLUMNS = ("indentation_mm", "force_N", "stiffness_N/mm", "energy_N_mm", "half_angle_deg", "max_pressure_MPa")
+
+
+def _law_table(element: ForceElement, depth: float) -> str:
+    """Write the law up to a depth in mm as CSV."""
+    d = numpy.linspace(0.0, depth, _TABLE_ROWS)
+    energy, force, stiffness = element.potential(d)
+    angle = numpy.degrees(element.half_angle(d))
+    columns = (d, force, stiffness, energy, angle, element.max_pressure(d))
+    rows = numpy.stack(columns, axis=1).tolist()
+    return "\n".join([",".join(_COLUMNS), *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
+
+
+def _power_law(element: ForceElement, fit: PowerFit, version: str) -> str:
+    """Write k and n, their error, and the expressions for Adams, MotionSolve and Simpack; in mm, N, s."""
+    c, k, n = element.constants.clearance, fit.stiffness, fit.exponent
+    return f"""# F = k d^n of a ball in a socket, in mm, N and s; written by ballsocket {version}
+# {element.model.name}: error up to {fit.depth:.4g} mm at most {100 * fit.error:.2g} % of the force at that depth
+k = {k!r}
+n = {n!r}
+clearance = {c!r}
+
+# Adams and MotionSolve: a force along the line of centres of two markers, ball on socket; mm, N
+-{k!r} * MAX(DM(ball, socket) - {c!r}, 0)**{n!r}
+
+# Simpack: an expression, x the distance of the markers
+-{k!r} * MAX(x - {c!r}, 0)^{n!r}
+"""
 
 
 TARGETS: Mapping[str, Target] = {
     target.name: target
     for target in (
-        Target(name="c", title="sources of C99 that need no library", texts=Job.program_texts),
+        Target(name="c", title="C99 sources without other libraries", texts=ExportJob.program_texts),
         Target(
             name="opensim",
             title="an expression force in an .osim file",
@@ -214,16 +159,16 @@ TARGETS: Mapping[str, Target] = {
             note=lambda job: job.expression.range_note,
             without=_LINE_OF_CENTRES,
         ),
-        Target(name="mujoco", title="a passive plug-in, and a callback", texts=_mujoco, compiled=_plugin),
+        Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco, compiled=_plugin),
         Target(name="drake", title="a LeafSystem", texts=_drake, compiled=_library),
-        Target(name="exudyn", title="a user function, and its hollow sphere", texts=_exudyn, compiled=_library),
+        Target(name="exudyn", title="a user function and its hollow sphere", texts=_exudyn, compiled=_library),
         Target(name="modelica", title="a package around the law in C", texts=_modelica),
         Target(
             name="table",
-            title="a table, and k and n for Adams, MotionSolve, Simpack",
+            title="a table, and k and n for Adams, MotionSolve and Simpack",
             texts=_table,
-            without=tuple(_LOSSES),
+            without=tuple(FEATURES),
         ),
     )
 }
-"""All of them, by name."""
+"""Targets of `ballsocket export` by name; a target in another module gets one line here."""

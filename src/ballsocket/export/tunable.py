@@ -1,4 +1,4 @@
-"""What can be tuned in an element that has left Python: what it loses."""
+"""Parameters of damping and friction that stay adjustable in exported elements."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Tunable:
-    """A parameter of the exported element.
+    """Adjustable parameter of an exported element.
 
     Attributes
     ----------
     name : str
     constant : str
-        What it is called among the `Constants` of a `ForceElement`.
+        Field of the `Constants` of a `ForceElement`.
     unit, si_unit : str
-        Of the package, and of the International System.
+        Unit in this package and in the International System.
     si : float
-        One of the unit in that of the International System.
+        Size of `unit` in `si_unit`.
     meaning : str
     above : bool
-        Whether it must be above 0; else 0 or more.
+        True for a parameter above 0; false for 0 or more.
     """
 
     name: str
@@ -39,7 +39,7 @@ TUNABLES = (
         unit="s/mm",
         si_unit="s/m",
         si=1e3,
-        meaning="damping of the contact over its force and speed",
+        meaning="damping force per contact force and speed",
     ),
     Tunable(
         name="retardation_time",
@@ -47,7 +47,7 @@ TUNABLES = (
         unit="s",
         si_unit="s",
         si=1.0,
-        meaning="time of retardation of the liner",
+        meaning="retardation time of the liner",
     ),
     Tunable(
         name="friction_coefficient",
@@ -63,7 +63,7 @@ TUNABLES = (
         unit="1",
         si_unit="1",
         si=1.0,
-        meaning="coefficient of friction of a ball that hardly moves; that of sliding where it is less",
+        meaning="static coefficient of friction, at least that of sliding",
     ),
     Tunable(
         name="transition_speed",
@@ -71,7 +71,7 @@ TUNABLES = (
         unit="mm/s",
         si_unit="m/s",
         si=1e-3,
-        meaning="slip at which friction has 71 % of its size",
+        meaning="slip speed at which friction reaches 71 %",
         above=True,
     ),
     Tunable(
@@ -80,7 +80,7 @@ TUNABLES = (
         unit="mm/s",
         si_unit="m/s",
         si=1e-3,
-        meaning="slip over which static friction goes over into sliding",
+        meaning="slip speed of the transition from static to sliding friction",
         above=True,
     ),
     Tunable(
@@ -89,7 +89,7 @@ TUNABLES = (
         unit="s/mm",
         si_unit="s/m",
         si=1e3,
-        meaning="friction that is added per speed, over the force",
+        meaning="viscous friction per contact force and speed",
     ),
 )
-"""All of them."""
+"""Adjustable parameters of every exported element, in the order of the C structure."""

@@ -10,14 +10,13 @@ import scipy.fft
 
 from ..core.arrays import Numbers
 from ..elasticity.finite_elements.shapes import socket_shape
-from ..elasticity.off_axis.compliance import Compliance, compliance_on
-from ..elasticity.off_axis.directions import sized
-from ..elasticity.off_axis.edges import Edges
-from ..elasticity.off_axis.gap import Separation, sunk
+from ..elasticity.off_axis.bore_contact import BoreContact
+from ..elasticity.off_axis.bore_contact import EquilibriumBatch as BedRest
+from ..elasticity.off_axis.compliance import Compliance, make_compliance
+from ..elasticity.off_axis.directions import magnitudes_and_directions
+from ..elasticity.off_axis.gap import GapField, initial_displacement
 from ..elasticity.off_axis.grid import Grid, even_grid
-from ..elasticity.off_axis.search import Bed
-from ..elasticity.off_axis.search import Rest as BedRest
-from ..elasticity.off_axis.surfaces import ClosedShell, RealCup
+from ..elasticity.off_axis.surfaces import ClosedShell, EdgeRelation, RealCup
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..problem.gaps import LinearGap
@@ -133,14 +132,14 @@ class ElasticFoundation:
     compliance : Compliance
     clearance, socket_radius : float
         Lengths in mm.
-    edges : Edges
+    edges : EdgeRelation
         Relation of pressure and gap at the edge of a contact.
     """
 
     compliance: Compliance
     clearance: float
     socket_radius: float
-    edges: Edges
+    edges: EdgeRelation
 
     @property
     def grid(self) -> Grid:
@@ -224,14 +223,14 @@ class ElasticFoundation:
         """
         levels = uninterpolated(loads) if lateral_stiffness.any() else interpolate_loads(loads)
         shape = (len(levels.loads), self.grid.rings, self.grid.meridians)
-        separation = Separation(
+        separation = GapField(
             grid=self.grid,
             clearance=self.clearance,
             socket_radius=self.socket_radius,
             depth=depth.reshape(shape[1:]),
             kind=LinearGap,
         )
-        bed = Bed(compliance=self.compliance, separation=separation, tether=lateral_stiffness)
+        bed = BoreContact(compliance=self.compliance, separation=separation, tether=lateral_stiffness)
         solved = self._solve_levels(bed, levels, depth, start)
         flat = solved.pressure.reshape(shape[0], -1)
         return CycleEquilibrium(
@@ -242,10 +241,13 @@ class ElasticFoundation:
         )
 
     def _solve_levels(
-        self, bed: Bed, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
+        self, bed: BoreContact, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
     ) -> BedRest:
         """Solve the load levels from the previous equilibrium; others start again from a deeper displacement."""
-        count, deep = len(levels.loads), sunk(self, self.compliance.evenly, depth, *sized(levels.loads))
+        count, deep = (
+            len(levels.loads),
+            initial_displacement(self, self.compliance.evenly, depth, *magnitudes_and_directions(levels.loads)),
+        )
         previous = None if start is None else start.levels
         begin, pressure = previous if previous is not None and len(previous[0]) == count else (deep, None)
         solved = bed.under(levels.loads, begin, numpy.ones(count, dtype=bool), pressure)
@@ -264,7 +266,7 @@ def elastic_foundation(surface: RealCup | ClosedShell, joint: Joint, cup: Cup, w
     """Create the foundation of a joint in rings of one width (rad); the last four are cached."""
     cells = even_grid(socket_shape(joint, cup).reach, width)
     return ElasticFoundation(
-        compliance=compliance_on(surface, joint, cup, cells),
+        compliance=make_compliance(surface, joint, cup, cells),
         clearance=float(joint.clearance),
         socket_radius=float(joint.socket_radius),
         edges=surface.edges(joint, cup, cells),

@@ -15,7 +15,7 @@ from ..core.checks import require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.validity import check_domain
 from ..elasticity.finite_elements.shapes import socket_shape
-from ..elasticity.off_axis.grid import Grid, even_grid, grid
+from ..elasticity.off_axis.grid import Grid, even_grid, graded_grid
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..models.foundation import RadialFoundation
@@ -138,7 +138,11 @@ class HipSetup(CupFrame):
     def grid(self) -> Grid:
         """Grid of the bore."""
         reach = socket_shape(self.joint, self.cup).reach
-        return grid(reach, self.ring_width) if isinstance(self.surface, Springs) else even_grid(reach, self.ring_width)
+        return (
+            graded_grid(reach, self.ring_width)
+            if isinstance(self.surface, Springs)
+            else even_grid(reach, self.ring_width)
+        )
 
     @cached_property
     def foundation(self) -> SocketFoundation:

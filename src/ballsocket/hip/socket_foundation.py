@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy
 
 from ..core.arrays import Numbers
-from ..elasticity.off_axis.directions import sized
-from ..elasticity.off_axis.gap import sunk
+from ..elasticity.off_axis.directions import magnitudes_and_directions
+from ..elasticity.off_axis.gap import initial_displacement
 from ..elasticity.off_axis.grid import Grid
 
 _MAX_ITERATIONS = 60
@@ -231,7 +231,11 @@ class SpringFoundation:
         lateral_stiffness : array (3, 3)
             Stiffness (N/mm) of a spring that unloads the ball as it moves.
         """
-        e = sunk(self, self.modulus, depth, *sized(loads)) if start is None else start.displacement
+        e = (
+            initial_displacement(self, self.modulus, depth, *magnitudes_and_directions(loads))
+            if start is None
+            else start.displacement
+        )
         allowed = FORCE_TOLERANCE * numpy.linalg.norm(loads, axis=1)
         error = numpy.inf
         for _ in range(_MAX_ITERATIONS):

@@ -1,4 +1,4 @@
-"""How a cup may stand: every orientation is the press of a cup that stands so."""
+"""Orientations of a cup: each one equals the press of a cup in that orientation."""
 
 import json
 from dataclasses import replace
@@ -18,57 +18,60 @@ INCLINATION, ANTEVERSION = np.radians([20.0, 45.0, 85.0]), np.radians([-10.0, 30
 
 
 @pytest.fixture(scope="module")
-def stood():
+def oriented():
     return bs.orient(HIP, model=SPHERE, force=1500.0, inclination=INCLINATION, anteversion=ANTEVERSION)
 
 
-def words(figure):
+def legend(figure):
     return [text.get_text() for text in figure.legends[0].get_texts()] if figure.legends else []
 
 
-def test_an_orientation_is_the_press_of_a_cup_that_stands_so(stood):
+def test_orientation_equals_the_press_of_a_cup_in_it(oriented):
     for i, inclination in enumerate(INCLINATION[:2]):
         for j, anteversion in enumerate(ANTEVERSION):
             cup = replace(CUP, inclination=inclination, anteversion=anteversion)
             alone = replace(SPHERE, cup=cup).press(HIP, force=1500.0)
             for name in ("edge_distance", "max_pressure", "half_angle", "tilt"):
-                assert getattr(stood, name)[i, j] == pytest.approx(getattr(alone, name), rel=1e-4, abs=1e-4)
-            assert stood.contacts[i].force_vector[j] == pytest.approx(alone.force_vector, abs=0.01)
+                assert getattr(oriented, name)[i, j] == pytest.approx(getattr(alone, name), rel=1e-4, abs=1e-4)
+            assert oriented.contacts[i].force_vector[j] == pytest.approx(alone.force_vector, abs=0.01)
 
 
-def test_the_mirrored_load_on_the_other_side_is_the_same(stood):
+def test_mirrored_load_on_the_other_side_gives_the_same_contact(oriented):
     right = replace(SPHERE, cup=replace(CUP, side=bs.Side.RIGHT), direction=(-0.3, 0.1, 1.0))
     mirrored = bs.orient(HIP, model=right, force=1500.0, inclination=INCLINATION[:1], anteversion=ANTEVERSION)
-    assert mirrored.edge_distance == pytest.approx(stood.edge_distance[:1], abs=0.05)  # cells are not quite mirrored
-    assert mirrored.max_pressure == pytest.approx(stood.max_pressure[:1], rel=2e-3)
+    assert mirrored.edge_distance == pytest.approx(oriented.edge_distance[:1], abs=0.05)  # cells are not quite mirrored
+    assert mirrored.max_pressure == pytest.approx(oriented.max_pressure[:1], rel=2e-3)
 
 
-def test_a_cup_that_does_not_hold_its_ball_has_a_status_and_no_number(stood):
-    assert stood.status[-1].tolist() == [int(bs.Status.DISLOCATED)] * 2
-    assert stood.held.tolist() == [[True, True], [True, True], [False, False]]
-    assert np.isnan(stood.edge_distance[-1]).all()
-    assert stood.best(stood.edge_distance)[:2] == (INCLINATION[0], ANTEVERSION[0])
-    said = json.loads(json.dumps(stood.summary(), allow_nan=False))
-    assert said["status"][-1] == ["DISLOCATED", "DISLOCATED"]
-    assert said["edge_loaded"][-1] == [None, None]
-    assert said["edge_loaded"][0] == [False, True]
-    assert said["inclination_deg"] == pytest.approx([20, 45, 85])
+def test_orientation_that_does_not_hold_the_ball_has_a_status_and_nan(oriented):
+    assert oriented.status[-1].tolist() == [int(bs.Status.DISLOCATED)] * 2
+    assert oriented.held.tolist() == [[True, True], [True, True], [False, False]]
+    assert np.isnan(oriented.edge_distance[-1]).all()
+    assert oriented.best(oriented.edge_distance)[:2] == (INCLINATION[0], ANTEVERSION[0])
+    summary = json.loads(json.dumps(oriented.summary(), allow_nan=False))
+    assert summary["status"][-1] == ["DISLOCATED", "DISLOCATED"]
+    assert summary["edge_loaded"][-1] == [None, None]
+    assert summary["edge_loaded"][0] == [False, True]
+    assert summary["inclination_deg"] == pytest.approx([20, 45, 85])
 
 
-def test_the_map_is_hatched_where_there_is_no_number(stood):
-    assert "the load leaves the bore" in words(orientation_figure(stood))
+def test_map_is_hatched_without_a_number(oriented):
+    assert "the load leaves the bore" in legend(orientation_figure(oriented))
     held = bs.orient(HIP, model=SPHERE, force=1500.0, inclination=[0.2, 0.4], anteversion=[0.0, 0.1])
-    assert words(orientation_figure(held)) == []
+    assert legend(orientation_figure(held)) == []
     dug = replace(SPHERE, cup=replace(CUP, chamfer=1.0))
     over = bs.orient(HIP, model=dug, force=1500.0, inclination=[0.2, 1.1], anteversion=[0.0, 0.1])
     assert np.isposinf(over.max_pressure[1]).all()
     assert np.isfinite(over.max_pressure[0]).all()
-    assert words(orientation_figure(over)) == ["the contact reaches the rim", "the rim digs in: unbounded pressure"]
+    assert legend(orientation_figure(over)) == [
+        "the contact reaches the rim",
+        "the rim digs in: unbounded pressure",
+    ]
     with pytest.raises(ValueError, match="two values of each angle, got 1 x 2"):
         orientation_figure(bs.orient(HIP, model=SPHERE, force=1500.0, inclination=0.2, anteversion=[0.0, 0.1]))
 
 
-def test_a_map_shows_its_fields_and_the_cup_that_was_given():
+def test_map_shows_its_fields_and_the_original_cup():
     cup = replace(CUP, inclination=0.7, anteversion=0.1)
     model = replace(SPHERE, cup=cup)
     angles = {"inclination": np.linspace(0.5, 0.9, 3), "anteversion": np.linspace(0.0, 0.3, 3)}
@@ -81,24 +84,27 @@ def test_a_map_shows_its_fields_and_the_cup_that_was_given():
 
 
 @pytest.mark.parametrize(("angles", "count"), [({}, 0), ({"inclination": 0.0}, 1), ({"anteversion": 0.1}, 1)])
-def test_a_map_marks_an_orientation_of_zero_and_none_that_is_not_set(angles, count):
+def test_map_marks_a_stated_orientation_also_at_zero(angles, count):
     model = replace(SPHERE, cup=replace(CUP, **angles))
-    stood = bs.orient(HIP, model=model, force=1500.0, inclination=[0.0, 0.2], anteversion=[0.0, 0.2])
-    axes = orientation_figure(stood).axes[0]
+    oriented = bs.orient(HIP, model=model, force=1500.0, inclination=[0.0, 0.2], anteversion=[0.0, 0.2])
+    axes = orientation_figure(oriented).axes[0]
     assert sum(line.get_label() == "this cup" for line in axes.lines) == count
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("change", "message"),
     [
         ({"inclination": [45.0]}, r"inclination\[0\] = 45 is not allowed"),
-        ({"anteversion": [[0.1, 0.2]]}, "a row of angles is needed"),
-        ({"model": replace(SPHERE, direction=[(0, 0, 1), (0, 1, 1)])}, "one direction of load"),
+        ({"anteversion": [[0.1, 0.2]]}, "give a row of angles"),
+        (
+            {"model": replace(SPHERE, direction=[(0, 0, 1), (0, 1, 1)])},
+            "directions of the model = 2 .* give one direction",
+        ),
         ({"force": -1.0}, "force = -1"),
         ({"anteversion": [0.2, 0.1]}, "angles .rad. rise"),
     ],
 )
-def test_what_no_cup_can_be_is_refused(wrong, said):
-    given = {"force": 1500.0, "model": SPHERE, "inclination": [0.5], "anteversion": [0.1]}
-    with pytest.raises(ValueError, match=said):
-        bs.orient(HIP, **{**given, **wrong})
+def test_invalid_orientations_raise(change, message):
+    valid = {"force": 1500.0, "model": SPHERE, "inclination": [0.5], "anteversion": [0.1]}
+    with pytest.raises(ValueError, match=message):
+        bs.orient(HIP, **{**valid, **change})

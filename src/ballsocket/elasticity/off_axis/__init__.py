@@ -1,17 +1,21 @@
-"""Contact on the sphere: the ball anywhere in a socket, in rings and meridians about the socket's own axis."""
+"""Contact of a ball at any position in a socket, on a grid of rings and meridians about the socket's axis."""
 
-from .forms import DepthTable, Pinched
+from .bore_shapes import BoreDeviation, DepthTable, OvalBore
 from .model import Sphere
 from .orientations import Orientations, orient
 from .preload import Preload
 from .scans import Scan, read_scan
 from .surfaces import ClosedShell, RealCup, Springs
-from .worn import Worn
+
+Pinched, Worn = OvalBore, BoreDeviation
+"""Names of version 1.0."""
 
 __all__ = [
+    "BoreDeviation",
     "ClosedShell",
     "DepthTable",
     "Orientations",
+    "OvalBore",
     "Pinched",
     "Preload",
     "RealCup",

@@ -1,4 +1,4 @@
-"""Bore and ball together on the grid: what a pressure does, and which pressure does that."""
+"""Compliance of bore and ball together on a grid: from pressures to displacements and back."""
 
 from __future__ import annotations
 
@@ -8,100 +8,153 @@ from functools import cached_property
 from threading import Lock
 
 import numpy
+import scipy.fft
 
 from ...core.arrays import Numbers
 from ...problem import Joint
 from ...problem.cup import Cup
 from ..exact.modes import ball_of
 from ..finite_elements.shapes import socket_shape
-from .grid import Grid, Local, Turning, rim_grid
-from .rings_of_modes import modal_rings
+from .grid import Grid, rim_grid
+from .ring_matrices import sphere_rings
 from .surfaces import Springs, Surface
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class AxisymmetricOperator:
+    """Linear operator on fields that commutes with rotations about the axis: one matrix (rings, rings) for each m.
+
+    Attributes
+    ----------
+    matrices : array (max_harmonic + 1, rings, rings)
+        Single precision where it is sufficient; it is twice as fast.
+    """
+
+    matrices: Numbers
+
+    def __call__(self, fields: Numbers) -> Numbers:
+        """Apply the operator to fields (batch, rings, meridians), in the precision of the matrices."""
+        batch, rings, meridians = fields.shape
+        waves = scipy.fft.rfft(fields.astype(self.matrices.dtype, copy=False))
+        columns = numpy.ascontiguousarray(waves.transpose(2, 1, 0))
+        products = self.matrices @ columns.view(self.matrices.dtype)
+        transformed = products.reshape(len(self.matrices), rings, 2 * batch).view(waves.dtype).transpose(2, 1, 0)
+        return scipy.fft.irfft(transformed, n=meridians)
+
+    def in_single_precision(self) -> AxisymmetricOperator:
+        """Return the operator in single precision."""
+        return AxisymmetricOperator(matrices=self.matrices.astype(numpy.float32))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class UniformOperator:
+    """Linear operator that multiplies every cell by one factor."""
+
+    factor: float
+
+    def __call__(self, fields: Numbers) -> Numbers:
+        """Apply the operator to fields (batch, rings, meridians)."""
+        return fields * self.factor
+
+    def in_single_precision(self) -> UniformOperator:
+        """Return the operator itself: its factor has no matrices to shorten."""
+        return self
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Compliance:
-    """How the bore's surface and the ball's give way to each other.
+    """Joint compliance of the surfaces of bore and ball.
 
     Attributes
     ----------
     grid : Grid
-    softness, stiffness : Turning or Local
-        From pressures in MPa to how far both surfaces give way in mm, and back.
+    softness, stiffness : AxisymmetricOperator or UniformOperator
+        From pressures in MPa to the sum of both displacements in mm, and the inverse.
     """
 
     grid: Grid
-    softness: Turning | Local
-    stiffness: Turning | Local
+    softness: AxisymmetricOperator | UniformOperator
+    stiffness: AxisymmetricOperator | UniformOperator
 
     def displacement(self, pressure: Numbers) -> Numbers:
-        """How far the surfaces give way (mm) under pressures (MPa): both (batch, rings, meridians)."""
+        """Compute the displacement (mm) of the surfaces under pressures (MPa): both (batch, rings, meridians)."""
         return self.softness(pressure)
 
-    def roughly(self, pressure: Numbers) -> Numbers:
-        """That in single precision, where a cell does not stand for itself."""
-        return self._rough(pressure)
+    def displacement_in_single_precision(self, pressure: Numbers) -> Numbers:
+        """Compute the displacement in single precision, where the operator has matrices."""
+        return self._single_softness(pressure)
 
     @cached_property
-    def _rough(self) -> Turning | Local:
-        return self.softness.rough()
+    def _single_softness(self) -> AxisymmetricOperator | UniformOperator:
+        return self.softness.in_single_precision()
 
     def pressure(self, displacement: Numbers) -> Numbers:
-        """The pressures (MPa, of either sign) under which they give way so far (mm) all over the bore."""
+        """Compute the pressures (MPa, of either sign) that displace every cell by these amounts (mm)."""
         return self.stiffness(displacement)
 
     @cached_property
     def coarser(self) -> Compliance | None:
-        """This compliance in cells twice as wide; None where these are wide already."""
+        """Compliance in cells twice as wide, or None if the grid has few rings."""
         cells = self.grid.coarser
         if cells is None:
             return None
-        if isinstance(self.softness, Local):
+        if isinstance(self.softness, UniformOperator):
             return replace(self, grid=cells)
-        matrices = self.grid.gathered_matrices(self.softness.matrices)
-        return Compliance(
-            grid=cells, softness=Turning(matrices=matrices), stiffness=Turning(matrices=_inverse(matrices))
-        )
+        return _from_matrices(cells, self.grid.coarsen_matrices(self.softness.matrices))
 
     @cached_property
-    def evenly(self) -> float:
-        """Pressure by displacement where both are the same all over, in MPa/mm."""
-        ones = numpy.ones((1, self.grid.rings, self.grid.meridians))
-        return float(self.grid.total(self.pressure(ones), ones)[0] / self.grid.ring_areas.sum())
+    def uniform_stiffness(self) -> float:
+        """Mean pressure under a uniform displacement of the bore, in MPa/mm."""
+        unit = numpy.ones((1, self.grid.rings, self.grid.meridians))
+        return float(self.grid.integrate_product(self.pressure(unit), unit)[0] / self.grid.ring_areas.sum())
 
 
-def _made(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
-    return compliance_on(surface, joint, cup, rim_grid(socket_shape(joint, cup).reach, width))
+def _from_matrices(grid: Grid, matrices: Numbers) -> Compliance:
+    """Make a compliance whose inverse has single precision.
+
+    The inverse only guides the iteration; the compliance decides when it ends.
+    """
+    inverse = numpy.linalg.inv(matrices).astype(numpy.float32)
+    return Compliance(
+        grid=grid, softness=AxisymmetricOperator(matrices=matrices), stiffness=AxisymmetricOperator(matrices=inverse)
+    )
 
 
-def compliance_on(surface: Surface, joint: Joint, cup: Cup, cells: Grid) -> Compliance:
-    """The compliance of a joint of plain numbers on these cells, made anew."""
+def make_compliance(surface: Surface, joint: Joint, cup: Cup, grid: Grid) -> Compliance:
+    """Compute the compliance of one joint on a grid, without the cache.
+
+    Parameters
+    ----------
+    surface : Surface
+    joint : Joint
+        A joint without arrays.
+    cup : Cup
+    grid : Grid
+    """
     ball = ball_of(joint)
     if isinstance(surface, Springs) and ball is None:
         modulus = float(surface.modulus(joint))
-        return Compliance(grid=cells, softness=Local(scale=1 / modulus), stiffness=Local(scale=modulus))
-    matrices = surface.rings(joint, cup, cells)
+        return Compliance(
+            grid=grid, softness=UniformOperator(factor=1 / modulus), stiffness=UniformOperator(factor=modulus)
+        )
+    matrices = surface.rings(joint, cup, grid)
     if ball is not None:
-        matrices = matrices + cells.averaged(modal_rings(ball.compliance, cells))
-    return Compliance(grid=cells, softness=Turning(matrices=matrices), stiffness=Turning(matrices=_inverse(matrices)))
+        matrices = matrices + grid.average_over_cells(sphere_rings(ball.compliance, grid))
+    return _from_matrices(grid, matrices)
 
 
-def _inverse(matrices: Numbers) -> Numbers:
-    """The inverses in single precision: they guide the iteration, and the end of that is judged by the compliance."""
-    return numpy.linalg.inv(matrices).astype(numpy.float32)
+_CACHE: OrderedDict[tuple[object, ...], Compliance] = OrderedDict()
+_CACHE_SIZE, _LOCK = 8, Lock()
 
 
-_KEPT: OrderedDict[tuple[object, ...], Compliance] = OrderedDict()
-_SIZE, _LOCK = 8, Lock()
-
-
-def compliance(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
-    """The compliance of a joint of plain numbers in rings of this width (rad); the last few are kept."""
+def cached_compliance(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
+    """Return the compliance of one joint in rings of this width (rad), from a cache of the last eight."""
     key = (surface, joint, cup.arc_of_cover, cup.chamfer, cup.interface, width)
     with _LOCK:
-        if key not in _KEPT:
-            _KEPT[key] = _made(surface, joint, cup, width)
-            if len(_KEPT) > _SIZE:
-                _KEPT.popitem(last=False)
-        _KEPT.move_to_end(key)
-        return _KEPT[key]
+        if key not in _CACHE:
+            grid = rim_grid(socket_shape(joint, cup).reach, width)
+            _CACHE[key] = make_compliance(surface, joint, cup, grid)
+            if len(_CACHE) > _CACHE_SIZE:
+                _CACHE.popitem(last=False)
+        _CACHE.move_to_end(key)
+        return _CACHE[key]

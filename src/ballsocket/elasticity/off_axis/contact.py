@@ -1,11 +1,11 @@
-"""The answer of `Sphere`: a contact that knows where it lies in its cup."""
+"""Contact of `Sphere`: a contact with its position in the cup."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
 
@@ -14,160 +14,169 @@ from ...contact.strength import von_mises_ratio
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.validity import Status
-from .directions import checked_direction, polar_angle
+from .directions import check_direction, polar_angle
+
+if TYPE_CHECKING:
+    from .contact_patch import ContactPatch
+    from .contact_states import ContactStates
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class OffAxisContact(SolvedContact):
-    """A contact anywhere in a cup.
+    """Contact at any position in a cup.
 
-    Vectors have a last axis of 3, in the cup's own frame: from the centre of the bore x leans towards the rim, z points
-    to the dome's pole (`cup.frame` gives them in the body's). `force` is the size of the load, `indentation` how far
-    the ball's centre is displaced beyond the clearance, `half_angle` that of a round contact of the same area;
-    angles count from the load. In a preloaded joint force and indentation are those along the load's axis: a force
-    below 0 pulls.
+    Vectors have a last axis of 3, in the cup's own frame. Its origin is the centre of the bore. x leans towards the
+    rim, and z points to the pole of the dome. `cup.frame` has these axes in the body's frame.
+
+    `force` is the magnitude of the load, and `indentation` the displacement of the ball's centre beyond the clearance.
+    `half_angle` is that of a round contact of the same area. Angles start at the load. In a preloaded joint force and
+    indentation are components along the load's axis, and a negative force is tension.
     """
 
     model: Any
 
     _inside: ClassVar[str] = "pressure maps"
 
-    def _joint_von_mises(self, place: Numbers, piece: JointContacts) -> Numbers:
-        """An estimate as of a closed form, from half angle and largest pressure: only the surface is solved."""
-        joint, state = joint_at(self.joint, self.laws.shape, int(place[0])), piece.state
+    def _joint_von_mises(self, indices: Numbers, piece: JointContacts) -> Numbers:
+        """Estimate the stress in MPa from half angle and largest pressure: only the surface is solved."""
+        joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), piece.state
         estimate = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         return numpy.asarray(estimate * state.max_pressure)
 
     @property
     def von_mises_bounds(self) -> tuple[Array, Array]:
-        """What `von_mises` lies between, which is quickly told."""
+        """Bounds of `von_mises` in MPa: the estimate itself, twice."""
         return self.von_mises, self.von_mises
 
     @cached_property
     def force_vector(self) -> Array:
-        """The load that the ball puts on the cup in N: towards the rim, across, towards the dome."""
+        """Force of the ball on the cup in N: components towards the rim, across, towards the dome."""
         return self._vector("force_vector")
 
     @cached_property
     def displacement(self) -> Array:
-        """Place of the ball's centre from the centre of the bore, in mm."""
+        """Displacement of the ball's centre from the centre of the bore, in mm."""
         return self._vector("displacement")
 
     @cached_property
     def moment(self) -> Array:
-        """Moment of the contact on the ball about its own centre, without friction, in N mm."""
+        """Moment of the contact on the ball about the ball's centre, without friction, in N mm."""
         return arrays.namespace(self.force_vector).linalg.cross(self.displacement, self.force_vector)
 
     @cached_property
     def stiffness_matrix(self) -> Array:
-        """Change of the load by the displacement in N/mm, (..., 3, 3), symmetric."""
+        """Derivative of the force by the displacement in N/mm, (..., 3, 3), symmetric."""
         rows = self.laws.spread(lambda piece: piece.state.tangent.reshape(9, -1), (9,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3))
 
     @cached_property
     def max_pressure_at(self) -> Array:
-        """Unit vector to where the pressure is largest."""
+        """Unit vector to the largest pressure."""
         return self._vector("max_pressure_at")
 
     @cached_property
     def edge_loaded(self) -> Array:
-        """Whether the contact reaches the end of the bore."""
+        """True where the contact reaches the end of the bore."""
         loaded = self.laws.spread(lambda piece: piece.state.edge_loaded) == 1
         return bool(loaded) if self._is_plain else loaded
 
     @cached_property
     def edge_margin(self) -> Array:
-        """The angle in rad that belongs to `edge_distance`."""
-        return self._scalar("edge_margin")
+        """Angle in rad from the edge of the contact to the end of the bore: `edge_distance` over the bore's radius."""
+        from .load_cases import edge_margins  # slow to import
+
+        return self._mask_failed(lambda: self.laws.spread(lambda piece: edge_margins(piece.state)))
 
     @property
     def edge_distance(self) -> Array:
-        """The arc in mm from the edge of the contact to the end of the bore (contact patch edge to rim).
+        """Arc in mm from the edge of the contact to the end of the bore (contact patch edge to rim, CPER).
 
-        Below 0 it is cut off there: so far would the load have to turn back towards the dome for it to end at the rim.
+        A contact that the rim cuts off has a negative distance: the arc by which its load would have to rotate back
+        towards the dome until the contact ends at the rim.
         """
         return self.edge_margin * self.joint.socket_radius
 
     @property
     def rim_distance(self) -> Array:
-        """The arc in mm from where the load points to the end of the bore (contact patch centre to rim)."""
+        """Arc in mm from the direction of the load to the end of the bore (contact patch centre to rim, CPCR)."""
         return self._match_load((self.model.reach_of(self.joint) - self.tilt) * self.joint.socket_radius)
 
     @property
     def tilt(self) -> Array:
-        """The angle in rad from the dome's pole to where the load points."""
+        """Angle in rad between the pole of the dome and the direction of the load."""
         return self._match_load(self.laws.spread(lambda piece: polar_angle(piece.state.axes.T)))
+
+    @property
+    def _patch(self) -> ContactPatch:
+        state: ContactStates = self.single_state
+        return state.patches[0]
 
     @property
     def outline(self) -> Numbers:
         """Unit vectors (rays, 3) to the edge of a single contact."""
-        edge: Numbers = self.single_state.patches[0].outline
-        return edge
+        return self._patch.outline
 
     def pressure_at(self, direction: Array) -> Array:
-        """Contact pressure in MPa in directions of the cup's frame, of a single contact; 0 outside of it.
+        """Interpolate the pressure of a single contact in MPa in directions of the cup's frame; 0 outside of it.
 
         Parameters
         ----------
         direction : array (..., 3)
-            Of any length.
+            Directions of any length.
 
         Raises
         ------
         ValueError
-            More than one contact; what is no direction.
+            More than one contact; a direction of length 0.
         """
-        at: Numbers = self.single_state.patches[0].at(checked_direction(direction))
-        return float(at) if at.shape == () else at
+        pressure = self._patch.pressure_at(check_direction(direction))
+        return float(pressure) if pressure.shape == () else pressure
 
     @property
     def pressure_map(self) -> tuple[Numbers, Numbers, Numbers]:
-        """The grid of one contact: polar angles (rings,), azimuths (meridians,), pressures (rings, meridians)."""
-        patch = self.single_state.patches[0]
+        """Polar angles (rings,), azimuths (meridians,) and pressures (rings, meridians) of a single contact."""
+        patch = self._patch
         return patch.grid.polar, patch.grid.azimuth, patch.pressure
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What has no answer or lies outside the validity, and what happens at the rim, in words."""
+        """Sentences about loads without a solution, limits of validity and contact with the rim."""
         notes = list(super().notes)
         if self._is_plain and self.status is Status.DISLOCATED:
-            notes.append(self._where_lost)
+            notes.append(self._dislocation_note)
         if not self._failed_everywhere:
             unbounded = self.laws.spread(lambda piece: piece.state.unbounded) == 1
-            notes += self._note(~(arrays.to_numpy(unbounded)), _DIGS)
-            notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _REACHES)
+            notes += self._note(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
+            notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _RIM_NOTE)
         return tuple(notes)
 
     @property
-    def _where_lost(self) -> str:
-        """The angle at which a ball has left its bore; where the load points into that, how far it went."""
-        tilt, reach = (degrees(float(each)) for each in (self.tilt, self.model.reach_of(self.joint)))
+    def _dislocation_note(self) -> str:
+        """Sentence with the tilt of a load that points beyond the bore, or with the distance the ball moved."""
+        tilt, reach = (degrees(float(angle)) for angle in (self.tilt, self.model.reach_of(self.joint)))
         if tilt > reach:
             return f"the load points {tilt:.1f}° from the dome's pole, and the bore ends at {reach:.1f}°"
         (_, piece), *_ = self.laws.pieces
-        place = piece.state.displacement[:, 0]
-        far, swung = float(numpy.linalg.norm(place)), degrees(float(polar_angle(place)))
-        return f"the ball's centre went {far:.3g} mm from the bore's, {swung:.1f}° from the dome's pole"
-
-    def _scalar(self, name: str) -> Array:
-        return self._mask_failed(lambda: self.laws.spread(lambda piece: getattr(piece.state, name)))
+        centre = piece.state.displacement[:, 0]
+        distance, polar = float(numpy.linalg.norm(centre)), degrees(float(polar_angle(centre)))
+        return f"the ball's centre moved {distance:.3g} mm from the bore's, {polar:.1f}° from the dome's pole"
 
     def _vector(self, name: str) -> Array:
-        """A vector of every contact (..., 3); NaN where there is no answer."""
+        """Return a vector of every contact (..., 3), NaN where there is no solution."""
         rows = self.laws.spread(lambda piece: getattr(piece.state, name), (3,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1)
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON: vectors in the cup's frame, `max_pressure_at_deg` as polar angle and azimuth.
+        """Return one dictionary for JSON: vectors in the cup's frame, `max_pressure_at_deg` as polar angle and azimuth.
 
-        `force_vector_in_body` (to the right, to the front, up) where the cup's orientation is known.
+        `force_vector_in_body` (right, front, up) is there if the cup has an orientation.
         """
         at = arrays.to_numpy(self.max_pressure_at)
         angles = numpy.stack([polar_angle(numpy.moveaxis(at, -1, 0)), numpy.arctan2(at[..., 1], at[..., 0])], axis=-1)
         status = arrays.to_numpy(self.status)
-        names = [Status(int(each)).name for each in status.ravel()]
+        names = [Status(int(number)).name for number in status.ravel()]
         return {
             **super().summary(),
             "status": names[0] if status.ndim == 0 else names,
@@ -180,19 +189,19 @@ class OffAxisContact(SolvedContact):
             "rim_distance": arrays.to_list(self.rim_distance),
             "edge_loaded": self.edge_loaded if self._is_plain else arrays.to_numpy(self.edge_loaded).tolist(),
             "stiffness_matrix": arrays.to_list(self.stiffness_matrix),
-            **self._in_body(),
+            **self._force_in_body(),
         }
 
-    def _in_body(self) -> dict[str, Any]:
-        """Return the load in the body's axes, for a cup whose orientation is given."""
+    def _force_in_body(self) -> dict[str, Any]:
+        """Return the force in the body's axes, for a cup whose orientation is given."""
         cup = self.model.cup
         if not cup.oriented:
             return {}
         return {"force_vector_in_body": (arrays.to_numpy(self.force_vector) @ numpy.asarray(cup.frame)).tolist()}
 
 
-_REACHES = "edge loading: the contact reaches the rim"
-_DIGS = (
-    "edge loading: the end of the bore digs in like the edge of a punch, where the pressure is unbounded; "
-    "force and indentation hold"
+_RIM_NOTE = "edge loading: the contact reaches the rim"
+_SHARP_RIM_NOTE = (
+    "edge loading: the end of the bore indents the ball like the edge of a punch, where the pressure is unbounded; "
+    "force and indentation are valid"
 )

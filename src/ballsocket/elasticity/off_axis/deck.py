@@ -1,15 +1,15 @@
-"""A tilted load as a three-dimensional input deck, so that another program can check the answer.
+"""Input decks of tilted loads in three dimensions, with which CalculiX checks the solution.
 
-Half of the cup and of the ball's skin, cut by the plane of tilt and axis: quadratic bricks of 20 nodes, wedges of 15
-at the pole. Every node of the ball's skin is moved as a rigid ball moves. As in the axisymmetric deck, clearance and
-displacement are multiplied by a small scale, for the limit of small displacements, and what comes out is divided by it.
-Forces are close on coarse elements already; CalculiX' pressures at the nodes of quadratic faces zigzag and say little.
+The mesh is one half of the cup and of the ball's skin, cut by the plane of tilt and axis. It has quadratic bricks of 20
+nodes, and wedges of 15 at the pole. Every node of the skin is displaced as a rigid ball. As in the axisymmetric deck, a
+small scale multiplies clearance and displacement for the limit of small displacements, and results are divided by it.
+Forces are accurate on coarse elements. CalculiX's pressures at the nodes of quadratic faces oscillate and are not used.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, degrees, inf, pi, sin
@@ -25,39 +25,119 @@ from ...problem import Joint
 from ...problem.cup import Cup, Interface
 from ..finite_elements.decks.calculix import last_output, read_printed, run_calculix
 from ..finite_elements.decks.deck import EXPECTED, NAME
-from ..finite_elements.mesh import graded_points, join_points
+from ..finite_elements.mesh import add_midpoints, graded_points, join_points
 from ..finite_elements.shapes import SocketShape, socket_shape
 from ..finite_elements.solver import check_cup
-from .bricks import Bricks
+from .directions import unit_vectors
+from .model import Sphere
 
-_STIFFER = 500.0
-_SKIN = 0.1  # of the radius
-_INNER, _OUTER = "S1", "S2"
-_A_LINE = 16
+_CONTACT_STIFFNESS_FACTOR = 500.0
+"""Ratio of the contact stiffness to the largest pressure over the indentation."""
+
+_SKIN_THICKNESS = 0.1  # as a fraction of the ball's radius
+_INNER_FACE, _OUTER_FACE = "S1", "S2"
+_NODES_PER_LINE, _NUMBERS_PER_LINE = 16, 12
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SphericalBlock:
+    """Half of a spherical block, azimuths 0 to π, in quadratic bricks and, at the pole, wedges.
+
+    Attributes
+    ----------
+    polar, azimuth, radius : array
+        Coordinates of the corners in rad and mm, ascending; the first polar angle is 0.
+    centre : array (3,)
+        Centre in mm.
+    offset : tuple of int
+        Numbers of nodes and of elements in other bodies that come first.
+    """
+
+    polar: Numbers
+    azimuth: Numbers
+    radius: Numbers
+    centre: Numbers
+    offset: tuple[int, int] = (0, 0)
+
+    @cached_property
+    def number(self) -> Numbers:
+        """Number of the node at each polar angle, azimuth and radius, middles included; 0 without a node."""
+        shape = tuple(2 * len(corners) - 1 for corners in (self.polar, self.azimuth, self.radius))
+        i, j, k = numpy.indices(shape)
+        used = (i % 2 + j % 2 + k % 2) <= 1
+        used[0, 1:] = False  # all azimuths meet at the pole
+        number = numpy.where(used, self.offset[0] + numpy.cumsum(used).reshape(shape), 0)
+        number[0, 1:] = number[0, :1]
+        return number
+
+    @property
+    def last_number(self) -> int:
+        """Number of the last node."""
+        return int(self.number.max())
+
+    @cached_property
+    def points(self) -> Numbers:
+        """Coordinates of the nodes in mm: (3, polar, azimuth, radius)."""
+        polar, azimuth, radius = (add_midpoints(corners, 2) for corners in (self.polar, self.azimuth, self.radius))
+        directions = unit_vectors(polar[:, None], azimuth)
+        return directions[..., None] * radius + self.centre[:, None, None, None]
+
+    def elements(self) -> Iterator[tuple[int, str, tuple[int, int, int], list[int]]]:
+        """Yield number, type, indices and nodes of each element."""
+        number = self.offset[1]
+        for i, j, k in numpy.ndindex(len(self.polar) - 1, len(self.azimuth) - 1, len(self.radius) - 1):
+            number += 1
+            kind, steps = ("C3D15", _WEDGE) if i == 0 else ("C3D20R", _BRICK)
+            nodes = [int(self.number[2 * i + a, 2 * j + b, 2 * k + c]) for a, b, c in steps]
+            yield number, kind, (i, j, k), nodes
+
+    def node_lines(self) -> Iterator[str]:
+        """Yield a line of number and coordinates for each node."""
+        points = self.points.reshape(3, -1)
+        numbers, first = numpy.unique(self.number.ravel(), return_index=True)
+        for number, index in zip(numbers, first, strict=True):
+            if number:
+                x, y, z = points[:, index]
+                yield f"{number}, {x:.14g}, {y:.14g}, {z:.14g}"
+
+
+def _edge_middles(corners: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    return [((a + c) // 2, (b + d) // 2) for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1], strict=True)]
+
+
+def _element_nodes(corners: list[tuple[int, int]], middles: list[tuple[int, int]]) -> list[tuple[int, int, int]]:
+    """Return the nodes in CalculiX's order: corners and middles at the inner and outer face, then the uprights."""
+    rows = [(corners, 0), (corners, 2), (middles, 0), (middles, 2), (corners, 1)]
+    return [(a, b, c) for row, c in rows for a, b in row]
+
+
+_SQUARE = [(0, 0), (2, 0), (2, 2), (0, 2)]
+_BRICK = _element_nodes(_SQUARE, _edge_middles(_SQUARE))
+_WEDGE = _element_nodes([(0, 0), (2, 0), (2, 2)], [(1, 0), (2, 1), (1, 2)])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TiltedDeck:
-    """An input deck of a rigid ball that is displaced into a cup at a tilt.
+    """Input deck of a rigid ball that is displaced into a cup at a tilt.
 
     Parameters
     ----------
     joint : Joint
-        Of plain numbers, with a rigid ball and a liner that is bonded to rigid ground or layers.
+        One joint with a rigid ball and a liner that is bonded to rigid ground or layers.
     cup : Cup
     indentation : float
         Displacement of the ball's centre beyond the clearance, in mm.
     tilt : float
-        Of the displacement from the cup's axis, in rad, 0 to π.
+        Angle of the displacement from the cup's axis in rad, 0 to π.
     element_size : float
-        Of the elements along the bore, in rad.
+        Size of the elements along the bore in rad, 0.5° to 15°.
     scale : float
-        What clearance and indentation are multiplied by.
+        Factor on clearance and indentation, above 0 and at most 1.
 
     Raises
     ------
     ValueError
-        An elastic ball, a liner that slides, a free outer surface, a number that is not allowed.
+        An elastic ball, a liner that slides, a free outer surface, a number outside its allowed range.
     """
 
     joint: Joint
@@ -72,11 +152,11 @@ class TiltedDeck:
         if self.joint.ball is not None:
             raise ValueError("a tilted deck has a rigid ball: leave the ball's material out")
         if self.cup.interface is not Interface.BONDED or self.joint.support.value != "fixed":
-            raise ValueError("a tilted deck has a liner that is bonded, and is held by its outermost surface")
+            raise ValueError("a tilted deck needs a bonded liner and a fixed outer surface")
         require("indentation", self.indentation, 0 < self.indentation < inf, "an indentation (mm) is above 0")
         require("tilt", self.tilt, 0 <= self.tilt <= pi, "a tilt is 0 to pi radians")
-        good = pi / 360 <= self.element_size <= pi / 12
-        require("element_size", self.element_size, good, "an element is 0.5 to 15 degrees wide")
+        allowed = pi / 360 <= self.element_size <= pi / 12
+        require("element_size", self.element_size, allowed, "an element is 0.5 to 15 degrees wide")
         require("scale", self.scale, 0 < self.scale <= 1, "a scale lies above 0 and is at most 1")
 
     @cached_property
@@ -91,51 +171,52 @@ class TiltedDeck:
             if outer == inf:
                 raise ValueError("a tilted deck has layers of finite thickness: give the outermost one a thickness")
             layer = graded_points(inner, outer, min(first, (outer - inner) / 3), 1.5, (outer - inner) / 3)
-            radii.append(layer * self._bore)
+            radii.append(layer * self._bore_radius)
             inner, first = outer, float(layer[-1] - layer[-2]) * 1.5
         return radii
 
     @property
-    def _bore(self) -> float:
+    def _bore_radius(self) -> float:
         return float(self.joint.socket_radius)
 
     @cached_property
-    def socket(self) -> Bricks:
-        """The cup. A chamfer is left out: the bore ends where it begins, on a cone."""
-        return Bricks(
-            polar=self._evenly(self._shape.reach),
-            azimuth=self._evenly(pi),
+    def socket(self) -> SphericalBlock:
+        """Mesh of the cup. A chamfer is omitted: the bore ends at its beginning, on a cone."""
+        return SphericalBlock(
+            polar=self._divide(self._shape.reach),
+            azimuth=self._divide(pi),
             radius=join_points(self._layers),
             centre=numpy.zeros(3),
         )
 
     @cached_property
-    def ball(self) -> Bricks:
-        """The ball's skin, at first touch."""
+    def ball(self) -> SphericalBlock:
+        """Mesh of the ball's skin, at first touch."""
         clearance = float(self.joint.clearance) * self.scale
-        radius = self._bore - clearance
-        return Bricks(
+        radius = self._bore_radius - clearance
+        return SphericalBlock(
             polar=self.socket.polar,
             azimuth=self.socket.azimuth,
-            radius=numpy.array([(1 - _SKIN) * radius, radius]),
-            centre=clearance * self._way,
-            before=(self.socket.count, sum(1 for _ in self.socket.elements())),
+            radius=numpy.array([(1 - _SKIN_THICKNESS) * radius, radius]),
+            centre=clearance * self._direction,
+            offset=(self.socket.last_number, sum(1 for _ in self.socket.elements())),
         )
 
-    def _evenly(self, end: float) -> Numbers:
+    def _divide(self, end: float) -> Numbers:
+        """Divide the angles from 0 to an end (rad) into elements of equal size."""
         return numpy.linspace(0.0, end, max(round(end / self.element_size), 4) + 1)
 
     @property
-    def _way(self) -> Numbers:
+    def _direction(self) -> Numbers:
         return numpy.array([sin(self.tilt), 0.0, cos(self.tilt)])
 
     def text(self) -> str:
-        """The deck, in ASCII."""
+        """Return the deck as ASCII text."""
         lines = [*self._title(), *self._mesh(), *self._materials(), *self._contact(), *self._step()]
         return "\n".join(lines) + "\n"
 
     def write(self, folder: Path) -> Path:
-        """Write `ballsocket.inp` and `expected.json` into a folder, which is made; gives the path of the former."""
+        """Write `ballsocket.inp` and `expected.json` into a folder, creating it, and return the path of the deck."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         record = {"scale": self.scale, "tilt_deg": degrees(self.tilt), **self.expected}
@@ -144,13 +225,11 @@ class TiltedDeck:
 
     @cached_property
     def expected(self) -> dict[str, Any]:
-        """Our own answer of the real joint."""
-        from .model import Sphere
-
+        """Indentation in mm, and the force vector (N) and largest pressure (MPa) by `Sphere`, without the scale."""
         contact: Any = Sphere(cup=self.cup).press(self.joint, indentation=self.indentation, tilt=self.tilt)
         return {
             "indentation": self.indentation,
-            "force_vector": [float(each) for each in contact.force_vector],
+            "force_vector": [float(component) for component in contact.force_vector],
             "max_pressure": float(contact.max_pressure),
         }
 
@@ -166,35 +245,21 @@ class TiltedDeck:
         for body in (self.socket, self.ball):
             yield from body.node_lines()
         ends = numpy.cumsum([len(layer) - 1 for layer in self._layers])
-        yield from self._element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
-        yield from self._element_lines(self.ball, lambda k: "SKIN")
-
-    @staticmethod
-    def _element_lines(body: Bricks, named: Any) -> Iterator[str]:
-        headed = None
-        for number, kind, (_, _, k), nodes in sorted(body.elements(), key=lambda each: (each[1], each[2][2])):
-            head = f"*ELEMENT, TYPE={kind}, ELSET={named(k)}"
-            if head != headed:
-                yield head
-                headed = head
-            row = [number, *nodes]
-            yield from (
-                ", ".join(map(str, row[i : i + 12])) + ("," if i + 12 < len(row) else "")
-                for i in range(0, len(row), 12)
-            )
+        yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
+        yield from _element_lines(self.ball, lambda k: "SKIN")
 
     def _materials(self) -> Iterator[str]:
         liner = float(self.joint.liner.young)
-        named = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._shape.layers)}
-        for name, (young, nu) in (named | {"SKIN": (1e3 * liner, 0.3)}).items():
+        materials = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._shape.layers)}
+        for name, (young, nu) in (materials | {"SKIN": (1e3 * liner, 0.3)}).items():
             yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {nu:.12g}")
             yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
 
     def _contact(self) -> Iterator[str]:
-        slope = _STIFFER * self.expected["max_pressure"] / self.indentation
-        for name, body, face, layer in (("LINED", self.socket, _INNER, 0), ("PRESSED", self.ball, _OUTER, 0)):
+        slope = _CONTACT_STIFFNESS_FACTOR * self.expected["max_pressure"] / self.indentation
+        for name, body, face in (("LINED", self.socket, _INNER_FACE), ("PRESSED", self.ball, _OUTER_FACE)):
             yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
-            yield from (f"{number}, {face}" for number, _, place, _ in body.elements() if place[2] == layer)
+            yield from (f"{number}, {face}" for number, _, (_, _, k), _ in body.elements() if k == 0)
         yield from (
             "*SURFACE INTERACTION, NAME=TOUCH",
             "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
@@ -209,21 +274,35 @@ class TiltedDeck:
         yield from ("*BOUNDARY", "MIRROR, 2, 2", "OUTSIDE, 1, 3", "PUSHED, 1, 3")
 
     def _step(self) -> Iterator[str]:
-        x, _, z = self.scale * self.indentation * self._way
+        x, _, z = self.scale * self.indentation * self._direction
         yield from ("*STEP, INC=100", "*STATIC", "1., 1.", "*BOUNDARY")
         yield from (f"PUSHED, 1, 1, {x:.13g}", f"PUSHED, 3, 3, {z:.13g}")
         yield from ("*NODE PRINT, NSET=PUSHED, TOTALS=ONLY", "RF", "*END STEP")
 
 
+def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iterator[str]:
+    """Yield the elements of a body by type and layer; `set_name` maps a layer of elements to its set."""
+    previous = None
+    for number, kind, (_, _, k), nodes in sorted(body.elements(), key=lambda element: (element[1], element[2][2])):
+        header = f"*ELEMENT, TYPE={kind}, ELSET={set_name(k)}"
+        if header != previous:
+            yield header
+            previous = header
+        row = [number, *nodes]
+        for start in range(0, len(row), _NUMBERS_PER_LINE):
+            end = start + _NUMBERS_PER_LINE
+            yield ", ".join(map(str, row[start:end])) + ("," if end < len(row) else "")
+
+
 def _node_set(name: str, nodes: Numbers) -> Iterator[str]:
     yield f"*NSET, NSET={name}"
-    listed = sorted({int(node) for node in nodes if node})
-    for start in range(0, len(listed), _A_LINE):
-        yield ", ".join(map(str, listed[start : start + _A_LINE]))
+    numbers = sorted({int(node) for node in nodes if node})
+    for start in range(0, len(numbers), _NODES_PER_LINE):
+        yield ", ".join(map(str, numbers[start : start + _NODES_PER_LINE]))
 
 
 def run(folder: Path, *, threads: int = 1) -> Mapping[str, Any]:
-    """Run CalculiX on the tilted deck in a folder, and read its answer, scaled back to the real joint.
+    """Run CalculiX on the tilted deck in a folder, and return its result for the real joint.
 
     Returns
     -------
@@ -235,13 +314,13 @@ def run(folder: Path, *, threads: int = 1) -> Mapping[str, Any]:
     FileNotFoundError
         The command `ccx` is not installed, or there is no deck in the folder.
     RuntimeError
-        CalculiX failed; with its last words.
+        CalculiX failed; the message ends with its output.
     """
     folder = Path(folder)
-    done = run_calculix(folder, threads)
+    process = run_calculix(folder, threads)
     forces = read_printed(folder / f"{NAME}.dat", "PUSHED")
     if 0 not in forces:
-        raise RuntimeError(f"ccx ended with {done.returncode}: {last_output(done)}")
+        raise RuntimeError(f"ccx ended with {process.returncode}: {last_output(process)}")
     deck = json.loads((folder / EXPECTED).read_text(encoding="ascii"))
     x, _, z = 2 * forces[0][0] / deck["scale"]
     return {"force_vector": [float(x), 0.0, float(z)]}

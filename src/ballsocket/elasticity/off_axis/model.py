@@ -1,4 +1,4 @@
-"""The ball anywhere in a real cup, by full elasticity: tilted loads, edge loading, worn bores."""
+"""Contact of a ball at any position in a real cup, by full elasticity: tilted loads, edge loading, worn bores."""
 
 from __future__ import annotations
 
@@ -30,46 +30,46 @@ from ...problem import Joint
 from ...problem.cup import UP, Cup
 from ...problem.gaps import CircularGap, LinearGap, check_gap
 from ..finite_elements.model import largest_poisson
+from .bore_shapes import BoreShape
 from .contact import OffAxisContact
-from .directions import checked_direction, frames_of, tilted
+from .directions import check_direction, cup_frames, tilted_directions
 from .surfaces import ClosedShell, RealCup, Springs, Surface
-from .worn import Shape
 
-_FINEST, _WIDEST = radians(0.5), radians(6.0)
+_MIN_RING_WIDTH, _MAX_RING_WIDTH = radians(0.5), radians(6.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sphere(Model):
-    """Contact on the sphere: any direction of load, in the cup as it is built.
+    """Full elasticity for any direction of the load in a real cup.
 
-    Linear elasticity and small displacements without friction, as in `Exact` and `FiniteElement`, but for loads that
-    need not go along the cup's axis. The bore is cut into rings about the cup's axis and each ring by meridians; what
-    rings do to each other is known for every harmonic about the axis, so that a press takes milliseconds.
+    Linear elasticity and small displacements without friction, as in `Exact` and `FiniteElement`, but loads may be
+    tilted from the cup's axis. Rings about the cup's axis and meridians divide the bore into cells. The compliance
+    between rings is known for every harmonic about the axis, so that a press takes milliseconds.
 
     Parameters
     ----------
     cup : Cup
-        Arc of cover, chamfer, interface, and where it faces. A hemisphere that opens downwards by default.
+        Arc of cover, chamfer, interface and orientation. A hemisphere that opens downwards by default.
     surface : RealCup, ClosedShell or Springs
-        How the bore gives way: as built (default), as a closed shell, or as springs.
+        Compliance of the bore: the real cup (default), a closed shell, or springs.
     ring_width : float
-        Of the rings in rad, 0.5° to 6°; 2° by default. At 2° forces are good to about 0.1 %, at 1° to 0.03 %, of
-        contacts that span ten rings and more; `contact.error` says it of each.
+        Width of the rings in rad, 0.5° to 6°; 2° by default. The error of forces is about 0.1 % at 2° and 0.03 % at 1°,
+        for contacts that span at least ten rings; `contact.error` estimates it for each contact.
     gap : type
         `LinearGap` (default) or `CircularGap`.
     worn : object with a method `depth`, optional
-        What is missing of the bore, in mm, by direction: see `Worn`.
+        Depth in mm of the bore below its sphere, by direction: see `BoreDeviation`.
     direction : array (..., 3), optional
-        Of the load, in the body's frame, of any length; upwards by default. `press` takes it, too.
+        Direction of the load in the body's frame, of any length; upwards by default. `press` accepts it, too.
 
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value.
+        A number outside its allowed range, reported with its value.
     TypeError
         A cup, surface or gap of another type.
     ImportError
-        At a press: the finite elements' extra is not installed.
+        In `press`: the extra `fem` is not installed.
 
     Examples
     --------
@@ -85,7 +85,7 @@ class Sphere(Model):
     surface: Surface = RealCup()  # noqa: RUF009 (frozen)
     ring_width: float = radians(2.0)
     gap: type[LinearGap] | type[CircularGap] = LinearGap
-    worn: Shape | None = None
+    worn: BoreShape | None = None
     direction: Any = UP
 
     name: ClassVar[str] = "sphere"
@@ -100,17 +100,17 @@ class Sphere(Model):
     reach: ClassVar[str] = "forces along directions in which the bore holds the ball, contacts no wider than the bore"
 
     def __post_init__(self) -> None:
-        for name, kinds in {"cup": (Cup,), "surface": (RealCup, ClosedShell, Springs)}.items():
-            if not isinstance(getattr(self, name), kinds):
-                known = " or ".join(kind.__name__ for kind in kinds)
-                raise TypeError(f"{name} must be {known}, got {getattr(self, name)!r}")
+        for name, types in {"cup": (Cup,), "surface": (RealCup, ClosedShell, Springs)}.items():
+            if not isinstance(getattr(self, name), types):
+                allowed = " or ".join(kind.__name__ for kind in types)
+                raise TypeError(f"{name} must be {allowed}, got {getattr(self, name)!r}")
         check_gap(self.gap)
         width = check_number("ring_width", self.ring_width)
-        good = _FINEST <= width <= _WIDEST
-        require("ring_width", width, good, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
+        in_range = _MIN_RING_WIDTH <= width <= _MAX_RING_WIDTH
+        require("ring_width", width, in_range, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
         if self.worn is not None and (isinstance(self.worn, type) or not hasattr(self.worn, "depth")):
             raise TypeError(f"worn must have a method depth(directions), got {shown(self.worn)}")
-        object.__setattr__(self, "direction", checked_direction(self.direction))
+        object.__setattr__(self, "direction", check_direction(self.direction))
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -121,7 +121,7 @@ class Sphere(Model):
             high=0.49995,
             why="an incompressible body has no bulk modulus",
         )
-        thin = Range(quantity="joint.thickness_ratio", high=60.0, why="so thin a liner is not meshed in rings: ask fem")
+        thin = Range(quantity="joint.thickness_ratio", high=60.0, why="a thinner liner is not meshed in rings: use fem")
         return (incompressible, thin)
 
     @property
@@ -130,17 +130,17 @@ class Sphere(Model):
             quantity=lambda contact: contact.half_angle / self.ring_width,
             symbol="ε over a ring's width",
             low=5.0,
-            why="the contact spans few rings: make ring_width smaller, or ask exact where the rim is far",
+            why="the contact spans few rings: reduce ring_width, or use exact far from the rim",
         )
         return (SMALL_STRAIN, narrow, *((CLOSE_FIT,) if self.gap is LinearGap else ()))
 
     @property
     def parameters(self) -> tuple[Array, ...]:
-        parts = (self.direction[..., axis] for axis in range(3))
-        return tuple(float(part) if part.ndim == 0 else part for part in parts)
+        components = (self.direction[..., axis] for axis in range(3))
+        return tuple(float(component) if component.ndim == 0 else component for component in components)
 
     def _law(self, joint: Joint) -> ForceLaw:
-        raise TypeError("rings about the cup's axis are too coarse for a law from first touch on: ask exact")
+        raise TypeError("sphere has no force law: its rings are too coarse near first touch; use exact")
 
     def in_cup(self, cup: Cup) -> Sphere:
         return replace(self, cup=cup)
@@ -165,24 +165,23 @@ class Sphere(Model):
         ----------
         joint : Joint
         force : float or array, optional
-            The size of the load in N. The ball comes to rest where the contact carries it, displaced along another
-            direction where the rim is near.
+            Magnitude of the load in N. The ball moves to its equilibrium; near the rim it does not move along the load.
         indentation : float or array, optional
-            The ball's centre is displaced by clearance + indentation (mm) along the direction; the load then need not
-            be parallel to it.
+            Displacement in mm of the ball's centre along the direction, beyond the clearance. The force may have
+            another direction.
         half_angle : float or array, optional
-            In rad, of a round contact of the same area.
+            Half angle in rad of a round contact of the same area.
         displacement : array (..., 3), optional
-            Where the ball's centre sits, in mm from the centre of the bore, in the body's frame: in place of an
+            Displacement of the ball's centre from the centre of the bore in mm, in the body's frame. It replaces an
             indentation and a direction.
         direction : array (..., 3), optional
-            In the body's frame, upwards by default; its leading axes broadcast against joint and load.
+            Direction in the body's frame, upwards by default. Its leading axes broadcast against joint and load.
         tilt : float or array, optional
-            In place of a direction its angle from the cup's axis in rad, from the dome to the rim.
+            Angle of the direction from the cup's axis in rad, from the dome to the rim. It replaces a direction.
         azimuth : float or array, optional
-            Of a tilted load around the cup's axis in rad, from the cup's x, where the tilt alone leans to.
+            Angle of a tilted load about the cup's axis in rad. It starts at the cup's x, the azimuth of a tilt alone.
         inclination, anteversion : float or array, optional
-            Other orientations of the cup, in rad: many of them under one load, or each under its own.
+            Other orientations of the cup in rad. They broadcast against the load.
 
         Returns
         -------
@@ -191,92 +190,97 @@ class Sphere(Model):
         Raises
         ------
         ValueError
-            Not exactly one load; direction and tilt both; a number that is not allowed.
+            Not exactly one load; both a direction and a tilt; a number outside its allowed range.
         TypeError
-            What is no joint; a load without its name.
+            Another type in place of a joint; a load without its keyword.
         """
         reject_unnamed_loads(unnamed)
         load = {"force": force, "indentation": indentation, "half_angle": half_angle}
         if inclination is not None or anteversion is not None:
-            return self.along(direction, tilt, azimuth).facing(inclination, anteversion)._pressed(joint, **load)
+            return self.along(direction, tilt, azimuth).facing(inclination, anteversion)._press_along(joint, **load)
         if displacement is None:
-            return self.along(direction, tilt, azimuth)._pressed(joint, **load)
+            return self.along(direction, tilt, azimuth)._press_along(joint, **load)
         select_load(**load, displacement=displacement)
         if direction is not None or tilt is not None or azimuth is not None:
-            raise ValueError("a displacement has a direction of its own: neither direction nor tilt goes with it")
-        return self._displaced(joint, displacement)
+            raise ValueError("a displacement includes its direction: leave direction, tilt and azimuth out")
+        return self._press_displaced(joint, displacement)
 
-    def _displaced(self, joint: Joint, displacement: Array) -> Contact:
-        """A displacement as how far it goes and where to; within the clearance nothing touches."""
-        place = arrays.to_numpy(check_vectors("displacement", displacement, "x, y, z (mm)")).astype(float)
-        require("displacement", place, numpy.isfinite(place), "a displacement (mm) is finite")
-        length = numpy.linalg.norm(place, axis=-1)
-        way = numpy.where(length[..., None] > 0, place, numpy.array(self.cup.dome))
+    def _press_displaced(self, joint: Joint, displacement: Array) -> Contact:
+        """Press by the length of a displacement along its direction; within the clearance there is no contact."""
+        vector = arrays.to_numpy(check_vectors("displacement", displacement, "x, y, z (mm)")).astype(float)
+        require("displacement", vector, numpy.isfinite(vector), "a displacement (mm) is finite")
+        length = numpy.linalg.norm(vector, axis=-1)
+        direction = numpy.where(length[..., None] > 0, vector, numpy.array(self.cup.dome))
         depth = numpy.maximum(length - arrays.to_numpy(joint.clearance), 0.0)
-        return replace(self, direction=way)._pressed(joint, indentation=float(depth) if depth.ndim == 0 else depth)
+        indentation = float(depth) if depth.ndim == 0 else depth
+        return replace(self, direction=direction)._press_along(joint, indentation=indentation)
 
-    def _pressed(self, joint: Joint, **load: Array | None) -> Contact:
+    def _press_along(self, joint: Joint, **load: Array | None) -> Contact:
         return super().press(joint, **load)
 
     def along(self, direction: Array | None = None, tilt: Array | None = None, azimuth: Array | None = None) -> Sphere:
-        """This model with another direction of load; see `press`."""
+        """Return this model with another direction of the load; see `press` for the arguments."""
         if direction is not None and tilt is not None:
-            raise ValueError("either a direction or a tilt is needed, got both")
+            raise ValueError("give either a direction or a tilt, not both")
         if azimuth is not None and tilt is None:
-            raise ValueError("an azimuth turns a tilted load around the cup's axis: a tilt is needed besides")
+            raise ValueError("an azimuth needs a tilt: it rotates a tilted load about the cup's axis")
         if tilt is not None:
-            return replace(self, direction=tilted(tilt, azimuth) @ numpy.array(self.cup.frame))
+            return replace(self, direction=tilted_directions(tilt, azimuth) @ numpy.array(self.cup.frame))
         return self if direction is None else replace(self, direction=direction)
 
     def facing(self, inclination: Array | None = None, anteversion: Array | None = None) -> Sphere:
-        """This model under the load that a cup of other orientations finds: arrays are as many cups.
+        """Return this model with the load rotated as if the cup had other orientations (rad); arrays are many cups.
 
-        What they are made of is the same, and their own frames; so they are directions of load to one cup.
+        The cups are equal in their own frames. Their orientations are thus directions of the load on one cup.
         """
-        inside = numpy.einsum("...ij,...j->...i", frames_of(self.cup, inclination, anteversion), self.direction)
-        return replace(self, direction=inside @ numpy.array(self.cup.frame))
+        in_cup = numpy.einsum("...ij,...j->...i", cup_frames(self.cup, inclination, anteversion), self.direction)
+        return replace(self, direction=in_cup @ numpy.array(self.cup.frame))
 
     def reach_of(self, joint: Joint) -> Array:
-        """Where the bore ends, in rad from the dome's pole."""
+        """Compute the polar angle of the end of the bore in rad, from the pole of the dome."""
         return self.cup.rim - self.cup.chamfer / joint.socket_radius
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "scipy")
-        inside = self.direction @ numpy.array(self.cup.frame).T
-        inside = inside / numpy.linalg.norm(inside, axis=-1, keepdims=True)
-        axes = [inside[..., axis] for axis in range(3)]
+        in_cup = self.direction @ numpy.array(self.cup.frame).T
+        in_cup = in_cup / numpy.linalg.norm(in_cup, axis=-1, keepdims=True)
+        components = [in_cup[..., axis] for axis in range(3)]
         solution = solve_per_joint(
-            self, joint, load, lambda one, loads, *along: self._piece(one, kind, loads, along), *axes
+            self,
+            joint,
+            load,
+            lambda single, loads, *axis: self._solve_joint(single, kind, loads, numpy.stack(axis, axis=-1)),
+            *components,
         )
         return SolverResult(
             laws=solution,
             force=solution.force,
             indentation=solution.indentation,
             failures={
-                Status.DISLOCATED: solution.spread(lambda piece: piece.state.lost) == 1,
-                Status.NOT_CONVERGED: solution.spread(lambda piece: piece.state.unsettled) == 1,
+                Status.DISLOCATED: solution.spread(lambda piece: piece.state.dislocated) == 1,
+                Status.NOT_CONVERGED: solution.spread(lambda piece: piece.state.unconverged) == 1,
             },
         )
 
-    def _piece(self, joint: Joint, kind: str, loads: Numbers, along: tuple[Numbers, ...]) -> JointContacts:
-        """Contacts of one joint of plain numbers."""
-        from .compliance import compliance  # takes its time to import
-        from .gap import Separation
-        from .loads import LOADED
-        from .search import Bed
+    def _solve_joint(self, joint: Joint, kind: str, loads: Numbers, axes: Numbers) -> JointContacts:
+        """Solve the contacts of one joint under loads (n,) along unit vectors (n, 3) in the cup's frame."""
+        from .bore_contact import BoreContact  # slow to import
+        from .compliance import cached_compliance
+        from .gap import GapField
+        from .load_cases import LOAD_SOLVERS
 
         touching = loads > (0 if joint.clearance >= 0 else -1)  # a preloaded joint touches without a load
-        soft = compliance(self.surface, joint, self.cup, self.ring_width)
-        separation = Separation(
-            grid=soft.grid,
+        compliance = cached_compliance(self.surface, joint, self.cup, self.ring_width)
+        gap = GapField(
+            grid=compliance.grid,
             clearance=float(joint.clearance),
             socket_radius=float(joint.socket_radius),
-            depth=self._depth(soft.grid.centroids, float(joint.socket_radius)),
+            depth=self._worn_depth(compliance.grid.centroids, float(joint.socket_radius)),
             kind=self.gap,
         )
-        axes = numpy.stack(along, axis=-1)[touching]
-        edges = self.surface.edges(joint, self.cup, soft.grid)
-        state = LOADED[kind](Bed(compliance=soft, separation=separation), loads[touching], axes, edges)
+        edges = self.surface.edges(joint, self.cup, compliance.grid)
+        bore = BoreContact(compliance=compliance, gap=gap)
+        state = LOAD_SOLVERS[kind](bore, loads[touching], axes[touching], edges)
         return JointContacts(
             load=loads,
             touching=touching,
@@ -285,21 +289,22 @@ class Sphere(Model):
             error=state.errors(kind),
         )
 
-    def _depth(self, directions: Numbers, socket_radius: float) -> Numbers:
+    def _worn_depth(self, directions: Numbers, socket_radius: float) -> Numbers:
+        """Evaluate and validate the depth of the worn bore in mm at unit vectors (3, rings, meridians)."""
         if self.worn is None:
             return numpy.zeros(directions.shape[1:])
         radius = float(getattr(self.worn, "radius", socket_radius))
-        near = abs(radius - socket_radius) < socket_radius / 2
-        require("radius of the worn bore", radius, near, f"the socket's is {socket_radius:.4g} mm; a scan is in mm")
+        similar = abs(radius - socket_radius) < socket_radius / 2
+        require("radius of the worn bore", radius, similar, f"the socket's is {socket_radius:.4g} mm; a scan is in mm")
         depth = arrays.to_numpy(check_numeric("worn depth", self.worn.depth(directions)))
         if depth.shape not in ((), directions.shape[1:]):
-            raise ValueError(f"worn depth of shape {depth.shape} is not allowed: a depth (mm) for each direction")
+            raise ValueError(f"worn depth of shape {depth.shape} is not allowed: give one depth (mm) per direction")
         require("worn depth", depth, numpy.isfinite(depth), "a depth (mm) is finite")
         return numpy.broadcast_to(depth, directions.shape[1:])
 
 
 def check_sphere(model: Any) -> Sphere:
-    """The model, if it is contact on the sphere."""
+    """Return the model if it is a `Sphere`, and raise TypeError otherwise."""
     if not isinstance(model, Sphere):
         raise TypeError(f"model must be Sphere, got {shown(model)}")
     return model

@@ -1,4 +1,4 @@
-"""How a cup may stand: one load of the body pressed into it at many inclinations and anteversions."""
+"""Contacts of one cup at many inclinations and anteversions, under one load of the body."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from ...contact.assembly import check_joint
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.checks import check_number, require
+from ...core.deprecation import renamed_arguments
 from ...core.quantities import CUP
 from ...core.validity import Status, is_missing
 from ...problem import Joint
@@ -26,23 +27,23 @@ from .model import Sphere, check_sphere
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Orientations:
-    """Contacts of one cup that stands in many ways, under one load; numbers are arrays (inclinations, anteversions).
+    """Contacts of one cup in many orientations under one load; fields are arrays (inclinations, anteversions).
 
-    They are NaN where the bore does not hold the ball, and the `status` says so.
+    Fields are NaN where the bore does not hold the ball; `status` reports these orientations.
 
     Attributes
     ----------
     model : Sphere
-        With the cup as it was given, and the direction of the load in the body's frame.
+        Model with the original cup, and the direction of the load in the body's frame.
     joint : Joint
     load : dict
-        As it was given.
+        Prescribed load by its name.
     inclination, anteversion : array (n,), array (m,)
-        In rad.
+        Angles in rad.
     contacts : tuple of OffAxisContact
-        For each inclination those of all anteversions; vectors are in the frame of the cup that stands so.
+        Contacts of all anteversions, for each inclination. Vectors are in the frame of the rotated cup.
     seconds : float
-        What it took.
+        Computing time in s.
     """
 
     model: Sphere
@@ -53,57 +54,58 @@ class Orientations:
     contacts: tuple[OffAxisContact, ...]
     seconds: float
 
-    def _each(self, of: Callable[[OffAxisContact], Array]) -> Numbers:
-        return numpy.stack([arrays.to_numpy(of(contact)) for contact in self.contacts])
+    def _field(self, quantity: Callable[[OffAxisContact], Array]) -> Numbers:
+        return numpy.stack([arrays.to_numpy(quantity(contact)) for contact in self.contacts])
 
     @cached_property
     def status(self) -> Numbers:
-        """How each press ended, as the numbers of `Status`."""
-        return self._each(lambda contact: contact.status)
+        """Outcome of each press, as a number of `Status`."""
+        return self._field(lambda contact: contact.status)
 
     @cached_property
     def valid(self) -> Numbers:
-        """Whether each answer can be trusted."""
-        return self._each(lambda contact: contact.valid)
+        """True where the model is valid."""
+        return self._field(lambda contact: contact.valid)
 
     @cached_property
     def tilt(self) -> Numbers:
-        """The angle in rad between load and cup's axis."""
-        return self._each(lambda contact: contact.tilt)
+        """Angle in rad between the load and the cup's axis."""
+        return self._field(lambda contact: contact.tilt)
 
     @cached_property
     def edge_distance(self) -> Numbers:
-        """The arc in mm from the contact to the rim; below 0 the load is so far beyond where it just reaches that."""
-        return self._each(lambda contact: contact.edge_distance)
+        """Arc in mm from the contact to the rim, negative for edge loading; see `OffAxisContact.edge_distance`."""
+        return self._field(lambda contact: contact.edge_distance)
 
     @cached_property
     def edge_loaded(self) -> Numbers:
-        """Whether the contact reaches the rim."""
-        return self._each(lambda contact: contact.edge_loaded)
+        """True where the contact reaches the rim."""
+        return self._field(lambda contact: contact.edge_loaded)
 
     @cached_property
     def max_pressure(self) -> Numbers:
-        """The largest pressure in MPa; infinite where the end of the bore digs in."""
-        return self._each(lambda contact: contact.max_pressure)
+        """Largest pressure in MPa; infinite where the end of the bore indents the ball."""
+        return self._field(lambda contact: contact.max_pressure)
 
     @cached_property
     def half_angle(self) -> Numbers:
-        """In rad, of a round contact of the same area."""
-        return self._each(lambda contact: contact.half_angle)
+        """Half angle in rad of a round contact of the same area."""
+        return self._field(lambda contact: contact.half_angle)
 
     @cached_property
     def held(self) -> Numbers:
-        """Where there is an answer."""
+        """True where the bore holds the ball and there is a solution."""
         return ~numpy.asarray(is_missing(self.status))
 
-    def best(self, of: Numbers) -> tuple[float, float, int]:
-        """Inclination and anteversion in rad where a field is largest, and its place in the flat field."""
-        place = int(numpy.where(self.held & numpy.isfinite(of), of, -inf).argmax())
-        row, column = divmod(place, len(self.anteversion))
-        return float(self.inclination[row]), float(self.anteversion[column]), place
+    @renamed_arguments(of="field")
+    def best(self, field: Numbers) -> tuple[float, float, int]:
+        """Return inclination and anteversion in rad at the largest value of a field, and its flat index."""
+        index = int(numpy.where(self.held & numpy.isfinite(field), field, -inf).argmax())
+        row, column = divmod(index, len(self.anteversion))
+        return float(self.inclination[row]), float(self.anteversion[column]), index
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON: fields are a list of anteversions for each inclination, in mm, MPa and degrees."""
+        """Return one dictionary for JSON: fields are lists of anteversions per inclination, in mm, MPa and degrees."""
         cup = self.model.cup
         fields = {
             "tilt_deg": numpy.degrees(self.tilt),
@@ -124,13 +126,14 @@ class Orientations:
                 [bool(loaded) if held else None for loaded, held in zip(*pair, strict=True)]
                 for pair in zip(self.edge_loaded, self.held, strict=True)
             ],
-            "status": [[Status(int(each)).name for each in row] for row in self.status],
+            "status": [[Status(int(number)).name for number in row] for row in self.status],
             "valid": self.valid.tolist(),
             "seconds": self.seconds,
         }
 
 
 _INCLINATIONS, _ANTEVERSIONS = (tuple(radians(2.5 * i) for i in steps) for steps in (range(12, 25), range(13)))
+"""Default angles in rad: 30° to 60°, and 0 to 30°, in steps of 2.5°."""
 
 
 def orient(
@@ -141,21 +144,21 @@ def orient(
     anteversion: Array = _ANTEVERSIONS,
     **load: float,
 ) -> Orientations:
-    """Press one joint in a cup that stands in many ways, under a load that keeps its direction in the body.
+    """Press one joint in a cup at many orientations, under a load that keeps its direction in the body.
 
-    The cup's own rings do not know how it stands: it is set up once.
+    The compliance in the cup's frame is independent of the orientation and is computed once.
 
     Parameters
     ----------
     joint : Joint
-        Of plain numbers.
+        A joint without arrays.
     model : Sphere, optional
-        With the cup (its own inclination and anteversion do not matter), one direction of load, upwards by default, and
-        the width of the rings.
+        Model with the cup, one direction of the load (upwards by default) and the width of the rings. The cup's own
+        inclination and anteversion have no effect.
     inclination, anteversion : array (n,), array (m,)
-        Radiographic angles in rad: 30° to 60° and 0 to 30° by default, each 2.5°.
+        Radiographic angles in rad; 30° to 60° and 0 to 30° in steps of 2.5° by default.
     force, indentation, half_angle : float
-        One of them, as in a press.
+        Exactly one of them, as in `Sphere.press`.
 
     Returns
     -------
@@ -164,7 +167,7 @@ def orient(
     Raises
     ------
     ValueError
-        A number that is not allowed; a model with more than one direction.
+        A number outside its allowed range; a model with more than one direction.
     TypeError
         Another model; more than one joint or load.
 
@@ -172,16 +175,16 @@ def orient(
     --------
     >>> from math import radians
     >>> import ballsocket as bs
-    >>> angles = [radians(each) for each in (30.0, 50.0)]
-    >>> stood = bs.orient(bs.joints["hip-36"], force=3000.0, inclination=angles, anteversion=[0.0, radians(20.0)])
-    >>> stood.edge_distance.round(1)
+    >>> angles = [radians(angle) for angle in (30.0, 50.0)]
+    >>> cups = bs.orient(bs.joints["hip-36"], force=3000.0, inclination=angles, anteversion=[0.0, radians(20.0)])
+    >>> cups.edge_distance.round(1)
     array([[ 5.4,  3.7],
            [ 0.2, -0.6]])
     """
     model = Sphere() if model is None else check_sphere(model)
-    _check_alone(joint, load)
-    one = model.direction.ndim == 1
-    require("directions of the model", model.direction.size // 3, one, "a cup is turned under one direction of load")
+    _check_single(joint, load)
+    single = model.direction.ndim == 1
+    require("directions of the model", model.direction.size // 3, single, "give one direction of the load")
     axes = [_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))]
     start, contacts = perf_counter(), []
     for number, angle in enumerate(axes[0]):
@@ -198,28 +201,28 @@ def orient(
     )
 
 
-def _check_alone(joint: Any, load: Mapping[str, Any]) -> None:
-    """Raise TypeError for what is no joint, or more than one of it or its load."""
+def _check_single(joint: Any, load: Mapping[str, Any]) -> None:
+    """Raise TypeError for another type than a joint, or for more than one joint or load."""
     check_joint(joint)
     if any(numpy.shape(arrays.to_numpy(number)) for number in joint.numbers()):
-        raise TypeError("joint must be one joint, of plain numbers: a cup is turned around one")
+        raise TypeError("joint must be one joint, of plain numbers: arrays of joints are not allowed")
     for name, value in load.items():
         if value is not None:
             check_number(name, value)
 
 
 def _angles(name: str, values: Array) -> Numbers:
-    """Angles (n,) in rad that a cup can have."""
+    """Validate a row of angles (n,) in rad of a cup."""
     angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].checked(values)).astype(float))
     if angles.ndim != 1 or angles.size == 0:
-        raise ValueError(f"{name} of shape {angles.shape} is not allowed: a row of angles is needed")
+        raise ValueError(f"{name} of shape {angles.shape} is not allowed: give a row of angles")
     rising = bool((numpy.diff(angles) > 0).all())
     require(f"{name} from {angles[0]:.4g} to", angles[-1], rising, "angles (rad) rise from one to the next")
     return angles
 
 
 def _complete(contact: Any) -> OffAxisContact:
-    """The contact, with what is made when it is first asked for."""
+    """Compute the cached quantities of a contact, so that `seconds` includes them."""
     _ = contact.max_pressure, contact.edge_margin, contact.half_angle
-    found: OffAxisContact = contact
-    return found
+    completed: OffAxisContact = contact
+    return completed

@@ -1,4 +1,4 @@
-"""A preloaded joint: a ball that is larger than its socket, which reaches around it beyond the equator."""
+"""Preloaded joints: a ball larger than its socket, which reaches around it beyond the equator."""
 
 from __future__ import annotations
 
@@ -10,40 +10,45 @@ from typing import TYPE_CHECKING
 import numpy
 
 from ...contact.assembly import check_joint
-from ...core.arrays import Array, Numbers
+from ...core.arrays import Array
 from ...core.checks import check_number, require
+from ...core.deprecation import RenamedAttribute
 from ...problem import Joint
-from .directions import checked_direction
+from .bore_shapes import BoreDeviation
+from .directions import check_direction
 from .model import Sphere, check_sphere
-from .worn import Worn
 
 if TYPE_CHECKING:
     from .contact import OffAxisContact
 
-_HALVINGS = 40
-_FAR = 4.0  # interferences: no contact is whole at such a displacement
+_MAX_BISECTIONS = 40
+
+_RELATIVE_TOLERANCE = 1e-4
+
+_MAX_INTERFERENCES = 4.0
+"""Displacement, as a multiple of the interference, at which every ball has lost contact somewhere."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Preload:
-    """What a joint with an interference does at rest, when it is displaced, and as it wears.
+    """Contact of a joint with an interference: at equilibrium, under displacement, and with wear.
 
-    The joint is taken as assembled: pressing the ball in, through an opening that is narrower than it, is not
-    modelled, and what the material kept of it neither.
+    The joint is assembled. Pressing the ball in through the narrower opening is not modelled, nor is any permanent
+    deformation from it.
 
     Parameters
     ----------
     model : Sphere
-        With a cup that reaches beyond the equator, an arc of cover above π.
+        Model with a cup that reaches beyond the equator, an arc of cover above π.
     joint : Joint
-        With an `interference`.
+        Joint with an `interference`.
 
     Raises
     ------
     ValueError
         A joint with a clearance; a cup that ends before the equator.
     TypeError
-        Another model; what is no joint, or is many.
+        Another model; another type than a joint; an array of joints.
 
     Examples
     --------
@@ -51,7 +56,7 @@ class Preload:
     >>> import ballsocket as bs
     >>> joint = bs.Joint(ball_radius=13.5, interference=0.05, liner_thickness=2.5, liner=bs.POM, ball=bs.STEEL)
     >>> fitted = bs.Preload(model=bs.Sphere(cup=bs.Cup(arc_of_cover=radians(240.0))), joint=joint)
-    >>> bool(fitted.rest.max_pressure > 50.0)
+    >>> bool(fitted.equilibrium.max_pressure > 50.0)
     True
     """
 
@@ -67,60 +72,71 @@ class Preload:
         require("arc_of_cover", arc, arc > numpy.pi, "a preloaded socket reaches beyond the equator, above pi radians")
 
     @cached_property
-    def rest(self) -> OffAxisContact:
-        """The contact without a load."""
+    def equilibrium(self) -> OffAxisContact:
+        """Contact without a load."""
         contact: OffAxisContact = self.model.press(self.joint, force=0.0)  # type: ignore[assignment]
         return contact
 
-    def displaced(self, displacement: Array) -> OffAxisContact:
-        """Contacts with the ball's centre at these places from the centre of the bore.
+    def displace(self, displacement: Array) -> OffAxisContact:
+        """Press the ball at displacements from the centre of the bore.
 
         Parameters
         ----------
         displacement : array (..., 3)
-            In mm, in the body's frame.
+            Displacements of the ball's centre in mm, in the body's frame.
         """
         contact: OffAxisContact = self.model.press(self.joint, displacement=displacement)  # type: ignore[assignment]
         return contact
 
-    def lost_at(self, direction: Array) -> float:
-        """The displacement in mm from rest along a direction at which the ball first leaves its socket somewhere.
+    def separation_displacement(self, direction: Array) -> float:
+        """Compute the displacement in mm from equilibrium at which the ball first loses contact in any cell.
 
         Parameters
         ----------
         direction : array (3,)
-            In the body's frame, of any length.
+            Direction in the body's frame, of any length.
+
+        Raises
+        ------
+        ValueError
+            More than one direction; a direction of length 0.
         """
-        way = checked_direction(direction)
-        if way.shape != (3,):
-            raise ValueError(f"direction of shape {way.shape} is not allowed: one direction at a time, x, y, z")
-        start = self.rest.displacement @ numpy.array(self.model.cup.frame)
-        return self._last(lambda far: self._whole(start + far * way / numpy.linalg.norm(way)))
+        vector = check_direction(direction)
+        if vector.shape != (3,):
+            raise ValueError(f"direction of shape {vector.shape} is not allowed: give one direction x, y, z")
+        start = self.equilibrium.displacement @ numpy.array(self.model.cup.frame)
 
-    def worn_out_at(self) -> float:
-        """The even wear of the bore in mm after which the ball at rest first leaves its socket somewhere."""
+        def is_closed(distance: float) -> bool:
+            return _touches_everywhere(self.displace(start + distance * vector / numpy.linalg.norm(vector)))
 
-        def whole(depth: float) -> bool:
-            worn = replace(self.model, worn=Worn(of=lambda n: depth + 0.0 * n[2]))
-            return _touches_everywhere(worn.press(self.joint, force=0.0).pressure_map[2])  # type: ignore[attr-defined]
+        return self._bisect(is_closed)
 
-        return self._last(whole)
+    def wear_depth_to_loosen(self) -> float:
+        """Compute the uniform wear of the bore in mm at which the unloaded ball first loses contact in any cell."""
 
-    def _whole(self, displacement: Numbers) -> bool:
-        return _touches_everywhere(self.displaced(displacement).pressure_map[2])
+        def is_closed(depth: float) -> bool:
+            worn = replace(self.model, worn=BoreDeviation(of=lambda n: depth + 0.0 * n[2]))
+            return _touches_everywhere(worn.press(self.joint, force=0.0))  # type: ignore[arg-type]
 
-    def _last(self, whole: Callable[[float], bool]) -> float:
-        """The largest amount at which the contact is whole, 0 where it never is."""
-        low, high = 0.0, _FAR * float(self.joint.interference)
-        if not whole(low):
+        return self._bisect(is_closed)
+
+    def _bisect(self, is_closed: Callable[[float], bool]) -> float:
+        """Find the largest length in mm at which the contact is closed, or 0 if it is open at 0."""
+        low, high = 0.0, _MAX_INTERFERENCES * float(self.joint.interference)
+        if not is_closed(low):
             return 0.0
-        for _ in range(_HALVINGS):
+        for _ in range(_MAX_BISECTIONS):
             middle = (low + high) / 2
-            low, high = (middle, high) if whole(middle) else (low, middle)
-            if high - low < 1e-4 * high:
+            low, high = (middle, high) if is_closed(middle) else (low, middle)
+            if high - low < _RELATIVE_TOLERANCE * high:
                 break
         return low
 
+    rest = RenamedAttribute("equilibrium")
+    displaced = RenamedAttribute("displace")
+    lost_at = RenamedAttribute("separation_displacement")
+    worn_out_at = RenamedAttribute("wear_depth_to_loosen")
 
-def _touches_everywhere(pressure: Numbers) -> bool:
-    return bool((pressure > 0).all())
+
+def _touches_everywhere(contact: OffAxisContact) -> bool:
+    return bool((contact.pressure_map[2] > 0).all())

@@ -1,4 +1,4 @@
-"""A contact off the axis as a VTK file, for ParaView and its like."""
+"""VTK files of off-axis contacts, for ParaView and similar viewers."""
 
 from __future__ import annotations
 
@@ -15,35 +15,36 @@ from .contact import OffAxisContact
 from .directions import unit_vectors
 
 BORE, BALL, EDGE = 0, 1, 2
-"""Parts, as the cell data number them."""
+"""Numbers of the bodies in the cell data `part`."""
 
 _BALL_RINGS = 90
+"""Number of rings in which the ball is drawn."""
 
 
 def write_vtk(contact: OffAxisContact, path: Path) -> None:
-    """Write the bore with its pressures, the ball where it lies, and the edge of the contact.
+    """Write the bore with its pressures, the displaced ball, and the edge of the contact.
 
-    Places are in mm, in the cup's own frame, from the centre of the bore: z points to the dome's pole, x leans towards
-    the rim. Cell data are `part` (0 bore, 1 ball, 2 edge of the contact), `pressure` (MPa) and `gap` (mm, what is left
-    between ball and bore, both deformed); the latter two are 0 outside of the bore. The file appears at once: an
-    interrupted write leaves none.
+    Coordinates are in mm, in the cup's own frame, from the centre of the bore. z points to the pole of the dome, and x
+    leans towards the rim. Cell data are `part` (0 bore, 1 ball, 2 edge of the contact), `pressure` (MPa) and `gap` (mm,
+    between the deformed surfaces). The latter two are 0 on ball and edge. The file is written atomically: an
+    interrupted write leaves no file.
 
     Parameters
     ----------
     contact : OffAxisContact
-        One contact under load.
+        A single contact under load.
     path : Path
-        Ends in .vtu or .vtk.
+        File name that ends in .vtu or .vtk.
 
     Raises
     ------
     ValueError
-        A path that ends like no known format; more than one contact, or one without load or answer.
+        A path with another suffix; more than one contact; a contact without load or solution.
     ImportError
-        meshio is not installed.
+        The package meshio is not installed.
     """
     check_suffix(path)
-    grid = contact.single_state.bed.compliance.grid
+    grid = contact.single_state.bore.compliance.grid
     needs("fem", "meshio")
     import meshio
 
@@ -52,27 +53,28 @@ def write_vtk(contact: OffAxisContact, path: Path) -> None:
     edge = contact.outline
     links = numpy.stack([numpy.arange(len(edge)), numpy.roll(numpy.arange(len(edge)), -1)], axis=-1)
     radius, joint = float(contact.joint.socket_radius), contact.joint
-    places = [radius * bore, contact.displacement + float(joint.ball_radius) * ball, radius * edge]
+    points = [radius * bore, contact.displacement + float(joint.ball_radius) * ball, radius * edge]
     blocks = [("quad", cells), ("quad", faces + len(bore)), ("line", links + len(bore) + len(ball))]
-    sizes = [len(each) for _, each in blocks]
+    sizes = [len(block) for _, block in blocks]
     fields = {"pressure": contact.pressure_map[2], "gap": _gap(contact)}
     data = {name: [values.ravel(), *(numpy.zeros(size) for size in sizes[1:])] for name, values in fields.items()}
-    parts = [numpy.full(size, part) for size, part in zip(sizes, (BORE, BALL, EDGE), strict=True)]
-    mesh = meshio.Mesh(numpy.concatenate(places), blocks, cell_data={"part": parts, **data})
+    bodies = [numpy.full(size, body) for size, body in zip(sizes, (BORE, BALL, EDGE), strict=True)]
+    mesh = meshio.Mesh(numpy.concatenate(points), blocks, cell_data={"part": bodies, **data})
     with at_once(path) as draft:
         mesh.write(draft)
 
 
 def _gap(contact: OffAxisContact) -> Numbers:
-    """What is left between the surfaces in mm: (rings, meridians); 0 where they touch."""
+    """Compute the gap in mm between the deformed surfaces, (rings, meridians); 0 in the contact."""
     state = contact.single_state
-    given = state.bed.compliance.displacement(state.rest.pressure)
-    apart: Numbers = (given - state.bed.separation.overlap(state.rest.displacement))[0]
-    return numpy.where(state.rest.pressure[0] > 0, 0.0, apart)
+    pressure = state.equilibrium.pressure
+    deformation = state.bore.compliance.displacement(pressure)
+    gap: Numbers = (deformation - state.bore.gap.overlap(state.equilibrium.displacement))[0]
+    return numpy.where(pressure[0] > 0, 0.0, gap)
 
 
 def _faces(polar: Numbers, meridians: int) -> tuple[Numbers, Numbers]:
-    """Points (n, 3) of a sphere of radius 1 between rings and meridians, and the corners (cells, 4) of its cells."""
+    """Compute the points (n, 3) of a grid on a unit sphere, and the corners (cells, 4) of its cells."""
     azimuth = numpy.arange(meridians) * (2 * pi / meridians)
     points = unit_vectors(polar[:, None], azimuth).reshape(3, -1).T
     first = numpy.arange((len(polar) - 1) * meridians).reshape(-1, meridians)

@@ -1,4 +1,4 @@
-"""The files of FMI's cross-check beside a unit: what goes in, what the Python element answers, and how it is run."""
+"""Files of the FMI cross-check: inputs, reference results of the Python element, and options of the run."""
 
 from __future__ import annotations
 
@@ -25,46 +25,46 @@ def write_cross_check(element: ForceElement, path: Path) -> tuple[Path, Path, Pa
     """
     time = numpy.arange(round(STOP / STEP) + 1) * STEP
     state = trajectory(element, time)
-    names = variables(element)
-    begin = path.with_suffix("")
-    tables = (("in", "input", in_si(state)), ("ref", "output", answers(element, state)))
-    inside, reference = (
-        write_text(Path(f"{begin}_{end}.csv"), _csv(_of(names, causality), time, values))
-        for end, causality, values in tables
+    listed = variables(element)
+    stem = path.with_suffix("")
+    tables = (("in", "input", in_si(state)), ("ref", "output", reference_loads(element, state)))
+    inputs, reference = (
+        write_text(Path(f"{stem}_{ending}.csv"), _csv(_names(listed, causality), time, values))
+        for ending, causality, values in tables
     )
     options = f"StartTime, 0\nStopTime, {STOP}\nStepSize, {STEP}\nRelTol, 1e-6\n"
-    return inside, reference, write_text(Path(f"{begin}_ref.opt"), options)
+    return inputs, reference, write_text(Path(f"{stem}_ref.opt"), options)
 
 
 def trajectory(element: ForceElement, time: Numbers) -> Numbers:
-    """A ball that comes, is pressed, slides around its socket, spins and leaves: (times, 9) in mm, mm/s, rad/s."""
+    """Return states (times, 9) in mm, mm/s, rad/s of a ball that touches, slides, spins and separates."""
     constants = element.constants
     depth = 0.01 * min(constants.clearance, constants.wall) or 0.001 * constants.socket_radius
     phase = 2 * numpy.pi * time / STOP
     distance = constants.clearance + depth * (1.0 - 2.0 * numpy.cos(phase))
     rate = depth * 2.0 * numpy.sin(phase) * 2 * numpy.pi / STOP
-    lean, turning = 0.3 * numpy.sin(phase), 0.3 * numpy.cos(phase) * 2 * numpy.pi / STOP
-    way = numpy.stack([numpy.sin(lean), 0.0 * lean, numpy.cos(lean)], axis=-1)
-    across = numpy.stack([numpy.cos(lean), 0.0 * lean, -numpy.sin(lean)], axis=-1)
-    velocity = rate[:, None] * way + (distance * turning)[:, None] * across
+    angle, angular_speed = 0.3 * numpy.sin(phase), 0.3 * numpy.cos(phase) * 2 * numpy.pi / STOP
+    normal = numpy.stack([numpy.sin(angle), 0.0 * angle, numpy.cos(angle)], axis=-1)
+    tangent = numpy.stack([numpy.cos(angle), 0.0 * angle, -numpy.sin(angle)], axis=-1)
+    velocity = rate[:, None] * normal + (distance * angular_speed)[:, None] * tangent
     spin = numpy.stack([0.0 * phase, 2.0 * numpy.sin(phase), 1.0 + 0.0 * phase], axis=-1)
-    return numpy.hstack([distance[:, None] * way, velocity, spin])
+    return numpy.hstack([distance[:, None] * normal, velocity, spin])
 
 
 def in_si(state: Numbers) -> Numbers:
-    """States in m, m/s and rad/s."""
+    """Convert states to m, m/s and rad/s."""
     return numpy.hstack([_MM * state[:, :6], state[:, 6:]])
 
 
-def answers(element: ForceElement, state: Numbers) -> Numbers:
-    """What the Python element answers, in the order of the outputs and in SI units."""
+def reference_loads(element: ForceElement, state: Numbers) -> Numbers:
+    """Compute the outputs of the Python element, in their order and in SI units."""
     load = element(state[:, :3], state[:, 3:6], state[:, 6:])
     scalars = (_MM * load.energy, load.half_angle, _MPA * load.max_pressure)
     return numpy.hstack([load.force, _MM * load.moment, numpy.stack(scalars, axis=-1)])
 
 
-def _of(names: tuple[Variable, ...], causality: str) -> list[str]:
-    return [each.name for each in names if each.causality == causality]
+def _names(listed: tuple[Variable, ...], causality: str) -> list[str]:
+    return [variable.name for variable in listed if variable.causality == causality]
 
 
 def _csv(names: list[str], time: Numbers, values: Numbers) -> str:

@@ -1,4 +1,4 @@
-"""The description of the unit, `modelDescription.xml`, in both versions of the standard."""
+"""`modelDescription.xml` of the unit, for FMI 2 and 3."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from .variables import UNITS, Variable
 
-_ABILITIES = {
+_CAPABILITIES = {
     "2.0": ("canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative"),
     "3.0": (
         "canGetAndSetFMUState",
@@ -18,16 +18,17 @@ _ABILITIES = {
     ),
 }
 LOG_CATEGORIES = {
-    "logStatusWarning": "an indentation at which the law does not trust itself, told once",
-    "logStatusDiscard": "a ball deeper than the socket's wall: a shorter step is needed",
-    "logStatusError": "states that are no numbers, parameters that are not allowed",
+    "logStatusWarning": "an indentation beyond the validity of the model, reported once",
+    "logStatusDiscard": "an indentation larger than the wall thickness: reduce the step",
+    "logStatusError": "states that are not finite, parameters out of range",
 }
-STOP, STEP = 0.1, 1e-3  # s, what a host may begin with
+STOP, STEP = 0.1, 1e-3
+"""Suggested end and step of a simulation in s."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class About:
-    """What a description says of its unit beside the variables."""
+class UnitInformation:
+    """Name, identifier and texts of a unit in its description."""
 
     name: str
     guid: str
@@ -36,12 +37,12 @@ class About:
     sources: Sequence[str]
 
 
-def fmi2_description(about: About, variables: Sequence[Variable]) -> bytes:
-    """The description of version 2.0."""
-    root = _root("2.0", about, {"guid": about.guid, "numberOfEventIndicators": "0"})
+def fmi2_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
+    """Write the description for FMI 2.0."""
+    root = _root("2.0", information, {"guid": information.guid, "numberOfEventIndicators": "0"})
     files = SubElement(root[1], "SourceFiles")
     for parent in (SubElement(root[0], "SourceFiles"), files):
-        for source in about.sources:
+        for source in information.sources:
             SubElement(parent, "File", name=source)
     _units(root)
     _categories(SubElement(root, "LogCategories"))
@@ -54,13 +55,15 @@ def fmi2_description(about: About, variables: Sequence[Variable]) -> bytes:
     outputs = [variable for variable in variables if variable.causality == "output"]
     for parent in (SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")):
         for variable in outputs:
-            SubElement(parent, "Unknown", {"index": str(variable.reference), **_needs(variable.needs, parent.tag)})
-    return _written(root)
+            SubElement(
+                parent, "Unknown", {"index": str(variable.reference), **_dependencies(variable.needs, parent.tag)}
+            )
+    return _xml(root)
 
 
-def fmi3_description(about: About, variables: Sequence[Variable]) -> bytes:
-    """The description of version 3.0."""
-    root = _root("3.0", about, {"instantiationToken": about.guid})
+def fmi3_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
+    """Write the description for FMI 3.0."""
+    root = _root("3.0", information, {"instantiationToken": information.guid})
     _units(root)
     _categories(SubElement(root, "LogCategories"))
     SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
@@ -73,26 +76,32 @@ def fmi3_description(about: About, variables: Sequence[Variable]) -> bytes:
     outputs = [variable for variable in variables if variable.causality == "output"]
     for tag in ("Output", "InitialUnknown"):
         for variable in outputs:
-            SubElement(structure, tag, {"valueReference": str(variable.reference), **_needs(variable.needs, tag)})
-    return _written(root)
+            SubElement(
+                structure, tag, {"valueReference": str(variable.reference), **_dependencies(variable.needs, tag)}
+            )
+    return _xml(root)
 
 
-def build_description(about: About) -> bytes:
-    """How version 3.0 is told what to compile: `buildDescription.xml`."""
+def build_description(information: UnitInformation) -> bytes:
+    """Write `buildDescription.xml`, the list of source files for FMI 3.0."""
     root = Element("fmiBuildDescription", fmiVersion="3.0")
-    one = SubElement(root, "BuildConfiguration", modelIdentifier=about.name)
-    files = SubElement(one, "SourceFileSet", language="C99")
-    for source in about.sources:
+    configuration = SubElement(root, "BuildConfiguration", modelIdentifier=information.name)
+    files = SubElement(configuration, "SourceFileSet", language="C99")
+    for source in information.sources:
         SubElement(files, "SourceFile", name=source)
-    return _written(root)
+    return _xml(root)
 
 
-def _root(version: str, about: About, words: dict[str, str]) -> Element:
-    said = {"description": about.text, "generationTool": about.tool, "variableNamingConvention": "structured"}
-    named = {"fmiVersion": version, "modelName": about.name, **words, **said}
+def _root(version: str, information: UnitInformation, identifiers: dict[str, str]) -> Element:
+    texts = {
+        "description": information.text,
+        "generationTool": information.tool,
+        "variableNamingConvention": "structured",
+    }
+    named = {"fmiVersion": version, "modelName": information.name, **identifiers, **texts}
     root = Element("fmiModelDescription", named)
-    abilities = dict.fromkeys(_ABILITIES[version], "true")
-    identified = {"modelIdentifier": about.name, **abilities}
+    capabilities = dict.fromkeys(_CAPABILITIES[version], "true")
+    identified = {"modelIdentifier": information.name, **capabilities}
     not_needed = (
         {"completedIntegratorStepNotNeeded": "true"} if version == "2.0" else {"needsCompletedIntegratorStep": "false"}
     )
@@ -110,8 +119,8 @@ def _units(root: Element) -> None:
 
 
 def _categories(parent: Element) -> None:
-    for name, about in LOG_CATEGORIES.items():
-        SubElement(parent, "Category", name=name, description=about)
+    for name, meaning in LOG_CATEGORIES.items():
+        SubElement(parent, "Category", name=name, description=meaning)
 
 
 def _attributes(variable: Variable) -> dict[str, str]:
@@ -130,11 +139,11 @@ def _start(variable: Variable) -> dict[str, str]:
     return {"unit": variable.unit} | ({} if variable.start is None else {"start": repr(variable.start)})
 
 
-def _needs(inputs: Iterable[int], tag: str) -> dict[str, str]:
-    # at the beginning outputs depend on parameters too; without a word that is on all there is
+def _dependencies(inputs: Iterable[int], tag: str) -> dict[str, str]:
+    # initial outputs depend on parameters too; without this attribute they depend on every variable
     return {} if tag.startswith("Initial") else {"dependencies": " ".join(map(str, inputs))}
 
 
-def _written(root: Element) -> bytes:
+def _xml(root: Element) -> bytes:
     indent(root)
     return tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"

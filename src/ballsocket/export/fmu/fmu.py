@@ -1,4 +1,4 @@
-"""A unit: description, sources, and a binary for the machine that it is made on, in one archive."""
+"""FMU archive with description, sources, and a binary for the machine that writes it."""
 
 from __future__ import annotations
 
@@ -15,25 +15,26 @@ from ...core.checks import require
 from ...core.storage.atomic import at_once
 from ...dynamics import ForceElement
 from ...version import __version__
-from ..c_element import CElement, filled
+from ..c_element import CElement, fill_template
 from ..c_text import c_number
 from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library
-from ..trusted import trusted_depth
 from ..tunable import TUNABLES
-from .description import About, build_description, fmi2_description, fmi3_description
+from ..validity_depth import valid_depth
+from .description import UnitInformation, build_description, fmi2_description, fmi3_description
 from .variables import Variable, variables
 
-_LONG_AGO = (1980, 1, 1, 0, 0, 0)  # an archive of the same element is the same archive
+_ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)
+"""Fixed date of all files, so that equal elements give equal archives."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Standard:
-    """A version of FMI; `folder` names the folder of a platform's binaries."""
+    """Version of FMI; `folder` returns the name of the folder with the binaries of a platform."""
 
     version: str
     wrapper: str
     folder: Callable[[Platform], str]
-    describe: Callable[[About, Sequence[Variable]], bytes]
+    describe: Callable[[UnitInformation, Sequence[Variable]], bytes]
 
 
 def _fmi2_folder(platform: Platform) -> str:
@@ -47,8 +48,8 @@ STANDARDS: Mapping[int, Standard] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Written:
-    """What was written: the archive, and a sentence on what is missing in it, empty where nothing is."""
+class FmuFile:
+    """Path of the archive, and a note on a missing binary; empty if the archive is complete."""
 
     path: Path
     missing: str = ""
@@ -56,23 +57,23 @@ class Written:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fmu:
-    """A force element as a functional mock-up unit, for model exchange and co-simulation, in SI units.
+    """Force element as a functional mock-up unit for model exchange and co-simulation, in SI units.
 
-    Position, velocity and spin are its inputs, force, moment, energy, half angle and largest pressure its outputs; it
-    has no states. What the element loses are parameters that can be tuned while it runs.
+    Inputs are position, velocity and spin; outputs are force, moment, energy, half angle and largest pressure. The unit
+    has no states. Damping and friction are tunable parameters.
 
     Parameters
     ----------
     element : ForceElement
     name : str
-        The identifier of the model: letters, digits and _.
+        Identifier of the model: letters, digits and _.
     version : int
-        Of FMI, 2 or 3.
+        Version of FMI, 2 or 3.
 
     Raises
     ------
     ValueError
-        A name or a version that is not allowed.
+        An invalid name or version.
     """
 
     element: ForceElement
@@ -80,57 +81,62 @@ class Fmu:
     version: int = 3
 
     def __post_init__(self) -> None:
-        require("FMI version", self.version, self.version in STANDARDS, "2 and 3 are written")
+        require("FMI version", self.version, self.version in STANDARDS, "2 or 3")
         CElement(element=self.element, name=self.name)
 
     @property
     def standard(self) -> Standard:
+        """FMI standard of the version."""
         return STANDARDS[self.version]
 
     @cached_property
     def sources(self) -> Mapping[str, str]:
-        """The texts of the folder `sources`, by name."""
-        words = {
+        """Contents of the files in the folder `sources`, by name."""
+        values = {
             "name": self.name,
             "NAME": self.name.upper(),
             "version": __version__,
             "guid": self.guid,
             **self._numbers,
         }
-        return self._program | {name: filled(name, **words) for name in ("fmu_core.h", self.standard.wrapper)}
+        return self._program | {name: fill_template(name, **values) for name in ("fmu_core.h", self.standard.wrapper)}
 
     @cached_property
     def guid(self) -> str:
-        """By what the description and the binary know that they belong together: it changes with every number."""
+        """Identifier that links description and binary; it changes with every number."""
         parts = (*self._program.values(), *self._numbers.values(), self.standard.version, self.name)
         return f"{{{UUID(bytes=sha256(''.join(parts).encode()).digest()[:16])}}}"
 
     @cached_property
     def _program(self) -> dict[str, str]:
-        made = CElement(element=self.element, name=self.name)
-        return {f"{self.name}.h": made.header, f"{self.name}.c": made.source}
+        program = CElement(element=self.element, name=self.name)
+        return {f"{self.name}.h": program.header, f"{self.name}.c": program.source}
 
     @cached_property
     def _numbers(self) -> dict[str, str]:
-        element, joint = self.element, self.element.joint.with_floats()
-        deepest = trusted_depth(element)
-        beyond = f"{element.model.name} does not trust itself beyond an indentation of {deepest:.4g} mm"
+        element, constants = self.element, self.element.constants
+        deepest = valid_depth(element)
+        beyond = f"{element.model.name} is not valid beyond an indentation of {deepest:.4g} mm"
         return {
             "parameters": str(len(TUNABLES)),
-            "units": ", ".join(c_number(each.si) for each in TUNABLES),
-            "starts": ", ".join(c_number(getattr(element.constants, each.constant) * each.si) for each in TUNABLES),
-            "valid": c_number(joint.clearance + deepest),
+            "units": ", ".join(c_number(parameter.si) for parameter in TUNABLES),
+            "starts": ", ".join(
+                c_number(getattr(constants, parameter.constant) * parameter.si) for parameter in TUNABLES
+            ),
+            "valid": c_number(element.joint.with_floats().clearance + deepest),
             "beyond": beyond,
         }
 
     @property
-    def about(self) -> About:
-        """What the description says of the unit."""
+    def information(self) -> UnitInformation:
+        """Name, identifier and texts for the description."""
         texts = [name for name in self.sources if name.endswith(".c")]
         text = f"ball in a socket, {self.element.model.title}"
-        return About(name=self.name, guid=self.guid, text=text, tool=f"ballsocket {__version__}", sources=texts)
+        return UnitInformation(
+            name=self.name, guid=self.guid, text=text, tool=f"ballsocket {__version__}", sources=texts
+        )
 
-    def write(self, path: Path) -> Written:
+    def write(self, path: Path) -> FmuFile:
         """Write the archive; `missing` states the binary that it lacks.
 
         Raises
@@ -138,10 +144,12 @@ class Fmu:
         OSError
             A folder that cannot be written to.
         """
-        files: dict[str, bytes] = {"modelDescription.xml": self.standard.describe(self.about, variables(self.element))}
+        files: dict[str, bytes] = {
+            "modelDescription.xml": self.standard.describe(self.information, variables(self.element))
+        }
         files |= {f"sources/{name}": text.encode() for name, text in self.sources.items()}
         if self.version == 3:
-            files["sources/buildDescription.xml"] = build_description(self.about)
+            files["sources/buildDescription.xml"] = build_description(self.information)
         missing = ""
         try:
             platform, binary = self._binary()
@@ -152,13 +160,13 @@ class Fmu:
                     f"the binary for {THIS_PLATFORM} is missing"
                 )
         except NoCompiler as error:
-            missing = f"{error}; the sources are there, the binary is not"
+            missing = f"{error}; the archive contains the sources without a binary"
         with at_once(Path(path)) as draft, zipfile.ZipFile(draft, "w") as archive:
             for name in sorted(files):
-                entry = zipfile.ZipInfo(name, _LONG_AGO)
+                entry = zipfile.ZipInfo(name, _ARCHIVE_DATE)
                 entry.external_attr, entry.create_system = 0o644 << 16, 3
                 archive.writestr(entry, files[name], zipfile.ZIP_DEFLATED, 9)
-        return Written(path=Path(path), missing=missing)
+        return FmuFile(path=Path(path), missing=missing)
 
     def _binary(self) -> tuple[Platform, bytes]:
         with TemporaryDirectory() as temporary:
@@ -166,5 +174,5 @@ class Fmu:
             for name, text in self.sources.items():
                 (folder / name).write_text(text, encoding="utf-8")
             library = folder / f"{self.name}{LIBRARY_ENDING}"
-            platform = compile_library(self.about.sources, library, folder)
+            platform = compile_library(self.information.sources, library, folder)
             return platform, library.read_bytes()

@@ -1,4 +1,4 @@
-"""The variables of the unit: one list for both versions of the standard, all of them real numbers in SI units."""
+"""Variables of the unit for both versions of the standard: real numbers in SI units."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ UNITS: Mapping[str, Mapping[str, int]] = {
     "Pa": {"kg": 1, "m": -1, "s": -2},
     "1": {},
 }
-"""Units by their names, as powers of the base units."""
+"""Powers of the base units for each unit."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Variable:
-    """An input, output or parameter; `reference` is by what hosts ask for it, `needs` the inputs it depends on."""
+    """Input, output or parameter; `reference` is its number in the standard, `needs` are the inputs it depends on."""
 
     reference: int
     name: str
@@ -38,45 +38,45 @@ class Variable:
 
 
 _VECTORS = {
-    "position": ("m", "of the ball's centre from the socket's, in axes fixed to the socket"),
-    "velocity": ("m/s", "of the ball's centre as it is seen from the socket"),
-    "spin": ("rad/s", "angular velocity of the ball less that of the socket"),
+    "position": ("m", "position of the ball centre relative to the socket centre, in axes fixed to the socket"),
+    "velocity": ("m/s", "velocity of the ball centre relative to the socket"),
+    "spin": ("rad/s", "angular velocity of the ball relative to the socket"),
 }
 _LOADS = {
-    "force": ("N", "on the ball, at its centre"),
-    "moment": ("N.m", "on the ball about its centre"),
+    "force": ("N", "force on the ball at its centre"),
+    "moment": ("N.m", "moment on the ball about its centre"),
 }
 _SCALARS = {
-    "energy": ("J", "stored in the contact"),
-    "half_angle": ("rad", "of the contact"),
-    "max_pressure": ("Pa", "of the contact"),
+    "energy": ("J", "elastic energy of the contact"),
+    "half_angle": ("rad", "half angle of the contact"),
+    "max_pressure": ("Pa", "largest contact pressure"),
 }
-_ALL, _PLACE = tuple(range(1, 10)), (1, 2, 3)
+_STATE, _POSITION = tuple(range(1, 10)), (1, 2, 3)
 
 
 def variables(element: ForceElement) -> tuple[Variable, ...]:
-    """All variables of an element, in the order of their references from 1 on."""
+    """List the variables of an element in the order of their references, from 1."""
     parts = [*_inputs(), *_outputs(), *_parameters(element)]
     return tuple(Variable(reference=number, **part) for number, part in enumerate(parts, 1))
 
 
 def _inputs() -> Iterator[dict]:
-    for name, (unit, about) in _VECTORS.items():
+    for name, (unit, meaning) in _VECTORS.items():
         for axis in (1, 2, 3):
-            yield {"name": f"{name}[{axis}]", "causality": "input", "unit": unit, "description": about, "start": 0.0}
+            yield {"name": f"{name}[{axis}]", "causality": "input", "unit": unit, "description": meaning, "start": 0.0}
 
 
 def _outputs() -> Iterator[dict]:
-    for name, (unit, about) in _LOADS.items():
+    for name, (unit, meaning) in _LOADS.items():
         for axis in (1, 2, 3):
-            described = {"name": f"{name}[{axis}]", "unit": unit, "description": about}
-            yield {**described, "causality": "output", "needs": _ALL}
-    for name, (unit, about) in _SCALARS.items():
-        yield {"name": name, "causality": "output", "unit": unit, "description": about, "needs": _PLACE}
+            described = {"name": f"{name}[{axis}]", "unit": unit, "description": meaning}
+            yield {**described, "causality": "output", "needs": _STATE}
+    for name, (unit, meaning) in _SCALARS.items():
+        yield {"name": name, "causality": "output", "unit": unit, "description": meaning, "needs": _POSITION}
 
 
 def _parameters(element: ForceElement) -> Iterator[dict]:
-    for each in TUNABLES:
-        start = getattr(element.constants, each.constant) * each.si
-        about = {"unit": each.si_unit, "description": each.meaning, "start": start}
-        yield {"name": each.name, "causality": "parameter", **about}
+    for parameter in TUNABLES:
+        start = getattr(element.constants, parameter.constant) * parameter.si
+        properties = {"unit": parameter.si_unit, "description": parameter.meaning, "start": start}
+        yield {"name": parameter.name, "causality": "parameter", **properties}

@@ -90,7 +90,7 @@ class ChebyshevTable:
 
     Few combinations of the products matter: those of `liner` (combinations, products) and, for an elastic ball, those
     of `ball` (combinations, products * combinations of the liner). `curves` (functions * angles, combinations)
-    turns them into Chebyshev coefficients. `counts` are the numbers of polynomials of ν, R2/L and the ball's two
+    turns them into Chebyshev coefficients. `counts` are the lengths of the series in ν, R2/L and the two ball
     coordinates.
     """
 

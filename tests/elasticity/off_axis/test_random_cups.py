@@ -1,6 +1,6 @@
-"""Random cups, loads and directions: each ends in an answer that obeys the laws of contact, or in a status.
+"""Random cups, loads and directions: each contact obeys the laws of contact or has a status.
 
-Twelve cups, or sixty (with `--long`); the environment's BALLSOCKET_CUPS is another number.
+Twelve cups, or sixty with `--long`; the environment variable BALLSOCKET_CUPS sets another number.
 """
 
 import os
@@ -34,10 +34,10 @@ NUMBERS = (
     "max_pressure_at",
     "stiffness_matrix",
 )
-"""That are finite where there is an answer; the largest pressure may be unbounded."""
+"""Quantities that are finite in every solution; the largest pressure may be unbounded."""
 
 
-def drawn_joint(random):
+def draw_joint(random):
     radius = 10 ** random.uniform(0.5, 2.0)
     layer = bs.Layer(
         thickness=radius * random.uniform(0.1, 0.5), material=random.choice([bs.TITANIUM, bs.CANCELLOUS_BONE])
@@ -52,7 +52,7 @@ def drawn_joint(random):
     )
 
 
-def drawn_model(random, joint):
+def draw_model(random, joint):
     radius = float(joint.ball_radius)
     cup = bs.Cup(
         arc_of_cover=radians(random.uniform(60.0, 340.0)),
@@ -62,11 +62,11 @@ def drawn_model(random, joint):
         anteversion=radians(random.uniform(-60.0, 60.0)),
         side=random.choice(list(bs.Side)),
     )
-    form = [
+    shapes = [
         None,
         None,
-        bs.Pinched(squeeze=float(joint.clearance)),
-        bs.Worn(of=lambda n: 0.5 * joint.clearance * n[0] ** 2),
+        bs.OvalBore(squeeze=float(joint.clearance)),
+        bs.BoreDeviation(of=lambda n: 0.5 * joint.clearance * n[0] ** 2),
     ]
     surface = [bs.RealCup(), bs.RealCup(), bs.RealCup(), bs.ClosedShell(), bs.Springs()]
     return bs.Sphere(
@@ -74,12 +74,12 @@ def drawn_model(random, joint):
         surface=surface[random.integers(5)],
         ring_width=radians(random.uniform(5.0, 6.0)),
         gap=random.choice([bs.LinearGap, bs.CircularGap]),
-        worn=form[random.integers(4)],
+        worn=shapes[random.integers(4)],
     )
 
 
-def drawn_load(random, joint):
-    """Around what makes a contact of this joint, and far from it."""
+def draw_load(random, joint):
+    """Draw loads from far below to far above those that make a contact of this joint."""
     size = float(joint.liner.young) * float(joint.ball_radius) ** 2
     kind = random.choice(["force", "force", "indentation", "half_angle"])
     return kind, {
@@ -89,19 +89,19 @@ def drawn_load(random, joint):
     }[kind]
 
 
-def drawn(seed):
+def draw(seed):
     random = np.random.default_rng(seed)
-    joint = drawn_joint(random)
-    model = drawn_model(random, joint)
+    joint = draw_joint(random)
+    model = draw_model(random, joint)
     spread = random.choice([0.3, 1.0, 10.0])  # from about the dome to anywhere
     direction = random.normal(size=(LOADS, 3)) * spread + np.array(model.cup.dome)
-    return model, joint, *drawn_load(random, joint), direction
+    return model, joint, *draw_load(random, joint), direction
 
 
 @pytest.mark.parametrize("tenth", range(10))
-def test_random_cups_loads_and_directions_end_in_an_answer_or_a_status(tenth):
+def test_random_contacts_obey_the_laws_of_contact_or_have_a_status(tenth):
     for seed in range(tenth, COUNT, 10):
-        model, joint, kind, load, direction = drawn(seed)
+        model, joint, kind, load, direction = draw(seed)
         contact = model.press(joint, direction=direction, **{kind: load})
         check_numbers(contact, kind, seed)
         check_laws(contact, direction @ np.array(model.cup.frame).T, seed)
@@ -110,37 +110,39 @@ def test_random_cups_loads_and_directions_end_in_an_answer_or_a_status(tenth):
 
 
 def check_numbers(contact, kind, seed):
-    good = contact.status == 0
+    solved = contact.status == 0
     for name in NUMBERS:
         value = getattr(contact, name)
-        assert np.isfinite(value[good]).all(), (seed, name)
-        assert name == kind or name in ("tilt", "rim_distance") or np.isnan(value[~good]).all(), (seed, name)
+        assert np.isfinite(value[solved]).all(), (seed, name)
+        assert name == kind or name in ("tilt", "rim_distance") or np.isnan(value[~solved]).all(), (seed, name)
     largest = contact.max_pressure
-    assert (largest[good] >= 0).all(), seed
-    assert (np.isfinite(largest) | contact.edge_loaded)[good].all(), seed
+    assert (largest[solved] >= 0).all(), seed
+    assert (np.isfinite(largest) | contact.edge_loaded)[solved].all(), seed
 
 
 def check_laws(contact, direction, seed):
-    """Nothing pulls, nothing lies outside of the bore, and a load is carried."""
-    good = contact.status == 0
+    """Check that no pressure pulls or lies outside the bore, and that pressures carry the load."""
+    solved = contact.status == 0
     size = np.linalg.norm(contact.force_vector, axis=-1)
     along = (contact.force_vector * direction).sum(axis=-1) / np.linalg.norm(direction, axis=-1)
-    assert (along[good] >= -1e-9 * size[good]).all(), seed
-    assert (contact.edge_loaded == (contact.edge_margin <= 0))[good & (size > 0)].all(), seed
+    assert (along[solved] >= -1e-9 * size[solved]).all(), seed
+    assert (contact.edge_loaded == (contact.edge_margin <= 0))[solved & (size > 0)].all(), seed
     reach = float(contact.model.reach_of(contact.joint))
-    assert (np.arccos(np.clip(contact.max_pressure_at[good][:, 2], -1, 1)) <= reach + 1e-6)[size[good] > 0].all(), seed
+    assert (np.arccos(np.clip(contact.max_pressure_at[solved][:, 2], -1, 1)) <= reach + 1e-6)[size[solved] > 0].all(), (
+        seed
+    )
     for state in (piece.state for _, piece in contact.laws.pieces):
-        assert (state.rest.pressure >= 0).all(), seed
-        found = state.rest.found & ~state.dislocated
-        carried = state.bed.force(state.rest.pressure)[found]
-        assert carried == pytest.approx(state.force_vector.T[found])
-        touch = found & (state.rest.pressure > 0).any(axis=(1, 2))
-        for patch in (each for each, held in zip(state.patches, touch, strict=True) if held):
+        assert (state.equilibrium.pressure >= 0).all(), seed
+        converged = state.equilibrium.converged & ~state.dislocated
+        carried = state.bore.force(state.equilibrium.pressure)[converged]
+        assert carried == pytest.approx(state.force_vector.T[converged])
+        touch = converged & (state.equilibrium.pressure > 0).any(axis=(1, 2))
+        for patch in (patch for patch, touches in zip(state.patches, touch, strict=True) if touches):
             assert (patch.outline[:, 2] >= np.cos(reach) - 1e-6).all(), seed
 
 
 def check_balance(contact, load, direction, seed):
-    good = contact.status == 0
-    asked = load[:, None] * direction / np.linalg.norm(direction, axis=-1, keepdims=True)
-    missing = np.linalg.norm(contact.force_vector - asked, axis=-1)
-    assert (missing[good] <= 1e-5 * load[good]).all(), seed
+    solved = contact.status == 0
+    target = load[:, None] * direction / np.linalg.norm(direction, axis=-1, keepdims=True)
+    residual = np.linalg.norm(contact.force_vector - target, axis=-1)
+    assert (residual[solved] <= 1e-5 * load[solved]).all(), seed

@@ -1,4 +1,4 @@
-"""How far a contact is from the rim, on this side of it and beyond."""
+"""Distance of contacts from the rim, inside the bore and for edge loading."""
 
 from dataclasses import replace
 from math import pi, radians
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.off_axis.rim import edge_margins
+from ballsocket.elasticity.off_axis.load_cases import edge_margins
 
 from ...extent import either
 from ...joints import HIP
@@ -35,8 +35,8 @@ CUPS = {
 
 
 @pytest.mark.parametrize("name", CUPS)
-def test_the_edge_distance_falls_without_a_plateau_or_a_step_at_the_rim(name):
-    """By 0.04 to 0.2 mm for each half degree, whose differences stay below 0.1 mm."""
+def test_edge_distance_decreases_smoothly_with_tilt_at_the_rim(name):
+    """Steps of half a degree reduce it by 0.03 to 0.2 mm, and differ by less than 0.1 mm."""
     joint, cup, force, first_touch = CUPS[name]
     tilt = np.radians(first_touch + np.arange(-3.0, 2.1, 0.5))
     contact = bs.Sphere(cup=cup).press(joint, force=force, tilt=tilt)
@@ -48,7 +48,7 @@ def test_the_edge_distance_falls_without_a_plateau_or_a_step_at_the_rim(name):
 
 
 @pytest.mark.parametrize("name", list(CUPS)[: either(quick=1, long=4)])
-def test_wide_rings_give_the_edge_distance_of_narrow_ones(name):
+def test_edge_distance_is_independent_of_ring_width(name):
     """Rings of 2° within 0.1 mm, far from the rim, near it, and beyond it."""
     joint, cup, force, first_touch = CUPS[name]
     tilt = np.radians(first_touch + np.array([-25.0, -9.0, -3.5, -0.7, 0.7, 6.0]))
@@ -62,23 +62,23 @@ def test_wide_rings_give_the_edge_distance_of_narrow_ones(name):
 
 
 @pytest.mark.parametrize("name", list(CUPS)[: either(quick=2, long=4)])
-def test_the_edge_distance_of_a_cut_contact_costs_few_presses(name):
+def test_edge_distance_of_a_cut_contact_needs_few_presses(name):
     joint, cup, force, first_touch = CUPS[name]
     contact = bs.Sphere(cup=cup).press(joint, force=force, tilt=radians(first_touch + 6.0))
     state, presses = contact.laws.pieces[0][1].state, []
 
-    def press(*words):
-        presses.append(words)
-        return state.press(*words)
+    def solve(*arguments):
+        presses.append(arguments)
+        return state.solve(*arguments)
 
-    margin = edge_margins(replace(state, press=press))
+    margin = edge_margins(replace(state, solve=solve))
     assert np.degrees(margin[0]) == pytest.approx(-6.0, abs=0.25)
     assert len(presses) <= 9
 
 
-def test_the_edge_of_a_contact_lies_between_the_cells():
+def test_half_angle_is_resolved_between_the_cells():
     """Half angles of closed shells at rings of 2°: within 0.25° of the exact ones, of 14 random joints."""
-    random, off = np.random.default_rng(11), []
+    random, errors = np.random.default_rng(11), []
     for _ in range(14):
         radius = random.uniform(8.0, 30.0)
         joint = lined(
@@ -91,50 +91,50 @@ def test_the_edge_of_a_contact_lies_between_the_cells():
         exact = bs.Exact().press(joint, half_angle=np.radians(random.uniform(14.0, 58.0, 4)))
         model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(2.0))
         contact = model.press(joint, indentation=exact.indentation, tilt=random.uniform(0.0, 0.35, 4))
-        off.append(np.degrees(contact.half_angle - exact.half_angle))
-    assert abs(np.array(off)).max() < 0.25
+        errors.append(np.degrees(contact.half_angle - exact.half_angle))
+    assert abs(np.array(errors)).max() < 0.25
 
 
 @pytest.mark.parametrize(
     ("arc", "load"),
     [(180.0, {"force": 2000.0}), (200.0, {"force": 9000.0}), (150.0, {"indentation": 0.05}), (70.0, {"force": 3000.0})],
 )
-def test_the_edge_comes_to_the_rim_and_goes_beyond_as_the_load_turns(arc, load):
-    """Smoothly: by about as much as the load turns, a little less near the rim, by just that beyond."""
+def test_edge_margin_follows_the_rotation_of_the_load(arc, load):
+    """It decreases by about the rotation, a little less near the rim, and by exactly the rotation beyond."""
     model = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(arc)), ring_width=radians(3.0))
     tilt = np.arange(0.0, radians(arc / 2 - 8.0), STEP)
     contact = model.press(HIP, tilt=tilt, **{name: value + 0 * tilt for name, value in load.items()})
-    margin, turned = contact.edge_margin, -np.diff(contact.edge_margin)
-    assert (turned > 0).all()
-    assert turned.max() < STEP + radians(1.0)  # the last ring is loaded all at once
-    assert turned[contact.edge_loaded[:-1]] == pytest.approx(STEP, rel=1e-6)
+    margin, decrease = contact.edge_margin, -np.diff(contact.edge_margin)
+    assert (decrease > 0).all()
+    assert decrease.max() < STEP + radians(1.0)  # the last ring is loaded all at once
+    assert decrease[contact.edge_loaded[:-1]] == pytest.approx(STEP, rel=1e-6)
     assert (margin[contact.edge_loaded] <= 0).all()
     assert (margin[~contact.edge_loaded] >= 0).all()
     assert contact.edge_distance == pytest.approx(margin * HIP.socket_radius)
     assert contact.rim_distance == pytest.approx((radians(arc) / 2 - tilt) * HIP.socket_radius)
 
 
-def test_no_ring_on_the_way_to_the_rim_holds_the_edge_up():
-    """In rings of 2° a degree of tilt is between half and two degrees of what is left."""
+def test_edge_margin_passes_the_rings_evenly():
+    """In rings of 2° a degree of tilt reduces the margin by half a degree to two degrees."""
     tilt = np.radians(np.arange(30.0, 52.0))
     margin = bs.Sphere(ring_width=radians(2.0)).press(HIP, force=2000.0, tilt=tilt).edge_margin
-    turned = -np.degrees(np.diff(margin[margin > radians(2.0)]))
-    assert len(turned) > 15
-    assert turned.min() > 0.5
-    assert turned.max() < 1.8
+    decrease = -np.degrees(np.diff(margin[margin > radians(2.0)]))
+    assert len(decrease) > 15
+    assert decrease.min() > 0.5
+    assert decrease.max() < 1.8
 
 
-def test_a_contact_beyond_the_rim_would_end_there_if_its_load_turned_back_by_so_much():
+def test_load_rotated_back_by_the_margin_just_touches_the_rim():
     model, tilt = bs.Sphere(), radians(70.0)
-    over = model.press(HIP, force=2500.0, tilt=tilt)
-    assert over.edge_margin < -radians(10.0)
-    touching = tilt + over.edge_margin
+    beyond = model.press(HIP, force=2500.0, tilt=tilt)
+    assert beyond.edge_margin < -radians(10.0)
+    touching = tilt + beyond.edge_margin
     back = model.press(HIP, force=2500.0, tilt=[touching - radians(2.0), touching + radians(1.0)])
     assert back.edge_loaded.tolist() == [False, True]
     assert back.edge_margin[0] < radians(4.0)
 
 
-def test_a_bore_narrower_than_its_contact_lacks_what_the_ball_would_stand_in():
+def test_bore_narrower_than_its_axial_contact_misses_the_overlap():
     joint = HIP.replace(clearance=0.05)
     contact = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(60.0))).press(joint, indentation=0.05)
     assert contact.edge_loaded
@@ -142,13 +142,13 @@ def test_a_bore_narrower_than_its_contact_lacks_what_the_ball_would_stand_in():
 
 
 @pytest.mark.parametrize("poisson", [0.3, 0.45])
-def test_error_bars_hold_over_the_rim(poisson):
-    """Wide rings against rings half as wide, of contacts that the rim cuts off."""
+def test_error_estimates_hold_for_edge_loading(poisson):
+    """Contacts that the rim cuts off, in rings of 4° and of 2°."""
     liner = bs.Material(young=1000.0, poisson=poisson)
     joint = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=liner)
     tilt = np.radians([45.0, 60.0, 68.0, 75.0])
-    wide, close = (bs.Sphere(ring_width=radians(width)).press(joint, force=2000.0, tilt=tilt) for width in (4.0, 2.0))
+    wide, narrow = (bs.Sphere(ring_width=radians(width)).press(joint, force=2000.0, tilt=tilt) for width in (4.0, 2.0))
     assert wide.edge_loaded.tolist() == [False, True, True, True]
     for name in ("indentation", "max_pressure", "half_angle", "energy", "stiffness"):
-        off = abs(getattr(wide, name) / getattr(close, name) - 1)
-        assert (off <= wide.error[name]).all(), name
+        error = abs(getattr(wide, name) / getattr(narrow, name) - 1)
+        assert (error <= wide.error[name]).all(), name

@@ -1,0 +1,114 @@
+"""Ball in a bore: forces, contacts of a displaced ball, and their derivatives by the displacement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy
+
+from ...core.arrays import Numbers
+from .compliance import Compliance
+from .gap import GapField
+from .pressure_solver import solve_pressure, solve_pressure_change
+
+_BATCH_CELLS = 150_000
+"""Number of cells that are solved together: more exceed the processor's cache."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EquilibriumBatch:
+    """Positions of the ball with their contacts.
+
+    Attributes
+    ----------
+    displacement : array (batch, 3)
+        Displacement of the ball's centre in mm, in the cup's frame.
+    pressure : array (batch, rings, meridians)
+        Pressure in MPa.
+    converged : array of bool (batch,)
+        True where the solver reached its tolerance.
+    """
+
+    displacement: Numbers
+    pressure: Numbers
+    converged: Numbers
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoreContact:
+    """A ball in a bore, by the compliance of both and the gap between them.
+
+    Attributes
+    ----------
+    compliance : Compliance
+    gap : GapField
+    tether : array (3, 3)
+        Stiffness in N/mm of a spring between ball and socket, parallel to the contact; none by default.
+    """
+
+    compliance: Compliance
+    gap: GapField
+    tether: Numbers = field(default_factory=lambda: numpy.zeros((3, 3)))
+
+    @property
+    def area(self) -> float:
+        """Ratio of areas on the bore to areas on a unit sphere, in mm²."""
+        return self.gap.socket_radius**2
+
+    @cached_property
+    def _force_weights(self) -> Numbers:
+        """Force in N per pressure of each cell: (cells, 3)."""
+        grid = self.compliance.grid
+        return numpy.ascontiguousarray((self.area * grid.normals * grid.areas).reshape(3, -1).T)
+
+    @cached_property
+    def coarser(self) -> BoreContact | None:
+        """Contact in cells twice as wide, or None if the grid has few rings."""
+        compliance = self.compliance.coarser
+        if compliance is None:
+            return None
+        return replace(self, compliance=compliance, gap=self.gap.on_coarser(compliance.grid))
+
+    def refine(self, fields: Numbers) -> Numbers:
+        """Repeat fields of the coarser contact in these cells: (..., rings, meridians)."""
+        return self.compliance.grid.refine(fields)
+
+    def force(self, pressure: Numbers) -> Numbers:
+        """Compute the force on the bore in N, (batch, 3), from pressures (batch, rings, meridians)."""
+        force: Numbers = pressure.reshape(len(pressure), len(self._force_weights)) @ self._force_weights
+        return force
+
+    def solve_displacement(self, displacement: Numbers) -> EquilibriumBatch:
+        """Compute the contacts of a ball at prescribed displacements (batch, 3) in mm."""
+        pressure, converged = self.zero_pressure(len(displacement)), numpy.zeros(len(displacement), dtype=bool)
+        for block in self.blocks(numpy.arange(len(displacement))):
+            solution = solve_pressure(self.compliance, self.gap.overlap(displacement[block]))
+            pressure[block], converged[block] = solution.pressure, solution.converged
+        return EquilibriumBatch(displacement=displacement, pressure=pressure, converged=converged)
+
+    def pressure_sensitivity(
+        self, displacement: Numbers, pressure: Numbers, start: Numbers | None = None, tolerance: float = 0.1
+    ) -> Numbers:
+        """Compute the derivative of the pressures by the displacement in MPa/mm: (batch, 3, rings, meridians)."""
+        shape = (len(pressure), 3, *pressure.shape[1:])
+        slope = numpy.broadcast_to(self.gap.slope(displacement), shape).reshape(-1, *shape[2:])
+        touching = numpy.broadcast_to((pressure > 0)[:, None], shape).reshape(-1, *shape[2:])
+        initial = None if start is None else start.reshape(-1, *shape[2:])
+        return solve_pressure_change(self.compliance, touching, slope, initial, tolerance).reshape(shape)
+
+    def tangent(self, sensitivity: Numbers) -> Numbers:
+        """Compute the stiffness of bore and tether in N/mm, (batch, 3, 3), from `pressure_sensitivity`."""
+        tangent = sensitivity.reshape(len(sensitivity), 3, len(self._force_weights)) @ self._force_weights
+        return tangent.swapaxes(1, 2) + self.tether
+
+    def blocks(self, indices: Numbers) -> list[Numbers]:
+        """Split the indices of contacts into blocks that fit into the processor's cache."""
+        grid = self.compliance.grid
+        size = max(_BATCH_CELLS // (grid.rings * grid.meridians), 1)
+        return [indices[i : i + size] for i in range(0, len(indices), size)]
+
+    def zero_pressure(self, count: int) -> Numbers:
+        """Return arrays of zeros (count, rings, meridians)."""
+        grid = self.compliance.grid
+        return numpy.zeros((count, grid.rings, grid.meridians))

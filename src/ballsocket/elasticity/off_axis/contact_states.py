@@ -1,0 +1,225 @@
+"""States of the contacts of one joint in a batch: one number per contact for each quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy
+
+from ...contact.per_joint import QUANTITIES
+from ...core.arrays import Numbers
+from .bore_contact import BoreContact, EquilibriumBatch
+from .contact_patch import ContactPatch
+from .surfaces import EdgeRelation
+
+_PRESSURE_ERRORS = {
+    "force": 0.3,
+    "indentation": 0.2,
+    "max_pressure": 0.3,
+    "pole_pressure": 0.3,
+    "energy": 0.4,
+    "pressure_integral": 0.3,
+}
+"""Factors of the errors that follow from the pressures: of (ring width / half angle)²."""
+
+_EDGE_ERRORS = {"half_angle": 0.1, "stiffness": 0.6}
+"""Factors of the errors that follow from the set of touching cells: of ring width / half angle.
+
+Both were measured against the exact solution. A test repeats this for random contacts.
+"""
+
+_MIN_ERROR = 3e-4
+"""Relative error of all quantities that the finite elements of the cup leave."""
+
+LoadSolver = Callable[[BoreContact, Numbers, Numbers, EdgeRelation], "ContactStates"]
+"""Function from a bore contact, loads (contacts,), axes (contacts, 3) and an edge relation to the contacts."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactStates:
+    """Contacts of one joint.
+
+    Attributes
+    ----------
+    bore : BoreContact
+    equilibrium : EquilibriumBatch
+    axes : array (contacts, 3)
+        Unit vectors of the loads in the cup's frame, at which the pole pressure is read and angles start.
+    edges : EdgeRelation
+    dislocated : array of bool (contacts,)
+        True where the bore does not hold the ball.
+    load : array (contacts,)
+        Prescribed force (N), indentation (mm) or half angle (rad) along the axes.
+    solve : function
+        Solver of the same kind of load, for other loads and axes.
+    too_wide : array of bool (contacts,)
+        True where no contact in this bore has the prescribed half angle.
+    """
+
+    bore: BoreContact
+    equilibrium: EquilibriumBatch
+    axes: Numbers
+    edges: EdgeRelation
+    dislocated: Numbers
+    load: Numbers
+    solve: LoadSolver
+    too_wide: Numbers | bool = False
+
+    @property
+    def unconverged(self) -> Numbers:
+        """1 where the iteration of a ball in its bore did not converge, else 0."""
+        return (~self.equilibrium.converged & ~self.dislocated).astype(float)
+
+    @property
+    def reached(self) -> Numbers:
+        """True where a contact can have the prescribed half angle."""
+        return ~(self.too_wide & ~self.dislocated)
+
+    @cached_property
+    def patches(self) -> tuple[ContactPatch, ...]:
+        """Patch of each contact."""
+        grid, inset = self.bore.compliance.grid, self.edges.inset
+        rows = zip(self.equilibrium.pressure, self.levels, self.axes, strict=True)
+        return tuple(
+            ContactPatch(grid=grid, pressure=p, level=level, axis=axis, inset=inset) for p, level, axis in rows
+        )
+
+    @cached_property
+    def levels(self) -> Numbers:
+        """Level in mm of every cell, positive in the contact, minus the gap outside: (contacts, rings, meridians)."""
+        p = self.equilibrium.pressure
+        gap = self.bore.compliance.displacement(p) - self.bore.gap.overlap(self.equilibrium.displacement)
+        return self.edges.levels(p, gap)
+
+    @cached_property
+    def force_vector(self) -> Numbers:
+        """Force on the cup in N, in the cup's frame: (3, contacts)."""
+        return self.bore.force(self.equilibrium.pressure).T
+
+    @property
+    def displacement(self) -> Numbers:
+        """Displacement of the ball's centre from the centre of the bore in mm: (3, contacts)."""
+        return self.equilibrium.displacement.T
+
+    @property
+    def force(self) -> Numbers:
+        """Magnitude of the force in N; in a preloaded joint its component along the axis, negative in tension."""
+        if self._preloaded:
+            return self._along_axes(self.force_vector)
+        return numpy.linalg.norm(self.force_vector, axis=0)
+
+    @property
+    def indentation(self) -> Numbers:
+        """Displacement in mm beyond the clearance; in a preloaded joint its component along the axis."""
+        if self._preloaded:
+            return self._along_axes(self.displacement) - self.bore.gap.clearance
+        return numpy.linalg.norm(self.displacement, axis=0) - self.bore.gap.clearance
+
+    @property
+    def _preloaded(self) -> bool:
+        return self.bore.gap.clearance < 0
+
+    def _along_axes(self, vectors: Numbers) -> Numbers:
+        return numpy.einsum("kn,nk->n", vectors, self.axes)
+
+    @cached_property
+    def tangent(self) -> Numbers:
+        """Stiffness matrices in N/mm: (3, 3, contacts)."""
+        displacement, pressure = self.equilibrium.displacement, self.equilibrium.pressure
+        sensitivity = self.bore.pressure_sensitivity(displacement, pressure, tolerance=1e-6)
+        return numpy.moveaxis(self.bore.tangent(sensitivity), 0, -1)
+
+    @property
+    def stiffness(self) -> Numbers:
+        """Derivative of the force by the indentation in N/mm."""
+        if self._preloaded:
+            return numpy.einsum("nk,kln,nl->n", self.axes, self.tangent, self.axes)
+        force_direction, motion_direction = (_normalised(vectors) for vectors in (self.force_vector, self.displacement))
+        return numpy.einsum("kn,kln,ln->n", force_direction, self.tangent, motion_direction)
+
+    @property
+    def energy(self) -> Numbers:
+        """Stored energy of both bodies in N mm."""
+        p = self.equilibrium.pressure
+        displacement = self.bore.compliance.displacement(p)
+        return self.bore.area * self.bore.compliance.grid.integrate_product(p, displacement) / 2
+
+    @property
+    def pressure_integral(self) -> Numbers:
+        """∫ p dA in N."""
+        p = self.equilibrium.pressure
+        return self.bore.area * self.bore.compliance.grid.integrate_product(p, numpy.ones_like(p))
+
+    @property
+    def half_angle(self) -> Numbers:
+        """Half angles in rad of round contacts of the same area."""
+        return numpy.array([patch.half_angle for patch in self.patches])
+
+    @property
+    def edge_loaded(self) -> Numbers:
+        """1 where there is pressure at the end of the bore, else 0."""
+        return numpy.array([patch.edge_loaded for patch in self.patches]).astype(float)
+
+    @property
+    def unbounded(self) -> Numbers:
+        """1 where the pressure is unbounded at an edge that indents the ball, else 0."""
+        return self.edge_loaded * (not self.edges.bounded)
+
+    @property
+    def max_pressure(self) -> Numbers:
+        """Largest pressure in MPa, infinite at an edge that indents the ball."""
+        largest = numpy.array([patch.largest[0] for patch in self.patches])
+        return numpy.where(self.unbounded == 1, numpy.inf, largest)
+
+    @property
+    def max_pressure_at(self) -> Numbers:
+        """Unit vectors to the largest pressures: (3, contacts)."""
+        return numpy.array([patch.largest[1] for patch in self.patches]).reshape(-1, 3).T
+
+    @property
+    def max_pressure_angle(self) -> Numbers:
+        """Angle from the load to the largest pressure, in rad."""
+        sine = numpy.linalg.norm(numpy.cross(self.max_pressure_at.T, self.axes), axis=1)
+        return numpy.arctan2(sine, (self.max_pressure_at.T * self.axes).sum(axis=1))
+
+    @property
+    def pole_pressure(self) -> Numbers:
+        """Pressure in MPa at the axis of the load."""
+        return numpy.array([float(patch.pressure_at(patch.axis)) for patch in self.patches])
+
+    def pressure(self, angle: Numbers) -> Numbers:
+        """Interpolate p in MPa at angles (..., contacts) from the load towards the rim, in its plane with the axis."""
+        columns = [patch.pressure_along(angle[:, i]) for i, patch in enumerate(self.patches)]
+        return numpy.stack(columns, axis=-1) if columns else numpy.zeros_like(angle)
+
+    def errors(self, load_kind: str) -> dict[str, Numbers]:
+        """Estimate the relative error of each quantity from the width of the contact in rings.
+
+        The prescribed quantity, `load_kind`, is exact. A prescribed half angle propagates its own error.
+        """
+        grid = self.bore.compliance.grid
+        area = ((self.equilibrium.pressure > 0) * grid.areas).sum(axis=(1, 2))
+        square = grid.width**2 * numpy.pi / numpy.maximum(area, grid.areas.min())  # (width / half angle)²
+        errors = {name: _MIN_ERROR + factor * square for name, factor in _PRESSURE_ERRORS.items()}
+        errors |= {name: _MIN_ERROR + factor * numpy.sqrt(square) for name, factor in _EDGE_ERRORS.items()}
+        if load_kind == "half_angle":
+            return {name: errors[name] + exponent * errors[load_kind] for name, exponent in self._exponents().items()}
+        errors[load_kind] = 0.0 * square
+        return {name: errors[name] for name in QUANTITIES}
+
+    def _exponents(self) -> dict[str, Numbers]:
+        """Compute d ln(quantity) / d ln(half angle) on springs, where d grows as 1/cos ε - 1."""
+        angle = numpy.minimum(self.half_angle, 1.5)
+        x = numpy.cos(angle)
+        growth = angle / numpy.tan(angle / 2) / x
+        exponents = dict.fromkeys(QUANTITIES, growth)
+        exponents |= {"force": (2 - 2 * (1 - x) * (1 + x) / (2 + x)) * growth, "energy": (2 + x) * growth}
+        return exponents | {"pressure_integral": (1 + x) * growth, "half_angle": 0.0 * x}
+
+
+def _normalised(vectors: Numbers) -> Numbers:
+    """Divide vectors (3, contacts) by their lengths; a zero vector stays zero."""
+    length = numpy.linalg.norm(vectors, axis=0)
+    return vectors / numpy.where(length > 0, length, 1.0)

@@ -1,0 +1,267 @@
+"""Equilibrium of the ball under prescribed loads, by Newton's method for a batch of balls.
+
+The total potential, stored energy minus the work of the load, is least at equilibrium. A step that increases both this
+potential and the residual force is rejected and shortened. The tangent is solved at the start and after steps that gain
+little. Between these, secants of the computed forces update it (Broyden, Fletcher, Goldfarb, Shanno).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy
+
+from ...core.arrays import Numbers
+from .bore_contact import BoreContact, EquilibriumBatch
+from .pressure_solver import TOLERANCE, solve_pressure
+
+_MAX_ITERATIONS = 80
+
+_MAX_COARSE_ITERATIONS = 15
+
+_FORCE_TOLERANCE = 1e-6
+"""Residual force at equilibrium, relative to the load."""
+
+_COARSE_FORCE_TOLERANCE = 1e-3
+"""Residual force at the end of the search in wide cells, relative to the load."""
+
+_MAX_PRESSURE_TOLERANCE = 1e-2
+"""Loosest tolerance of the pressures in an iteration."""
+
+_PRESSURE_TOLERANCE_FACTOR = 0.02
+"""Tolerance of the next pressures, relative to the residual force."""
+
+_MIN_GAIN = 0.2
+"""Ratio of residual forces after and before a step, above which the tangent is solved again."""
+
+_NOISE_FACTOR = 5.0
+"""Residual force that may come from inexact pressures alone, relative to their tolerance."""
+
+_REGULARISATION = 1e-12
+"""Fraction of the trace of a stiffness, added to each direction so that one without stiffness stays solvable."""
+
+_MIN_DAMPING = 1e-6
+"""Fraction of the trace that shortens the step after the first rejected one."""
+
+_NEGLIGIBLE_DAMPING = 1e-10
+"""Fraction of the trace below which damping ends."""
+
+_STATE_NAMES = (
+    *("load", "size", "displacement", "pressure", "sensitivity", "force", "tangent", "residual", "potential"),
+    *("tolerance", "damping", "separation", "used_tolerance", "converged", "stale"),
+)
+"""Arrays of `_NewtonSearch` with one entry per ball."""
+
+
+def solve_force(
+    bore: BoreContact, load: Numbers, start: Numbers, held: Numbers, pressure: Numbers | None = None
+) -> EquilibriumBatch:
+    """Compute the displacements and pressures of balls in equilibrium with their loads.
+
+    Parameters
+    ----------
+    bore : BoreContact
+    load : array (batch, 3)
+        Loads in N, in the cup's frame, none of them zero.
+    start : array (batch, 3)
+        Initial displacements in mm at which the ball touches.
+    held : array of bool (batch,)
+        True for the balls to solve; the others stay at `start` without pressure.
+    pressure : array (batch, rings, meridians), optional
+        Initial pressures in MPa, at least 0. Without them a search in cells twice as wide comes first.
+    """
+    count = len(load)
+    solution = EquilibriumBatch(
+        displacement=start.copy(), pressure=bore.zero_pressure(count), converged=numpy.zeros(count, dtype=bool)
+    )
+    preload = bore.area * bore.compliance.uniform_stiffness * max(-bore.gap.clearance, 0.0)
+    size = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
+    for block in bore.blocks(numpy.flatnonzero(held)):
+        initial = None if pressure is None else pressure[block]
+        result = _solve_block(bore, load[block], size[block], start[block], initial)
+        solution.displacement[block], solution.pressure[block] = result.displacement, result.pressure
+        solution.converged[block] = result.converged
+    return solution
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _SearchResult:
+    """Balls at the end of a search.
+
+    Attributes
+    ----------
+    displacement : array (batch, 3)
+        Displacement of the ball's centre in mm.
+    pressure : array (batch, rings, meridians)
+        Pressure in MPa.
+    converged : array of bool (batch,)
+    sensitivity : array (batch, 3, rings, meridians)
+        Approximate derivative of the pressure by the displacement, in MPa/mm.
+    tangent : array (batch, 3, 3)
+        Approximate stiffness in N/mm.
+    """
+
+    displacement: Numbers
+    pressure: Numbers
+    converged: Numbers
+    sensitivity: Numbers
+    tangent: Numbers
+
+    def store(self, indices: Numbers, search: _NewtonSearch, mask: Numbers) -> None:
+        """Copy the balls of a mask from a running search."""
+        for name in ("displacement", "pressure", "converged", "sensitivity", "tangent"):
+            getattr(self, name)[indices] = getattr(search, name)[mask]
+
+
+def _solve_block(
+    bore: BoreContact, load: Numbers, size: Numbers, start: Numbers, pressure: Numbers | None
+) -> _SearchResult:
+    """Search the equilibrium of one block of balls; forces are measured by `size` (batch,) in N."""
+    coarse = None
+    if pressure is None and bore.coarser is not None:
+        coarse = _solve_coarse(bore, bore.coarser, load, size, start)
+    return _search(_NewtonSearch(bore, load, size, start, pressure, coarse), _MAX_ITERATIONS)
+
+
+def _solve_coarse(
+    bore: BoreContact, coarser: BoreContact, load: Numbers, size: Numbers, start: Numbers
+) -> _SearchResult:
+    """Search the equilibrium in cells twice as wide, and transfer it to the cells of the bore."""
+    search = _NewtonSearch(coarser, load, size, start, None, tolerance=_COARSE_FORCE_TOLERANCE)
+    result = _search(search, _MAX_COARSE_ITERATIONS)
+    pressure, sensitivity = (bore.refine(field) for field in (result.pressure, result.sensitivity))
+    displacement = numpy.where(result.converged[:, None], result.displacement, start)
+    return replace(result, displacement=displacement, pressure=pressure, sensitivity=sensitivity)
+
+
+def _search(search: _NewtonSearch, max_iterations: int) -> _SearchResult:
+    """Iterate until all balls have converged, or up to a number of iterations."""
+    result = _SearchResult(
+        displacement=search.displacement.copy(),
+        pressure=search.pressure.copy(),
+        converged=numpy.zeros(len(search.load), dtype=bool),
+        sensitivity=search.sensitivity.copy(),
+        tangent=search.tangent.copy(),
+    )
+    active = numpy.arange(len(search.load))
+    for number in range(max_iterations):
+        search.evaluate_trial()
+        finished = search.converged | (number == max_iterations - 1)
+        result.store(active[finished], search, finished)
+        search.select(~finished)
+        active = active[~finished]
+        if not len(active):
+            break
+        search.advance()
+    return result
+
+
+class _NewtonSearch:
+    """State of the search: the best displacements up to now, and the next trial."""
+
+    def __init__(
+        self,
+        bore: BoreContact,
+        load: Numbers,
+        size: Numbers,
+        start: Numbers,
+        pressure: Numbers | None,
+        coarse: _SearchResult | None = None,
+        tolerance: float = _FORCE_TOLERANCE,
+    ) -> None:
+        self.bore, self.load, self.size, self.force_tolerance = bore, load, size, tolerance
+        count, grid = len(load), bore.compliance.grid
+        cells = grid.rings, grid.meridians
+        self.displacement, self.trial, self.initial_pressure = start.copy(), start, pressure
+        self.pressure = numpy.zeros((count, *cells))
+        self.sensitivity = numpy.zeros((count, 3, *cells), dtype=numpy.float32)
+        self.force, self.tangent = numpy.zeros((count, 3)), numpy.zeros((count, 3, 3))
+        self.residual, self.potential = numpy.full(count, numpy.inf), numpy.full(count, numpy.inf)
+        self.tolerance, self.damping = numpy.full(count, _MAX_PRESSURE_TOLERANCE), numpy.zeros(count)
+        self.separation, self.used_tolerance = numpy.zeros(count), numpy.full(count, _MAX_PRESSURE_TOLERANCE)
+        self.converged, self.stale = numpy.zeros(count, dtype=bool), numpy.ones(count, dtype=bool)
+        if coarse is not None:
+            self._start_from(coarse)
+
+    def _start_from(self, coarse: _SearchResult) -> None:
+        """Take displacements, pressures and tangents of the search in wide cells as a start."""
+        self.trial, self.initial_pressure, self.stale = coarse.displacement, coarse.pressure, ~coarse.converged
+        self.sensitivity, self.tangent = coarse.sensitivity, coarse.tangent
+        self.tolerance = numpy.where(coarse.converged, _COARSE_FORCE_TOLERANCE, _MAX_PRESSURE_TOLERANCE)
+
+    def evaluate_trial(self) -> None:
+        """Solve the contacts at the trial, and accept the trials that are better."""
+        overlap = self.bore.gap.overlap(self.trial)
+        solution = solve_pressure(self.bore.compliance, overlap, self.initial_pressure, self.tolerance)
+        tether_force = self.trial @ self.bore.tether
+        force = self.bore.force(solution.pressure) + tether_force
+        residual = numpy.linalg.norm(self.load - force, axis=1) / self.size
+        work = numpy.einsum("bk,bk->b", self.trial, self.load - tether_force / 2)
+        potential = self.bore.area * solution.energy - work
+        separation = numpy.minimum(overlap.max(axis=(1, 2)), 0.0)
+        first = numpy.isinf(self.potential)
+        lower = potential <= self.potential
+        lower |= (residual < self.residual) | (residual < _NOISE_FACTOR * self.used_tolerance)
+        better = first | ((separation == 0) & lower) | (separation > self.separation)
+        accurate = self.tolerance <= max(self.force_tolerance, TOLERANCE)
+        self.converged = better & solution.converged & (residual <= self.force_tolerance) & accurate
+        self.stale = better & numpy.where(first, self.stale, residual > _MIN_GAIN * self.residual)
+        self._update_tangent(better & ~first, force)
+        stronger = numpy.maximum(30 * self.damping, _MIN_DAMPING)
+        weaker = numpy.where(self.damping > _NEGLIGIBLE_DAMPING, self.damping / 10, 0.0)
+        self.damping = numpy.where(better, weaker, stronger)
+        self._accept(
+            better,
+            force=force,
+            residual=residual,
+            potential=potential,
+            pressure=solution.pressure,
+            separation=separation,
+        )
+
+    def _accept(self, mask: Numbers, **values: Numbers) -> None:
+        """Move the balls of a mask to their trials, with the values computed there."""
+        for name, value in {**values, "displacement": self.trial, "used_tolerance": self.tolerance}.items():
+            getattr(self, name)[mask] = value[mask]
+
+    def _update_tangent(self, mask: Numbers, force: Numbers) -> None:
+        """Update the tangents of a mask by the last step (BFGS)."""
+        s, y, J = self.trial - self.displacement, force - self.force, self.tangent
+        Js = numpy.einsum("bkl,bl->bk", J, s)
+        sy, sJs = (numpy.einsum("bk,bk->b", s, vector) for vector in (y, Js))
+        mask = mask & (sy > 1e-3 * sJs) & (sJs > 0)
+        for sign, vector, scale in ((1, y, sy), (-1, Js, sJs)):
+            outer = vector[mask, :, None] * vector[mask, None, :]
+            J[mask] += sign * outer / scale[mask, None, None]
+
+    def select(self, mask: Numbers) -> None:
+        """Continue with the balls of a mask (batch,)."""
+        if mask.all():
+            return
+        for name in _STATE_NAMES:
+            setattr(self, name, getattr(self, name)[mask])
+
+    def advance(self) -> None:
+        """Compute the next trial: Newton's step, or back to the bore where the ball has separated from it."""
+        if self.stale.any():
+            stale = self.stale
+            start = self.sensitivity[stale] if self.sensitivity[stale].any() else None
+            self.sensitivity[stale] = self.bore.pressure_sensitivity(
+                self.displacement[stale], self.pressure[stale], start
+            )
+            self.tangent[stale] = self.bore.tangent(self.sensitivity[stale])
+        along = self.load / self.size[:, None]
+        return_step = -1.1 * self.separation[:, None] * along
+        step = numpy.where(self.separation[:, None] < 0, return_step, self._newton_step())
+        self.trial = self.displacement + step
+        increase = numpy.einsum("bk,bkij->bij", step.astype(numpy.float32), self.sensitivity)
+        self.initial_pressure = numpy.maximum(self.pressure + increase, 0.0)
+        tightest = max(self.force_tolerance, TOLERANCE)
+        self.tolerance = numpy.clip(_PRESSURE_TOLERANCE_FACTOR * self.residual, tightest, _MAX_PRESSURE_TOLERANCE)
+
+    def _newton_step(self) -> Numbers:
+        trace = numpy.trace(self.tangent, axis1=1, axis2=2)
+        diagonal = numpy.where(trace > 0, (_REGULARISATION + self.damping) * trace, 1.0)
+        matrices = self.tangent + diagonal[:, None, None] * numpy.eye(3)
+        step: Numbers = numpy.linalg.solve(matrices, (self.load - self.force)[:, :, None])[:, :, 0]
+        return step

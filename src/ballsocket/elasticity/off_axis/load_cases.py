@@ -1,0 +1,240 @@
+"""Contacts under prescribed forces, indentations or half angles, and the tilt of the load at first rim contact."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi, radians
+from types import MappingProxyType
+
+import numpy
+
+from ...core.arrays import Numbers
+from ...models.kinematics import versine_of
+from .bore_contact import BoreContact
+from .contact_states import ContactStates, LoadSolver
+from .directions import polar_angle, unit_vectors
+from .equilibrium import solve_force
+from .gap import initial_displacement
+from .surfaces import EdgeRelation
+
+_MAX_FREE_DISPLACEMENT = 0.5
+"""Displacement without contact, as a fraction of the bore's radius, beyond which a ball has left its bore.
+
+A ball whose centre lies beyond the surface of the bore has left it in any case. Indentations for a prescribed half
+angle are searched up to the same limit.
+"""
+
+_MAX_EQUILIBRIUM_DISPLACEMENT = 0.25
+"""Displacement of a ball in equilibrium, as a fraction of the bore's radius.
+
+A preloaded ball beyond was pushed out by its bore.
+"""
+
+_MAX_SWING = pi / 3
+"""Angle in rad beyond the rim at which a ball without equilibrium counts as dislocated.
+
+Without friction a bore pushes along its normals alone. One that ends before its equator holds no load that points
+beyond its end; one that ends behind it holds any load.
+"""
+
+
+def _solve_indentations(bore: BoreContact, indentation: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
+    """Compute the contacts of balls displaced along axes by clearance + indentation (mm)."""
+    clearance = bore.gap.clearance
+    equilibrium = bore.solve_displacement(axes * (clearance + indentation)[:, None])
+    separated = ~(equilibrium.pressure > 0).any(axis=(1, 2))
+    distance = (clearance + indentation) / bore.gap.socket_radius
+    dislocated = numpy.asarray((separated & (distance > _MAX_FREE_DISPLACEMENT)) | (distance > 1))
+    return ContactStates(
+        bore=bore,
+        equilibrium=equilibrium,
+        axes=axes,
+        edges=edges,
+        dislocated=dislocated,
+        load=indentation,
+        solve=_solve_indentations,
+    )
+
+
+def _solve_forces(bore: BoreContact, force: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
+    """Compute the contacts of balls in equilibrium with forces (N) along axes."""
+    reach = bore.compliance.grid.reach
+    held = (polar_angle(axes.T) < reach) | (reach > pi / 2)
+    start = initial_displacement(bore.gap, bore.compliance.uniform_stiffness, bore.gap.depth, force, axes)
+    equilibrium = solve_force(bore, axes * force[:, None], start, held)
+    displacement = equilibrium.displacement
+    swung_out = polar_angle(displacement.T) > reach + _MAX_SWING
+    max_distance = _MAX_EQUILIBRIUM_DISPLACEMENT * bore.gap.socket_radius
+    pushed_out = held & (numpy.linalg.norm(displacement, axis=1) > max_distance)
+    dislocated = ~held | pushed_out | (~equilibrium.converged & swung_out)
+    return ContactStates(
+        bore=bore,
+        equilibrium=equilibrium,
+        axes=axes,
+        edges=edges,
+        dislocated=dislocated,
+        load=force,
+        solve=_solve_forces,
+    )
+
+
+_MAX_BRACKET_STEPS = 40
+
+_MIN_BRACKET = 1e-3
+"""Width of a bracket, as a fraction of the indentation, that contains nothing but a jump of the half angle."""
+
+_ANGLE_TOLERANCE = 0.005
+"""Largest error of a half angle, as a fraction of a ring's width."""
+
+_MAX_ANGLE_JUMP = 1.0
+"""Largest error of a half angle at a jump, in widths of a ring: all cells of a ring may touch at once."""
+
+
+def _solve_half_angles(bore: BoreContact, half_angle: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
+    """Compute contacts of prescribed half angles (rad) by Newton's method for the indentation in brackets."""
+    width, limit = bore.compliance.grid.width, _MAX_FREE_DISPLACEMENT * bore.gap.socket_radius
+    indentation = numpy.clip(_spring_indentation(bore, half_angle), 1e-6 * limit, limit)
+    low, high = 0.0 * indentation, numpy.full_like(indentation, limit)
+    active = numpy.arange(len(indentation))
+    for _ in range(_MAX_BRACKET_STEPS):
+        d, target = indentation[active], half_angle[active]
+        angle = _solve_indentations(bore, d, axes[active], edges).half_angle
+        low[active] = numpy.where(angle < target, d, low[active])
+        high[active] = numpy.where(angle < target, high[active], d)
+        unsolved = abs(angle - target) > _ANGLE_TOLERANCE * width
+        unsolved &= high[active] - low[active] > _MIN_BRACKET * high[active]
+        if not unsolved.any():
+            break
+        ratio = _spring_indentation(bore, target) / numpy.maximum(_spring_indentation(bore, angle), 1e-9 * d)
+        guess = d * numpy.clip(ratio, 0.1, 10.0)
+        active, guess = active[unsolved], guess[unsolved]
+        indentation[active] = _into_bracket(guess, low[active], high[active], limit)
+    states = _solve_indentations(bore, indentation, axes, edges)
+    deficit = half_angle - states.half_angle
+    converged = states.equilibrium.converged & (abs(deficit) <= _MAX_ANGLE_JUMP * width)
+    too_wide = (low >= (1 - _MIN_BRACKET) * limit) & (deficit > _ANGLE_TOLERANCE * width)
+    return replace(states, equilibrium=replace(states.equilibrium, converged=converged), too_wide=too_wide)
+
+
+def _spring_indentation(bore: BoreContact, half_angle: Numbers) -> Numbers:
+    """Compute the indentation in mm at which a contact on springs has this half angle; a scale of it at clearance 0."""
+    versine = versine_of(half_angle)
+    return max(abs(bore.gap.clearance), 1e-9) * versine / numpy.maximum(1 - versine, 0.05)
+
+
+def _into_bracket(guess: Numbers, low: Numbers, high: Numbers, limit: float) -> Numbers:
+    """Return the guess if it lies inside the bracket, otherwise a point inside.
+
+    A guess beyond an upper end that was never computed becomes a point just below the limit.
+    """
+    middle = numpy.where(low > 0, numpy.sqrt(low * high), high / 10)
+    inside: Numbers = numpy.where((guess > low) & (guess < high), guess, middle)
+    return numpy.where((guess >= limit) & (high >= limit), (1 - _MIN_BRACKET / 2) * limit, inside)
+
+
+LOAD_SOLVERS: MappingProxyType[str, LoadSolver] = MappingProxyType(
+    {"force": _solve_forces, "indentation": _solve_indentations, "half_angle": _solve_half_angles}
+)
+"""Solver of each kind of load by its name."""
+
+
+_MAX_TILT_STEPS = 30
+
+_TILT_TOLERANCE = radians(0.02)
+"""Largest step of the tilt that is not solved any more: 0.006 mm of arc in a bore of 18 mm."""
+
+_POLE_TILT = 1e-6  # rad: tilt of an axial load that still defines a meridian
+
+
+def edge_margins(states: ContactStates) -> Numbers:
+    """Compute the smallest angles in rad from the edges of contacts to the end of the bore: (contacts,).
+
+    A contact that reaches the end has a negative margin. Its size is the rotation of the load, or of a prescribed
+    displacement, back towards the dome until the contact just touches the end.
+    """
+    margins = _patch_margins(states)
+    cut = numpy.flatnonzero((states.edge_loaded == 1) & states.equilibrium.converged)
+    if len(cut):
+        margins[cut] = numpy.minimum(_touching_tilts(states, cut) - polar_angle(states.axes[cut].T), 0.0)
+    return margins
+
+
+def _touching_tilts(states: ContactStates, cut: Numbers) -> Numbers:
+    """Compute the tilts in rad of first touch with the end of the bore under these loads: (cut,)."""
+    x, y, _ = states.axes[cut].T
+    worn = bool(states.bore.gap.depth.any())  # otherwise all meridians are the same
+    azimuth = numpy.arctan2(y, x) if worn else 0.0 * x
+    rows, group = numpy.unique(numpy.stack([states.load[cut], azimuth]), axis=1, return_inverse=True)
+    group, tilt, level = group.ravel(), polar_angle(states.axes[cut].T), _rim_levels(states)[cut]
+    smallest = numpy.array([numpy.flatnonzero(group == i)[tilt[group == i].argmin()] for i in range(rows.shape[1])])
+    load, azimuth = rows
+    return _solve_touching(states, load, azimuth, tilt[smallest], level[smallest])[group]
+
+
+def _solve_touching(
+    states: ContactStates, load: Numbers, azimuth: Numbers, high: Numbers, high_level: Numbers
+) -> Numbers:
+    """Find the tilts at which the level at the rim is 0 by the Illinois method.
+
+    Parameters
+    ----------
+    states : ContactStates
+    load, azimuth : array (n,)
+    high, high_level : array (n,)
+        Tilts in rad at which the rim is loaded, and the levels there in mm.
+    """
+
+    def solve(indices: Numbers, tilt: Numbers) -> ContactStates:
+        axes = unit_vectors(tilt, azimuth[indices]).T
+        return states.solve(states.bore, load[indices], axes, states.edges)
+
+    indices, low = numpy.arange(len(load)), numpy.full(len(load), _POLE_TILT)
+    axial = solve(indices, low)
+    filled = ~axial.equilibrium.converged | (axial.edge_loaded == 1)
+    low_level, high_level, root = _rim_levels(axial), high_level.copy(), low.copy()
+    margin = _patch_margins(axial)
+    guess = low + margin  # first touch of a rigid rim
+    active, previous_free = indices[~filled & (high > low)], numpy.full(len(load), -1)
+    for _ in range(_MAX_TILT_STEPS):
+        if not len(active):
+            break
+        below, above = low_level[active], high_level[active]
+        tilt = (low[active] * above - high[active] * below) / (above - below)
+        tilt = numpy.where(guess[active] < high[active], guess[active], tilt)  # excludes NaN and infinity
+        trial = solve(active, tilt)
+        level, trial_margin = _rim_levels(trial), _patch_margins(trial)
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            secant = tilt + trial_margin * (tilt - low[active]) / (margin[active] - trial_margin)
+        free = level <= 0
+        factor = numpy.where(free == previous_free[active], 0.5, 1.0)  # halves an end that stays twice (Illinois)
+        high_level[active] = numpy.where(free, factor * above, level)
+        low_level[active] = numpy.where(free, level, factor * below)
+        previous_free[active] = free
+        # margins are convex in the tilt: their secant stays on the free side
+        guess[active] = numpy.where(free, secant, numpy.inf)
+        margin[active] = numpy.where(free, trial_margin, margin[active])
+        low[active], high[active] = numpy.where(free, tilt, low[active]), numpy.where(free, high[active], tilt)
+        below, above = low_level[active], high_level[active]
+        interpolated = (low[active] * above - high[active] * below) / (above - below)
+        touching = numpy.minimum(tilt + trial_margin, high[active])
+        root[active] = numpy.where(free & (trial_margin < _TILT_TOLERANCE), touching, interpolated)
+        active = active[abs(root[active] - tilt) > _TILT_TOLERANCE]
+    return numpy.where(filled, _missing_angles(axial), root)
+
+
+def _patch_margins(states: ContactStates) -> Numbers:
+    return numpy.array([patch.edge_margin for patch in states.patches])
+
+
+def _rim_levels(states: ContactStates) -> Numbers:
+    """Find the largest level of each contact in the last ring, in mm: (contacts,)."""
+    largest: Numbers = states.levels[:, -1].max(axis=1)
+    return largest
+
+
+def _missing_angles(states: ContactStates) -> Numbers:
+    """Compute the negative angles in rad by which the undeformed overlap extends beyond the bore."""
+    distance = numpy.linalg.norm(states.equilibrium.displacement, axis=1)
+    cosine = states.bore.gap.clearance / numpy.where(distance > 0, distance, 1e-300)
+    angle = states.bore.compliance.grid.reach - numpy.arccos(numpy.clip(cosine, -1.0, 1.0))
+    return numpy.minimum(angle, -_POLE_TILT)

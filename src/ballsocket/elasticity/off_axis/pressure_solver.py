@@ -1,0 +1,203 @@
+"""Frictionless contact: pressures in every cell that close the gap or vanish where it is open.
+
+The stored energy is minimised under p >= 0 by conjugate gradients. They drop cells that would pull and add cells that
+would overlap (Polonsky & Keer 1999, doi 10.1016/S0043-1648(99)00113-1). The preconditioner is the stiffness of a bore
+under pressure everywhere, which is known exactly for each harmonic. Contacts of one joint are solved in a batch. Steps
+have single precision; convergence is checked in double precision.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy
+
+from ...core.arrays import Numbers
+from .compliance import Compliance
+
+TOLERANCE = 1e-6
+"""Largest complementarity residual: gap in the contact or overlap outside, over the largest undeformed overlap."""
+
+_MAX_ITERATIONS = 200
+
+_MIN_SINGLE_RESIDUAL = 1e-5
+"""Tolerance of the overlap below which convergence is checked in double precision."""
+
+_MIN_SINGLE_TOLERANCE = 1e-3
+"""Tolerance of pressure changes below which they are computed in double precision."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PressureSolution:
+    """Pressures of a batch of contacts.
+
+    Attributes
+    ----------
+    pressure : array (batch, rings, meridians)
+        Pressure in MPa.
+    converged : array of bool (batch,)
+        True where the tolerance was reached.
+    energy : array (batch,)
+        Stored energy on a unit sphere in MPa mm; its relative error is the square of the tolerance.
+    iterations : int
+        Number of iterations of the slowest contact.
+    """
+
+    pressure: Numbers
+    converged: Numbers
+    energy: Numbers
+    iterations: int
+
+
+def solve_pressure(
+    compliance: Compliance, overlap: Numbers, start: Numbers | None = None, tolerance: Numbers | float = TOLERANCE
+) -> PressureSolution:
+    """Compute the pressures that separate ball and bore by their overlap in the contact and leave a gap elsewhere.
+
+    Parameters
+    ----------
+    compliance : Compliance
+    overlap : array (batch, rings, meridians)
+        Overlap of the undeformed surfaces in mm, negative in a gap.
+    start : array (batch, rings, meridians), optional
+        Initial pressures in MPa, at least 0.
+    tolerance : float or array (batch,)
+        Largest relative complementarity residual.
+    """
+    initial = _estimate_pressure(compliance, overlap) if start is None else start
+    tolerances = numpy.broadcast_to(tolerance, len(overlap))
+    pressure, converged = numpy.zeros_like(overlap), numpy.zeros(len(overlap), dtype=bool)
+    energy = numpy.zeros(len(overlap))
+    active = numpy.flatnonzero(overlap.max(axis=(1, 2)) > 0)
+    converged[overlap.max(axis=(1, 2)) <= 0] = True
+    iteration = _ConjugateGradients(compliance, overlap[active], initial[active])
+    for number in range(_MAX_ITERATIONS):
+        finished = iteration.check_convergence(tolerances[active])
+        if finished.any() or number == _MAX_ITERATIONS - 1:
+            pressure[active], converged[active], energy[active] = iteration.pressure, finished, iteration.energy
+            active = active[~finished]
+            iteration.select(~finished)
+        if not len(active):
+            break
+        iteration.advance()
+    return PressureSolution(pressure=pressure, converged=converged, energy=energy, iterations=number)
+
+
+def _estimate_pressure(compliance: Compliance, overlap: Numbers) -> Numbers:
+    """Estimate the pressures from the stiffness of a bore under pressure everywhere; 0 outside the overlap."""
+    positive = numpy.maximum(overlap, 0.0)
+    return numpy.where(positive > 0, numpy.maximum(compliance.pressure(positive), 0.0), 0.0)
+
+
+class _ConjugateGradients:
+    """State of the iteration for a batch of contacts."""
+
+    def __init__(self, compliance: Compliance, overlap: Numbers, pressure: Numbers) -> None:
+        self.compliance, self.overlap, self.pressure = compliance, overlap, pressure
+        self.max_overlap = overlap.max(axis=(1, 2), initial=0.0)
+        self.displacement = compliance.displacement_in_single_precision(pressure)
+        self.is_single = numpy.ones(len(overlap), dtype=bool)
+        self.direction = self.previous_residual = numpy.zeros_like(overlap, dtype=numpy.float32)
+        self.descent = numpy.full(len(overlap), numpy.inf)
+        self._update_residual()
+
+    def _update_residual(self) -> None:
+        """Compute the overlap that remains in cells that touch or overlap."""
+        remaining = self.overlap - self.displacement
+        self.touching = self.pressure > 0
+        self.residual = numpy.where(self.touching | (remaining > 0), remaining, 0.0).astype(numpy.float32)
+        self.relative_residual = abs(self.residual).max(axis=(1, 2), initial=0.0) / self.max_overlap
+
+    @property
+    def energy(self) -> Numbers:
+        """∫ p u - ∫ p S p/2 on a unit sphere, which is largest at the solution."""
+        return self.compliance.grid.integrate_product(self.pressure, self.overlap + self.residual) / 2
+
+    def check_convergence(self, tolerance: Numbers) -> Numbers:
+        """Return True for contacts within their tolerances, (batch,); strict tolerances in double precision."""
+        doubtful = self.is_single & (tolerance < _MIN_SINGLE_RESIDUAL) & (self.relative_residual <= tolerance)
+        if doubtful.any():
+            self.displacement[doubtful] = self.compliance.displacement(self.pressure[doubtful])
+            self.is_single &= ~doubtful
+            self._update_residual()
+        converged: Numbers = self.relative_residual <= tolerance
+        return converged
+
+    def select(self, mask: Numbers) -> None:
+        """Continue with the contacts of a mask (batch,)."""
+        if mask.all():
+            return
+        names = ("overlap", "pressure", "max_overlap", "displacement", "is_single", "direction", "previous_residual")
+        for name in (*names, "descent", "touching", "residual", "relative_residual"):
+            setattr(self, name, getattr(self, name)[mask])
+
+    def advance(self) -> None:
+        """Step along the preconditioned residual to the least energy, and cut pressures off at 0."""
+        integrate = self.compliance.grid.integrate_product
+        gradient = numpy.where(self.residual != 0, self.compliance.pressure(self.residual), 0)
+        gradient = numpy.where(self.touching, gradient, numpy.maximum(gradient, 0))
+        factor = numpy.maximum(integrate(self.residual - self.previous_residual, gradient) / self.descent, 0.0)
+        self.descent = integrate(self.residual, gradient)
+        self.direction = numpy.where(self.residual != 0, gradient + factor[:, None, None] * self.direction, 0)
+        response = self.compliance.displacement_in_single_precision(self.direction)
+        length = integrate(self.residual, self.direction) / integrate(self.direction, response)
+        self.previous_residual = self.residual
+        self._step(length[:, None, None], response)
+
+    def _step(self, length: Numbers, response: Numbers) -> None:
+        pressure = self.pressure + length * self.direction
+        self.displacement = self.displacement + length * response
+        pulling = (pressure < 0).any(axis=(1, 2))
+        self.pressure = numpy.maximum(pressure, 0.0)
+        if pulling.any():
+            self.displacement[pulling] = self.compliance.displacement_in_single_precision(self.pressure[pulling])
+        self.is_single[:] = True
+        self._update_residual()
+
+
+def solve_pressure_change(
+    compliance: Compliance, touching: Numbers, overlap: Numbers, start: Numbers | None = None, tolerance: float = 1e-3
+) -> Numbers:
+    """Compute the change of pressure in a fixed set of touching cells under a further overlap.
+
+    Parameters
+    ----------
+    compliance : Compliance
+    touching : array of bool (batch, rings, meridians)
+        Cells in contact.
+    overlap : array (batch, rings, meridians)
+        Further overlap in mm, or its derivative.
+    start : array (batch, rings, meridians), optional
+        Initial change of pressure.
+    tolerance : float
+        Largest relative residual in the norm of the energy.
+
+    Returns
+    -------
+    array (batch, rings, meridians)
+        Change of pressure in MPa per unit of overlap in mm.
+    """
+    integrate = compliance.grid.integrate_product
+    single = tolerance > _MIN_SINGLE_TOLERANCE
+    displacement = compliance.displacement_in_single_precision if single else compliance.displacement
+    target = numpy.where(touching, overlap.astype(numpy.float32) if single else overlap, 0)
+    change = numpy.where(touching, compliance.pressure(target) if start is None else start, 0)
+    residual = numpy.where(touching, target - displacement(change), 0)
+    scale = abs(integrate(target, change))
+    direction, descent = numpy.zeros_like(change), numpy.full(len(change), numpy.inf)
+    for _ in range(_MAX_ITERATIONS):
+        gradient = numpy.where(touching, compliance.pressure(residual), 0)
+        next_descent = integrate(residual, gradient)
+        if (next_descent <= tolerance**2 * scale).all():
+            break
+        direction = gradient + _ratio(next_descent, descent)[:, None, None] * direction
+        response = numpy.where(touching, displacement(direction), 0)
+        length = _ratio(next_descent, integrate(direction, response))[:, None, None]
+        change, residual, descent = change + length * direction, residual - length * response, next_descent
+    return change
+
+
+def _ratio(numerator: Numbers, denominator: Numbers) -> Numbers:
+    """Divide arrays, with 0 where the denominator is not positive."""
+    quotient: Numbers = numpy.divide(numerator, denominator, out=numpy.zeros_like(numerator), where=denominator > 0)
+    return quotient

@@ -1,0 +1,23 @@
+"""Joints, models and scanned points that several tests of this room use."""
+
+from dataclasses import replace
+from math import pi, radians
+
+import numpy as np
+
+import ballsocket as bs
+
+from ...joints import HIP
+
+RIGID = replace(HIP, ball=None)
+COARSE = bs.Sphere(ring_width=radians(4.0))
+TIGHT = bs.Joint(ball_radius=13.5, interference=0.05, liner_thickness=2.5, liner=bs.POM)
+WRAPPED = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(300.0)), ring_width=radians(5.0))
+
+
+def scanned_points(radius=18.0, depth=lambda n: 0.0 * n[2], reach=85.0, count=60, shift=(0.0, 0.0, 0.0)):
+    """Compute points of a bore with its axis along -y, as in a scan."""
+    polar, azimuth = np.meshgrid(np.radians(np.linspace(0.5, reach, count)), np.linspace(0, 2 * pi, 2 * count)[:-1])
+    n = np.stack([np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)])
+    points = (radius + depth(n)) * n
+    return np.stack([points[0], points[2], -points[1]], axis=-1).reshape(-1, 3) + shift

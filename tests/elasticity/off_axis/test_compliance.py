@@ -1,0 +1,140 @@
+"""Compliance of bore and ball: operators, inverse, uniform stiffness, coarse cells, edges and cache."""
+
+from dataclasses import replace
+from math import pi, radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.elasticity.exact.modes import ball_of, socket_of
+from ballsocket.elasticity.off_axis import compliance as module
+from ballsocket.elasticity.off_axis.compliance import AxisymmetricOperator, cached_compliance, make_compliance
+from ballsocket.elasticity.off_axis.grid import even_grid, graded_grid
+from ballsocket.elasticity.off_axis.surfaces import elastic_edges, spring_edges
+
+from ...joints import HIP
+from .shapes import RIGID
+
+SPHERE = graded_grid(pi, radians(6.0))
+BORE = even_grid(pi / 2, radians(3.6))
+CUP = bs.Cup()
+
+
+def random_field(grid, batch=2):
+    return np.random.default_rng(5).normal(size=(batch, grid.rings, grid.meridians))
+
+
+def test_operator_multiplies_each_harmonic_by_its_matrix():
+    random = np.random.default_rng(2)
+    matrices = random.normal(size=(BORE.max_harmonic + 1, BORE.rings, BORE.rings))
+    operator = AxisymmetricOperator(matrices=matrices)
+    for m in (0, 1, 7):
+        rings = random.normal(size=BORE.rings)
+        for function in (np.cos, np.sin)[: 2 if m else 1]:
+            wave = function(m * BORE.azimuth)
+            result = operator((rings[:, None] * wave)[None])[0]
+            assert result == pytest.approx((matrices[m] @ rings)[:, None] * wave, abs=1e-12)
+    field = random_field(BORE)
+    single = operator.in_single_precision()(field)
+    assert single.dtype == np.float32
+    assert single == pytest.approx(operator(field), abs=1e-4 * abs(operator(field)).max())
+
+
+@pytest.mark.parametrize("surface", [bs.ClosedShell(), bs.RealCup(), bs.Springs()])
+@pytest.mark.parametrize("joint", [RIGID, HIP], ids=["rigid", "elastic"])
+def test_stiffness_is_the_inverse_of_the_softness(surface, joint):
+    compliance = make_compliance(surface, joint, CUP, BORE)
+    pressure = random_field(BORE)
+    assert compliance.pressure(compliance.displacement(pressure)) == pytest.approx(pressure, abs=1e-3)
+    assert compliance.displacement_in_single_precision(pressure) == pytest.approx(
+        compliance.displacement(pressure), rel=1e-4, abs=1e-9
+    )
+
+
+def test_uniform_stiffness_of_a_sphere_is_that_of_its_first_modes():
+    rigid, elastic = (make_compliance(bs.ClosedShell(), joint, CUP, SPHERE) for joint in (RIGID, HIP))
+    shell, ball = float(socket_of(HIP).compliance([0])[0]), float(ball_of(HIP).compliance([0])[0])
+    assert rigid.uniform_stiffness == pytest.approx(1 / shell, rel=1e-4)
+    assert elastic.uniform_stiffness == pytest.approx(1 / (shell + ball), rel=1e-4)
+
+
+def test_springs_have_their_modulus_with_and_without_a_ball():
+    modulus = bs.hess_forsbach(RIGID)
+    rigid = make_compliance(bs.Springs(), RIGID, CUP, BORE)
+    assert rigid.uniform_stiffness == pytest.approx(modulus)
+    field = random_field(BORE)
+    assert rigid.displacement(field) == pytest.approx(field / modulus)
+    matrices = bs.Springs().rings(RIGID, CUP, BORE)
+    assert AxisymmetricOperator(matrices=matrices)(field) == pytest.approx(field / modulus)
+    elastic = make_compliance(bs.Springs(), HIP, CUP, SPHERE)
+    ball = float(ball_of(HIP).compliance([0])[0])
+    assert elastic.uniform_stiffness == pytest.approx(1 / (1 / bs.hess_forsbach(HIP) + ball), rel=1e-4)
+
+
+@pytest.mark.parametrize("surface", [bs.ClosedShell(), bs.Springs()])
+def test_coarse_compliance_has_nearly_the_uniform_stiffness(surface):
+    compliance = make_compliance(surface, RIGID, CUP, BORE)
+    coarse = compliance.coarser
+    assert coarse.grid.rings == (BORE.rings + 1) // 2
+    assert coarse.uniform_stiffness == pytest.approx(compliance.uniform_stiffness, rel=0.02)
+    pressure = np.ones((1, coarse.grid.rings, coarse.grid.meridians))
+    fine = compliance.displacement(BORE.refine(pressure))
+    assert coarse.displacement(pressure) == pytest.approx(BORE.coarsen(fine), rel=1e-6)
+    assert make_compliance(surface, RIGID, CUP, even_grid(pi / 2, radians(6.0))).coarser is None
+
+
+def test_stiff_compliances_scale_with_youngs_modulus():
+    soft = make_compliance(bs.RealCup(), RIGID, CUP, BORE)
+    stiff = make_compliance(bs.RealCup(), replace(RIGID, liner=bs.Material(young=1e4, poisson=0.4)), CUP, BORE)
+    softer = make_compliance(bs.RealCup(), replace(RIGID, liner=bs.Material(young=1e3, poisson=0.4)), CUP, BORE)
+    assert softer.softness.matrices == pytest.approx(10 * stiff.softness.matrices)
+    assert soft.softness.matrices[0].min() != stiff.softness.matrices[0].min()
+
+
+def test_last_compliances_are_cached():
+    widths = [radians(6.0 - 0.01 * i) for i in range(10)]
+    surface = bs.Springs()
+    first = cached_compliance(surface, RIGID, CUP, widths[0])
+    assert cached_compliance(surface, RIGID, CUP, widths[0]) is first
+    assert cached_compliance(surface, RIGID, replace(CUP, inclination=0.5), widths[0]) is first
+    for width in widths[1:8]:
+        cached_compliance(surface, RIGID, CUP, width)
+    assert cached_compliance(surface, RIGID, CUP, widths[0]) is first
+    cached_compliance(surface, RIGID, CUP, widths[8])
+    assert cached_compliance(surface, RIGID, CUP, widths[0]) is first  # the second was the oldest
+    assert len(module._CACHE) == 8
+    for width in widths[1:9]:
+        cached_compliance(surface, RIGID, CUP, width)
+    assert cached_compliance(surface, RIGID, CUP, widths[0]) is not first
+
+
+def test_edge_relation_of_elastic_bodies_uses_the_combined_modulus():
+    relation = elastic_edges(HIP, BORE, bounded=True)
+    softness = sum((1 - body.poisson**2) / body.young for body in (HIP.liner, HIP.ball))
+    width = radians(90.0) / BORE.rings * HIP.socket_radius
+    assert relation.compliance == pytest.approx(np.full((BORE.rings, 1), 1.5 * width * softness))
+    rigid = elastic_edges(RIGID, BORE, bounded=False)
+    assert rigid.compliance == pytest.approx(1.5 * width * (1 - HIP.liner.poisson**2) / HIP.liner.young)
+    assert relation.inset == rigid.inset == pytest.approx(0.113)
+    assert (relation.bounded, rigid.bounded) == (True, False)
+
+
+def test_levels_are_positive_in_the_contact_and_minus_the_gap_outside():
+    relation = spring_edges(50.0, BORE)
+    pressure, gap = np.zeros((1, BORE.rings, BORE.meridians)), np.full((1, BORE.rings, BORE.meridians), 0.3)
+    pressure[0, 0], gap[0, 1] = 10.0, -0.1
+    levels = relation.levels(pressure, gap)[0]
+    assert levels[0] == pytest.approx(0.2)
+    assert levels[1] == pytest.approx(0.0)
+    assert levels[2] == pytest.approx(-0.3)
+    assert (relation.inset, relation.bounded) == (0.0, True)
+
+
+def test_only_an_elastic_edge_without_a_chamfer_is_bounded():
+    chamfered = bs.Cup(chamfer=1.0)
+    assert bs.RealCup().edges(RIGID, CUP, BORE).bounded
+    assert not bs.RealCup().edges(RIGID, chamfered, BORE).bounded
+    assert not bs.ClosedShell().edges(RIGID, CUP, BORE).bounded
+    assert bs.Springs().edges(RIGID, chamfered, BORE).bounded
+    assert bs.Springs().edges(RIGID, CUP, BORE).compliance == pytest.approx(1 / bs.hess_forsbach(RIGID))

@@ -1,0 +1,64 @@
+"""A new export target costs one file and one entry of the registry, tried in a copy of the package."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+
+from ..places import ROOT
+
+SECTION = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("## A new export target")[2]
+FILE = re.search(r"^```python\n(.*?)^```$", SECTION, re.MULTILINE | re.DOTALL)[1]
+LINES = {"from .tunable": "from .julia import JULIA\n", '        Target(\n            name="table"': "        JULIA,\n"}
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """Copy the package and add the target of CONTRIBUTING."""
+    folder = tmp_path_factory.mktemp("target")
+    copy = folder / "ballsocket"
+    shutil.copytree(Path(bs.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    (copy / "export" / "julia.py").write_text(FILE, encoding="utf-8")
+    registry = (copy / "export" / "targets.py").read_text("utf-8")
+    for before, line in LINES.items():
+        assert registry.count(before) == 1
+        registry = registry.replace(before, line + before)
+    (copy / "export" / "targets.py").write_text(registry, encoding="utf-8")
+    return folder
+
+
+def run(package, *arguments):
+    """Run the command of the copied package."""
+    return subprocess.run(
+        [sys.executable, "-m", "ballsocket", *arguments],
+        capture_output=True,
+        encoding="utf-8",
+        cwd=package,
+        env={**os.environ, "PYTHONPATH": str(package), "COLUMNS": "120"},
+        check=False,
+    )
+
+
+def test_the_command_lists_and_writes_a_new_target(package):
+    assert FILE.count("\n") <= 26
+    assert "julia" in run(package, "export", "--help").stdout
+    finished = run(
+        package, "export", "julia", "hip-28", "--out", "hip", "--friction", "0.1", "--model", "hess-forsbach"
+    )
+    assert finished.returncode == 0, finished.stderr
+    assert finished.stderr == "ballsocket: julia cannot represent friction: omitted\n"
+    text = (package / "hip" / "hip.jl").read_text("utf-8")
+    rows = [tuple(map(float, line.split())) for line in text.splitlines() if re.match(r" +[0-9.]+ [0-9.e-]+$", line)]
+    depths, forces = np.array(rows).T
+    expected = bs.HessForsbach().press(bs.joints["hip-28"], indentation=depths[1:]).force
+    np.testing.assert_allclose(forces[1:], expected, rtol=1e-8)
+    unknown = run(package, "export", "julie", "hip-28", "--out", "hip")
+    assert unknown.returncode == 2
+    assert unknown.stderr == "ballsocket: target 'julie' is not known; did you mean 'julia'?\n"
