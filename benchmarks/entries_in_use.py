@@ -181,7 +181,7 @@ def hips() -> dict[str, wear.InUse]:
         "shell": in_use(surface=bs.ClosedShell(), **few),
         "cup": in_use(surface=bs.RealCup(), **few),
         "chamfered cup": in_use(surface=bs.RealCup(), cup=replace(steep, chamfer=1.0, inclination=0.4), **few),
-        "leaning in cup": in_use(surface=bs.RealCup(), cycle=replace(leaning, instants=10), ring_width=radians(6.0)),
+        "leaning in cup": in_use(surface=bs.RealCup(), cycle=replace(leaning, n_steps=10), ring_width=radians(6.0)),
     }
 
 
@@ -190,12 +190,12 @@ def hip(results: Results, folder: Path) -> None:
     phases = numpy.linspace(0.0, 0.95, 20)
     for name, order in product((*MACHINES, *IN_VIVO), ("xyz", "zxy")):
         cycle = wear.named_cycle(name, 20, order, **({"body_weight": 800.0} if name in IN_VIVO else {}))
-        results.add(f"cycle/{name}/{order}", [cycle.largest_force, cycle.duration, cycle.instants])
+        results.add(f"cycle/{name}/{order}", [cycle.largest_force, cycle.duration, cycle.n_steps])
         results.add_attributes(f"cycle/{name}/{order}", cycle, "forces rotations turns middles notes")
         if order == "xyz":
             results.add(f"cycle/{name}/courses", {"force": cycle.force(phases), "angles": cycle.angles(phases)})
             for change, changed in {"mirrored": cycle.mirrored(), "finer": cycle.finer()}.items():
-                results.add(f"cycle/{name}/{change}", {"forces": changed.forces, "turns": changed.turns})
+                results.add(f"cycle/{name}/{change}", {"forces": changed.forces, "rotation_increments": changed.turns})
             results.add(f"cycle/{name}/scaled", cycle.scaled(1.5).forces)
     for name, use in hips().items():
         with results.attempt(f"first/{name}"):

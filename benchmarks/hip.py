@@ -82,7 +82,7 @@ def _worn(volumes: dict[str, float], name: str, use: HipSimulation, cycles: floa
 def _by_hand(volumes: dict[str, float]) -> Callable[[], object]:
     bed: Any = SPRINGS.foundation
     loads = SPRINGS.loads
-    steps, outward = SPRINGS.sliding.steps, (bed.normals * bed.areas).T
+    steps, outward = SPRINGS.sliding.distances, (bed.normals * bed.areas).T
 
     def work() -> None:
         depth, places = numpy.zeros(len(bed.areas)), SPRINGS.unworn.displacement.copy()

@@ -21,7 +21,7 @@ from scipy.integrate import solve_ivp
 import ballsocket as bs
 from ballsocket.dynamics import Damping, Friction
 from ballsocket.hip import iso_14242_1
-from ballsocket.hip.sliding import rotation_vectors
+from ballsocket.hip.kinematics import rotation_vectors
 
 HOLDER, DRAG, FRICTION = 4e-3, 0.5, 0.06  # t; N s/mm in the guides; of metal on polyethylene
 JOINT = bs.joints["hip-36"]

@@ -40,7 +40,8 @@ for inclination, colour in INCLINATIONS.items():
     new, last = history.worst, history.last
     print(
         f"{inclination}°: {last.volume:.1f} mm³ and {last.depth:.3f} mm after two million steps; new, the contact "
-        f"stays {new.distance:.1f} mm from the rim at {new.told}, and reaches it in {new.reaching} of 50 instants"
+        f"stays {new.distance:.1f} mm from the rim at {new.step_description}, and reaches it "
+        f"in {new.steps_at_rim} of 50 instants"
     )
     counts = [0.0, *(report.cycles / 1e6 for report in history.reports)]
     depths = [0.0, *(report.depth for report in history.reports)]

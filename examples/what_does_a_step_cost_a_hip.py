@@ -20,7 +20,7 @@ from scipy.integrate import solve_ivp
 import ballsocket as bs
 from ballsocket.dynamics import Damping, Friction
 from ballsocket.hip import iso_14242_1
-from ballsocket.hip.sliding import rotation_vectors
+from ballsocket.hip.kinematics import rotation_vectors
 
 MASS, FRICTION = 2e-2, 0.06  # t, and of metal on polyethylene
 CYCLE = iso_14242_1()

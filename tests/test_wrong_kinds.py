@@ -12,7 +12,7 @@ from ballsocket.core.executors.processes import Serial
 from ballsocket.core.storage.array_files import read_arrays, write_arrays
 from ballsocket.elasticity.off_axis import read_scan
 from ballsocket.hip import HipSimulation
-from ballsocket.hip.gait import iso_14242_1
+from ballsocket.hip.simulator_cycles import iso_14242_1
 from ballsocket.hip.wear_laws import Archard
 
 HIP = bs.joints["hip-28"]

@@ -58,7 +58,7 @@ def test_what_is_typed_is_a_question_file(tmp_path):
     assert (found.accuracy, found.friction, found.finite_elements) == (0.1, 0.06, True)
     hip = read_hip(found.hip)
     assert (hip.cycles, hip.use.cycle.name, hip.use.creep is not None) == (2e6, "walking", True)
-    assert hip.use.cycle.sizes.max() == pytest.approx(2.47 * 750, rel=0.01)
+    assert hip.use.cycle.force_magnitudes.max() == pytest.approx(2.47 * 750, rel=0.01)
     plain = written(FIRST, FILE, WHOLE, tmp_path)
     assert (plain.file.joint, plain.hip) == (FILE.joint, None)
     assert not (tmp_path / "hip.toml").exists()  # it would be taken along

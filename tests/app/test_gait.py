@@ -54,11 +54,11 @@ def test_a_cycle_is_that_of_python():
     found = gaited(page.screen.file, WHOLE, None, lambda news: None)
     hip = HipSimulation(joint=page.screen.file.joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6), cup=CUP)
     film = hip.film(Lubricant())
-    assert found.force == pytest.approx(hip.cycle.sizes)
+    assert found.force == pytest.approx(hip.cycle.force_magnitudes)
     assert found.pressure == pytest.approx(hip.unworn.pressure.max(axis=1))
     assert found.film == pytest.approx(1e6 * film.least)
     assert found.edge == pytest.approx(hip.edge_distance(hip.unworn))
-    assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.forces[:, 0] / hip.cycle.sizes)
+    assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.forces[:, 0] / hip.cycle.force_magnitudes)
     cells = np.frombuffer(found.cells, dtype=np.uint8).reshape(100, RINGS, MERIDIANS)
     assert 240 <= cells.max() <= 255
     assert cells[found.heaviest].sum() == cells.sum(axis=(1, 2)).max()
@@ -90,7 +90,9 @@ def test_a_cycle_is_read_in_inches_and_pounds():
     does(page, "choose", name="units", value="imperial")
     data = json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "player"))[1]))
     assert [course["unit"] for course in data["courses"]] == ["lbf", "psi", "nm", "in"]
-    assert max(data["courses"][0]["values"]) == pytest.approx(iso_14242_1().sizes.max() / 4.4482216, rel=1e-4)
+    assert max(data["courses"][0]["values"]) == pytest.approx(
+        iso_14242_1().force_magnitudes.max() / 4.4482216, rel=1e-4
+    )
     assert "lbf" in told(page, "numbers")
     assert saved(page, "CSV").startswith(b"phase [%],load [lbf],largest pressure [psi]")
 
@@ -101,7 +103,7 @@ def test_a_patients_load_needs_a_weight():
     edits(page, "gait.cycle", "jogging")
     assert not page.channel.told("=gait.body_weight")["hidden"]
     edits(page, "gait.body_weight", "700")
-    largest = named_cycle("jogging", body_weight=700.0).sizes.max()
+    largest = named_cycle("jogging", body_weight=700.0).force_magnitudes.max()
     assert f"{largest:.4g} <span class='unit'>N" in told(page, "numbers")
 
 

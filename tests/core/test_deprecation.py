@@ -2,11 +2,19 @@
 
 import subprocess
 import sys
+from dataclasses import dataclass, replace
 from importlib import import_module
 
 import pytest
 
-from ballsocket.core.deprecation import MOVED, RenamedAttribute, new_path, renamed_arguments, renamed_names
+from ballsocket.core.deprecation import (
+    MOVED,
+    RenamedAttribute,
+    new_path,
+    renamed_arguments,
+    renamed_fields,
+    renamed_names,
+)
 
 SUBMODULES = {
     "ballsocket.elastic.exact_curve": "ballsocket.elasticity.exact.exact_curve",
@@ -57,6 +65,12 @@ class Cup:
     old = RenamedAttribute("new")
 
 
+@renamed_fields(told="text")
+@dataclass(frozen=True, kw_only=True)
+class Note:
+    text: str
+
+
 @renamed_arguments(listen="progress")
 def work(*, progress):
     """Return the argument."""
@@ -78,3 +92,13 @@ def test_renamed_names_attributes_and_arguments_warn():
     assert work(progress=2) == 2
     with pytest.raises(TypeError, match="got both 'progress' and its old name 'listen'"):
         work(progress=2, listen=1)
+
+
+def test_a_renamed_field_is_accepted_and_given_with_a_warning():
+    with pytest.warns(DeprecationWarning, match=r"^argument 'told' of Note\(\) is deprecated: use 'text'"):
+        note = Note(told="loose")
+    with pytest.warns(DeprecationWarning, match=r"^Note.told is deprecated: use text"):
+        assert note.told == note.text == "loose"
+    assert Note(text="loose") == note
+    with pytest.warns(DeprecationWarning, match=r"^argument 'told' of Note\(\) is deprecated: use 'text'"):
+        assert replace(note, told="tight").text == "tight"

@@ -19,7 +19,7 @@ from ballsocket.core.storage.array_files import read_arrays
 from ballsocket.elasticity.off_axis.scans import read_scan
 from ballsocket.evidence.question import read_question
 from ballsocket.hip.config import read_hip
-from ballsocket.hip.cycle_file import Reading, read_cycle
+from ballsocket.hip.cycle_file import TableOptions, read_cycle
 from ballsocket.hip.law_fields import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.identify.file import read_identify
 from ballsocket.io.units import parse
@@ -112,7 +112,7 @@ def test_quantities(text, kind):
 def test_cycle_tables(fresh, raw, side):
     with fresh() as folder, refused_in_a_sentence():
         (folder / "cycle.csv").write_bytes(raw)
-        cycle = read_cycle(folder / "cycle.csv", instants=12, body_weight=side, reading=Reading(closing=0.5))
+        cycle = read_cycle(folder / "cycle.csv", n_steps=12, body_weight=side, options=TableOptions(closing=0.5))
         assert numpy.isfinite(numpy.asarray(cycle.force(PHASES))).all()
 
 

@@ -22,7 +22,7 @@ def spinning(count=24):
         name="spin",
         force=lambda t: 2000.0 + 0 * t,
         angles=lambda t: radians(30.0) * np.stack([0 * t, 0 * t, np.cos(2 * pi * t)]),
-        instants=count,
+        n_steps=count,
     )
 
 
@@ -62,9 +62,9 @@ def test_flexion_spreads_the_wear_of_the_ball_over_its_track():
 def test_ball_and_socket_have_the_same_work_in_each_instant():
     use = hip(cycle=iso_14242_1(40), **BOTH)
     ours = map_counterface(use, np.arange(len(use.foundation.areas)))
-    given = (use.unworn.pressure * use.sliding.steps) @ use.foundation.areas
+    given = (use.unworn.pressure * use.sliding.distances) @ use.foundation.areas
     found = ours.ball_exposure(use.exposure(use.unworn))
-    assert (found.pressure * found.sliding.steps) @ ours.areas == pytest.approx(given, rel=1e-9)
+    assert (found.pressure * found.sliding.distances) @ ours.areas == pytest.approx(given, rel=1e-9)
     smaller = (use.joint.socket_radius / use.joint.ball_radius) ** 2  # is the ball, under the same force
     assert found.pressure.max() == pytest.approx(smaller * use.unworn.pressure.max(), rel=2e-3)
 

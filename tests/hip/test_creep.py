@@ -69,7 +69,7 @@ def test_creep_without_wear_balances_its_loads():
     rest = use.solve_equilibrium((report.wear + report.crept).ravel())
     carried = np.einsum("tp,kp,p->tk", rest.pressure, use.foundation.normals, use.foundation.areas)
     assert carried == pytest.approx(use.loads, abs=1e-6 * 300)
-    mean = rest.pressure.sum(axis=0) / use.cycle.instants
+    mean = rest.pressure.sum(axis=0) / use.cycle.n_steps
     fully = use.joint.liner_thickness * sum(LADDER.compliances) * mean  # 1e7 s are many times of each element
     assert report.crept.ravel() == pytest.approx(fully, abs=2e-2 * fully.max())
     assert report.volume == 0

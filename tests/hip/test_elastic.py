@@ -25,8 +25,8 @@ def elastic(surface="shell", **words):
 def test_first_cycle_has_the_contacts_of_the_off_axis_model(surface):
     use = elastic(surface, ring_width=radians(3.0))
     sphere = bs.Sphere(cup=TILTED, surface=SURFACES[surface], ring_width=radians(3.0))
-    largest = int(use.cycle.sizes.argmax())
-    contact = sphere.press(use.joint, force=use.cycle.sizes[largest])
+    largest = int(use.cycle.force_magnitudes.argmax())
+    contact = sphere.press(use.joint, force=use.cycle.force_magnitudes[largest])
     assert use.unworn.displacement[largest] == pytest.approx(contact.displacement, rel=2e-3, abs=2e-4)
     assert use.first.max_pressure == pytest.approx(contact.max_pressure, rel=1e-2)
 

@@ -10,7 +10,7 @@ from ballsocket.hip.law_fields import wear_factor, wear_per_slide
 
 from ..cli.command import run
 from ..places import EXAMPLES
-from .test_gait import written
+from .test_cycle_file import write_table
 
 TEXT = (EXAMPLES / "hip_in_use.toml").read_text(encoding="utf-8")
 
@@ -53,7 +53,7 @@ def test_command_prints_a_table(tmp_path):
 
 
 def test_file_reads_a_cycle_table_next_to_it(tmp_path):
-    written(tmp_path / "walk.csv")
+    write_table(tmp_path / "walk.csv")
     given = read_hip(told(tmp_path, ('name = "iso-14242-1"', 'file = "walk.csv"')))
     assert given.use.first.volume == pytest.approx(32.1, rel=5e-3)
 
@@ -104,12 +104,12 @@ def test_file_accepts_the_name_of_a_joint(tmp_path):
         ('law = "archard"', 'law = "archard"\nexponent = 1', "exponent belongs to the law 'cross-shear'"),
         ('contact = "springs"', 'contact = "spring"', "contact 'spring' is not known; did you mean 'springs'"),
         ('name = "iso-14242-1"', 'name = "iso-14242"', "cycle 'iso-14242' is not known"),
-        ('name = "iso-14242-1"', 'name = "iso-14242-1"\nfile = "x.csv"', "needs a name or a file, and not both"),
+        ('name = "iso-14242-1"', 'name = "iso-14242-1"\nfile = "x.csv"', "needs either a name or a file"),
         ("instants = 100", "instants = 3", "instants = 3 is not allowed"),
         (
             "instants = 100",
             'instants = 100\nforce = "2 kN"',
-            "'force' beside the name 'iso-14242-1' in .cycle. is not known",
+            "'force' with the name 'iso-14242-1' in .cycle. is not known",
         ),
         ("flexion, adduction", "flexion, flexion", "rotation_order = 'flexion, flexion, rotation' is not allowed"),
         (

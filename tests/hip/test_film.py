@@ -34,7 +34,7 @@ def test_film_scales_equally_with_speed_and_viscosity():
 def test_power_of_the_moment_equals_the_friction_power():
     use = hip()
     film = use.film(Lubricant(friction=0.1))
-    assert 1e-3 * np.einsum("tk,tk->", film.moment, use.turns) == pytest.approx(film.heat, rel=1e-12)
+    assert 1e-3 * np.einsum("tk,tk->", film.moment, use.rotation_increments) == pytest.approx(film.heat, rel=1e-12)
     assert film.heat == pytest.approx(0.1 * use.first.work, rel=1e-12)
     assert film.power.mean() * use.cycle.duration == pytest.approx(film.heat, rel=1e-12)
 
@@ -52,7 +52,7 @@ def test_json_has_the_largest_moment_vector():
 def test_moment_lies_between_bounds_of_force_and_pressure():
     """μ R F for a contact that is a point, and less than μ R ∫ p dA."""
     use = hip()
-    film, size = use.film(Lubricant(friction=0.05)), use.cycle.sizes
+    film, size = use.film(Lubricant(friction=0.05)), use.cycle.force_magnitudes
     moment = np.linalg.norm(film.moment, axis=1)
     whole = (use.unworn.pressure @ use.foundation.areas) * 0.05 * 14.0
     assert (moment < whole).all()
@@ -72,7 +72,7 @@ def test_invalid_lubricants_are_refused(words):
 
 def test_edge_distance_equals_the_closed_form():
     use = hip()
-    contact = bs.HessForsbach().press(use.joint, force=use.cycle.sizes)
+    contact = bs.HessForsbach().press(use.joint, force=use.cycle.force_magnitudes)
     expected = use.cup.edge_distance(use.joint.socket_radius, contact.half_angle)
     assert use.edge_distance(use.unworn) == pytest.approx(expected, abs=0.05)
 
@@ -94,7 +94,7 @@ def test_edge_distance_decreases_continuously_to_zero(surface):
     """One load at tilts by 0.5°: each moves the edge by at most 0.26 mm, and a shell's as `Sphere` has it."""
     tilts = np.radians(np.arange(36.0, 56.0, 0.5))
     loads = 1500.0 * np.stack([np.sin(tilts), 0 * tilts, np.cos(tilts)])
-    cycle = Cycle(name="tilting", force=lambda t: loads, angles=flexion().angles, instants=len(tilts))
+    cycle = Cycle(name="tilting", force=lambda t: loads, angles=flexion().angles, n_steps=len(tilts))
     use = hip(cycle=cycle, cup=bs.Cup(), surface=surface)
     distance = use.edge_distance(use.unworn)
     steps = np.diff(distance[distance > 0])
@@ -115,8 +115,8 @@ def test_edge_azimuth_follows_the_load():
         cup=bs.Cup(),
     )
     edge = use.edge(use.unworn)
-    assert np.degrees(edge.place) == pytest.approx(40.0, abs=2.0)
-    assert edge.worst(use).told == "99.5 % of the cycle"
+    assert np.degrees(edge.azimuth) == pytest.approx(40.0, abs=2.0)
+    assert edge.closest_approach(use).step_description == "99.5 % of the cycle"
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,7 @@ def test_results_are_printed_before_the_report_fails(tmp_path, monkeypatch):
 def test_figures_show_the_results_of_the_run(tmp_path):
     from ballsocket.output import hip_plots
 
-    walk = Activity(cycle=replace(walked(2000.0, -1.0), instants=40), per_year=1e6)
+    walk = Activity(cycle=replace(walked(2000.0, -1.0), n_steps=40), per_year=1e6)
     history = hip(creep=logarithmic()).after(1e5, [5e4])
     lines = hip_plots.penetration_curve(history).axes[0].get_lines()
     assert [line.get_label() for line in lines] == ["penetration", "wear alone", "creep alone", "deepest wear"]

@@ -36,7 +36,7 @@ QUICK = {
 }
 LONG = {
     "steep cup": hip(**WIDE | {"cup": bs.Cup(inclination=radians(60.0))}),
-    "microseparation": hip(**WIDE | {"cycle": replace(iso_14242_4(), instants=16)}),
+    "microseparation": hip(**WIDE | {"cycle": replace(iso_14242_4(), n_steps=16)}),
     "creeping shell": hip(**WIDE, surface=bs.ClosedShell(), creep=logarithmic()),
     "cup": hip(**WIDE, surface=bs.RealCup()),
 }

@@ -146,10 +146,10 @@ def test_distributions_that_are_not_allowed_are_refused(distributions, message):
 def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants():
     fine = variability(hip(surface=bs.ClosedShell(), ring_width=radians(3.0)), clearance=TIGHT).quick
     assert isinstance(fine.surface, type(hip().surface))
-    assert (fine.ring_width, fine.cycle.instants) == (radians(8.0), 32)
+    assert (fine.ring_width, fine.cycle.n_steps) == (radians(8.0), 32)
     coarse = hip(cycle=iso_14242_1(16), ring_width=radians(9.0))
     same = variability(coarse, clearance=TIGHT).quick
-    assert (same.ring_width, same.cycle.instants) == (radians(9.0), 16)
+    assert (same.ring_width, same.cycle.n_steps) == (radians(9.0), 16)
     assert same.surface is coarse.surface
 
 

@@ -107,8 +107,8 @@ def test_worn_bore_has_the_contact_of_the_off_axis_model():
         return between((np.arctan2(np.hypot(n[0], n[1]), n[2]), np.arctan2(n[1], n[0]) % (2 * np.pi)))
 
     sphere = bs.Sphere(cup=TILTED, surface=bs.Springs(), worn=bs.BoreDeviation(of=depth))
-    largest = int(use.cycle.sizes.argmax())
-    contact = sphere.press(use.joint, force=use.cycle.sizes[largest])
+    largest = int(use.cycle.force_magnitudes.argmax())
+    contact = sphere.press(use.joint, force=use.cycle.force_magnitudes[largest])
     mine = use.solve_equilibrium(report.wear.ravel())
     assert contact.displacement == pytest.approx(mine.displacement[largest], rel=2e-3, abs=2e-4)
     assert contact.max_pressure == pytest.approx(mine.pressure[largest].max(), rel=1e-2)
@@ -137,7 +137,7 @@ def test_left_hip_wears_as_a_right_hip():
 def test_area_wear_is_proportional_to_contact_shares():
     use = hip(wear=ContactAreaWear(coefficient=1e-9))
     done = use.exposure(use.unworn)
-    expected = 1e6 * 1e-9 * float((done.contact * done.sliding.steps).sum(axis=0) @ use.foundation.areas)
+    expected = 1e6 * 1e-9 * float((done.contact * done.sliding.distances).sum(axis=0) @ use.foundation.areas)
     assert use.first.volume == pytest.approx(expected, rel=1e-12)
     partly = (done.contact > 0) & (done.contact < 1)
     assert 0 < partly.mean() < 0.1
@@ -165,7 +165,7 @@ def test_area_wear_of_a_stationary_contact_is_within_the_stated_error(axis, widt
         name="turning",
         force=lambda t: force + 0 * t,
         angles=lambda t: amplitude * np.outer(axis, np.cos(2 * np.pi * t)),
-        instants=16,
+        n_steps=16,
     )
     use = hip(cycle=cycle, wear=ContactAreaWear(coefficient=coefficient), cup=bs.Cup(), ring_width=radians(width))
     joint, cap = use.joint, bs.HessForsbach().press(use.joint, force=force).half_angle
@@ -308,7 +308,7 @@ def test_unloaded_instants_do_not_wear():
 def test_finest_steps_have_an_error_estimate():
     """They cannot be halved, which was refused when the run was done."""
     assert 0 < hip(cycle=flexion(8), ring_width=radians(0.6)).discretization_error[0] < 0.05
-    assert flexion(6000).finer().instants == 10_000
+    assert flexion(6000).finer().n_steps == 10_000
 
 
 def test_worn_through_liner_is_noted():

@@ -10,7 +10,7 @@ from typing import Any
 from ..core.checks import check_names, check_text, shown
 from ..core.kinds import Kind
 from ..evidence.question import LEVELS, Question, read_question
-from ..hip.in_vivo import IN_VIVO
+from ..hip.cycle_registry import CYCLES
 from ..io.joint_file import JointFile
 from ..io.joint_toml import Tables, tables_of
 from ..io.named_joint import PARTS
@@ -120,7 +120,7 @@ def _hip(file: JointFile, use: Use) -> Tables:
     """The file of a hip in use: what the view of wear shows."""
     return {
         **_joint(file),
-        **({"body_weight": use.body_weight} if use.cycle in IN_VIVO else {}),
+        **({"body_weight": use.body_weight} if CYCLES[use.cycle].per_body_weight else {}),
         "cycles": 1e6 * use.millions,
         "cycle": {"name": use.cycle},
         "wear": {**use.wear_table, "contact": use.contact},

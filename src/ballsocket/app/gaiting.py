@@ -13,8 +13,8 @@ from ..elasticity.off_axis.directions import unit_vectors
 from ..hip import Lubricant
 from ..hip.ball_wear import interpolation_at
 from ..hip.contact_checks import largest_utilisation, list_notes
+from ..hip.cycle_registry import CYCLES
 from ..hip.film import film
-from ..hip.in_vivo import IN_VIVO
 from ..io.joint_file import JointFile
 from .in_use import Own, Use, hip_of
 from .running import Reached, Told
@@ -79,7 +79,7 @@ class Gaited:
 
 def gait_of(file: JointFile, use: Use, own: Own | None) -> Hashable:
     """What the courses over a cycle depend on."""
-    weight = use.body_weight if own is not None or use.cycle in IN_VIVO else None
+    weight = use.body_weight if own is not None or CYCLES[use.cycle].per_body_weight else None
     return file.joint, file.cup, file.cup.oriented, weight, use.contact, own or use.cycle
 
 
@@ -97,14 +97,14 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
     rest, lubricant = hip.unworn, Lubricant()
     told(Reached(share=0.7, words="film and edge"))
     found, edge = film(hip, hip.foundation, hip.sliding, rest, lubricant), hip.edge(rest)
-    worst, first = edge.worst(hip), hip.first
+    worst, first = edge.closest_approach(hip), hip.first
     checks = hip.unworn_checks
     utilisation, valid = largest_utilisation(checks), all(check.valid for check in checks)
     polar = numpy.linspace(0.0, hip.reach, RINGS + 1)
-    sizes = hip.cycle.sizes
+    sizes = hip.cycle.force_magnitudes
 
     def course(values: numpy.ndarray) -> numpy.ndarray:
-        whole = numpy.full(hip.cycle.instants, numpy.nan)
+        whole = numpy.full(hip.cycle.n_steps, numpy.nan)
         whole[hip.loaded] = values
         return whole
 
@@ -118,7 +118,7 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
         load=numpy.divide(hip.forces, sizes[:, None], out=numpy.zeros_like(hip.forces), where=sizes[:, None] > 0),
         cells=_cells(hip, polar),
         polar=polar,
-        worst="nothing is pressed" if worst is None else worst.where,
+        worst="nothing is pressed" if worst is None else worst.location,
         regime=found.regime,
         utilisation=utilisation,
         valid=valid,
@@ -140,7 +140,7 @@ def _cells(hip: Any, polar: numpy.ndarray) -> bytes:
     spots = interpolation_at(hip.grid, numpy.asarray(middles).reshape(3, 1, -1))
     pressure = hip.unworn.pressure
     most = float(pressure.max(initial=0.0)) or 1.0
-    frames = numpy.zeros((hip.cycle.instants, RINGS * MERIDIANS), dtype=numpy.uint8)
+    frames = numpy.zeros((hip.cycle.n_steps, RINGS * MERIDIANS), dtype=numpy.uint8)
     for instant, field in zip(hip.loaded, pressure, strict=True):
         frames[instant] = numpy.rint(_LEVELS * spots.interpolate(field[None])[0] / most)
     return frames.tobytes()

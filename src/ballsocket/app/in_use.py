@@ -14,9 +14,9 @@ from ..hip import Cycle, HipSimulation, named_cycle
 from ..hip.config import parse_creep, parse_surface
 from ..hip.creep_laws import CREEP_LAWS
 from ..hip.cycle_file import read_cycle
-from ..hip.in_vivo import IN_VIVO, check_weight
+from ..hip.cycle_registry import CYCLES
+from ..hip.in_vivo import check_body_weight
 from ..hip.law_fields import Law, LawField
-from ..hip.named_cycles import CYCLES
 from ..hip.wear_law import COEFFICIENT
 from ..hip.wear_laws import WEAR_LAWS, read_wear_law
 from ..io.joint_file import JointFile
@@ -62,7 +62,7 @@ class Use:
     Attributes
     ----------
     cycle : str
-        One of `hip.named_cycles.CYCLES`.
+        One of `hip.cycle_registry.CYCLES`.
     body_weight : float
         In N, for loads that were measured in patients.
     instant : int, optional
@@ -97,7 +97,7 @@ class Use:
     def __post_init__(self) -> None:
         for name, known in CHOICES.items():
             check_names([getattr(self, name)], known, f"as {name}")
-        check_weight(self.body_weight)
+        check_body_weight(self.body_weight)
         if self.instant is not None:
             require("instant", self.instant, 0 <= self.instant < 10_000, "an instant of a cycle counts from 0")
         if self.coefficient_field is not None:
@@ -153,7 +153,7 @@ class Use:
 
 
 CHOICES: Mapping[str, tuple[str, ...]] = {
-    "cycle": CYCLES,
+    "cycle": tuple(CYCLES),
     "contact": CONTACTS,
     "law": LAWS,
     "creep": _creep_choices(),
@@ -229,7 +229,7 @@ def hip_of(file: JointFile, use: Use, own: Own | None = None) -> HipSimulation:
     ValueError
         A cycle that pushes the ball over the rim; what `HipSimulation` refuses.
     """
-    weight = use.body_weight if use.cycle in IN_VIVO else None
+    weight = use.body_weight if CYCLES[use.cycle].per_body_weight else None
     return HipSimulation(
         joint=file.joint,
         cup=file.cup,

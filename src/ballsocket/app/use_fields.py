@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..core.kinds import Unit
-from ..hip.in_vivo import IN_VIVO
+from ..hip.cycle_registry import CYCLES
 from .fields import Field, choice, number, segments
 from .in_use import CHOICES, Use
 
@@ -15,6 +15,6 @@ def cycle_fields(view: str, use: Use) -> list[Field]:
     weight = number(f"{view}.body_weight", "Body weight", Unit("N"), (300.0, 1500.0), 10.0, use.body_weight)
     return [
         choice(f"{view}.cycle", "Cycle", [(name, name) for name in CHOICES["cycle"]], use.cycle),
-        {**weight, "hidden": use.cycle not in IN_VIVO},
+        {**weight, "hidden": not CYCLES[use.cycle].per_body_weight},
         segments(f"{view}.contact", "The bore gives way as", _BEDS, use.contact),
     ]

@@ -10,7 +10,7 @@ import numpy
 
 from ..elasticity.off_axis.grid import Grid
 from ..hip import HipSimulation, History, PatientVariability, population
-from ..hip.in_vivo import IN_VIVO
+from ..hip.cycle_registry import CYCLES
 from ..io.joint_file import JointFile
 from ..output.hip_plots import penetration_curve
 from ..output.html import drawn
@@ -71,7 +71,7 @@ class Worn:
 
 def life_of(file: JointFile, use: Use) -> Hashable:
     """What the years of a design depend on."""
-    weight = use.body_weight if use.cycle in IN_VIVO else 0.0
+    weight = use.body_weight if CYCLES[use.cycle].per_body_weight else 0.0
     numbers = tuple((name, use.law_number(name)) for name in use.used_inputs)
     plain = replace(use, instant=None, law_numbers=numbers)
     return file.joint, file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0)

@@ -79,6 +79,14 @@ MOVED = {
     "ballsocket.fem": "ballsocket.elasticity.finite_elements",
     "ballsocket.fem.export": "ballsocket.elasticity.finite_elements.decks",
     "ballsocket.sphere": "ballsocket.elasticity.off_axis",
+    "ballsocket.hip.gait": "ballsocket.hip.simulator_cycles",
+    "ballsocket.hip.named_cycles": "ballsocket.hip.cycle_registry",
+    "ballsocket.hip.given_cycle": "ballsocket.hip.cycle_file",
+    **{f"ballsocket.hip.{name}": "ballsocket.hip.cycle_tables" for name in ("measured", "tables")},
+    "ballsocket.hip.resampled": "ballsocket.hip.waveforms",
+    "ballsocket.hip.sliding": "ballsocket.hip.kinematics",
+    **{f"ballsocket.hip.{name}": "ballsocket.hip.rim" for name in ("edge", "separation")},
+    "ballsocket.hip.chebyshev": "ballsocket.hip.runge_kutta_chebyshev",
     "ballsocket.identify.answers": "ballsocket.identify.forward_model",
     "ballsocket.identify.oscillation": "ballsocket.identify.observables",
     "ballsocket.identify.parameters": "ballsocket.identify.identification",
@@ -185,5 +193,32 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
             return function(*args, **kwargs)
 
         return accepting
+
+    return decorate
+
+
+def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
+    """Return a decorator that keeps old names of a dataclass: fields, other attributes and methods.
+
+    An old name of a field replaces the value under the new name, which `dataclasses.replace` passes as well.
+    """
+
+    def decorate(owner: type[T]) -> type[T]:
+        initialise: Any = owner.__init__
+        arguments = {old: new for old, new in names.items() if new in owner.__dict__.get("__dataclass_fields__", {})}
+
+        @functools.wraps(initialise)
+        def accepting(self: T, *args: Any, **kwargs: Any) -> None:
+            for old in arguments.keys() & kwargs.keys():
+                _warn(f"argument {old!r} of {owner.__name__}()", repr(arguments[old]))
+                kwargs[arguments[old]] = kwargs.pop(old)
+            initialise(self, *args, **kwargs)
+
+        setattr(owner, "__init__", accepting)  # noqa: B010 (mypy refuses to assign to a method)
+        for old, new in names.items():
+            attribute = RenamedAttribute(new)
+            attribute.__set_name__(owner, old)
+            setattr(owner, old, attribute)
+        return owner
 
     return decorate

@@ -4,13 +4,21 @@ from .bands import Bands
 from .creep_law import constrained_share
 from .creep_laws import KelvinVoigtChain, LogarithmicCreep, logarithmic
 from .cycle import Cycle, Frame, Spring
+from .cycle_registry import named_cycle
 from .film import Film, Lubricant
-from .gait import constant_load, flexion, iso_14242_1, iso_14242_1_key_points, iso_14242_4, rocking, two_axis
 from .history import History
 from .in_vivo import in_vivo
 from .mix import Activity, Mix
-from .named_cycles import named_cycle
 from .simulation import HipSimulation
+from .simulator_cycles import (
+    constant_load,
+    flexion,
+    iso_14242_1,
+    iso_14242_1_key_points,
+    iso_14242_4,
+    rocking,
+    two_axis,
+)
 from .uncertainty import population, uncertainty
 from .variability import PatientVariability
 from .wear_laws import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear

@@ -9,7 +9,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..elasticity.off_axis.grid import Grid
 from .hip_setup import HipSetup
-from .sliding import Sliding
+from .kinematics import SurfaceSliding
 from .socket_foundation import SocketFoundation
 from .wear_law import CycleExposure
 
@@ -68,7 +68,7 @@ class CounterfaceMap:
     ----------
     cells : array (m,)
         Numbers of these cells in the ball's grid.
-    sliding : Sliding
+    sliding : SurfaceSliding
         Sliding of the socket over them, in the ball's frame.
     areas : array (m,)
         Areas in mm².
@@ -83,7 +83,7 @@ class CounterfaceMap:
     """
 
     cells: Numbers
-    sliding: Sliding
+    sliding: SurfaceSliding
     areas: Numbers
     socket_areas: Numbers
     socket_cells: Numbers
@@ -101,8 +101,8 @@ class CounterfaceMap:
     def ball_exposure(self, cycle: CycleExposure) -> CycleExposure:
         """Map the exposure of the socket to the ball, with the same work of friction in each instant."""
         pressure = self._interpolate_on_ball(cycle.pressure)
-        socket_work = (cycle.pressure * cycle.sliding.steps) @ self.socket_areas
-        ball_work = (pressure * self.sliding.steps) @ self.areas
+        socket_work = (cycle.pressure * cycle.sliding.distances) @ self.socket_areas
+        ball_work = (pressure * self.sliding.distances) @ self.areas
         ratio = numpy.divide(socket_work, ball_work, out=numpy.zeros_like(socket_work), where=ball_work > 0)
         return CycleExposure(
             pressure=pressure * ratio[:, None],
@@ -120,7 +120,7 @@ class CounterfaceMap:
 def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
     """Map the ball's cells that pass over some cells of the socket in a cycle."""
     cup_frame = numpy.array(setup.placed.frame)
-    rotated = cup_frame @ setup.moved.middles[setup.loaded]
+    rotated = cup_frame @ setup.moved.midpoint_rotations[setup.loaded]
     grid = setup.ball_grid
     directions = ball_directions(grid)
     to_ball = interpolation_at(setup.grid, numpy.einsum("tij,jp->itp", rotated, directions))
@@ -131,9 +131,9 @@ def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
     radius = float(setup.joint.ball_radius)
     return CounterfaceMap(
         cells=ball_cells,
-        sliding=Sliding(
+        sliding=SurfaceSliding(
             radius=radius,
-            turns=numpy.einsum("tji,tj->ti", rotated, setup.turns),
+            rotation_increments=numpy.einsum("tji,tj->ti", rotated, setup.rotation_increments),
             directions=directions[:, ball_cells],
         ),
         areas=numpy.repeat(grid.areas[:, 0], grid.meridians)[ball_cells] * radius**2,
@@ -156,7 +156,7 @@ class ActiveCells:
         Numbers of the socket's cells.
     foundation : SocketFoundation
         Foundation of these cells.
-    sliding : Sliding
+    sliding : SurfaceSliding
         Sliding of the ball over these cells.
     counterface : CounterfaceMap, optional
         Cells of the ball; None for a ball without wear.
@@ -164,7 +164,7 @@ class ActiveCells:
 
     cells: Numbers
     foundation: SocketFoundation
-    sliding: Sliding
+    sliding: SurfaceSliding
     counterface: CounterfaceMap | None
 
     @property
@@ -186,6 +186,6 @@ def select_active_cells(setup: HipSetup, cells: Numbers) -> ActiveCells:
     return ActiveCells(
         cells=cells,
         foundation=setup.foundation.select_cells(cells),
-        sliding=setup.sliding.part(cells),
+        sliding=setup.sliding.select_points(cells),
         counterface=counterface,
     )

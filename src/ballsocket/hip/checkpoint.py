@@ -109,7 +109,7 @@ def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
         if not getattr(law, "storable", True):
             raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function has no fingerprint")
     loads = sha256(
-        b"".join(array.tobytes() for array in (use.loads, use.lateral_stiffness, use.turns, use.loaded))
+        b"".join(array.tobytes() for array in (use.loads, use.lateral_stiffness, use.rotation_increments, use.loaded))
     ).hexdigest()
     inputs = (
         use.joint,

@@ -21,9 +21,9 @@ from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from .creep_law import CreepLaw
 from .creep_laws import CREEP_LAWS, read_creep_law
+from .cycle_file import KEYS as CYCLE_KEYS
+from .cycle_file import parse_cycle
 from .film import Lubricant
-from .given_cycle import KEYS as CYCLE_KEYS
-from .given_cycle import given_cycle
 from .law_fields import law_keys
 from .mix import Mix
 from .simulation import HipSimulation, check_cycles
@@ -107,7 +107,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     for name in ("cup", "cycle", "wear", "creep", "film", "uncertainty"):
         check_keys(table_of(content, name), name, f"in [{name}]", FILE_KEYS)
     joint_file = _parse_joint(content, folder)
-    cycle, wear = given_cycle(content, folder), table_of(content, "wear")
+    cycle, wear = parse_cycle(content, folder), table_of(content, "wear")
     width = {name: parse(name, wear[name], Kind.ANGLE) for name in ("ring_width",) if name in wear}
     use = HipSimulation(
         joint=joint_file.joint,

@@ -13,9 +13,9 @@ from ..core.deprecation import RenamedAttribute
 from ..problem import Joint
 from ..problem.cup import Cup, Side
 from .cycle import Cycle, Frame
+from .kinematics import sliding_distance
 from .mix import Mix
-from .separation import Pulled, Separation
-from .sliding import slide
+from .rim import Microseparation, SpringLoadedBall
 
 _MIN_RELATIVE_FORCE = 1e-6
 """Force below which the ball counts as unloaded, relative to the largest force."""
@@ -30,6 +30,7 @@ class CupFrame:
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
     tether = RenamedAttribute("lateral_stiffness")
     carried = RenamedAttribute("socket_forces")
+    turns = RenamedAttribute("rotation_increments")
 
     def _check_dislocation(self) -> None:
         outside = self._beyond_rim
@@ -38,8 +39,9 @@ class CupFrame:
         if len(outside):
             first = outside[0]
             raise ValueError(
-                f"dislocated at {self.cycle.told(first)}: the load of {numpy.linalg.norm(self.forces[first]):.0f} N "
-                f"points {degrees(self._force_angles[first]):.1f}° from the dome's pole, and the bore ends at "
+                f"dislocated at {self.cycle.describe_step(first)}: the load of "
+                f"{numpy.linalg.norm(self.forces[first]):.0f} N points "
+                f"{degrees(self._force_angles[first]):.1f}° from the dome's pole, and the bore ends at "
                 f"{degrees(self.reach):.1f}°"
             )
 
@@ -62,16 +64,16 @@ class CupFrame:
     @cached_property
     def _has_load(self) -> Numbers:
         """Mask of the instants with a load: (instants,)."""
-        sizes = self.cycle.sizes
+        sizes = self.cycle.force_magnitudes
         return numpy.asarray(sizes > _MIN_RELATIVE_FORCE * max(float(sizes.max()), 1e-300))
 
     @cached_property
-    def _pulled(self) -> Pulled | None:
+    def _pulled(self) -> SpringLoadedBall | None:
         """Ball on its lateral spring; None without a spring."""
         spring = self.moved.spring
         if spring is None:
             return None
-        return Pulled(
+        return SpringLoadedBall(
             spring=spring,
             side=self._spring_axis,
             reach=self.reach,
@@ -98,13 +100,17 @@ class CupFrame:
     def _beyond_rim(self) -> Numbers:
         """Indices of the instants in which the load pushes the ball over the rim."""
         beyond = numpy.flatnonzero(self._has_load & (self._force_angles >= self.reach))
-        return beyond if self._pulled is None else beyond[self._pulled.beyond(self.forces[beyond])]
+        return beyond if self._pulled is None else beyond[self._pulled.leaves_bore(self.forces[beyond])]
 
     @cached_property
-    def separation(self) -> Separation | None:
+    def separation(self) -> Microseparation | None:
         """Instants in which a spring has pushed the ball onto the rim; None without such instants."""
         beyond = self._beyond_rim
-        return None if self._pulled is None or not len(beyond) else self._pulled.rest(self.forces[beyond], beyond)
+        return (
+            None
+            if self._pulled is None or not len(beyond)
+            else self._pulled.solve_separation(self.forces[beyond], beyond)
+        )
 
     @cached_property
     def placed(self) -> Cup:
@@ -136,34 +142,34 @@ class CupFrame:
         return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
 
     @cached_property
-    def turns(self) -> Numbers:
+    def rotation_increments(self) -> Numbers:
         """Rotation vectors of the ball in the loaded instants in rad, in the cup's frame: (loaded, 3)."""
-        return _in_cup(self.placed, self.moved.turns[self.loaded])
+        return _in_cup(self.placed, self.moved.rotation_increments[self.loaded])
 
     @property
     def slide(self) -> float:
         """Sliding distance of the ball past the line of the load in a cycle, in mm."""
-        sizes = self.cycle.sizes[:, None]
+        sizes = self.cycle.force_magnitudes[:, None]
         directions = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
-        rotations = _in_cup(self.placed, self.moved.turns)
-        return slide(float(self.joint.ball_radius), rotations, _last_loaded(directions, self.loaded))
+        rotations = _in_cup(self.placed, self.moved.rotation_increments)
+        return sliding_distance(float(self.joint.ball_radius), rotations, _last_loaded(directions, self.loaded))
 
     @property
     def _frame_notes(self) -> tuple[str, ...]:
         """Notes on the orientation of the cup, unloaded instants and microseparation."""
         tilted = () if self.placed == self.cup else (_TILTED.format(degrees(self.cycle.cup_tilt or 0.0)),)
-        separated = () if self.separation is None else (self.separation.told(self.cycle),)
+        separated = () if self.separation is None else (self.separation.describe(self.cycle),)
         return (*tilted, *self._unloaded_notes, *separated)
 
     @property
     def _unloaded_notes(self) -> tuple[str, ...]:
         """Note on the instants without a load."""
         unloaded = numpy.flatnonzero(~self._has_load)
-        if len(unloaded) == self.cycle.instants:
+        if len(unloaded) == self.cycle.n_steps:
             return (_NEVER_LOADED,)
         if not len(unloaded):
             return ()
-        return (_LIFTS_OFF.format(self.cycle.told(int(unloaded[0])), len(unloaded), self.cycle.instants),)
+        return (_LIFTS_OFF.format(self.cycle.describe_step(int(unloaded[0])), len(unloaded), self.cycle.n_steps),)
 
 
 _TILTED = "the cup is tilted by {:g}° from the load, as the cycle's standard requires"

@@ -1,4 +1,4 @@
-"""A cycle of load and motion: what a hip goes through in a step, as a value."""
+"""Cycles of load and motion, and the definition of a cycle by name."""
 
 from __future__ import annotations
 
@@ -13,18 +13,32 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require, shown
-from .sliding import rotation_matrices, rotation_vectors
+from ..core.deprecation import renamed_fields, renamed_names
+from ..core.kinds import Kind
+from .kinematics import parse_rotation_order, rotation_matrices, rotation_vectors
 
-INSTANTS = 100
-_FEWEST, _MOST = 8, 10_000
-_FINE = 10_000
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "INSTANTS": "DEFAULT_STEPS",
+        "Course": "PhaseFunction",
+        "order_of": "ballsocket.hip.kinematics.parse_rotation_order",
+    },
+)
 
-Course = Callable[[Numbers], Numbers]
-"""From phases 0 to 1 of a cycle to a quantity, with the phases as the last axis."""
+DEFAULT_STEPS = 100
+"""Number of time steps of a cycle, unless another is set."""
+
+_MIN_STEPS, _MAX_STEPS = 8, 10_000
+_PEAK_SAMPLES = 10_000
+"""Number of intervals in which the largest force of a cycle is searched."""
+
+PhaseFunction = Callable[[Numbers], Numbers]
+"""Function from phases 0 to 1 of a cycle to a quantity, with the phases as the last axis."""
 
 
 class Frame(Enum):
-    """Whose directions forces have: the body's, or the cup's, x upwards along its rim, z to its dome."""
+    """Reference frame of forces: the body's, or the cup's with x upwards along its rim and z to its dome."""
 
     BODY = "body"
     CUP = "cup"
@@ -32,14 +46,14 @@ class Frame(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Spring:
-    """A spring that pulls the ball to the side while the load is small, as of a socket that is set off from the ball.
+    """Lateral spring that pulls the ball to the side while the load is small, as a translational mismatch does.
 
     Attributes
     ----------
     stiffness : float
-        In N/mm.
+        Stiffness in N/mm.
     mismatch : float
-        Of the centres in mm, to the right: so far the ball would follow. Below 0 it is to the left.
+        Offset of the centres in mm that the ball would follow: positive to the right, negative to the left.
     """
 
     stiffness: float
@@ -51,50 +65,58 @@ class Spring:
 
     @property
     def force(self) -> float:
-        """On a ball that is not displaced, to the right, in N."""
+        """Force on an undisplaced ball, to the right, in N."""
         return self.stiffness * self.mismatch
 
 
+@renamed_fields(
+    instants="n_steps",
+    sizes="force_magnitudes",
+    middles="midpoint_rotations",
+    turns="rotation_increments",
+    told="describe_step",
+)
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Cycle:
-    """A cycle of load and motion, cut into instants of equal length.
+    """Cycle of load and motion, divided into time steps of equal length.
 
     Directions are those of the body, or of the machine: x to the side (lateral), y to the front, z upwards. The socket
-    stands still and the ball turns by R = the product of three rotations, flexion about x, adduction about y,
-    inward rotation about z. Lateral is to the right here; a hip in use whose cup is a left one mirrors the cycle.
+    stands still. The ball rotates by R, the product of flexion about x, adduction about y and inward rotation about z.
+    Lateral is to the right here; a simulation of a left hip mirrors the cycle.
 
     Parameters
     ----------
     name : str
     force : function
-        From phases (n,) in 0 to 1 to forces of the ball on the socket (3, n) in N, or to their sizes (n,) upwards; what
-        pulls the ball off, a size below 0, is no contact.
+        Function from phases (n,) in 0 to 1 to forces of the ball on the socket (3, n) in N, or to upward forces (n,).
+        An upward force below 0 counts as no contact.
     angles : function
-        From phases to flexion, adduction and rotation (3, n) in rad.
-    instants : int
+        Function from phases to flexion, adduction and rotation (3, n) in rad.
+    n_steps : int
+        Number of time steps.
     order : str
-        The axes as they are multiplied: "xyz" is R = Rx Ry Rz.
+        Order in which the rotations are multiplied: "xyz" is R = Rx Ry Rz.
     duration : float
-        In s.
+        Duration in s.
     cup_tilt : float, optional
-        In rad from the load, where a standard says how a socket is put in.
+        Angle in rad between cup axis and load that a standard prescribes.
     notes : tuple of str
-        What is to be said of it.
+        Notes for reports.
     frame : Frame
-        Whose directions the forces have; the body's by default.
+        Reference frame of the forces; the body's by default.
     spring : Spring, optional
-        What pushes the ball to the side, beside the force.
+        Spring that pushes the ball to the side, in addition to the force.
 
     Raises
     ------
     ValueError
-        Numbers that are not finite; a number of instants or an order that is none.
+        A force or angle is not finite, or the number of steps or the order is invalid.
     """
 
     name: str
-    force: Course
-    angles: Course
-    instants: int = INSTANTS
+    force: PhaseFunction
+    angles: PhaseFunction
+    n_steps: int = DEFAULT_STEPS
     order: str = "xyz"
     duration: float = 1.0
     cup_tilt: float | None = None
@@ -103,133 +125,157 @@ class Cycle:
     spring: Spring | None = None
 
     def __post_init__(self) -> None:
-        check_instants(self.instants)
-        object.__setattr__(self, "order", order_of(self.order))
+        check_step_count(self.n_steps)
+        object.__setattr__(self, "order", parse_rotation_order(self.order))
         for name, values in {"force": self.forces, "angle": self.rotations}.items():
             require(name, values, numpy.isfinite(values), "the numbers of a cycle are finite")
 
     @property
     def phases(self) -> Numbers:
-        """The middle of each instant, 0 to 1."""
-        return (numpy.arange(self.instants) + 0.5) / self.instants
+        """Phases from 0 to 1 at the midpoints of the steps: (steps,)."""
+        return (numpy.arange(self.n_steps) + 0.5) / self.n_steps
 
     @cached_property
     def forces(self) -> Numbers:
-        """In the middle of each instant, in N: (instants, 3)."""
+        """Forces at the midpoints of the steps in N: (steps, 3)."""
         return self._forces_at(self.phases)
 
     def _forces_at(self, phases: Numbers) -> Numbers:
-        found = numpy.asarray(self.force(phases), dtype=float)
-        if found.ndim == 1:
-            size = numpy.maximum(found, 0.0)
-            found = numpy.stack([0 * size, 0 * size, size])
+        """Compute the force vectors at phases, spring included: (n, 3)."""
+        force = numpy.asarray(self.force(phases), dtype=float)
+        if force.ndim == 1:
+            upward = numpy.maximum(force, 0.0)
+            force = numpy.stack([0 * upward, 0 * upward, upward])
         if self.spring is not None:
-            found = found + self.spring.force * _RIGHT
-        return numpy.ascontiguousarray(found.T)
+            force = force + self.spring.force * _RIGHT
+        return numpy.ascontiguousarray(force.T)
 
     @cached_property
     def largest_force(self) -> float:
-        """In the whole cycle, between the instants too, in N."""
-        return float(numpy.linalg.norm(self._forces_at(numpy.linspace(0.0, 1.0, _FINE + 1)), axis=1).max())
+        """Largest force of the cycle in N, also between the midpoints."""
+        return float(numpy.linalg.norm(self._forces_at(numpy.linspace(0.0, 1.0, _PEAK_SAMPLES + 1)), axis=1).max())
 
     @cached_property
-    def sizes(self) -> Numbers:
-        """Sizes of the forces in N: (instants,)."""
+    def force_magnitudes(self) -> Numbers:
+        """Magnitudes of the forces in N: (steps,)."""
         return numpy.linalg.norm(self.forces, axis=1)
 
     @cached_property
     def rotations(self) -> Numbers:
-        """Rotation matrices of the ball at the ends of the instants, the last one the first: (instants + 1, 3, 3)."""
-        angles = numpy.asarray(self.angles(numpy.arange(self.instants) / self.instants), dtype=float).T
-        turned = rotation_matrices(angles, self.order)
-        return numpy.concatenate([turned, turned[:1]])
+        """Rotation matrices of the ball at the ends of the steps, the last equal to the first: (steps + 1, 3, 3)."""
+        angles = numpy.asarray(self.angles(numpy.arange(self.n_steps) / self.n_steps), dtype=float).T
+        matrices = rotation_matrices(angles, self.order)
+        return numpy.concatenate([matrices, matrices[:1]])
 
     @cached_property
-    def middles(self) -> Numbers:
-        """Rotation matrices of the ball in the middle of the instants: (instants, 3, 3)."""
+    def midpoint_rotations(self) -> Numbers:
+        """Rotation matrices of the ball at the midpoints of the steps: (steps, 3, 3)."""
         return rotation_matrices(numpy.asarray(self.angles(self.phases), dtype=float).T, self.order)
 
     @cached_property
-    def turns(self) -> Numbers:
-        """How the ball turns during each instant: rotation vectors in rad, (instants, 3)."""
+    def rotation_increments(self) -> Numbers:
+        """Rotation of the ball during each step, as rotation vectors in rad: (steps, 3)."""
         return rotation_vectors(self.rotations[1:] @ self.rotations[:-1].swapaxes(1, 2))
 
     @property
     def seconds(self) -> Numbers:
-        """That each instant lasts: (instants,)."""
-        return numpy.full(self.instants, self.duration / self.instants)
+        """Duration of each step in s: (steps,)."""
+        return numpy.full(self.n_steps, self.duration / self.n_steps)
 
     @property
     def activity_slices(self) -> tuple[tuple[str, slice], ...]:
-        """Name and instants of the only activity."""
-        return ((self.name, slice(0, self.instants)),)
+        """Name and steps of the only activity."""
+        return ((self.name, slice(0, self.n_steps)),)
 
-    def told(self, instant: int) -> str:
-        """Where in the cycle an instant is, in words."""
-        return f"{100 * self.phases[instant]:.1f} % of the cycle"
+    def describe_step(self, step: int) -> str:
+        """Describe the phase of a step in words."""
+        return f"{100 * self.phases[step]:.1f} % of the cycle"
 
     def finer(self) -> Cycle:
-        """This cycle in twice as many instants, if so many are allowed."""
-        return replace(self, instants=min(2 * self.instants, _MOST))
+        """Return this cycle with twice as many steps, up to the largest allowed number."""
+        return replace(self, n_steps=min(2 * self.n_steps, _MAX_STEPS))
 
     def mirrored(self) -> Cycle:
-        """What the other side of the body goes through: to the left what was to the right."""
+        """Return this cycle for the other side of the body: lateral forces and rotations change sign."""
         # M Rx(a) Ry(b) Rz(c) M = Rx(a) Ry(-b) Rz(-c), M = diag(-1, 1, 1)
         spring = self.spring
         if spring is not None and self.frame is Frame.BODY:
             spring = replace(spring, mismatch=-spring.mismatch)
-        return replace(self, force=self._aside, angles=lambda phases: _OTHER_WAY * self.angles(phases), spring=spring)
+        return replace(
+            self,
+            force=self._mirrored_force,
+            angles=lambda phases: _MIRRORED_ANGLES * self.angles(phases),
+            spring=spring,
+        )
 
-    def _aside(self, phases: Numbers) -> Numbers:
-        found = numpy.asarray(self.force(phases), dtype=float)
-        return found if found.ndim == 1 or self.frame is Frame.CUP else _LEFT * found
+    def _mirrored_force(self, phases: Numbers) -> Numbers:
+        """Compute the forces on the other side of the body."""
+        force = numpy.asarray(self.force(phases), dtype=float)
+        return force if force.ndim == 1 or self.frame is Frame.CUP else _MIRRORED_FORCE * force
 
     def scaled(self, factor: float) -> Cycle:
-        """A cycle of this motion under forces that are larger by a factor."""
+        """Return this cycle with its forces multiplied by a factor."""
         return replace(self, force=lambda phases: factor * self.force(phases))
 
 
 _RIGHT = numpy.array([[1.0], [0.0], [0.0]])
-_LEFT = numpy.array([[-1.0], [1.0], [1.0]])
-_OTHER_WAY = numpy.array([[1.0], [-1.0], [-1.0]])
+_MIRRORED_FORCE = numpy.array([[-1.0], [1.0], [1.0]])
+_MIRRORED_ANGLES = numpy.array([[1.0], [-1.0], [-1.0]])
 
 
-def check_instants(count: Any) -> int:
-    """A number of instants, if it is one.
+def check_step_count(count: Any, name: str = "n_steps") -> int:
+    """Check a number of time steps and return it.
 
     Raises
     ------
     ValueError
-        No whole number from 8 to 10 000.
+        `count` is not a whole number from 8 to 10 000.
     """
-    if isinstance(count, bool) or not isinstance(count, int) or not _FEWEST <= count <= _MOST:
-        raise ValueError(f"instants = {shown(count)} is not allowed: a whole number from {_FEWEST} to {_MOST}")
+    if isinstance(count, bool) or not isinstance(count, int) or not _MIN_STEPS <= count <= _MAX_STEPS:
+        raise ValueError(f"{name} = {shown(count)} is not allowed: a whole number from {_MIN_STEPS} to {_MAX_STEPS}")
     return count
 
 
-_AXES = {
-    **dict.fromkeys(("flexion", "flexion-extension", "fe", "f", "x"), "x"),
-    **dict.fromkeys(("adduction", "abduction", "abduction-adduction", "adduction-abduction", "aa", "a", "y"), "y"),
-    **dict.fromkeys(("rotation", "inward rotation", "inward-outward rotation", "ier", "ie", "r", "z"), "z"),
-}
+@dataclass(frozen=True, kw_only=True)
+class CycleParameter:
+    """Number that a named cycle accepts, with its name in files.
 
-
-def order_of(text: Any) -> str:
-    """The axes of "flexion, adduction, rotation", "FE-AA-IER" or "xyz" as they are multiplied: "xyz".
-
-    Raises
-    ------
-    ValueError
-        Not the three rotations, each of them once.
+    Attributes
+    ----------
+    key : str
+        Name in files.
+    argument : str
+        Name of the argument of the function.
+    kind : Kind
+        Kind of quantity, which sets the allowed units.
     """
-    words = text if isinstance(text, list | tuple) else _words(text) if isinstance(text, str) else []
-    axes = "".join(_AXES.get(str(word).strip().lower(), "?") for word in words)
-    if sorted(axes) != ["x", "y", "z"]:
-        known = "'flexion, adduction, rotation' in any order"
-        raise ValueError(f"rotation_order = {shown(text)} is not allowed: {known} (R is their product from the left)")
-    return axes
+
+    key: str
+    argument: str
+    kind: Kind
 
 
-def _words(text: str) -> list[str]:
-    parts = text.replace(";", ",").split(",") if "," in text else text.replace("-", " ").split()
-    return list(parts[0].strip()) if len(parts) == 1 and len(parts[0].strip()) == 3 else parts
+@dataclass(frozen=True, kw_only=True)
+class CycleDefinition:
+    """Cycle that can be requested by name: its function, source and parameters.
+
+    Attributes
+    ----------
+    name : str
+        Name in Python, files, JSON and the explorer, in small letters with hyphens.
+    make : function
+        Function from the number of steps, the rotation order and the parameters to a `Cycle`. If `per_body_weight`, it
+        also takes `body_weight` in N.
+    source : str
+        Publication, standard or assumption that the cycle is based on.
+    parameters : tuple of CycleParameter
+        Numbers that a file may set; their defaults are those of the function.
+    per_body_weight : bool
+        True if loads are multiples of the body weight, which is then required; False if loads are in N.
+    """
+
+    name: str
+    make: Callable[..., Cycle]
+    source: str
+    parameters: tuple[CycleParameter, ...] = ()
+    per_body_weight: bool = False

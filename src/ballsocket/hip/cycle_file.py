@@ -1,50 +1,62 @@
-"""A cycle of one's own, from tables: of text, of OpenSim, or as OrthoLoad has them."""
+"""Cycles in files: measured tables, and the tables [cycle] and [[activity]] of a hip file."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import known_name, require
+from ..core.checks import check_names, check_text, known_name, require, shown
+from ..core.deprecation import renamed_arguments, renamed_names
+from ..core.kinds import Kind
+from ..io.toml import table_of
+from ..io.units import parse
 from ..problem.cup import Side
-from .cycle import INSTANTS, Course, Cycle, Frame
-from .measured import ANGLES, FORCES, Measured, measured, together
-from .resampled import CLOSED, check_closed, clock_of, course, cut, phases_of
-from .sliding import rotation_matrices
-from .tables import read_table
+from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction, check_step_count
+from .cycle_registry import CYCLES, named_cycle
+from .cycle_tables import ANGLES, FORCES, HipColumns, combine_columns, hip_columns, read_table
+from .in_vivo import check_body_weight
+from .kinematics import parse_rotation_order, rotation_matrices
+from .mix import Activity, Mix
+from .waveforms import DEFAULT_CLOSURE, check_closed, cut_out, monotone_periodic, phases_and_duration, time_column
 
-FRAMES = ("body", "femur", "cup")
-BODIES = ("socket", "ball")
+__getattr__ = renamed_names(__name__, {"Reading": "TableOptions"})
+
+_FRAMES = ("body", "femur", "cup")
+_BODIES = ("socket", "ball")
+_MAX_FORCE = 1e9
+"""Largest allowed force in N, beyond any hip and any test machine."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Reading:
-    """How a table is to be read, beyond what its columns say.
+class TableOptions:
+    """Options for reading a table of a cycle.
 
     Parameters
     ----------
     side : Side
-        Of the hip in the table: on the left, `force_x` to the right is to the middle. Default RIGHT.
+        Side of the hip in the table. On the left, `force_x` to the right points to the middle. Default RIGHT.
     frame : str, optional
-        "body", "femur" (it turns with the ball) or "cup": whose directions the force has, where columns do not say it.
+        Frame of the force, if the columns do not state it: "body", "femur" (rotates with the ball) or "cup".
     force_on : str, optional
-        "socket" or "ball", where columns do not say it.
+        Body that the force acts on, if the columns do not state it: "socket" or "ball".
     begin, end : float, optional
-        Times in s, or phases from 0 to 1, of the one cycle that is cut out.
+        Times in s, or phases from 0 to 1, between which one cycle is cut out.
     closing : float
-        Of its span: so much a column may end elsewhere than it begins, which is spread over the cycle. Default 0.01.
+        Allowed difference between the ends of a column as a share of its range, distributed over the cycle.
+        Default 0.01.
     motion : Cycle, optional
-        Whose angles are taken where a table has none.
+        Cycle whose angles are used if the table has none.
 
     Raises
     ------
     ValueError
-        A word or a number that is not allowed.
+        A word or a number is not allowed.
     """
 
     side: Side = Side.RIGHT
@@ -52,79 +64,81 @@ class Reading:
     force_on: str | None = None
     begin: float | None = None
     end: float | None = None
-    closing: float = CLOSED
+    closing: float = DEFAULT_CLOSURE
     motion: Cycle | None = None
 
     def __post_init__(self) -> None:
-        for name, known in (("frame", FRAMES), ("force_on", BODIES)):
-            if (given := getattr(self, name)) is not None:
-                known_name(name, given, known)
-        require("closing", self.closing, 0 <= self.closing <= 0.5, "it is 0 to 0.5 of what a column spans")
+        for name, choices in (("frame", _FRAMES), ("force_on", _BODIES)):
+            if (value := getattr(self, name)) is not None:
+                known_name(name, value, choices)
+        require("closing", self.closing, 0 <= self.closing <= 0.5, "0 to 0.5 of the range of a column")
 
 
+@renamed_arguments(instants="n_steps", reading="options")
 def read_cycle(
     path: str | Path | Sequence[str | Path],
-    instants: int = INSTANTS,
+    n_steps: int = DEFAULT_STEPS,
     order: str = "xyz",
     body_weight: float | None = None,
-    reading: Reading = Reading(),
+    options: TableOptions = TableOptions(),
 ) -> Cycle:
-    """Read a cycle from a table, or from several of one walk.
+    """Read a cycle from one table, or from several tables of the same cycle.
 
-    In a table of text a line names the columns with their units: `time [s]` or `phase [%]`; `force [N]` along z, or
-    `force_x [N]`, `force_y [N]`, `force_z [N]`; `flexion [deg]`, `adduction [deg]`, `rotation [deg]`, of which those
-    that are missing are zero. Forces may be in kN, or in %BW, which needs the body's weight. Columns are parted by
-    commas, semicolons, tabs or blanks; lines that begin with # are passed over. As OrthoLoad has it, `Fx`, `Fy`, `Fz`
-    are forces on the ball in the femur's frame. Of OpenSim's storages (.mot, .sto) are read the coordinates
-    `hip_flexion_r`, `hip_adduction_r`, `hip_rotation_r` and the joint's reaction, as
-    `hip_r_on_femur_r_in_pelvis_fx`, or those of the left hip. The last line is the first again, one cycle later.
-    Between the lines the course is monotone and smooth.
+    In a text table one line names the columns with their units: `time [s]` or `phase [%]`; `force [N]` along z, or
+    `force_x [N]`, `force_y [N]`, `force_z [N]`; `flexion [deg]`, `adduction [deg]`, `rotation [deg]`. Missing angles
+    are zero. Forces may be in kN, or in %BW, which needs the body weight. Columns are separated by commas, semicolons,
+    tabs or blanks; lines that begin with # are ignored. Columns `Fx`, `Fy`, `Fz`, as OrthoLoad names them, are forces
+    on the ball in the femur's frame. OpenSim files (.mot, .sto) have the coordinates `hip_flexion_r`,
+    `hip_adduction_r`, `hip_rotation_r` and the joint reaction, such as `hip_r_on_femur_r_in_pelvis_fx`, or those of the
+    left hip. The last line must repeat the first, one cycle later. Between the lines, values are interpolated
+    smoothly and monotonically.
 
     Parameters
     ----------
     path : str or Path, or several
-    instants, order
-        As of `Cycle`.
+    n_steps, order
+        As in `Cycle`.
     body_weight : float, optional
-        In N.
-    reading : Reading
-        Side, frame, what is cut out, and the like.
+        Body weight in N.
+    options : TableOptions
+        Side, frame and the part of the table that is used.
 
     Raises
     ------
     ValueError
-        One sentence: a column without its unit, a gap, what is no number, a cycle that does not close.
+        A column has no unit, a time step is a gap, a cell is not a number, or the cycle does not close.
     OSError
         A file cannot be read.
     """
-    paths = [Path(path)] if isinstance(path, str | Path) else [Path(each) for each in path]
+    paths = [Path(path)] if isinstance(path, str | Path) else [Path(name) for name in path]
     if not paths:
         raise ValueError("no table is named")
     try:
-        parts = [measured(read_table(each), body_weight, reading.side) for each in paths]
-        found = together([replace(part, columns=cut(part.columns, reading.begin, reading.end)) for part in parts])
-        return replace(_cycle(found, order, reading), name=paths[0].stem, instants=instants)
+        tables = [hip_columns(read_table(file), body_weight, options.side) for file in paths]
+        parts = [replace(table, columns=cut_out(table.columns, options.begin, options.end)) for table in tables]
+        return replace(_table_cycle(combine_columns(parts), order, options), name=paths[0].stem, n_steps=n_steps)
     except ValueError as error:
-        raise ValueError(f"{', '.join(each.name for each in paths)}: {error}") from error
+        raise ValueError(f"{', '.join(file.name for file in paths)}: {error}") from error
 
 
-def _cycle(found: Measured, order: str, reading: Reading) -> Cycle:
-    columns, motion = found.columns, reading.motion
-    phase, duration = phases_of(columns)
+def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
+    """Create a cycle without a name from columns in s, N and rad."""
+    columns, motion = table.columns, options.motion
+    phase, duration = phases_and_duration(columns)
     for title, values in columns.items():
         if title.startswith("force"):
-            _check_size(title, values)
-        if title != clock_of(columns):
-            check_closed(title, values, reading.closing, *(("°", 180 / pi) if title in ANGLES else (" N", 1.0)))
+            _check_force(title, values)
+        if title != time_column(columns):
+            check_closed(title, values, options.closing, *(("°", 180 / pi) if title in ANGLES else (" N", 1.0)))
         if title in ANGLES:
-            _check_turn(title, values)
+            _check_angle(title, values)
     angles = _angles(phase, columns, motion)
-    frame = known_name("frame", reading.frame or found.frame or FRAMES[0], FRAMES)
-    on = known_name("force_on", reading.force_on or found.force_on or BODIES[0], BODIES)
-    force = course(phase, _force(columns, reading.side, on))
+    frame = known_name("frame", options.frame or table.frame or _FRAMES[0], _FRAMES)
+    loaded_body = known_name("force_on", options.force_on or table.force_on or _BODIES[0], _BODIES)
+    force = monotone_periodic(phase, _socket_force(columns, options.side, loaded_body))
     return Cycle(
         name="",
-        force=_turning(force, angles, order) if frame == "femur" and "force" not in columns else force,
+        force=_rotated_force(force, angles, order) if frame == "femur" and "force" not in columns else force,
         angles=angles,
         order=order,
         duration=duration,
@@ -133,47 +147,158 @@ def _cycle(found: Measured, order: str, reading: Reading) -> Cycle:
     )
 
 
-def _check_size(title: str, values: Numbers) -> None:
+def _check_force(title: str, values: Numbers) -> None:
     """Raise ValueError for a force (N) beyond any hip joint, as from a wrong unit or a damaged table."""
     largest = float(abs(values).max())
-    if largest > _LARGEST_FORCE:
-        raise ValueError(f"{title} goes to {largest:.4g} N; allowed are forces up to {_LARGEST_FORCE:g} N")
+    if largest > _MAX_FORCE:
+        raise ValueError(f"{title} goes to {largest:.4g} N; allowed are forces up to {_MAX_FORCE:g} N")
 
 
-_LARGEST_FORCE = 1e9
-"""Largest allowed force in N, beyond any hip and any test machine."""
+def _check_angle(title: str, values: Numbers) -> None:
+    """Raise ValueError for an angle (rad) beyond 180°, as from degrees under a head in rad."""
+    largest = float(values[abs(values).argmax()])
+    if abs(largest) > pi:
+        raise ValueError(f"{title} goes to {180 / pi * largest:.4g}°; allowed are angles up to 180°: check its unit")
 
 
-def _check_turn(title: str, values: Numbers) -> None:
-    """Raise ValueError where an angle (rad) is one to which no hip turns, as of degrees under a head in rad."""
-    furthest = float(values[abs(values).argmax()])
-    if abs(furthest) > pi:
-        raise ValueError(
-            f"{title} goes to {180 / pi * furthest:.4g}°, and no hip turns further than 180°: is its unit right?"
-        )
-
-
-def _angles(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> Course:
-    given = any(name in columns for name in ANGLES)
+def _angles(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> PhaseFunction:
+    """Return the angles of the table, or those of another cycle if the table has none."""
     if motion is None:
-        return course(phase, numpy.stack([columns.get(name, 0.0 * phase) for name in ANGLES]))
-    if given:
-        raise ValueError(f"angles are there, and the motion of {motion.name} is one too many")
+        return monotone_periodic(phase, numpy.stack([columns.get(name, 0.0 * phase) for name in ANGLES]))
+    if any(name in columns for name in ANGLES):
+        raise ValueError(f"the table has angles, so the motion of {motion.name} cannot be used: remove one of them")
     return motion.angles
 
 
-def _force(columns: dict[str, Numbers], side: Side, on: str) -> Numbers:
-    """The force on the socket, to the side, to the front and upwards, or its size alone."""
-    whole = all(name in columns for name in FORCES)
-    if ("force" in columns) == whole or (not whole and any(name in columns for name in FORCES)):
-        raise ValueError("a column force [N], or force_x, force_y and force_z, is needed")
+def _socket_force(columns: dict[str, Numbers], side: Side, loaded_body: str) -> Numbers:
+    """Return the force on the socket to the side, to the front and upwards, or its upward magnitude alone."""
+    complete = all(name in columns for name in FORCES)
+    if ("force" in columns) == complete or (not complete and any(name in columns for name in FORCES)):
+        raise ValueError("the table needs either a column force [N], or force_x, force_y and force_z")
     if "force" in columns:
         return columns["force"]
     force = numpy.stack([columns[name] for name in FORCES])
     force[0] *= 1.0 if side is Side.RIGHT else -1.0
-    return force if on == "socket" else -force
+    return force if loaded_body == "socket" else -force
 
 
-def _turning(force: Course, angles: Course, order: str) -> Course:
-    """A force that is told in directions that turn with the ball."""
+def _rotated_force(force: PhaseFunction, angles: PhaseFunction, order: str) -> PhaseFunction:
+    """Convert a force in the femur's frame, which rotates with the ball, to the body's frame."""
     return lambda phases: numpy.einsum("nij,jn->in", rotation_matrices(angles(phases).T, order), force(phases))
+
+
+_COMMON_KEYS = ("instants", "rotation_order", "times_body_weight")
+_TABLE_KEYS = ("side", "frame", "force_on", "from", "to", "closing", "motion")
+_PARAMETER_KEYS = dict.fromkeys(number.key for definition in CYCLES.values() for number in definition.parameters)
+KEYS = ("name", "file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS, *_PARAMETER_KEYS)
+"""Keys of [cycle]."""
+
+_COUNT_KEYS = ("per_year", "share")
+"""Further keys of [[activity]]."""
+
+
+def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
+    """Create the cycle of a hip file from its [cycle], or the mix of its [[activity]] tables.
+
+    Raises
+    ------
+    ValueError
+        A key, name or value is not allowed; the message suggests the closest one.
+    OSError
+        A table cannot be read.
+    """
+    weight = _parse_weight(content)
+    if "activity" not in content:
+        return _parse_table(table_of(content, "cycle"), folder, weight, "[cycle]")
+    if "cycle" in content:
+        raise ValueError("the file has both [cycle] and [[activity]]: remove one of them")
+    tables = content["activity"]
+    if not isinstance(tables, list) or not all(isinstance(table, Mapping) for table in tables):
+        raise ValueError(f"activity = {shown(tables)} must be an array of tables: [[activity]] before each")
+    return Mix(activities=tuple(_parse_activity(table, folder, weight, content) for table in tables))
+
+
+def _parse_activity(
+    table: Mapping[str, Any], folder: Path, weight: float | None, content: Mapping[str, Any]
+) -> Activity:
+    """Create one activity from its table; a share refers to `cycles_per_year` of the file."""
+    check_names(table, (*KEYS, *_COUNT_KEYS), "in [[activity]]")
+    if ("per_year" in table) == ("share" in table):
+        raise ValueError("an [[activity]] needs either per_year (cycles a year) or share (of cycles_per_year)")
+    cycle_table = {key: value for key, value in table.items() if key not in _COUNT_KEYS}
+    cycle = _parse_table(cycle_table, folder, weight, "[[activity]]")
+    if "per_year" in table:
+        return Activity(cycle=cycle, per_year=parse("per_year", table["per_year"], Kind.NUMBER))
+    if "cycles_per_year" not in content:
+        raise ValueError("share needs cycles_per_year at the top of the file")
+    total = parse("cycles_per_year", content["cycles_per_year"], Kind.NUMBER)
+    return Activity(cycle=cycle, per_year=total * parse("share", table["share"], Kind.NUMBER))
+
+
+def _parse_weight(table: Mapping[str, Any]) -> float | None:
+    """Return the body weight of a table in N, if it has one."""
+    if "body_weight" not in table:
+        return None
+    return check_body_weight(parse("body_weight", table["body_weight"], Kind.FORCE))
+
+
+def _parse_table(table: Mapping[str, Any], folder: Path, weight: float | None, where: str) -> Cycle:
+    """Create the cycle of one table, by name or from a file, scaled to a multiple of body weight if stated."""
+    if ("name" in table) == ("file" in table):
+        raise ValueError(f"{where} needs either a name or a file; names: {', '.join(CYCLES)}")
+    weight = weight if "body_weight" not in table else _parse_weight(table)
+    n_steps = check_step_count(table.get("instants", DEFAULT_STEPS), "instants")
+    order = parse_rotation_order(table.get("rotation_order", "flexion, adduction, rotation"))
+    create = _cycle_from_file if "file" in table else _cycle_by_name
+    cycle = create(table, folder, weight, where, n_steps, order)
+    if "times_body_weight" not in table:
+        return cycle
+    if weight is None:
+        raise ValueError("times_body_weight needs a body_weight")
+    times = parse("times_body_weight", table["times_body_weight"], Kind.NUMBER)
+    require("times_body_weight", times, 0 < times <= 100, "a load is above 0 and at most 100 times the body weight")
+    return cycle.scaled(times * weight / cycle.largest_force)
+
+
+def _cycle_by_name(
+    table: Mapping[str, Any], folder: Path, weight: float | None, where: str, n_steps: int, order: str
+) -> Cycle:
+    """Create a named cycle with the parameters of its table."""
+    definition = CYCLES[known_name("cycle", table["name"], CYCLES)]
+    keys = [number.key for number in definition.parameters]
+    weight_key = ("body_weight",) if definition.per_body_weight or "times_body_weight" in table else ()
+    allowed = ("name", *_COMMON_KEYS, *weight_key, *keys)
+    check_names(table, allowed, f"with the name {definition.name!r} in {where}")
+    parameters = {
+        number.argument: parse(number.key, table[number.key], number.kind)
+        for number in definition.parameters
+        if number.key in table
+    }
+    return named_cycle(definition.name, n_steps, order, weight if definition.per_body_weight else None, **parameters)
+
+
+def _cycle_from_file(
+    table: Mapping[str, Any], folder: Path, weight: float | None, where: str, n_steps: int, order: str
+) -> Cycle:
+    """Read the cycle of measured tables."""
+    check_names(table, ("file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS), f"with a file in {where}")
+    files = table["file"] if isinstance(table["file"], list) else [table["file"]]
+    if not files or not all(files):
+        raise ValueError(f"file = {shown(table['file'])} names no table")
+    paths = [folder / check_text("file", name) for name in files]
+    return read_cycle(paths, n_steps, order, weight, _table_options(table, weight, order))
+
+
+def _table_options(table: Mapping[str, Any], weight: float | None, order: str) -> TableOptions:
+    """Create the options for measured tables."""
+    options: dict[str, Any] = {name: check_text(name, table[name]) for name in ("frame", "force_on") if name in table}
+    if "side" in table:
+        options["side"] = Side(known_name("side", table["side"], [side.value for side in Side]))
+    for key, name in (("from", "begin"), ("to", "end"), ("closing", "closing")):
+        if key in table:
+            options[name] = parse(key, table[key], Kind.NUMBER)
+    if "motion" in table:
+        motion = CYCLES[known_name("motion", table["motion"], CYCLES)]
+        body_weight = (weight or 1.0) if motion.per_body_weight else None
+        options["motion"] = named_cycle(motion.name, DEFAULT_STEPS, order, body_weight)
+    return TableOptions(**options)

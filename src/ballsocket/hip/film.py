@@ -12,7 +12,7 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..problem import Joint, Material
 from .cup_frame import CupFrame
-from .sliding import Sliding
+from .kinematics import SurfaceSliding
 from .socket_foundation import CycleEquilibrium, SocketFoundation
 
 CONFORMITY_NOTE = (
@@ -147,7 +147,7 @@ class Film:
 def film(
     cup_frame: CupFrame,
     foundation: SocketFoundation,
-    sliding: Sliding,
+    sliding: SurfaceSliding,
     equilibrium: CycleEquilibrium,
     lubricant: Lubricant,
 ) -> Film:
@@ -155,10 +155,12 @@ def film(
     durations = cup_frame.cycle.seconds[cup_frame.loaded]
     forces = cup_frame.socket_forces(equilibrium.displacement)
     size = numpy.linalg.norm(forces, axis=1)
-    spin = numpy.linalg.norm(numpy.cross(cup_frame.turns, forces), axis=1) / numpy.where(size > 0, size, 1.0)
+    spin = numpy.linalg.norm(numpy.cross(cup_frame.rotation_increments, forces), axis=1) / numpy.where(
+        size > 0, size, 1.0
+    )
     least, central = film_thickness(cup_frame.joint, size, spin / durations, lubricant.viscosity)
     roughness = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
-    work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.steps, foundation.areas)
+    work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.distances, foundation.areas)
     return Film(
         phases=cup_frame.cycle.phases[cup_frame.loaded],
         least=least,
@@ -171,12 +173,12 @@ def film(
     )
 
 
-def _unit_moment(foundation: SocketFoundation, sliding: Sliding, pressure: Numbers) -> Numbers:
+def _unit_moment(foundation: SocketFoundation, sliding: SurfaceSliding, pressure: Numbers) -> Numbers:
     """Compute the friction moment on the cup for a coefficient of friction of 1, in N mm: (instants, 3).
 
     It is ∫ R n × v/abs(v) p dA with v = R ω × n, and n × (ω × n) = ω - (ω·n) n.
     """
-    n, rotations, distances = foundation.directions, sliding.turns, sliding.steps
+    n, rotations, distances = foundation.directions, sliding.rotation_increments, sliding.distances
     weight = numpy.divide(
         pressure * foundation.areas * sliding.radius**2,
         distances,

@@ -25,11 +25,11 @@ from .contact_checks import ContactCheck, check_contact, half_angles
 from .creep_law import CreepLaw, confinement_note
 from .cup_frame import CupFrame
 from .cycle import Cycle
-from .edge import Edge, edge_of
 from .elastic_foundation import elastic_foundation
 from .film import Film, Lubricant, film
+from .kinematics import SurfaceSliding
 from .mix import Mix
-from .sliding import Sliding
+from .rim import RimDistance, rim_distance
 from .socket_foundation import CycleEquilibrium, SocketFoundation, spring_foundation
 from .wear_law import AnyWearLaw, CycleExposure
 
@@ -173,14 +173,18 @@ class HipSetup(CupFrame):
         return Cup(arc_of_cover=self.cup.arc_of_cover, chamfer=self.cup.chamfer, interface=self.cup.interface)
 
     @cached_property
-    def sliding(self) -> Sliding:
+    def sliding(self) -> SurfaceSliding:
         """Sliding of the ball over the cells of the socket in the loaded instants."""
-        return Sliding(radius=float(self.joint.ball_radius), turns=self.turns, directions=self.foundation.directions)
+        return SurfaceSliding(
+            radius=float(self.joint.ball_radius),
+            rotation_increments=self.rotation_increments,
+            directions=self.foundation.directions,
+        )
 
-    def edge(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Edge:
+    def edge(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> RimDistance:
         """Find the edge of each contact nearest to the end of the bore, on a bore worn by a depth in mm."""
         field = self.foundation.edge_field(equilibrium, self._depth_field(depth))
-        return edge_of(
+        return rim_distance(
             self.grid, self.foundation.socket_radius, field, equilibrium.pressure, self.foundation.edge_inset
         )
 
@@ -251,7 +255,9 @@ class HipSetup(CupFrame):
     def contact_checks(self, worst: Numbers) -> tuple[ContactCheck, ...]:
         """Check the contact model for each activity with contact, from a table of `worst_contacts`."""
         return tuple(
-            check_contact(self.contact_model, self.joint, row, activity, self.cycle.told(int(self.loaded[int(row[0])])))
+            check_contact(
+                self.contact_model, self.joint, row, activity, self.cycle.describe_step(int(self.loaded[int(row[0])]))
+            )
             for (activity, _), row in zip(self._activities, worst, strict=True)
         )
 
@@ -301,11 +307,11 @@ class HipSetup(CupFrame):
         cycle = self.exposure(self.unworn)
         worn = numpy.flatnonzero(cycle.work > 0)
         weight = (cycle.work * self.foundation.areas)[worn]
-        angles = self.sliding.part(worn).crossing_angle(cycle.pressure[:, worn])
+        angles = self.sliding.select_points(worn).crossing_angle(cycle.pressure[:, worn])
         return float(angles @ weight / weight.sum()) if len(worn) else 0.0
 
     @property
     def largest_speed(self) -> float:
         """Largest speed of sliding in contact in the first cycle, in mm/s."""
-        distances = numpy.where(self.unworn.pressure > 0, self.sliding.steps, 0.0)
+        distances = numpy.where(self.unworn.pressure > 0, self.sliding.distances, 0.0)
         return float((distances / self.cycle.seconds[self.loaded][:, None]).max(initial=0.0))

@@ -14,11 +14,11 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_names
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_notes
-from .edge import Edge, Worst
 from .film import Lubricant
 from .hip_setup import HipSetup
 from .law_fields import law_summary
 from .mix import Mix
+from .rim import ClosestApproach, RimDistance
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -89,9 +89,9 @@ class Report:
         return float(numpy.linalg.norm(self.displacement))
 
     @property
-    def edge(self) -> Edge:
+    def edge(self) -> RimDistance:
         """Edges of the contacts nearest to the rim."""
-        return Edge(distance=self.edge_distance, place=self.edge_place, pressure=self.edge_pressure)
+        return RimDistance(distance=self.edge_distance, azimuth=self.edge_place, pressure=self.edge_pressure)
 
     def summary(self) -> dict[str, Any]:
         """Return the report as data for JSON, in mm, MPa and mm³."""
@@ -204,19 +204,21 @@ class History:
         return ()
 
     @property
-    def worst(self) -> Worst | None:
+    def worst(self) -> ClosestApproach | None:
         """Instant of the first cycle in which the contact is nearest to the rim; None without contact."""
-        return self.use.edge(self.use.unworn).worst(self.use)
+        return self.use.edge(self.use.unworn).closest_approach(self.use)
 
     @property
     def _rim_notes(self) -> tuple[str, ...]:
         """Note on the first stage at which a contact reaches the rim."""
         stages = [(_FIRST_CYCLE, self.worst)]
-        stages += [(_AFTER_CYCLES.format(report.cycles), report.edge.worst(self.use)) for report in self.reports]
+        stages += [
+            (_AFTER_CYCLES.format(report.cycles), report.edge.closest_approach(self.use)) for report in self.reports
+        ]
         for stage, worst in stages:
-            if worst is not None and worst.reaching:
+            if worst is not None and worst.steps_at_rim:
                 count = len(self.use.loaded)
-                return (_AT_RIM.format(stage, worst.reaching, count, worst.where, worst.pressure),)
+                return (_AT_RIM.format(stage, worst.steps_at_rim, count, worst.location, worst.pressure),)
         return ()
 
     def summary(self) -> dict[str, Any]:
@@ -225,7 +227,7 @@ class History:
         return {
             "cycle": {
                 "name": self.use.cycle.name,
-                "instants": self.use.cycle.instants,
+                "instants": self.use.cycle.n_steps,
                 "slide_mm": first.slide,
                 "pressure_slide_integral_Nm": first.work,
                 "cross_shear_mean": first.cross_shear,
@@ -265,7 +267,7 @@ class History:
             "utilisation": largest_utilisation(checks),
             "contact": [check.summary() for check in checks],
         }
-        return {**report.summary(), **years, "edge": _edge_summary(report.edge.worst(self.use)), **contact}
+        return {**report.summary(), **years, "edge": _edge_summary(report.edge.closest_approach(self.use)), **contact}
 
 
 _THIN_LINER = 0.25
@@ -283,7 +285,7 @@ _AT_RIM = (
 _NOT_CONVERGED = "a contact did not balance its load: the results of this run are invalid"
 
 
-def _edge_summary(worst: Worst | None) -> dict[str, Any] | None:
+def _edge_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
     return None if worst is None else worst.summary()
 
 

@@ -1,9 +1,10 @@
-"""Loads that were measured in patients, as multiples of their weight."""
+"""Cycles from loads measured in patients, as multiples of body weight."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from math import pi, radians
 from types import MappingProxyType
 
@@ -11,144 +12,168 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require
-from .cycle import INSTANTS, Cycle
-from .gait import iso_14242_1
+from ..core.deprecation import renamed_arguments
+from .cycle import DEFAULT_STEPS, Cycle, CycleDefinition, PhaseFunction
+from .simulator_cycles import iso_14242_1
 
-_WALK = iso_14242_1()
-_STEP = "course and motion are those of ISO 14242-1"
-_HEAVIEST = 1e4
-_REST = 0.1
-"""Of the peak: what the muscles keep up while a leg is not loaded."""
+_ISO_WALKING = iso_14242_1()
+_ISO_ASSUMPTION = "waveform and motion are those of ISO 14242-1"
+_MAX_BODY_WEIGHT = 1e4
+"""Largest allowed body weight in N."""
 
-
-def _step(phases: Numbers) -> Numbers:
-    return numpy.asarray(_WALK.force(phases)) / 3000.0
-
-
-def _hump(end: float) -> Callable[[Numbers], Numbers]:
-    """One hump up to a phase, then little."""
-    return lambda phases: _REST + (1 - _REST) * numpy.sin(pi * numpy.minimum(phases / end, 1.0)) ** 2
+_UNLOADED_SHARE = 0.1
+"""Force of the muscles on an unloaded leg, as a share of the peak."""
 
 
-def _still(phases: Numbers) -> Numbers:
+def _iso_waveform(phases: Numbers) -> Numbers:
+    """Compute the force of ISO 14242-1 as a share of its peak."""
+    return numpy.asarray(_ISO_WALKING.force(phases)) / 3000.0
+
+
+def _single_peak(end: float) -> PhaseFunction:
+    """Create a waveform with one peak between phase 0 and `end`, constant and small afterwards."""
+    return lambda phases: (
+        _UNLOADED_SHARE + (1 - _UNLOADED_SHARE) * numpy.sin(pi * numpy.minimum(phases / end, 1.0)) ** 2
+    )
+
+
+def _double_peak(phases: Numbers) -> Numbers:
+    """Compute a waveform with one peak in each half of the cycle."""
+    return _single_peak(0.5)(phases % 0.5)
+
+
+def _no_motion(phases: Numbers) -> Numbers:
+    """Return zero angles."""
     return numpy.zeros((3, len(phases)))
 
 
-def _rise(phases: Numbers) -> Numbers:
-    """From a chair, flexed by 80°, and back."""
+def _sit_to_stand(phases: Numbers) -> Numbers:
+    """Compute the angles of standing up from 80° of flexion and sitting down."""
     return radians(80.0) * numpy.stack([numpy.cos(pi * phases) ** 2, 0 * phases, 0 * phases])
 
 
 @dataclass(frozen=True, kw_only=True)
 class InVivo:
-    """A load as it was measured, and what is assumed of the rest of its cycle.
+    """Measured peak load of an activity, and the assumed waveform and motion of its cycle.
 
     Attributes
     ----------
     percent : float
-        The peak, of the body's weight.
+        Peak force in percent of body weight.
     source : str
-    course : function
-        From phases to shares of the peak.
+        Publication of the peak force.
+    waveform : function
+        Function from phases to the force as a share of the peak.
     angles : function
-        From phases to flexion, adduction and rotation (3, n) in rad.
+        Function from phases to flexion, adduction and rotation (3, n) in rad.
     duration : float
-        In s.
-    assumed : str
+        Duration in s.
+    assumption : str
+        Assumed waveform and motion, in words.
     """
 
     percent: float
     source: str
-    course: Callable[[Numbers], Numbers] = _step
-    angles: Callable[[Numbers], Numbers] = _WALK.angles
+    waveform: Callable[[Numbers], Numbers] = _iso_waveform
+    angles: Callable[[Numbers], Numbers] = _ISO_WALKING.angles
     duration: float = 1.0
-    assumed: str = _STEP
+    assumption: str = _ISO_ASSUMPTION
 
 
-_HIP_III = "ten instrumented implants, Bergmann 2016, 10.1371/journal.pone.0155612"
-_HIP_98 = "average patient, Bergmann 2001, 10.1016/S0021-9290(01)00040-9"
-_FIRST = "Bergmann 1993, 10.1016/0021-9290(93)90058-M"
+_BERGMANN_2016 = "ten instrumented implants, Bergmann 2016, 10.1371/journal.pone.0155612"
+_BERGMANN_2001 = "average patient, Bergmann 2001, 10.1016/S0021-9290(01)00040-9"
+_BERGMANN_1993 = "Bergmann 1993, 10.1016/0021-9290(93)90058-M"
 
-IN_VIVO: Mapping[str, InVivo] = MappingProxyType(
+_ACTIVITIES: Mapping[str, InVivo] = MappingProxyType(
     {
-        "walking": InVivo(percent=247, source=_HIP_III),
+        "walking": InVivo(percent=247, source=_BERGMANN_2016),
         "one-leg-stance": InVivo(
             percent=261,
-            source=_HIP_III,
-            course=_hump(1.0),
-            angles=_still,
+            source=_BERGMANN_2016,
+            waveform=_single_peak(1.0),
+            angles=_no_motion,
             duration=4.0,
-            assumed="one hump, without motion",
+            assumption="one peak, without motion",
         ),
         "stand-up": InVivo(
             percent=215,
-            source=_HIP_III,
-            course=lambda phases: _hump(0.5)(phases % 0.5),
-            angles=_rise,
+            source=_BERGMANN_2016,
+            waveform=_double_peak,
+            angles=_sit_to_stand,
             duration=6.0,
-            assumed="up from a chair and down again, flexed by 80°, a hump each",
+            assumption="standing up and sitting down with 80° of flexion, one peak each",
         ),
-        "average-walking": InVivo(percent=238, source=_HIP_98),
-        "stairs-up": InVivo(percent=251, source=_HIP_98),
-        "stairs-down": InVivo(percent=260, source=_HIP_98),
+        "average-walking": InVivo(percent=238, source=_BERGMANN_2001),
+        "stairs-up": InVivo(percent=251, source=_BERGMANN_2001),
+        "stairs-down": InVivo(percent=260, source=_BERGMANN_2001),
         "jogging": InVivo(
             percent=550,
-            source=_FIRST,
-            course=_hump(0.35),
+            source=_BERGMANN_1993,
+            waveform=_single_peak(0.35),
             duration=0.7,
-            assumed="one hump of 35 % of the cycle, motion of ISO 14242-1",
+            assumption="one peak over 35 % of the cycle, motion of ISO 14242-1",
         ),
         "stumbling": InVivo(
             percent=870,
-            source=f"{_FIRST}, 720 to 870",
-            course=_hump(0.35),
-            angles=_still,
-            assumed="one hump, without motion",
+            source=f"{_BERGMANN_1993}, 720 to 870",
+            waveform=_single_peak(0.35),
+            angles=_no_motion,
+            assumption="one peak, without motion",
         ),
     }
 )
 
 
-def check_weight(weight: float) -> float:
-    """A body's weight in N, if it is one; ValueError elsewhere."""
-    require("body_weight", weight, 0 < weight <= _HEAVIEST, f"a body weighs more than 0 and at most {_HEAVIEST:g} N")
-    return weight
+def check_body_weight(body_weight: float) -> float:
+    """Check a body weight in N and return it; ValueError if it is not positive or exceeds 10 kN."""
+    allowed = f"a body weight is above 0 and at most {_MAX_BODY_WEIGHT:g} N"
+    require("body_weight", body_weight, 0 < body_weight <= _MAX_BODY_WEIGHT, allowed)
+    return body_weight
 
 
-def in_vivo(name: str, body_weight: float, instants: int = INSTANTS, order: str = "xyz") -> Cycle:
-    """A load that was measured in patients, upwards in the body: walking, stairs, jogging, stumbling and others.
+@renamed_arguments(instants="n_steps")
+def in_vivo(name: str, body_weight: float, n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
+    """Create a cycle from a load measured in patients, directed upwards in the body.
 
-    Only the peak was measured so; what is assumed of course and motion stands in the notes.
+    Only the peak force was measured; the notes state the assumed waveform and motion.
 
     Parameters
     ----------
     name : str
-        "walking", "one-leg-stance", "stand-up", "average-walking", "stairs-up", "stairs-down", "jogging", "stumbling".
+        "walking", "one-leg-stance", "stand-up", "average-walking", "stairs-up", "stairs-down", "jogging" or
+        "stumbling".
     body_weight : float
-        In N.
-    instants, order
-        As of `Cycle`.
+        Body weight in N.
+    n_steps, order
+        As in `Cycle`.
 
     Raises
     ------
     ValueError
-        None of that name, with the nearest one; a weight that is none.
+        The name is unknown (the message suggests the closest one), or the body weight is out of range.
 
     Examples
     --------
     >>> round(in_vivo("walking", body_weight=880.0).largest_force)
     2174
     """
-    check_weight(body_weight)
-    key = known_name("load", name, IN_VIVO)
-    load = IN_VIVO[key]
+    check_body_weight(body_weight)
+    key = known_name("load", name, _ACTIVITIES)
+    load = _ACTIVITIES[key]
     peak = load.percent / 100 * body_weight
     return Cycle(
         name=key,
-        force=lambda phases: peak * load.course(phases),
+        force=lambda phases: peak * load.waveform(phases),
         angles=load.angles,
-        instants=instants,
+        n_steps=n_steps,
         order=order,
         duration=load.duration,
-        notes=(f"{key}: a peak of {load.percent:g} % of body weight ({load.source}); assumed: {load.assumed}",),
+        notes=(f"{key}: a peak of {load.percent:g} % of body weight ({load.source}); assumed: {load.assumption}",),
     )
+
+
+IN_VIVO_CYCLES = tuple(
+    CycleDefinition(name=name, make=partial(in_vivo, name), source=load.source, per_body_weight=True)
+    for name, load in _ACTIVITIES.items()
+)
+"""Cycles of the activities, with loads in multiples of body weight."""

@@ -1,4 +1,4 @@
-"""A mix of activities: what a patient goes through in a year, as one cycle of them all."""
+"""Mix of activities, as one mean cycle of load and motion."""
 
 from __future__ import annotations
 
@@ -11,18 +11,20 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..core.deprecation import renamed_fields
 from .cycle import Cycle, Frame
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Activity:
-    """What a patient does so often a year.
+    """Cycle that a patient repeats a number of times a year.
 
     Parameters
     ----------
     cycle : Cycle
+        Cycle of the activity.
     per_year : float
-        How many of its cycles.
+        Number of its cycles a year.
     """
 
     cycle: Cycle
@@ -32,21 +34,30 @@ class Activity:
         require("per_year", self.per_year, 0 < self.per_year < inf, "a number of cycles a year is positive and finite")
 
 
+@renamed_fields(
+    instants="n_steps",
+    sizes="force_magnitudes",
+    middles="midpoint_rotations",
+    turns="rotation_increments",
+    told="describe_step",
+    shares="fractions",
+)
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mix:
-    """Activities, each as often as a patient does it: a cycle of the mix is the mean of theirs.
+    """Mix of activities, weighted by their numbers of cycles a year.
 
-    Every instant of every activity counts as its share of the cycles: it slides so much less, and lasts so much less.
-    Wear that follows from pressures and slides is then that of all of them together.
+    A cycle of the mix is the mean cycle. Rotation increment and duration of each step are multiplied by the fraction
+    of its activity in all cycles. Wear from pressures and sliding distances is then the wear of all activities.
 
     Parameters
     ----------
     activities : tuple of Activity
+        Activities of the mix.
 
     Raises
     ------
     ValueError
-        None at all, or loads in other frames, or with springs.
+        The mix is empty, or a cycle has forces in the cup's frame or a spring.
 
     Examples
     --------
@@ -60,134 +71,141 @@ class Mix:
 
     def __post_init__(self) -> None:
         if not self.activities:
-            raise ValueError("a mix has at least one activity")
-        for each in self._cycles:
-            if each.frame is not Frame.BODY or each.spring is not None:
-                raise ValueError(
-                    f"{each.name} is in the frame of a cup, or has a spring: it cannot be mixed with others"
-                )
+            raise ValueError("a mix needs at least one activity")
+        for cycle in self._cycles:
+            if cycle.frame is not Frame.BODY or cycle.spring is not None:
+                raise ValueError(f"{cycle.name} has forces in the cup's frame, or a spring: it cannot be part of a mix")
 
     @property
     def _cycles(self) -> tuple[Cycle, ...]:
-        return tuple(each.cycle for each in self.activities)
+        """Cycles of the activities."""
+        return tuple(activity.cycle for activity in self.activities)
 
     @property
     def per_year(self) -> float:
-        """Cycles of all activities together."""
-        return sum(each.per_year for each in self.activities)
+        """Total number of cycles a year."""
+        return sum(activity.per_year for activity in self.activities)
 
     @property
-    def shares(self) -> tuple[float, ...]:
-        """Shares of the activities in the cycles."""
-        return tuple(each.per_year / self.per_year for each in self.activities)
+    def fractions(self) -> tuple[float, ...]:
+        """Fraction of each activity in all cycles."""
+        return tuple(activity.per_year / self.per_year for activity in self.activities)
 
     @property
     def name(self) -> str:
-        return " + ".join(each.name for each in self._cycles)
+        """Names of the activities, joined by +."""
+        return " + ".join(cycle.name for cycle in self._cycles)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is to be said of the activities, each sentence once."""
-        said = tuple(dict.fromkeys(note for each in self._cycles for note in each.notes))
-        return said if len({each.cup_tilt for each in self._cycles}) == 1 else (*said, _AS_GIVEN)
+        """Notes of the activities for reports, without repetitions."""
+        notes = tuple(dict.fromkeys(note for cycle in self._cycles for note in cycle.notes))
+        return notes if len({cycle.cup_tilt for cycle in self._cycles}) == 1 else (*notes, _NO_COMMON_TILT)
 
     @property
     def cup_tilt(self) -> float | None:
-        """The tilt of a standard, if all activities have the same."""
-        found = {each.cup_tilt for each in self._cycles}
-        return found.pop() if len(found) == 1 else None
+        """Tilt of the cup in rad by a standard, if it is the same for all activities."""
+        tilts = {cycle.cup_tilt for cycle in self._cycles}
+        return tilts.pop() if len(tilts) == 1 else None
 
     @property
     def frame(self) -> Frame:
+        """Reference frame of the forces: the body."""
         return Frame.BODY
 
     @property
     def spring(self) -> None:
+        """Lateral spring: always None."""
         return None
 
     @property
-    def instants(self) -> int:
-        return sum(each.instants for each in self._cycles)
+    def n_steps(self) -> int:
+        """Number of steps of all activities."""
+        return sum(cycle.n_steps for cycle in self._cycles)
 
     @property
     def phases(self) -> Numbers:
-        """The middle of each instant, 0 to 1, one activity after the other."""
-        return (numpy.arange(self.instants) + 0.5) / self.instants
+        """Phases from 0 to 1 at the midpoints of the steps, one activity after the other: (steps,)."""
+        return (numpy.arange(self.n_steps) + 0.5) / self.n_steps
 
     @property
     def duration(self) -> float:
-        """Seconds that the mean cycle lasts."""
+        """Duration of the mean cycle in s."""
         return float(self.seconds.sum())
 
     @cached_property
     def seconds(self) -> Numbers:
-        """That each instant counts for: (instants,)."""
-        return self._shared(lambda cycle: cycle.seconds)
+        """Duration of each step in s, times the fraction of its activity: (steps,)."""
+        return self._weighted(lambda cycle: cycle.seconds)
 
     @cached_property
     def forces(self) -> Numbers:
-        """In N: (instants, 3)."""
-        return numpy.concatenate([each.forces for each in self._cycles])
+        """Forces at the midpoints of the steps in N: (steps, 3)."""
+        return numpy.concatenate([cycle.forces for cycle in self._cycles])
 
     @cached_property
-    def sizes(self) -> Numbers:
-        """Sizes of the forces in N: (instants,)."""
+    def force_magnitudes(self) -> Numbers:
+        """Magnitudes of the forces in N: (steps,)."""
         return numpy.linalg.norm(self.forces, axis=1)
 
     @cached_property
-    def middles(self) -> Numbers:
-        """Rotation matrices of the ball in the middle of the instants: (instants, 3, 3)."""
-        return numpy.concatenate([each.middles for each in self._cycles])
+    def midpoint_rotations(self) -> Numbers:
+        """Rotation matrices of the ball at the midpoints of the steps: (steps, 3, 3)."""
+        return numpy.concatenate([cycle.midpoint_rotations for cycle in self._cycles])
 
     @cached_property
-    def turns(self) -> Numbers:
-        """How the ball turns during each instant, as often as that is: rotation vectors in rad, (instants, 3)."""
-        return self._shared(lambda cycle: cycle.turns)
+    def rotation_increments(self) -> Numbers:
+        """Rotation of the ball during each step in rad, times the fraction of its activity: (steps, 3)."""
+        return self._weighted(lambda cycle: cycle.rotation_increments)
 
-    def _shared(self, of: Callable[[Cycle], Numbers]) -> Numbers:
-        return numpy.concatenate([share * of(each) for share, each in zip(self.shares, self._cycles, strict=True)])
+    def _weighted(self, values_of: Callable[[Cycle], Numbers]) -> Numbers:
+        """Concatenate values of the steps, multiplied by the fractions of the activities."""
+        return numpy.concatenate(
+            [fraction * values_of(cycle) for fraction, cycle in zip(self.fractions, self._cycles, strict=True)]
+        )
 
     @property
     def rotations(self) -> Numbers:
-        """Rotations of the ball in what is done most often: (n, 3, 3)."""
-        return max(self.activities, key=lambda each: each.per_year).cycle.rotations
+        """Rotation matrices of the ball in the most frequent activity: (steps + 1, 3, 3)."""
+        return max(self.activities, key=lambda activity: activity.per_year).cycle.rotations
 
     @property
     def largest_force(self) -> float:
-        """The largest force of all activities, in N."""
-        return max(each.largest_force for each in self._cycles)
+        """Largest force of all activities in N."""
+        return max(cycle.largest_force for cycle in self._cycles)
 
     @property
     def activity_slices(self) -> tuple[tuple[str, slice], ...]:
-        """Name and instants of each activity."""
+        """Name and steps of each activity."""
         begin, slices = 0, []
         for cycle in self._cycles:
-            slices.append((cycle.name, slice(begin, begin + cycle.instants)))
-            begin += cycle.instants
+            slices.append((cycle.name, slice(begin, begin + cycle.n_steps)))
+            begin += cycle.n_steps
         return tuple(slices)
 
-    def told(self, instant: int) -> str:
-        """Where in which activity an instant is, in words."""
-        for each in self._cycles:
-            if instant < each.instants:
-                return f"{100 * each.phases[instant]:.1f} % of {each.name}"
-            instant -= each.instants
-        raise IndexError(instant)
+    def describe_step(self, step: int) -> str:
+        """Describe the activity and phase of a step in words."""
+        for cycle in self._cycles:
+            if step < cycle.n_steps:
+                return f"{100 * cycle.phases[step]:.1f} % of {cycle.name}"
+            step -= cycle.n_steps
+        raise IndexError(step)
 
     def finer(self) -> Mix:
-        """This mix in twice as many instants."""
-        return self._of(lambda cycle: cycle.finer())
+        """Return this mix with twice as many steps."""
+        return self._transformed(lambda cycle: cycle.finer())
 
     def mirrored(self) -> Mix:
-        """What the other side of the body goes through."""
-        return self._of(lambda cycle: cycle.mirrored())
+        """Return this mix for the other side of the body."""
+        return self._transformed(lambda cycle: cycle.mirrored())
 
     def scaled(self, factor: float) -> Mix:
-        """A mix of these motions under forces that are larger by a factor."""
-        return self._of(lambda cycle: cycle.scaled(factor))
+        """Return this mix with all forces multiplied by a factor."""
+        return self._transformed(lambda cycle: cycle.scaled(factor))
 
-    def _of(self, change: Callable[[Cycle], Cycle]) -> Mix:
-        return Mix(activities=tuple(replace(each, cycle=change(each.cycle)) for each in self.activities))
+    def _transformed(self, transform: Callable[[Cycle], Cycle]) -> Mix:
+        """Return a mix of transformed cycles."""
+        return Mix(activities=tuple(replace(activity, cycle=transform(activity.cycle)) for activity in self.activities))
 
 
-_AS_GIVEN = "the cup faces as it is given: the activities have no tilt of a standard in common"
+_NO_COMMON_TILT = "no standard tilt of the cup is applied: the activities have different ones"

@@ -222,7 +222,7 @@ def make_report(integrator: WearIntegrator) -> Report:
         creep_displacement=displacements[2],
         max_pressure=float(combined.pressure.max(initial=0.0)),
         edge_distance=edge.distance,
-        edge_place=edge.place,
+        edge_place=edge.azimuth,
         edge_pressure=edge.pressure,
         crept=creep_depth.reshape(shape),
         creep_depth=float(creep_depth.max()),

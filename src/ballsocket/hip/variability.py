@@ -230,8 +230,8 @@ def _tabulate(cycle: Cycle | Mix) -> Cycle | Mix:
 
 def _tabulate_one(cycle: Cycle) -> Cycle:
     """Tabulate the force at the midpoints and the angles at the starts of a few steps."""
-    coarse = replace(cycle, instants=min(cycle.instants, _COARSE_INSTANTS))
-    midpoints, starts = coarse.phases, numpy.arange(coarse.instants) / coarse.instants
+    coarse = replace(cycle, n_steps=min(cycle.n_steps, _COARSE_INSTANTS))
+    midpoints, starts = coarse.phases, numpy.arange(coarse.n_steps) / coarse.n_steps
     force, angles = (
         numpy.asarray(coarse.force(midpoints), dtype=float),
         numpy.asarray(coarse.angles(starts), dtype=float),

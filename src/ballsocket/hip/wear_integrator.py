@@ -13,9 +13,9 @@ import numpy
 
 from ..core.arrays import Numbers
 from .ball_wear import select_active_cells
-from .chebyshev import Step, longest, stages_of, step
 from .creep_law import CreepLaw
 from .hip_setup import HipSetup
+from .runge_kutta_chebyshev import ChebyshevStep, integrate_step, max_step_length, stage_count
 from .socket_foundation import CycleEquilibrium
 from .wear_law import CycleExposure, max_wear_sensitivity
 
@@ -199,8 +199,10 @@ class WearIntegrator:
         """Integrate a block, limited by its error and by a number of cycles."""
         decay_rate, remaining = self._max_decay_rate, count - self.cycles
         while True:
-            length = _block_length(min(self.length, longest(decay_rate), self._max_creep_step), remaining)
-            block = step(self._compute_rate, self._values, self._rate, length, stages_of(length, decay_rate))
+            length = _block_length(min(self.length, max_step_length(decay_rate), self._max_creep_step), remaining)
+            block = integrate_step(
+                self._compute_rate, self._values, self._rate, length, stage_count(length, decay_rate)
+            )
             if self._contact_left_active_cells(block):
                 self.margin *= 2
                 self._update_active_cells()
@@ -249,14 +251,14 @@ class WearIntegrator:
         pressure[active.cells] = mean
         self.strain = creep.advanced(self.strain, pressure, seconds)
 
-    def _error(self, block: Step, decay_rate: float) -> float:
+    def _error(self, block: ChebyshevStep, decay_rate: float) -> float:
         """Estimate the root mean square error of a block over the cells, relative to the allowed error."""
         initial = _FIRST_BLOCK * float(self._rate[:-1].max(initial=0.0)) / decay_rate if decay_rate > 0 else 0.0
         allowed = self.setup.tolerance * max(float(block.values[:-1].max(initial=0.0)), initial)
         error = block.error[:-1]
         return float(numpy.sqrt(error @ error / max(len(error), 1))) / allowed if allowed > 0 else 0.0
 
-    def _contact_left_active_cells(self, block: Step) -> bool:
+    def _contact_left_active_cells(self, block: ChebyshevStep) -> bool:
         """Check if a block has brought the contact to inactive cells."""
         depth = self.creep_depth
         depth += self.depth

@@ -11,8 +11,8 @@ from typing import Any, ClassVar, Protocol
 import numpy
 
 from ..core.arrays import Numbers
+from .kinematics import SurfaceSliding
 from .law_fields import Law, LawField
-from .sliding import Sliding
 
 METRE = 1e-3
 """Wear factor per millimetre of sliding over wear factor per metre."""
@@ -35,13 +35,13 @@ class CycleExposure:
     ----------
     pressure : array (instants, points)
         Pressure in MPa.
-    sliding : Sliding
+    sliding : SurfaceSliding
     contact_shares : function, optional
         Function that computes `contact`. Without it, a cell with a positive pressure is in contact completely.
     """
 
     pressure: Numbers
-    sliding: Sliding
+    sliding: SurfaceSliding
     contact_shares: Callable[[], Numbers] | None = None
 
     @cached_property
@@ -52,7 +52,7 @@ class CycleExposure:
     @cached_property
     def work(self) -> Numbers:
         """∫ p v dt of each point, in N/mm: (points,)."""
-        return numpy.einsum("tp,tp->p", self.pressure, self.sliding.steps)
+        return numpy.einsum("tp,tp->p", self.pressure, self.sliding.distances)
 
     @cached_property
     def cross_shear(self) -> Numbers:

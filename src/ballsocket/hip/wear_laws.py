@@ -89,7 +89,7 @@ class ContactAreaWear(WearLaw):
     coefficient: float = law_field(WEAR_PER_SLIDE, "worn depth C per length of sliding", example=1e-9)
 
     def depth(self, cycle: CycleExposure) -> Numbers:
-        return self.coefficient * numpy.einsum("tp,tp->p", cycle.contact, cycle.sliding.steps)
+        return self.coefficient * numpy.einsum("tp,tp->p", cycle.contact, cycle.sliding.distances)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,7 +120,7 @@ class CrossShear(WearLaw):
     def depth(self, cycle: CycleExposure) -> Numbers:
         factor = self.straight + 2 * cycle.cross_shear * (self.circular - self.straight)
         if self.exponent != 0:
-            distance = cycle.sliding.steps.sum(axis=0, where=cycle.pressure > 0)
+            distance = cycle.sliding.distances.sum(axis=0, where=cycle.pressure > 0)
             mean = numpy.divide(cycle.work, distance, out=numpy.zeros_like(distance), where=distance > 0)
             factor = factor * numpy.where(mean > 0, mean / self.reference, 1.0) ** self.exponent
         return METRE * factor * cycle.work
@@ -142,8 +142,8 @@ class CustomWearLaw(Law):
     Parameters
     ----------
     function : function
-        Function from a `CycleExposure` (its `pressure`, `sliding.steps`, `work`, `cross_shear`) to worn depths in mm:
-        (points,), at least 0.
+        Function from a `CycleExposure` (its `pressure`, `sliding.distances`, `work`, `cross_shear`) to worn depths in
+        mm: (points,), at least 0.
 
     Raises
     ------
@@ -155,7 +155,7 @@ class CustomWearLaw(Law):
     Archard's law with a pressure below which nothing wears:
 
     >>> law = CustomWearLaw(
-    ...     function=lambda cycle: 1e-9 * ((cycle.pressure - 0.5).clip(0) * cycle.sliding.steps).sum(axis=0)
+    ...     function=lambda cycle: 1e-9 * ((cycle.pressure - 0.5).clip(0) * cycle.sliding.distances).sum(axis=0)
     ... )
     """
 

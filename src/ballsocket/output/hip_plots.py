@@ -11,8 +11,8 @@ import numpy
 from ..hip.ball_wear import ball_directions
 from ..hip.bands import Bands
 from ..hip.history import History, Report
+from ..hip.kinematics import tracks
 from ..hip.mix import Mix
-from ..hip.sliding import tracks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -169,7 +169,7 @@ def edge_figure(history: History) -> Figure:
     axes.plot(*_course(use, use.edge_distance(use.unworn)), color=_INK, label="unworn")
     told = f"after {last.cycles / 1e6:g} million cycles"
     axes.plot(*_course(use, last.edge_distance), "--", color=_SECOND, label=told)
-    worst = last.edge.nearest(use)
+    worst = last.edge.closest_index(use)
     if worst is not None:
         at = 100 * use.cycle.phases[use.loaded[worst]]
         axes.plot(at, last.edge_distance[worst], "o", color=_SECOND, ms=5)
@@ -181,7 +181,7 @@ def edge_figure(history: History) -> Figure:
 
 def _course(use: HipSetup, values: Numbers) -> tuple[Numbers, Numbers]:
     """% of the cycle, and values (loaded,) over it: a line ends where nothing is pressed and where activities part."""
-    whole = numpy.full(use.cycle.instants, numpy.nan)
+    whole = numpy.full(use.cycle.n_steps, numpy.nan)
     whole[use.loaded] = values
     parted = _ends(use)[:-1]
     return numpy.insert(100 * use.cycle.phases, parted, numpy.nan), numpy.insert(whole, parted, numpy.nan)
@@ -190,7 +190,7 @@ def _course(use: HipSetup, values: Numbers) -> tuple[Numbers, Numbers]:
 def _ends(use: HipSetup) -> list[int]:
     """Instants after which a cycle, or an activity of a mix, ends."""
     parts = [each.cycle for each in use.cycle.activities] if isinstance(use.cycle, Mix) else [use.cycle]
-    return list(accumulate(part.instants for part in parts))
+    return list(accumulate(part.n_steps for part in parts))
 
 
 def _over_the_cycle(axes: Any, use: HipSetup) -> None:
@@ -200,7 +200,7 @@ def _over_the_cycle(axes: Any, use: HipSetup) -> None:
     if not isinstance(use.cycle, Mix):
         axes.set_xlabel("% of the cycle")
         return
-    ends = 100 * numpy.array([0, *_ends(use)]) / use.cycle.instants
+    ends = 100 * numpy.array([0, *_ends(use)]) / use.cycle.n_steps
     axes.set_xticks((ends[1:] + ends[:-1]) / 2, [each.cycle.name for each in use.cycle.activities])
     axes.set_xlabel("each activity from its beginning to its end")
     for end in ends[1:-1]:

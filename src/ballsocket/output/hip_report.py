@@ -125,9 +125,9 @@ def _contacts(history: History) -> str:
 
 def _rim(history: History) -> str:
     """How near the contact comes to the rim, when and where, new and at the end."""
-    seen = {"New": history.worst, "at the end": history.last.edge.worst(history.use)}
+    seen = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use)}
     told = (
-        f"{name} the contact {_how_near(worst.distance)} at {worst.where}"
+        f"{name} the contact {_how_near(worst.distance)} at {worst.location}"
         for name, worst in seen.items()
         if worst is not None
     )

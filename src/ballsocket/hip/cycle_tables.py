@@ -1,0 +1,314 @@
+"""Tables of measured cycles: text with column heads and units, and OpenSim storage files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import pi
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import check_names, shown
+from ..core.input_files import open_input
+from ..problem.cup import Side
+from .waveforms import resample
+
+_MAX_BYTES = 10_000_000
+_MIN_ROWS, _ROW_LIMIT = 5, 100_000
+# possessive quantifiers (*+, ++) keep the matching time proportional to the length
+_HEAD = re.compile(r"\s*+\"?\s*+([A-Za-z_]++)'?\s*+(?:[\[(]([^\])]++)[\])])?\s*+\"?\s*+")
+_HEAD_WORDS = re.compile(r"[^\s\[(]++(?:\s{0,20}+[\[(][^\])]{0,60}+[\])])?")
+_TIME_HEAD = re.compile(r"\s*+\"?\s*+(time|phase|cycle)\b", re.IGNORECASE)
+_UNIT = re.compile(r"\s*+[\[(]?\s*+[A-Za-z%°]++\s*+[\])]?\s*+")
+_MAX_PREAMBLE = 100
+"""Number of lines in which the heads are searched."""
+
+_HEADER_END = "endheader"
+
+NumberedRow = tuple[int, list[str]]
+"""Number of a line in the file, and its cells."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TextTable:
+    """Columns of text under their heads, as written in the file.
+
+    Attributes
+    ----------
+    title : str
+        Name of the file.
+    heads : tuple of str
+        Heads of the columns.
+    rows : tuple of (int, list of str)
+        Line number and cells of each row.
+    decimal_comma : bool
+        True if numbers have a decimal comma.
+    in_degrees : bool, optional
+        Unit of angles in an OpenSim header: True for degrees, False for radians, None if not stated.
+    is_opensim : bool
+        True for an OpenSim storage file.
+    """
+
+    title: str
+    heads: tuple[str, ...]
+    rows: tuple[NumberedRow, ...]
+    decimal_comma: bool = False
+    in_degrees: bool | None = None
+    is_opensim: bool = False
+
+    def column(self, head: str, name: str) -> Numbers:
+        """Return the numbers under a head; ValueError if a row has no finite number, with `name` in the message."""
+        index = self.heads.index(head)
+        return numpy.array([self._number(name, line, cells, index) for line, cells in self.rows])
+
+    def _number(self, name: str, line: int, cells: Sequence[str], index: int) -> float:
+        """Convert one cell to a finite number."""
+        text = cells[index].strip() if index < len(cells) else ""
+        try:
+            value = float(text.replace(",", ".") if self.decimal_comma else text)
+        except ValueError:
+            value = numpy.nan
+        if not numpy.isfinite(value):
+            content = shown(text) if text else "nothing"
+            raise ValueError(f"line {line} has {content} for {name}: each line needs a finite number in each column")
+        return value
+
+
+def read_table(path: Path) -> TextTable:
+    """Read an OpenSim file (.mot, .sto), or columns separated by commas, semicolons, tabs or blanks.
+
+    Raises
+    ------
+    ValueError
+        The file is too large, not text in UTF-8, has too few or too many rows, or fewer rows than its header states.
+    OSError
+        The file cannot be read.
+    """
+    with open_input(path) as stream:
+        raw = stream.read(_MAX_BYTES + 1)
+    if len(raw) > _MAX_BYTES:
+        raise ValueError(f"the table is larger than {_MAX_BYTES} bytes")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"not text in UTF-8: {error.reason} at byte {error.start}") from error
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    header_ends = [index for index, (_, line) in enumerate(lines) if line.strip().lower() == _HEADER_END]
+    if header_ends:
+        return _parse_opensim(path.name, lines[: header_ends[0]], lines[header_ends[0] + 1 :])
+    return _parse_columns(path.name, [line for line in lines if not line[1].lstrip().startswith("#")])
+
+
+def _parse_opensim(title: str, header: Sequence[tuple[int, str]], lines: Sequence[tuple[int, str]]) -> TextTable:
+    """Split the lines of an OpenSim file into heads and rows."""
+    settings = dict(_parse_setting(line) for _, line in header)
+    _check_row_count(len(lines) - 1)
+    count = settings.get("nrows", settings.get("datarows", str(len(lines) - 1)))
+    if count != str(len(lines) - 1):
+        raise ValueError(f"the header states {shown(count)} rows, but the file has {len(lines) - 1}")
+    in_degrees = {"yes": True, "no": False}.get(settings.get("indegrees", "").lower())
+    rows = tuple((number, line.split()) for number, line in lines[1:])
+    return TextTable(title=title, heads=tuple(lines[0][1].split()), rows=rows, in_degrees=in_degrees, is_opensim=True)
+
+
+def _parse_setting(line: str) -> tuple[str, str]:
+    """Split a header line into name and value: `nRows=5`, or in old files `datarows 5`."""
+    name, _, value = line.strip().partition("=" if "=" in line else " ")
+    return name.strip().lower(), value.strip()
+
+
+def _parse_columns(title: str, lines: Sequence[tuple[int, str]]) -> TextTable:
+    """Split lines into heads and rows; lines before a head of time or phase are skipped."""
+    begin = next((index for index, (_, line) in enumerate(lines[:_MAX_PREAMBLE]) if _has_time_head(line)), 0)
+    below = lines[begin + 1 :]
+    _check_row_count(len(below))
+    first = lines[begin][1]
+    separator = max(",;\t", key=first.count)
+    by_blanks = separator not in first
+    heads = _HEAD_WORDS.findall(first) if by_blanks else first.split(separator)
+    rows = [(number, line.split() if by_blanks else line.split(separator)) for number, line in below]
+    units = rows[0][1]
+    if len(units) == len(heads) and all("[" not in head for head in heads) and all(map(_is_unit, units)):
+        heads = [f"{head.strip()} [{unit.strip().strip('[]()')}]" for head, unit in zip(heads, units, strict=True)]
+        rows = rows[1:]
+    decimal_comma = separator != "," and any("," in cell for cell in rows[0][1])
+    return TextTable(title=title, heads=tuple(heads), rows=tuple(rows), decimal_comma=decimal_comma)
+
+
+def _has_time_head(line: str) -> bool:
+    """Return True if a cell of the line begins with time, phase or cycle, and the line does not end with a number."""
+    cells = re.split(r"[,;\t]|\s{2,}", line)
+    return any(_TIME_HEAD.match(cell) for cell in cells) and not line.strip()[-1].isdigit()
+
+
+def _is_unit(cell: str) -> bool:
+    """Return True if a cell can be a unit, and not a missing number."""
+    return bool(_UNIT.fullmatch(cell)) and cell.strip().lower() not in ("nan", "inf")
+
+
+def _check_row_count(count: int) -> None:
+    """Raise ValueError if a table is too short or too long."""
+    if not _MIN_ROWS <= count < _ROW_LIMIT:
+        raise ValueError(f"{max(count, 0)} lines below the heads; a cycle has {_MIN_ROWS} to {_ROW_LIMIT}")
+
+
+FORCES = ("force_x", "force_y", "force_z")
+ANGLES = ("flexion", "adduction", "rotation")
+_NEWTON: Mapping[str, float] = MappingProxyType({"n": 1.0, "kn": 1e3, "%bw": 0.01, "bw": 1.0})
+_RADIAN: Mapping[str, float] = MappingProxyType({"deg": pi / 180, "°": pi / 180, "rad": 1.0})
+_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
+    {
+        "time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
+        "phase": {"%": 0.01, "1": 1.0},
+        **dict.fromkeys(("force", *FORCES), _NEWTON),
+        **dict.fromkeys(ANGLES, _RADIAN),
+    }
+)
+_ORTHOLOAD = MappingProxyType({"fx": "force_x", "fy": "force_y", "fz": "force_z", "cycle": "phase"})
+_IGNORED_ORTHOLOAD = ("f", "fres", "fr", "mx", "my", "mz", "m", "mres", "mr")
+"""Columns of OrthoLoad that repeat others, or that wear does not need."""
+
+_OPENSIM_ANGLE = re.compile(r"(?:.*/)?hip_(flexion|adduction|rotation)_([rl])(?:/value)?")
+_OPENSIM_REACTION = re.compile(r"hip_([rl])_on_(femur|pelvis)(?:_[rl])?_in_(femur|pelvis|ground)(?:_[rl])?_f([xyz])")
+_OPENSIM_AXES = MappingProxyType({"z": "force_x", "x": "force_y", "y": "force_z"})
+"""Axes of OpenSim to the right, to the front and upwards."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HipColumns:
+    """Time, force and angles of a hip.
+
+    Attributes
+    ----------
+    columns : dict of arrays
+        "time" in s or "phase", "force" or "force_x", "force_y", "force_z" in N, angles in rad.
+    force_on : str, optional
+        Body that the force acts on, "ball" or "socket", if the column names state it.
+    frame : str, optional
+        Frame of the force, "body" or "femur", if the column names state it.
+    """
+
+    columns: dict[str, Numbers] = field(default_factory=dict)
+    force_on: str | None = None
+    frame: str | None = None
+
+
+def hip_columns(table: TextTable, body_weight: float | None, side: Side) -> HipColumns:
+    """Extract the columns of the hip on one side from a table.
+
+    Raises
+    ------
+    ValueError
+        A column is unknown, repeated or has no unit, or an OpenSim header does not state the unit of angles.
+    """
+    return _opensim_columns(table, side) if table.is_opensim else _text_columns(table, body_weight)
+
+
+def _text_columns(table: TextTable, body_weight: float | None) -> HipColumns:
+    """Convert the columns of a text table to s, N and rad."""
+    columns: dict[str, Numbers] = {}
+    parsed_heads = [parse_head(head) for head in table.heads]
+    orthoload = any(name in _ORTHOLOAD and name != "cycle" for name, _ in parsed_heads)
+    for head, (written, unit) in zip(table.heads, parsed_heads, strict=True):
+        if orthoload and written in _IGNORED_ORTHOLOAD:
+            continue
+        name = _ORTHOLOAD.get(written, written) if orthoload else written
+        factor = _unit_factor(name, unit, written, body_weight)
+        if name in columns:
+            raise ValueError(f"the column {name} appears twice")
+        columns[name] = factor * table.column(head, name)
+    if orthoload and "time" in columns:
+        columns.pop("phase", None)  # repeats the time
+    return HipColumns(columns=columns, force_on="ball" if orthoload else None, frame="femur" if orthoload else None)
+
+
+def parse_head(head: str) -> tuple[str, str | None]:
+    """Split a head such as 'Force [N]' into its name in small letters and its unit, if any.
+
+    Raises
+    ------
+    ValueError
+        The head is not a name with a unit.
+    """
+    match = _HEAD.fullmatch(head)
+    if match is None:
+        raise ValueError(f"the head {shown(head)} is not a name with a unit, such as 'force [N]'")
+    return match[1].lower(), match[2] and match[2].strip()
+
+
+def _unit_factor(name: str, unit: str | None, written: str, body_weight: float | None) -> float:
+    """Return the factor that converts a column to s, N or rad; `written` is its name in the file."""
+    check_names([name], _UNITS, "as a column")
+    factors = _UNITS[name]
+    if unit is None:
+        example = next(iter(factors)).replace("n", "N")
+        raise ValueError(f"the column {written} has no unit: write '{written} [{example}]' as its head")
+    plain = unit.replace(" ", "").lower().replace("degrees", "deg")
+    if plain not in factors:
+        allowed = ", ".join(factors)
+        raise ValueError(f"the unit {shown(unit)} of the column {written} is unknown; allowed: {allowed}")
+    if "bw" not in plain:
+        return factors[plain]
+    if body_weight is None:
+        raise ValueError(f"the column {written} is in {unit}: set body_weight")
+    return factors[plain] * body_weight
+
+
+def _opensim_columns(table: TextTable, side: Side) -> HipColumns:
+    """Extract angles and joint reaction of one hip from an OpenSim table; other columns are ignored."""
+    letter = side.value[0]
+    columns = {"time": table.column("time", "time")} if "time" in table.heads else {}
+    reactions: set[tuple[str, str]] = set()
+    for head in table.heads:
+        if (angle := _OPENSIM_ANGLE.fullmatch(head)) and angle[2] == letter:
+            columns[angle[1]] = _angle_factor(table) * table.column(head, head)
+        elif (force := _OPENSIM_REACTION.fullmatch(head)) and force[1] == letter:
+            reactions.add((force[2], force[3]))
+            columns[_OPENSIM_AXES[force[4]]] = table.column(head, head)
+    if len(columns) < 2:
+        examples = f"hip_flexion_{letter} or hip_{letter}_on_femur_..."
+        raise ValueError(f"the table has no column of the {side.value} hip, such as {examples}")
+    return HipColumns(columns=columns, **_reaction_frame(reactions))
+
+
+def _angle_factor(table: TextTable) -> float:
+    """Return the factor that converts the angles of an OpenSim table to rad."""
+    if table.in_degrees is None:
+        raise ValueError("the header does not state the unit of angles: it needs inDegrees=yes or inDegrees=no")
+    return pi / 180 if table.in_degrees else 1.0
+
+
+def _reaction_frame(reactions: set[tuple[str, str]]) -> dict[str, str]:
+    """Return the loaded body and the frame of OpenSim's joint reaction."""
+    if not reactions:
+        return {}
+    if len(reactions) > 1:
+        raise ValueError("the table has more than one joint reaction: on several bodies, or in several frames")
+    body, frame = reactions.pop()
+    if frame == "ground":
+        raise ValueError("the joint reaction is in the ground frame: let OpenSim express it in pelvis or femur")
+    return {"force_on": "ball" if body == "femur" else "socket", "frame": "femur" if frame == "femur" else "body"}
+
+
+def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
+    """Combine tables of the same cycle, at the times of the first.
+
+    Raises
+    ------
+    ValueError
+        Two tables have the same column, or their times do not match.
+    """
+    if len(tables) == 1:
+        return tables[0]
+    columns = dict(tables[0].columns)
+    for table in tables[1:]:
+        for name, values in resample(table.columns, columns).items():
+            if name in columns:
+                raise ValueError(f"the column {name} is in two files")
+            columns[name] = values
+    reaction = next((table for table in tables if table.frame is not None), HipColumns())
+    return HipColumns(columns=columns, force_on=reaction.force_on, frame=reaction.frame)

@@ -1,0 +1,241 @@
+"""Rotations of the ball, and its sliding over the socket."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import shown
+from ..core.deprecation import renamed_arguments, renamed_fields, renamed_names
+from ..elasticity.off_axis.directions import tangents
+
+__getattr__ = renamed_names(
+    __name__, {"Sliding": "SurfaceSliding", "cross_shear_of": "track_cross_shear", "slide": "sliding_distance"}
+)
+
+_AXIS_NAMES = {
+    **dict.fromkeys(("flexion", "flexion-extension", "fe", "f", "x"), "x"),
+    **dict.fromkeys(("adduction", "abduction", "abduction-adduction", "adduction-abduction", "aa", "a", "y"), "y"),
+    **dict.fromkeys(("rotation", "inward rotation", "inward-outward rotation", "ier", "ie", "r", "z"), "z"),
+}
+
+
+def parse_rotation_order(text: Any) -> str:
+    """Convert a rotation order such as "flexion, adduction, rotation" or "FE-AA-IER" into axis letters such as "xyz".
+
+    Raises
+    ------
+    ValueError
+        `text` does not name the three rotations once each.
+    """
+    words = text if isinstance(text, list | tuple) else _split_order(text) if isinstance(text, str) else []
+    axes = "".join(_AXIS_NAMES.get(str(word).strip().lower(), "?") for word in words)
+    if sorted(axes) != ["x", "y", "z"]:
+        allowed = "'flexion, adduction, rotation' in any order"
+        raise ValueError(f"rotation_order = {shown(text)} is not allowed: {allowed} (R is their product from the left)")
+    return axes
+
+
+def _split_order(text: str) -> list[str]:
+    """Split a rotation order at commas, semicolons, hyphens or blanks, or into its three letters."""
+    words = text.replace(";", ",").split(",") if "," in text else text.replace("-", " ").split()
+    return list(words[0].strip()) if len(words) == 1 and len(words[0].strip()) == 3 else words
+
+
+def rotation_matrices(angles: Numbers, order: str = "xyz") -> Numbers:
+    """Compute rotation matrices from angles about the axes x, y and z.
+
+    Parameters
+    ----------
+    angles : array (..., 3)
+        Angles in rad.
+    order : str
+        Order of the product from the left: "xyz" is R = Rx Ry Rz.
+
+    Returns
+    -------
+    array (..., 3, 3)
+    """
+    product = numpy.broadcast_to(numpy.eye(3), (*angles.shape[:-1], 3, 3))
+    for letter in order:
+        axis = "xyz".index(letter)
+        product = product @ _axis_rotation(axis, angles[..., axis])
+    return product
+
+
+def _axis_rotation(axis: int, angle: Numbers) -> Numbers:
+    """Compute the rotation matrices about one coordinate axis: (..., 3, 3)."""
+    second, third = (axis + 1) % 3, (axis + 2) % 3
+    matrix = numpy.zeros((*angle.shape, 3, 3))
+    matrix[..., axis, axis] = 1.0
+    matrix[..., second, second] = matrix[..., third, third] = numpy.cos(angle)
+    matrix[..., third, second] = numpy.sin(angle)
+    matrix[..., second, third] = -numpy.sin(angle)
+    return matrix
+
+
+def rotation_vectors(matrices: Numbers) -> Numbers:
+    """Compute rotation vectors (axis times angle in rad) from rotation matrices, for angles below π.
+
+    Parameters
+    ----------
+    matrices : array (..., 3, 3)
+
+    Returns
+    -------
+    array (..., 3)
+    """
+    m = matrices
+    doubled_sine_axis = numpy.stack(
+        [m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]], axis=-1
+    )
+    sine = numpy.linalg.norm(doubled_sine_axis, axis=-1) / 2
+    angle = numpy.arctan2(sine, (numpy.trace(m, axis1=-2, axis2=-1) - 1) / 2)
+    ratio = numpy.divide(angle, sine, out=numpy.ones_like(angle), where=sine > 0)
+    return doubled_sine_axis / 2 * ratio[..., None]
+
+
+def cross_shear(xx: Numbers, yy: Numbers, xy: Numbers) -> Numbers:
+    """Compute the cross-shear ratio of second moments of sliding: the smaller eigenvalue over the sum of both.
+
+    It is 0 on a straight track, 1/2 on a circle, and 0 where nothing slides.
+    """
+    # λ_min/(λ_min + λ_max), without cancellation
+    trace = xx + yy
+    difference = numpy.hypot(xx - yy, 2 * xy)
+    smaller = 2 * (xx * yy - xy * xy) / numpy.where(trace > 0, trace + difference, 1.0)
+    return numpy.clip(numpy.divide(smaller, trace, out=numpy.zeros_like(trace), where=trace > 0), 0.0, 0.5)
+
+
+def track_cross_shear(steps: Numbers, weights: Numbers | float = 1.0) -> Numbers:
+    """Compute the cross-shear ratio of a track from its displacement steps.
+
+    Parameters
+    ----------
+    steps : array (..., n, 2)
+        Displacements along the track, in its tangent plane.
+    weights : array (..., n)
+        Weight of each step, such as the contact pressure.
+
+    Examples
+    --------
+    A rectangle of 3 by 1 mm has b/(a + b):
+
+    >>> sides = numpy.array([[3.0, 0.0], [0.0, 1.0], [-3.0, 0.0], [0.0, -1.0]])
+    >>> float(track_cross_shear(sides))
+    0.25
+    """
+    length = numpy.linalg.norm(steps, axis=-1)
+    scale = weights * numpy.divide(1.0, length, out=numpy.zeros_like(length), where=length > 0)
+    x, y = steps[..., 0], steps[..., 1]
+    return cross_shear(*((scale * product).sum(axis=-1) for product in (x * x, y * y, x * y)))
+
+
+@renamed_fields(turns="rotation_increments", steps="distances", part="select_points")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SurfaceSliding:
+    """Sliding of the ball's surface over points of the socket.
+
+    Attributes
+    ----------
+    radius : float
+        Radius of the ball in mm.
+    rotation_increments : array (steps, 3)
+        Rotation vectors of the time steps in rad, in the frame of the directions.
+    directions : array (3, points)
+        Unit vectors from the centre to the points of the socket.
+    """
+
+    radius: float
+    rotation_increments: Numbers
+    directions: Numbers
+
+    @cached_property
+    def distances(self) -> Numbers:
+        """Sliding distances over each point in each time step, in mm: (steps, points)."""
+        along = self.rotation_increments @ self.directions
+        square = (self.rotation_increments * self.rotation_increments).sum(axis=1)[:, None]
+        return self.radius * numpy.sqrt(numpy.maximum(square - along * along, 0.0))
+
+    def select_points(self, points: Numbers) -> SurfaceSliding:
+        """Select the sliding over some of the points, by their indices or a mask."""
+        selected = SurfaceSliding(
+            radius=self.radius, rotation_increments=self.rotation_increments, directions=self.directions[:, points]
+        )
+        vars(selected)["distances"] = self.distances[:, points]
+        return selected
+
+    def velocities(self, seconds: Numbers) -> Numbers:
+        """Compute the sliding velocities R ω × n from the durations of the steps in s: (steps, points, 3) mm/s."""
+        omega = self.rotation_increments / seconds[:, None]
+        return self.radius * numpy.cross(omega[:, None], self.directions.T[None])
+
+    @cached_property
+    def _rotated_components(self) -> tuple[Numbers, Numbers]:
+        """Tangential components of each sliding step, rotated by 90°: two arrays (steps, points)."""
+        first, second = tangents(self.directions)
+        return self.radius * (self.rotation_increments @ first), self.radius * (self.rotation_increments @ second)
+
+    @cached_property
+    def _second_moments(self) -> tuple[Numbers, ...]:
+        """Second moments ds dsᵀ/|ds| of each sliding step, rotated by 90°: xx, yy, xy, each (steps, points)."""
+        a, b = self._rotated_components
+        scale = numpy.divide(1.0, self.distances, out=numpy.zeros_like(self.distances), where=self.distances > 0)
+        return a * a * scale, b * b * scale, a * b * scale
+
+    def cross_shear(self, pressure: Numbers) -> Numbers:
+        """Compute the cross-shear ratio at each point, weighted by the pressure (steps, points): (points,)."""
+        return cross_shear(*(numpy.einsum("tp,tp->p", pressure, moment) for moment in self._second_moments))
+
+    def crossing_angle(self, pressure: Numbers) -> Numbers:
+        """Compute the mean angle in rad between sliding and its principal direction at each point: (points,).
+
+        The mean is weighted by pressure (steps, points) and sliding distance. It is 0 on a straight track and π/4 on
+        a circle.
+        """
+        xx, yy, xy = (numpy.einsum("tp,tp->p", pressure, moment) for moment in self._second_moments)
+        principal, (a, b) = numpy.arctan2(2 * xy, xx - yy) / 2, self._rotated_components
+        deviation = numpy.arccos(numpy.clip(abs(numpy.cos(numpy.arctan2(b, a) - principal)), 0.0, 1.0))
+        weight = pressure * self.distances
+        total, weighted_sum = weight.sum(axis=0), numpy.einsum("tp,tp->p", weight, deviation)
+        return numpy.divide(weighted_sum, total, out=numpy.zeros_like(total), where=total > 0)
+
+
+@renamed_arguments(turns="rotation_increments")
+def sliding_distance(radius: float, rotation_increments: Numbers, direction: Numbers) -> float:
+    """Compute the distance in mm that the ball slides over a point of the socket in a cycle.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the ball in mm.
+    rotation_increments : array (steps, 3)
+        Rotation vectors of the time steps in rad.
+    direction : array (3,) or (steps, 3)
+        Unit vector to the point, constant or at each step, such as the direction of the load.
+    """
+    return float(radius * numpy.linalg.norm(numpy.cross(rotation_increments, direction), axis=-1).sum())
+
+
+def tracks(rotations: Numbers, points: Numbers, radius: float = 1.0) -> Numbers:
+    """Compute the tracks that points of the ball draw on the socket.
+
+    Parameters
+    ----------
+    rotations : array (n, 3, 3)
+        Rotations of the ball. Transposed matrices (0, 2, 1) give the tracks of socket points on the ball.
+    points : array (3, points)
+        Unit vectors to the points while the ball is not rotated.
+    radius : float
+        Radius of the ball in mm.
+
+    Returns
+    -------
+    array (points, n, 3)
+        Positions in mm.
+    """
+    return radius * numpy.einsum("nij,jp->pni", rotations, points)

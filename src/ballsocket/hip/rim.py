@@ -1,0 +1,289 @@
+"""Rim of the cup: distance from the contact to the rim, and microseparation with the ball on the rim."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, degrees, sin
+from typing import Any, Protocol
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.deprecation import renamed_fields, renamed_names
+from ..elasticity.off_axis.grid import Grid
+from .cycle import Cycle, Spring
+from .mix import Mix
+
+__getattr__ = renamed_names(
+    __name__, {"Edge": "RimDistance", "Worst": "ClosestApproach", "Separation": "Microseparation"}
+)
+
+_BISECTIONS = 60
+_BALANCE_TOLERANCE = 1e-6
+"""Tolerance of the ball's displacement on its spring, as a share of the mismatch."""
+
+
+class CupLoading(Protocol):
+    """Loads of a cycle in a cup."""
+
+    @property
+    def cycle(self) -> Cycle | Mix:
+        """Cycle of load and motion."""
+
+    @property
+    def loads(self) -> Numbers:
+        """Forces of the loaded steps in N: (loaded, 3)."""
+
+    @property
+    def loaded(self) -> Numbers:
+        """Indices of the loaded steps: (loaded,)."""
+
+
+@renamed_fields(place="azimuth", told="step_description", reaching="steps_at_rim", where="location")
+@dataclass(frozen=True, kw_only=True)
+class ClosestApproach:
+    """Step of a cycle in which the contact is closest to the rim, at the largest load if several are.
+
+    Attributes
+    ----------
+    distance : float
+        Distance to the rim in mm; 0 is edge loading.
+    azimuth : float
+        Position around the cup's axis in rad from its uppermost point.
+    step_description : str
+        Phase of the step, in words.
+    steps_at_rim : int
+        Number of steps in which the contact reaches the rim.
+    pressure : float
+        Largest pressure in MPa in the outermost ring of cells in any step.
+    """
+
+    distance: float
+    azimuth: float
+    step_description: str
+    steps_at_rim: int
+    pressure: float = 0.0
+
+    @property
+    def location(self) -> str:
+        """Phase and position around the cup, in words."""
+        return f"{self.step_description}, {abs(degrees(self.azimuth)):.0f}° from the cup's uppermost point"
+
+    def summary(self) -> dict[str, Any]:
+        """Return the values for JSON."""
+        azimuth = degrees(self.azimuth)
+        return {
+            "distance_mm": self.distance,
+            "at": self.step_description,
+            "place_deg": azimuth,
+            "instants_at_rim": self.steps_at_rim,
+            "pressure_at_rim_MPa": self.pressure,
+        }
+
+
+@renamed_fields(place="azimuth", nearest="closest_index", worst="closest_approach")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RimDistance:
+    """Distance from each contact of a cycle to the rim.
+
+    Attributes
+    ----------
+    distance : array (loaded,)
+        Shortest arc in mm from the contact's edge to the end of the bore; 0 if the contact reaches it.
+    azimuth : array (loaded,)
+        Position of the shortest distance around the cup's axis, in rad from its uppermost point.
+    pressure : array (loaded,)
+        Largest pressure in MPa in the outermost ring of cells.
+    """
+
+    distance: Numbers
+    azimuth: Numbers
+    pressure: Numbers
+
+    def closest_index(self, loading: CupLoading) -> int | None:
+        """Return the index of the contact closest to the rim, at the largest load if several are; None if unloaded."""
+        if not len(self.distance):
+            return None
+        closest = numpy.flatnonzero(self.distance <= self.distance.min())
+        return int(closest[numpy.linalg.norm(loading.loads[closest], axis=1).argmax()])
+
+    def closest_approach(self, loading: CupLoading) -> ClosestApproach | None:
+        """Return the step in which the contact is closest to the rim; None if no step is loaded."""
+        index = self.closest_index(loading)
+        if index is None:
+            return None
+        return ClosestApproach(
+            distance=float(self.distance[index]),
+            azimuth=float(self.azimuth[index]),
+            step_description=loading.cycle.describe_step(int(loading.loaded[index])),
+            steps_at_rim=int((self.distance <= 0).sum()),
+            pressure=float(self.pressure.max()),
+        )
+
+
+def rim_distance(grid: Grid, radius: float, field: Numbers, pressure: Numbers, inset: float) -> RimDistance:
+    """Compute the distances from contacts to the rim.
+
+    Parameters
+    ----------
+    grid : Grid
+        Cells of the bore.
+    radius : float
+        Radius of the bore in mm.
+    field : array (loaded, cells)
+        Values that are positive in the contact and negative outside. The edge is the zero of linear interpolation
+        between two cells.
+    pressure : array (loaded, cells)
+        Pressure in MPa.
+    inset : float
+        Distance of the edge inside that zero, as a share of a ring's width. If it is positive, pressure in the last
+        ring means a contact that reaches the rim.
+    """
+    rows = field.reshape(len(field), grid.rings, grid.meridians)
+    nodes = grid.polar - inset * numpy.diff(grid.edges)
+    if inset > 0:
+        nodes[-1] = grid.reach
+    is_end = (rows > 0) & numpy.concatenate([rows[:, 1:] <= 0, numpy.ones_like(rows[:, :1], dtype=bool)], axis=1)
+    next_ring = numpy.concatenate([numpy.arange(1, grid.rings), [grid.rings - 2]])  # extrapolates beyond the last ring
+    drop = rows - rows[:, next_ring]
+    fraction = numpy.divide(rows, drop, out=numpy.full_like(rows, numpy.inf), where=is_end & (drop != 0))
+    spacing = (nodes[next_ring] - nodes)[:, None]
+    edges = numpy.where(fraction * spacing >= 0, nodes[:, None] + fraction * spacing, grid.reach)
+    edge_angle = numpy.where(is_end, numpy.minimum(edges, grid.reach), 0.0).max(axis=1, initial=0.0)
+    return RimDistance(
+        distance=(grid.reach - edge_angle.max(axis=1, initial=0.0)) * radius,
+        azimuth=_edge_azimuth(edge_angle, rows[:, -1], grid.azimuth),
+        pressure=pressure.reshape(rows.shape)[:, -1].max(axis=1, initial=0.0),
+    )
+
+
+def _edge_azimuth(edge_angle: Numbers, last_ring: Numbers, azimuth: Numbers) -> Numbers:
+    """Return the azimuth of the outermost edge (loads, meridians); at the rim, the mean of the pressed meridians."""
+    outermost = edge_angle >= edge_angle.max(axis=1, initial=0.0)[:, None]
+    weight = numpy.where(outermost, numpy.maximum(last_ring, 1e-300), 0.0)
+    x, y = weight @ numpy.cos(azimuth), weight @ numpy.sin(azimuth)
+    return numpy.arctan2(numpy.where(abs(y) < 1e-9 * abs(x), 0.0, y), x)
+
+
+@renamed_fields(instants="steps", place="azimuth", told="describe")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Microseparation:
+    """Steps of a cycle in which the ball sits on the rim of its cup.
+
+    Attributes
+    ----------
+    steps : array (n,)
+        Indices of the steps in the cycle.
+    displacement : array (n, 3)
+        Displacement of the ball's centre from the bore's in mm, in the cup's frame; NaN if the ball is not held.
+    azimuth : array (n,)
+        Position of the rim contact around the cup's axis, in rad from its uppermost point.
+    """
+
+    steps: Numbers
+    displacement: Numbers
+    azimuth: Numbers
+
+    @property
+    def largest(self) -> float:
+        """Largest distance between the centres in mm."""
+        return float(numpy.linalg.norm(self.displacement, axis=1).max(initial=0.0))
+
+    def _interval(self, n_steps: int) -> tuple[int, int]:
+        """Return the first and the last step; the interval may continue from one cycle into the next."""
+        distances = numpy.diff(self.steps, append=self.steps[0] + n_steps)
+        longest = int(distances.argmax())
+        return int(self.steps[(longest + 1) % len(distances)]), int(self.steps[longest])
+
+    def summary(self, cycle: Cycle | Mix) -> dict[str, Any]:
+        """Return the values for JSON."""
+        first, last = (cycle.describe_step(step) for step in self._interval(cycle.n_steps))
+        azimuth = self.azimuth[int(numpy.linalg.norm(self.displacement, axis=1).argmax())]
+        return {"from": first, "to": last, "largest_mm": self.largest, "place_deg": degrees(azimuth)}
+
+    def describe(self, cycle: Cycle | Mix) -> str:
+        """Describe the microseparation in a sentence for reports."""
+        values = self.summary(cycle)
+        return (
+            f"microseparation from {values['from']} to {values['to']}: the ball sits on the rim, with up to "
+            f"{values['largest_mm']:.2g} mm between the centres, {abs(values['place_deg']):.0f}° from the cup's "
+            "uppermost point; wear by the contact with the rim is not included"
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpringLoadedBall:
+    """Rigid ball that a spring pulls to the side, on the edge of a rigid rim without friction.
+
+    The load points from the ball's centre to the edge that it rests on: c = R2 r - R1 f. The spring force decreases
+    with the displacement of the ball.
+
+    Attributes
+    ----------
+    spring : Spring
+        Lateral spring.
+    side : array (3,)
+        Unit vector to the spring's right, in the cup's frame.
+    reach : float
+        Polar angle of the end of the bore in rad.
+    socket_radius, ball_radius : float
+        Radii in mm.
+    """
+
+    spring: Spring
+    side: Numbers
+    reach: float
+    socket_radius: float
+    ball_radius: float
+
+    @cached_property
+    def _pull_direction(self) -> Numbers:
+        """Direction of the spring force on an undisplaced ball: (3,)."""
+        return numpy.sign(self.spring.mismatch) * self.side
+
+    def leaves_bore(self, forces: Numbers) -> Numbers:
+        """Return True for each force (n, 3) beyond the rim that moves the ball out of the bore.
+
+        The ball stays in the bore if its displacement within the clearance reduces the spring force enough.
+        """
+        undisplaced = numpy.zeros(len(forces))
+        leaves: Numbers = self._centre(forces, undisplaced) @ self._pull_direction <= undisplaced
+        return leaves
+
+    def solve_separation(self, forces: Numbers, steps: Numbers) -> Microseparation:
+        """Solve the balance of the ball on the rim in these steps.
+
+        Parameters
+        ----------
+        forces : array (n, 3)
+            Forces in N, with those of the spring on an undisplaced ball.
+        steps : array (n,)
+            Indices of the steps in the cycle.
+        """
+        mismatch = abs(self.spring.mismatch)
+        low, high = numpy.zeros(len(forces)), numpy.full(len(forces), mismatch)
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            beyond = self._centre(forces, middle) @ self._pull_direction > middle
+            low, high = numpy.where(beyond, low, middle), numpy.where(beyond, middle, high)
+        centre = self._centre(forces, high)
+        held = abs(centre @ self._pull_direction - high) <= _BALANCE_TOLERANCE * mismatch
+        loads = self._loads(forces, high)
+        return Microseparation(
+            steps=steps,
+            displacement=numpy.where(held[:, None], centre, numpy.nan),
+            azimuth=numpy.arctan2(loads[:, 1], loads[:, 0]),
+        )
+
+    def _loads(self, forces: Numbers, displacement: Numbers) -> Numbers:
+        """Compute the loads in N after a displacement along the spring: (n, 3)."""
+        return forces - self.spring.stiffness * displacement[:, None] * self._pull_direction
+
+    def _centre(self, forces: Numbers, displacement: Numbers) -> Numbers:
+        """Compute the ball's centre in mm on the rim under the loads after a displacement: (n, 3)."""
+        loads = self._loads(forces, displacement)
+        along = loads / numpy.linalg.norm(loads, axis=1)[:, None]
+        across = loads[:, :2] / numpy.linalg.norm(loads[:, :2], axis=1)[:, None]
+        edge = numpy.column_stack([sin(self.reach) * across, numpy.full(len(loads), cos(self.reach))])
+        return self.socket_radius * edge - self.ball_radius * along

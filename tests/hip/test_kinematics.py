@@ -1,0 +1,239 @@
+"""Rotations of the ball, cross-shear of tracks of known value, and the tracks themselves."""
+
+from itertools import permutations
+from math import cos, pi, radians, sin
+
+import numpy as np
+import pytest
+
+from ballsocket.elasticity.off_axis.directions import tangents
+from ballsocket.hip import constant_load, flexion, iso_14242_1
+from ballsocket.hip.kinematics import (
+    SurfaceSliding,
+    cross_shear,
+    parse_rotation_order,
+    rotation_matrices,
+    rotation_vectors,
+    sliding_distance,
+    track_cross_shear,
+    tracks,
+)
+
+POLE = np.array([[0.0], [0.0], [1.0]])
+UP = POLE[:, 0]
+
+
+def random_directions(count, seed):
+    directions = np.random.default_rng(seed).normal(size=(3, count))
+    return directions / np.linalg.norm(directions, axis=0)
+
+
+def plane_rotation(angle):
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+# rotations
+
+
+def test_rotations_about_the_axes_are_right_handed():
+    quarter = pi / 2
+    for axis, (start, end) in enumerate([((0, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0)), ((1, 0, 0), (0, 1, 0))]):
+        angles = quarter * (np.arange(3) == axis)
+        assert rotation_matrices(angles) @ start == pytest.approx(np.array(end), abs=1e-15)
+
+
+def test_rotation_order_is_the_product_from_the_left():
+    angles = np.radians([20.0, 10.0, -30.0])
+    single = {name: rotation_matrices(angles * (np.arange(3) == axis)) for axis, name in enumerate("xyz")}
+    for order in map("".join, permutations("xyz")):
+        first, second, third = (single[name] for name in order)
+        assert rotation_matrices(angles, order) == pytest.approx(first @ second @ third, abs=1e-15)
+    slides = {
+        order: sliding_distance(14.0, iso_14242_1(100, order).rotation_increments, UP)
+        for order in ("xyz", "zyx", "yxz")
+    }
+    assert len({round(slide, 3) for slide in slides.values()}) == 3
+
+
+def test_rotation_vectors_invert_the_matrix_exponential():
+    from scipy.linalg import expm
+
+    angles = np.random.default_rng(3).uniform(1e-9, 3.0, 50)
+    vectors = (random_directions(50, 3) * angles).T
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    cross = np.stack([0 * x, -z, y, z, 0 * x, -x, -y, x, 0 * x], axis=-1).reshape(-1, 3, 3)
+    matrices = np.array([expm(generator) for generator in cross])
+    assert rotation_vectors(matrices) == pytest.approx(vectors, rel=1e-7, abs=1e-15)
+    assert rotation_vectors(np.eye(3)) == pytest.approx(np.zeros(3), abs=0)
+
+
+@pytest.mark.parametrize(
+    ("text", "axes"),
+    [
+        ("flexion, adduction, rotation", "xyz"),
+        ("flexion; rotation, abduction", "xzy"),
+        ("FE-AA-IER", "xyz"),
+        ("ie r", None),
+        ("f r a", "xzy"),
+        ("fra", "xzy"),
+        ("inward rotation, flexion-extension, abduction-adduction", "zxy"),
+        ("zyx", "zyx"),
+        (" ZYX ", "zyx"),
+        (["rotation", "flexion", "adduction"], "zxy"),
+        (("aa", "fe", "ie"), "yxz"),
+        ("flexion, flexion, rotation", None),
+        ("flexion, adduction", None),
+        ("xyzx", None),
+        ("", None),
+        (123, None),
+        (None, None),
+    ],
+)
+def test_words_for_a_rotation_order(text, axes):
+    if axes is None:
+        with pytest.raises(ValueError, match="rotation_order = .* is not allowed: .* in any order"):
+            parse_rotation_order(text)
+    else:
+        assert parse_rotation_order(text) == axes
+
+
+# cross-shear
+
+
+def test_cross_shear_is_zero_on_a_line_and_one_half_on_a_circle():
+    line = np.linspace(0.0, 3.0, 7)[:, None] * [1.0, 0.0] @ plane_rotation(0.3)
+    assert track_cross_shear(np.diff(np.vstack([line, line[::-1]]), axis=0)) == pytest.approx(0.0, abs=1e-15)
+    azimuth = 2 * pi * np.arange(49) / 48
+    circle = np.column_stack([np.cos(azimuth), np.sin(azimuth)])
+    assert track_cross_shear(np.diff(circle, axis=0)) == pytest.approx(0.5)
+    assert track_cross_shear(np.zeros((4, 2))) == 0.0
+
+
+@pytest.mark.parametrize(("a", "b"), [(1.0, 1.0), (3.0, 1.0), (20.0, 0.5), (1.0, 1e-7)])
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_cross_shear_of_a_rectangle_is_the_fraction_of_its_shorter_side(a, b, angle):
+    sides = np.array([[a, 0.0], [0.0, b], [-a, 0.0], [0.0, -b]]) @ plane_rotation(angle)
+    assert track_cross_shear(sides) == pytest.approx(b / (a + b), rel=1e-12 if b > 1e-3 else 1e-6)
+
+
+def test_cross_shear_weights_steps_by_pressure():
+    sides = np.array([[3.0, 0.0], [0.0, 1.0], [-3.0, 0.0], [0.0, -1.0]])
+    assert track_cross_shear(sides, np.array([1.0, 3.0, 1.0, 3.0])) == pytest.approx(0.5)
+    assert track_cross_shear(sides, 7.0) == pytest.approx(0.25)
+    stacked = np.stack([sides, sides[:, ::-1], 2 * sides])
+    assert track_cross_shear(stacked) == pytest.approx([0.25, 0.25, 0.25])
+
+
+def test_cross_shear_is_the_smaller_eigenvalue_over_the_trace():
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        matrix = rng.normal(size=(2, 2))
+        moment = matrix @ matrix.T
+        low, high = np.linalg.eigvalsh(moment)
+        value = cross_shear(*(np.array([moment[index]]) for index in ((0, 0), (1, 1), (0, 1))))
+        assert value[0] == pytest.approx(low / (low + high), rel=1e-9)
+    assert cross_shear(np.zeros(2), np.zeros(2), np.zeros(2)) == pytest.approx(np.zeros(2), abs=0)
+
+
+# sliding
+
+
+def test_sliding_over_the_pole_has_the_cross_shear_of_its_track():
+    cycle, radius = iso_14242_1(200), 14.0
+    sliding = SurfaceSliding(radius=radius, rotation_increments=cycle.rotation_increments, directions=POLE)
+    steps = radius * np.cross(cycle.rotation_increments, UP)
+    assert sliding.distances[:, 0] == pytest.approx(np.linalg.norm(steps, axis=1), rel=1e-9)
+    pressure = cycle.force_magnitudes[:, None] / 1000
+    assert sliding.cross_shear(pressure)[0] == pytest.approx(track_cross_shear(steps[:, :2], pressure[:, 0]), rel=1e-9)
+
+
+def test_a_point_on_the_axis_does_not_slide():
+    increments = 0.1 * np.tile([0.0, 0.0, 1.0], (4, 1))
+    directions = np.array([[0.0, 1.0, sin(0.3)], [0.0, 0.0, 0.0], [1.0, 0.0, cos(0.3)]])
+    sliding = SurfaceSliding(radius=10.0, rotation_increments=increments, directions=directions)
+    assert sliding.distances == pytest.approx(np.tile([0.0, 1.0, sin(0.3)], (4, 1)), abs=1e-12)
+    assert sliding.cross_shear(np.ones((4, 3))) == pytest.approx(np.zeros(3), abs=1e-12)
+    assert sliding.crossing_angle(np.ones((4, 3)))[1:] == pytest.approx(0.0, abs=1e-7)
+    assert sliding.crossing_angle(np.zeros((4, 3))) == pytest.approx(np.zeros(3), abs=0)
+
+
+def test_velocities_are_tangential_and_as_large_as_distance_over_time():
+    cycle = iso_14242_1(50)
+    sliding = SurfaceSliding(radius=14.0, rotation_increments=cycle.rotation_increments, directions=POLE)
+    velocity = sliding.velocities(cycle.seconds)
+    assert velocity.shape == (50, 1, 3)
+    assert np.linalg.norm(velocity, axis=2) == pytest.approx(sliding.distances / cycle.seconds[:, None], rel=1e-9)
+    assert velocity[:, 0, 2] == pytest.approx(0.0, abs=1e-9)
+    expected = 14.0 * 50 * np.cross(cycle.rotation_increments, UP)
+    assert velocity[:, 0] == pytest.approx(expected, rel=1e-9)
+
+
+def test_crossing_angles_of_known_tracks():
+    """0 on a line, π/4 on a circle, π/2 b/(a + b) on a rectangle of a by b."""
+    azimuth = 2 * pi * (np.arange(400) + 0.5) / 400
+    circle = 1e-3 * np.column_stack([np.cos(azimuth), np.sin(azimuth), 0 * azimuth])
+    rectangle = np.array([[3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-3.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    for increments, angle in ((flexion(40).rotation_increments, 0.0), (circle, pi / 4), (rectangle, pi / 8)):
+        sliding = SurfaceSliding(radius=1.0, rotation_increments=increments, directions=POLE)
+        assert sliding.crossing_angle(np.ones((len(increments), 1)))[0] == pytest.approx(angle, abs=1e-7)
+    sliding = SurfaceSliding(radius=1.0, rotation_increments=rectangle, directions=POLE)
+    pressed = np.array([[1.0], [3.0], [1.0], [0.0]])  # 6 mm along the long side, 3 mm along the short one
+    assert sliding.crossing_angle(pressed)[0] == pytest.approx(pi / 2 / 3, abs=1e-7)
+    assert sliding.cross_shear(pressed)[0] == pytest.approx(1 / 3)
+
+
+def test_flexion_has_no_cross_shear_at_any_point():
+    directions = random_directions(40, 1)
+    cycle = flexion()
+    sliding = SurfaceSliding(radius=14.0, rotation_increments=cycle.rotation_increments, directions=directions)
+    assert sliding.cross_shear(np.ones((cycle.n_steps, 40))) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_selected_points_slide_as_before():
+    cycle = iso_14242_1(30)
+    directions = random_directions(12, 4)
+    sliding = SurfaceSliding(radius=14.0, rotation_increments=cycle.rotation_increments, directions=directions)
+    points = np.array([2, 7, 3])
+    selected = sliding.select_points(points)
+    assert selected.distances == pytest.approx(sliding.distances[:, points], abs=0)
+    pressure = np.random.default_rng(6).uniform(size=(30, 12))
+    for value in ("cross_shear", "crossing_angle"):
+        expected = getattr(sliding, value)(pressure)[points]
+        assert getattr(selected, value)(pressure[:, points]) == pytest.approx(expected, rel=1e-12)
+    direct = SurfaceSliding(
+        radius=14.0, rotation_increments=cycle.rotation_increments, directions=directions[:, points]
+    )
+    assert selected.distances == pytest.approx(direct.distances, rel=1e-12)
+
+
+def test_sliding_distance_follows_a_moving_point():
+    increments = constant_load(40, amplitude=0.2).rotation_increments
+    assert sliding_distance(10.0, increments, UP) == pytest.approx(10.0 * 4 * 0.2, rel=1e-12)
+    assert sliding_distance(10.0, increments, np.array([1.0, 0.0, 0.0])) == pytest.approx(0.0, abs=1e-12)
+    moving = np.where(np.arange(40)[:, None] < 20, UP, np.array([1.0, 0.0, 0.0]))
+    assert sliding_distance(10.0, increments, moving) == pytest.approx(10.0 * 2 * 0.2, rel=1e-12)
+
+
+def test_tangents_and_normals_are_orthonormal():
+    normals = random_directions(30, 2)
+    frame = np.stack([*tangents(normals), normals])
+    assert np.einsum("ikp,jkp->pij", frame, frame) == pytest.approx(np.broadcast_to(np.eye(3), (30, 3, 3)), abs=1e-14)
+
+
+# tracks
+
+
+def test_the_track_of_a_point_is_as_long_as_its_sliding_distance():
+    cycle, point = flexion(1000), np.array([[0.0], [np.sin(0.4)], [np.cos(0.4)]])
+    track = tracks(cycle.rotations, point, radius=14.0)[0]
+    assert np.linalg.norm(np.diff(track, axis=0), axis=1).sum() == pytest.approx(2 * radians(43.0) * 14.0, rel=1e-4)
+    assert np.linalg.norm(track, axis=1) == pytest.approx(14.0)
+    assert tracks(cycle.rotations, point)[0] == pytest.approx(track / 14.0)
+    assert tracks(np.eye(3)[None], random_directions(5, 7)).shape == (5, 1, 3)
+
+
+def test_transposed_rotations_give_the_track_of_a_socket_point_on_the_ball():
+    cycle = flexion(1000)
+    on_socket = tracks(cycle.rotations, POLE, radius=14.0)[0]
+    on_ball = tracks(cycle.rotations.swapaxes(1, 2), POLE, radius=14.0)[0]
+    assert on_ball == pytest.approx(on_socket * [1.0, -1.0, 1.0], abs=1e-9)

@@ -1,0 +1,234 @@
+"""Distance from the contact to the rim, and microseparation with the ball on the rim."""
+
+from dataclasses import replace
+from math import cos, degrees, pi, radians, sin
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.elasticity.off_axis.grid import even_grid
+from ballsocket.elasticity.off_axis.surfaces import ClosedShell
+from ballsocket.hip import Spring, iso_14242_1, iso_14242_4
+from ballsocket.hip.rim import Microseparation, RimDistance, SpringLoadedBall, rim_distance
+
+from .test_wear import hip
+
+# distance to the rim
+
+REACH, RADIUS = radians(90.0), 20.0
+GRID = even_grid(REACH, radians(3.0))
+
+
+def cap(half_angle, tilt=0.0, azimuth=0.0):
+    """Return the half angle less the distance from a cap's axis at each cell, so that the zero is the cap's edge."""
+    axis = np.array([sin(tilt) * cos(azimuth), sin(tilt) * sin(azimuth), cos(tilt)])
+    distance = np.arccos(np.clip(np.tensordot(axis, GRID.middles, 1), -1.0, 1.0))
+    return (half_angle - distance).reshape(1, -1)
+
+
+def distance_of(*fields, inset=0.0):
+    field = np.vstack(fields)
+    return rim_distance(GRID, RADIUS, field, np.maximum(field, 0.0), inset)
+
+
+@pytest.mark.parametrize("half_angle", [20.0, 33.3, 47.0, 80.0])
+def test_the_distance_of_a_central_cap_is_exact(half_angle):
+    result = distance_of(cap(radians(half_angle)))
+    assert result.distance[0] == pytest.approx(RADIUS * radians(90.0 - half_angle), rel=1e-9)
+    assert result.pressure[0] == 0.0
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 40.0, -90.0, 135.0])
+def test_the_distance_of_a_tilted_cap_is_along_its_azimuth(azimuth):
+    result = distance_of(cap(radians(30.0), radians(40.0), radians(azimuth)))
+    assert result.distance[0] == pytest.approx(RADIUS * radians(20.0), abs=RADIUS * radians(0.3))
+    assert np.degrees(result.azimuth[0]) == pytest.approx(azimuth, abs=3.0)
+
+
+def test_a_contact_at_the_rim_has_no_distance_and_the_mean_azimuth_of_its_cells():
+    result = distance_of(cap(radians(30.0), radians(75.0), radians(60.0)), cap(radians(30.0)))
+    assert result.distance == pytest.approx([0.0, RADIUS * radians(60.0)])
+    assert degrees(result.azimuth[0]) == pytest.approx(60.0, abs=0.5)
+    assert result.pressure[0] == pytest.approx(radians(15.0), abs=radians(3.0))
+    assert result.pressure[1] == 0.0
+
+
+def test_a_contact_between_the_last_ring_and_the_rim_is_extrapolated():
+    last, width = GRID.polar[-1], GRID.width
+    result = distance_of(cap(last + 0.2 * width))
+    assert result.distance[0] == pytest.approx(RADIUS * (REACH - last - 0.2 * width), rel=1e-6)
+
+
+def test_an_inset_moves_the_edge_by_a_fraction_of_a_ring():
+    edge = rim_distance(GRID, RADIUS, cap(radians(40.0)), 0 * cap(1.0), 0.0)
+    inner = rim_distance(GRID, RADIUS, cap(radians(40.0)), 0 * cap(1.0), 0.25)
+    assert inner.distance - edge.distance == pytest.approx(RADIUS * 0.25 * GRID.width, rel=1e-6)
+    at_rim = rim_distance(GRID, RADIUS, cap(GRID.polar[-1] + 1e-3), 0 * cap(1.0), 0.25)
+    assert at_rim.distance[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def loading(*forces):
+    return SimpleNamespace(
+        loads=np.outer(forces, [0.0, 0.0, 1.0]), cycle=iso_14242_1(10), loaded=np.arange(len(forces)) + 3
+    )
+
+
+def test_the_closest_approach_is_that_of_the_largest_load_among_equals():
+    result = RimDistance(
+        distance=np.array([3.0, 0.0, 0.0, 1.0]),
+        azimuth=np.radians([10.0, 20.0, -30.0, 40.0]),
+        pressure=np.array([5.0, 1.0, 2.0, 0.0]),
+    )
+    assert result.closest_index(loading(900.0, 100.0, 200.0, 800.0)) == 2
+    assert result.closest_index(loading(900.0, 300.0, 200.0, 800.0)) == 1
+    closest = result.closest_approach(loading(900.0, 100.0, 200.0, 800.0))
+    assert (closest.distance, closest.steps_at_rim, closest.pressure) == (0.0, 2, 5.0)
+    assert closest.step_description == "55.0 % of the cycle"
+    assert closest.location == "55.0 % of the cycle, 30° from the cup's uppermost point"
+    assert closest.summary() == {
+        "distance_mm": 0.0,
+        "at": "55.0 % of the cycle",
+        "place_deg": pytest.approx(-30.0),
+        "instants_at_rim": 2,
+        "pressure_at_rim_MPa": 5.0,
+    }
+    with pytest.warns(DeprecationWarning, match="ClosestApproach.reaching is deprecated: use steps_at_rim"):
+        assert closest.reaching == 2
+
+
+def test_a_cycle_without_load_has_no_closest_approach():
+    empty = RimDistance(distance=np.zeros(0), azimuth=np.zeros(0), pressure=np.zeros(0))
+    assert empty.closest_index(loading()) is None
+    assert empty.closest_approach(loading()) is None
+
+
+# microseparation
+
+
+def test_the_interval_of_a_separation_may_pass_the_end_of_the_cycle():
+    cycle = iso_14242_1(10)
+    displacement = np.array([[0.0, 3.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    azimuth = np.radians([-20.0, 30.0, 50.0])
+    apart = Microseparation(steps=np.array([0, 8, 9]), displacement=displacement, azimuth=azimuth)
+    summary = apart.summary(cycle)
+    assert summary == {
+        "from": "85.0 % of the cycle",
+        "to": "5.0 % of the cycle",
+        "largest_mm": 3.0,
+        "place_deg": pytest.approx(-20.0),
+    }
+    within = replace(apart, steps=np.array([4, 5, 6])).summary(cycle)
+    assert (within["from"], within["to"]) == ("45.0 % of the cycle", "65.0 % of the cycle")
+    assert apart.describe(cycle) == (
+        "microseparation from 85.0 % of the cycle to 5.0 % of the cycle: the ball sits on the rim, with up to 3 mm "
+        "between the centres, 20° from the cup's uppermost point; wear by the contact with the rim is not included"
+    )
+    assert replace(apart, steps=apart.steps[:0], displacement=displacement[:0]).largest == 0.0
+
+
+def spring_ball(mismatch=4.0, stiffness=100.0):
+    spring = Spring(stiffness=stiffness, mismatch=mismatch)
+    side = np.array([1.0, 0.0, 0.0])
+    return SpringLoadedBall(spring=spring, side=side, reach=pi / 2, socket_radius=14.1, ball_radius=14.0)
+
+
+@pytest.mark.parametrize("mismatch", [4.0, -4.0])
+def test_a_ball_on_the_rim_balances_its_load_and_its_spring(mismatch):
+    """In a hemisphere the edge is at R2 on the side: sin of the load's tilt and the displacement follow by hand."""
+    ball = spring_ball(mismatch)
+    forces = np.array([[np.sign(mismatch) * 400.0, 0.0, -50.0], [np.sign(mismatch) * 400.0, 0.0, -5.0]])
+    apart = ball.solve_separation(forces, np.array([7, 8]))
+    assert apart.steps.tolist() == [7, 8]
+    for force, centre in zip(forces, apart.displacement, strict=True):
+        load = force - [100.0 * centre[0], 0.0, 0.0]
+        edge = np.array([np.sign(mismatch) * 14.1, 0.0, 0.0])
+        assert np.linalg.norm(edge - centre) == pytest.approx(14.0, rel=1e-9)
+        assert np.cross(edge - centre, load) == pytest.approx(0.0, abs=1e-4)
+        assert 0 < centre[0] * np.sign(mismatch) < 4.0
+    assert np.cos(apart.azimuth) == pytest.approx(np.sign(mismatch))
+
+
+@pytest.mark.parametrize("mismatch", [4.0, -4.0])
+def test_a_ball_leaves_its_bore_if_it_moves_to_the_rim_against_its_spring(mismatch):
+    """On the rim the centre is at R2 sin(reach) - R1 sin(tilt): the spring holds the ball if that is positive."""
+    tilts = np.radians([82.0, 83.0, 90.0, 97.0, 98.0, 120.0])
+    forces = 400.0 * np.column_stack([np.sign(mismatch) * np.sin(tilts), 0 * tilts, np.cos(tilts)])
+    ball = replace(spring_ball(mismatch), reach=radians(80.0))
+    leaves = 14.0 * np.sin(tilts) >= 14.1 * sin(radians(80.0))
+    assert leaves.tolist() == [False, True, True, True, False, False]
+    assert ball.leaves_bore(forces).tolist() == leaves.tolist()
+    assert not spring_ball(mismatch).leaves_bore(forces).any()
+
+
+def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase():
+    use = hip(cycle=iso_14242_4(100), cup=bs.Cup(inclination=radians(45.0)))
+    apart = use.separation
+    assert (use.cycle.phases[apart.steps] > 0.6).sum() > 30
+    assert apart.largest < 8.0
+    assert np.degrees(apart.azimuth) == pytest.approx(0.0, abs=1e-9)
+    note = next(note for note in use.notes if note.startswith("microseparation from"))
+    assert "wear by the contact with the rim is not included" in note
+    assert len(use.loaded) + len(apart.steps) == 100
+    summary = use.after(1e4).summary()["cycle"]["microseparation"]
+    assert summary["largest_mm"] == apart.largest
+    assert (summary["from"], summary["to"]) == ("59.5 % of the cycle", "2.5 % of the cycle")  # of the next
+
+
+def test_the_load_on_the_rim_points_from_the_centre_to_the_edge():
+    use = hip(cycle=iso_14242_4(100, mismatch=3.0), cup=bs.Cup(inclination=radians(50.0), anteversion=radians(10.0)))
+    apart, radius = use.separation, use.joint.socket_radius
+    edge = radius * np.column_stack([np.cos(apart.azimuth), np.sin(apart.azimuth), 0 * apart.azimuth])
+    along = edge - apart.displacement
+    assert np.linalg.norm(along, axis=1) == pytest.approx(use.joint.ball_radius, rel=1e-9)
+    side = np.array(use.placed.frame)[:, 0]
+    displacement = apart.displacement @ side
+    loads = use.forces[apart.steps] - 100.0 * displacement[:, None] * side
+    assert np.cross(along, loads) == pytest.approx(0.0, abs=1e-4)
+    assert ((displacement > 0) & (displacement < 3.0)).all()
+
+
+def test_wear_is_continuous_in_the_tilt_of_a_cup_with_microseparation():
+    use = hip(36.0, 6.0, cycle=iso_14242_4(100), ring_width=radians(6.0))
+    tilted = [replace(use, cup=bs.Cup().tilted(radians(tilt))) for tilt in np.arange(40.0, 46.0, 0.2)]
+    for turned in tilted:
+        assert len(turned.loaded) + len(turned.separation.steps) == 100
+        assert turned.unworn.converged
+        assert np.linalg.norm(turned.unworn.displacement, axis=1).max() < 0.6
+    volumes = np.array([turned.first.volume for turned in tilted])
+    assert abs(np.diff(volumes) / volumes[:-1]).max() < 0.01
+
+
+@pytest.mark.parametrize("surface", [bs.Springs(), ClosedShell()])
+def test_the_bore_carries_the_load_less_the_relaxation_of_the_spring(surface):
+    cup = bs.Cup(inclination=radians(40.0), anteversion=radians(8.0))
+    use = hip(36.0, 6.0, cycle=iso_14242_4(50), cup=cup, ring_width=radians(6.0), surface=surface)
+    unworn, side = use.unworn, np.array(use.placed.frame)[:, 0]
+    carried = np.einsum("tp,kp,p->tk", unworn.pressure, use.foundation.normals, use.foundation.areas)
+    expected = use.loads - 100.0 * (unworn.displacement @ side)[:, None] * side
+    assert np.linalg.norm(expected - use.loads, axis=1).max() > 5.0
+    assert carried == pytest.approx(expected, rel=2e-6, abs=2e-6 * np.linalg.norm(use.loads, axis=1).max())
+
+
+def test_microseparation_of_a_left_hip_mirrors_that_of_a_right_one():
+    right, left = (
+        hip(cycle=iso_14242_4(50), cup=bs.Cup(inclination=radians(45.0), anteversion=radians(10.0), side=side))
+        for side in bs.Side
+    )
+    assert left.separation.displacement == pytest.approx(right.separation.displacement * [1, -1, 1], abs=1e-9)
+    assert left.first.volume == pytest.approx(right.first.volume, rel=1e-9)
+
+
+def test_a_ball_that_nothing_holds_is_dislocated():
+    steep = bs.Cup(inclination=radians(80.0), arc_of_cover=radians(150.0))
+    with pytest.raises(ValueError, match=r"dislocated at .* % of the cycle"):
+        hip(cycle=iso_14242_4(50, mismatch=8.0), cup=steep)
+
+
+def test_a_mismatch_moves_the_contact_towards_the_rim():
+    """The spring's 400 N tilt the load by their share of it."""
+    pulled, straight = (hip(cycle=make(50)) for make in (iso_14242_4, iso_14242_1))
+    near, far = (use.edge_distance(use.unworn)[use.largest[0]] for use in (pulled, straight))
+    tilt = np.arctan2(400.0, straight.cycle.force_magnitudes.max())
+    assert near == pytest.approx(far - straight.joint.socket_radius * tilt, abs=0.1)
