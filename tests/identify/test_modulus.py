@@ -156,3 +156,7 @@ def test_loads_of_a_calibration_are_above_zero():
     for force in ([], [-1.0], np.nan):
         with pytest.raises(ValueError, match="a calibration needs loads .N. above 0"):
             bs.calibrate(HIP, force=force)
+
+
+def test_a_load_below_one_newton_is_allowed():
+    assert bs.calibrate(HIP, force=0.5).force.tolist() == [0.5]
