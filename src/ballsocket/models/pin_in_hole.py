@@ -29,7 +29,7 @@ class PinInHole(ModelInfo):
     E1 c/Q = [2 - ln(1 + β²) - 2β⁴]/[π (1 + β²) β²]; the perfect fit (c = 0) has ε = 84.83° at any load.
     A `Joint` describes it: `ball_radius` is the pin's, `clearance` radial, `liner` the material of both; the
     thickness does not enter. There is no indentation: a line load has no finite approach in an infinite plate. So this
-    is a `Theory` of its own kind, listed and cited beside the models, which answer to a force.
+    is a `ModelInfo` that is listed and cited with the models.
 
     References
     ----------
