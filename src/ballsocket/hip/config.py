@@ -103,6 +103,7 @@ def read_hip(path: str | Path) -> HipFile:
 
 
 def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
+    """Read the contents of a hip file; `folder` is that of the tables and joint files it names."""
     check_keys(content, "", "at the top", FILE_KEYS)
     for name in ("cup", "cycle", "wear", "creep", "film", "uncertainty"):
         check_keys(table_of(content, name), name, f"in [{name}]", FILE_KEYS)
@@ -211,6 +212,7 @@ _EXAMPLES = {"cycles": "5e6", "report_at": "5e6", "years": "20", "report_years":
 
 
 def _parse_count(name: str, value: Any) -> float:
+    """Read a number of cycles or years."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"{name} = {shown(value)} must be a number of {_UNITS[name]}, such as {_EXAMPLES[name]}")
     return float(value)
@@ -227,6 +229,7 @@ def _parse_joint(content: Mapping[str, Any], folder: Path) -> JointFile:
 
 
 def _tilt_cup(cup: Cup, tilt: Any, cup_table: Mapping[str, Any]) -> Cup:
+    """Tilt a cup from the load by the angle of a file."""
     for name in ("inclination", "anteversion"):
         if name in cup_table:
             raise ValueError(f"tilt and {name} exclude each other: both set the orientation of the cup; remove one")

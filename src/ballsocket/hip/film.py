@@ -83,6 +83,7 @@ def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float
 
 
 def _plane_strain_compliance(material: Material) -> float:
+    """Compute (1 - ν²)/E in 1/MPa."""
     return float((1 - material.poisson**2) / material.young)
 
 
