@@ -161,12 +161,13 @@ def hips() -> dict[str, wear.InUse]:
     hard = bs.Joint(ball_radius=18.0, clearance=0.05, liner_thickness=5.0, liner=bs.ALUMINA, ball=bs.ALUMINA_COMPOSITE)
     few: dict[str, Any] = {"ring_width": radians(6.0), "cycle": wear.iso_14242_1(12)}
     steep = bs.Cup(arc_of_cover=radians(160.0), inclination=radians(55.0), anteversion=radians(10.0))
+    own: Any = wear.OwnLaw  # by its old name, with its old argument
     return {
         "archard": in_use(),
         "energy": in_use(wear=wear.EnergyLaw(coefficient=2e-5, friction=0.06)),
         "area": in_use(wear=wear.AreaLaw(coefficient=2e-12)),
         "cross-shear": in_use(wear=wear.CrossShear(straight=2e-7, circular=2e-6, exponent=-0.3, reference=2.0)),
-        "own": in_use(wear=wear.OwnLaw(of=lambda cycle: 1e-9 * (1.0 + cycle.cross_shear) * cycle.work)),
+        "own": in_use(wear=own(of=lambda cycle: 1e-9 * (1.0 + cycle.cross_shear) * cycle.work)),
         "creep": in_use(creep=wear.logarithmic()),
         "ladder": in_use(creep=ladder, seconds_per_cycle=2.0),
         "both wear": in_use(joint=hard, ball_wear=wear.Archard(coefficient=3e-8), wear=wear.Archard(coefficient=5e-8)),

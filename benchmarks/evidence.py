@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 from time import perf_counter
 
-from ballsocket.core.executors.local import Processes
+from ballsocket.core.executors.processes import Processes
 from ballsocket.evidence.pack import gathered
 from ballsocket.evidence.question import read_question
 

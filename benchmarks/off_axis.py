@@ -97,7 +97,7 @@ def _rival() -> list[str]:
         force, seconds = _calculix(deck)
         off = numpy.linalg.norm(numpy.subtract(force, truth.force_vector)) / truth.force
         said.append(
-            f"CalculiX, elements of {size:g}°, {deck.ball.count} nodes: {seconds:.1f} s, {_text(force)}, "
+            f"CalculiX, elements of {size:g}°, {deck.ball.last_number} nodes: {seconds:.1f} s, {_text(force)}, "
             f"{100 * off:.2f} % from ours; {seconds / mine['ours'].median:.0f} times our time."
         )
     return said

@@ -10,10 +10,11 @@ from time import process_time
 
 import numpy
 
-from ballsocket.hip import HipSimulation, Scatter, logarithmic, population
+from ballsocket.hip import HipSimulation, PatientVariability, logarithmic, population
+from ballsocket.hip.cohort import sample_patients
+from ballsocket.hip.cohort_results import RESULT_UNITS, result_table
 from ballsocket.hip.config import read_hip
-from ballsocket.hip.lives import drawn
-from ballsocket.hip.patients import ANSWERS, Patient, answers_of
+from ballsocket.hip.variability import Patient
 
 from .report import Report, Rows
 from .timing import Work, interleaved, one_core
@@ -25,7 +26,7 @@ FILE = Path(__file__).parents[1] / "examples" / "hip_of_many.toml"
 def measure() -> Report:
     said = read_hip(FILE).uncertain
     assert said is not None
-    plain = said.scatter
+    plain = said.variability
     crept = replace(plain, use=replace(plain.use, creep=logarithmic()))
     runs: dict[str, Work] = {"wear": _sample(plain), "wear and creep": _sample(crept)}
     with one_core() as pinned:
@@ -40,24 +41,24 @@ def measure() -> Report:
     return Report([rows, off], ["On one core." if pinned else "Not held to one core.", "The aim is 240 minutes."])
 
 
-def _sample(scatter: Scatter) -> Callable[[], object]:
+def _sample(scatter: PatientVariability) -> Callable[[], object]:
     return lambda: population(scatter, [MILLION], patients=SAMPLE)
 
 
-def _off(scatter: Scatter) -> dict[str, numpy.ndarray]:
+def _off(scatter: PatientVariability) -> dict[str, numpy.ndarray]:
     """How far quick runs are from whole ones, in %."""
-    each = drawn(scatter, WHOLE, 3)
+    each = sample_patients(scatter, WHOLE, 3)
     found = []
     for number in range(WHOLE):
         values = {name: float(column[number]) for name, column in each.items()}
         quick = scatter.patient(values)
-        one, other = (answers_of(run.seen([MILLION]))[0] for run in (quick, _whole(scatter, quick, values)))
+        one, other = (result_table(run.simulate([MILLION]))[0] for run in (quick, _whole(scatter, quick, values)))
         found.append(100 * abs(one / numpy.where(other > 0, other, numpy.nan) - 1))
-    names = [name for name in ANSWERS if name in ("volume", "depth", "penetration", "max_pressure")]
-    return {name: numpy.array(found)[:, list(ANSWERS).index(name)] for name in names}
+    names = [name for name in RESULT_UNITS if name in ("volume", "depth", "penetration", "max_pressure")]
+    return {name: numpy.array(found)[:, list(RESULT_UNITS).index(name)] for name in names}
 
 
-def _whole(scatter: Scatter, quick: Patient, values: dict[str, float]) -> Patient:
+def _whole(scatter: PatientVariability, quick: Patient, values: dict[str, float]) -> Patient:
     heavier = values["body_weight"] / float(scatter.distributions["body_weight"].frozen.median())
     use: HipSimulation = replace(quick.use, ring_width=radians(3.0), cycle=scatter.use.cycle.scaled(heavier))
     return replace(quick, use=use)

@@ -12,7 +12,7 @@ MODULES = {path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_bytes()) fo
 OPENING = {"open", "read_text", "read_bytes", "genfromtxt", "loadtxt", "fromfile", "read_csv", "read_parquet"}
 OWN_FILES = {
     "app/style.py": "styles and scripts of the package",
-    "core/storage/atomic.py": "locks a folder that is written",
+    "core/storage/atomic_files.py": "locks a folder that is written",
     "cli/root.py": "opens the null device",
     "contact/closed_sphere.py": "a table of the package",
     "contact/strength.py": "a table of the package",
@@ -27,10 +27,10 @@ OWN_FILES = {
     "export/fmu/fmu.py": "a library that it has just compiled",
     "elasticity/finite_elements/decks/calculix.py": "results in a folder of decks, named by its user in Python",
     "core/storage/fingerprint.py": "the source of the package",
-    "hip/lives.py": "labels of a store",
+    "hip/cohort.py": "labels of a store",
     "models/refined_state.py": "a table of the package",
     "models/table_3.py": "a table of the package",
-    "core/storage/npz.py": "writes arrays",
+    "core/storage/array_files.py": "writes arrays",
     "output/report.py": "a picture that it has just drawn",
     "paper/claims/elsewhere.py": "a table of the package",
     "paper/plan.py": "pieces of a run",
@@ -83,7 +83,7 @@ def test_files_that_users_name_are_opened_by_one_module():
         "hip/tables.py",
         "studies/columns.py",
         "elasticity/off_axis/scans.py",
-        "core/storage/npz.py",
+        "core/storage/array_files.py",
         "elasticity/exact/tabulated/chebyshev.py",
         "evidence/signature.py",
     ],
@@ -98,6 +98,6 @@ def test_files_are_not_read_by_the_names_of_users_elsewhere():
     assert readers == {
         "app/evidencing.py",
         "export/fmu/fmu.py",
-        "core/storage/npz.py",
+        "core/storage/array_files.py",
         "studies/columns.py",
     }  # the first two write

@@ -308,11 +308,14 @@ def test_figure(tmp_path, ending):
         (["press", "", "--force", "1"], "the joint's name is empty"),
         (["press", EXAMPLE, "--model", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
         (["press", EXAMPLE, "--figure", "a.jpg"], "figure 'a.jpg' must end in .png, .svg, .pdf"),
-        (["press", EXAMPLE, "--figure", "/no/such/folder/a.png"], "'/no/such/folder' is no folder to write a.png into"),
+        (
+            ["press", EXAMPLE, "--figure", "/no/such/folder/a.png"],
+            "cannot write a.png: '/no/such/folder' is not a folder",
+        ),
         (["press", "no/joint.toml"], "'no/joint.toml' is no file: there is no folder 'no'"),
-        (["map", EXAMPLE, "--figure", "no/a.png"], "'no' is no folder to write a.png into"),
-        (["study", EXAMPLE, "--out", "no/a.csv"], "'no' is no folder to write a.csv into"),
-        (["press", EXAMPLE, "--model", "fem", "--vtk", "no/a.vtu"], "'no' is no folder to write a.vtu into"),
+        (["map", EXAMPLE, "--figure", "no/a.png"], "cannot write a.png: 'no' is not a folder"),
+        (["study", EXAMPLE, "--out", "no/a.csv"], "cannot write a.csv: 'no' is not a folder"),
+        (["press", EXAMPLE, "--model", "fem", "--vtk", "no/a.vtu"], "cannot write a.vtu: 'no' is not a folder"),
         (["map", EXAMPLE, "--points", "1"], "points = 1 is not allowed: an axis has 2 values or more"),
         (
             ["optimise", EXAMPLE, "--vary", "clearance=0..1", "--points", "0"],

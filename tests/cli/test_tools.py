@@ -153,7 +153,7 @@ def test_a_file_named_as_an_option_is_a_file(tmp_path):
 def test_a_process_ends_with_its_parent_even_where_no_thread_runs(tmp_path):
     """The child is inside one instruction of Python, which lets no thread run, for hours."""
     busy = (
-        "import os, sys; from ballsocket.core.executors.local import leave_with_parent as leave; leave(); "
+        "import os, sys; from ballsocket.core.executors.processes import exit_with_parent as leave; leave(); "
         "print(os.getpid(), file=open('child', 'w'), flush=True); 9**9**9"
     )
     parent = (

@@ -1,4 +1,4 @@
-"""Contacts and comparisons: printed, summarised, drawn, kept."""
+"""Text, dictionaries, frames and plots of contacts and comparisons."""
 
 import json
 
@@ -12,7 +12,7 @@ from ..joints import HIP
 PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
 
 
-def test_contact_prints_and_summarises():
+def test_a_contact_is_printed_and_summarised():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
     assert "max_pressure" in repr(contact)
     assert "11.27" in repr(contact)
@@ -27,7 +27,7 @@ def test_contact_prints_and_summarises():
     assert summary["valid"] is True
 
 
-def test_many_contacts_print_their_ranges_and_keep_their_gaps():
+def test_many_contacts_print_ranges_and_summarise_failures_as_none():
     contact = bs.Bartel().press(HIP, force=np.array([1000.0, 1e13]))
     assert "1 of 2" in repr(contact)
     summary = contact.summary()
@@ -35,7 +35,7 @@ def test_many_contacts_print_their_ranges_and_keep_their_gaps():
     assert json.dumps(summary, allow_nan=False)
 
 
-def test_compare_prints_a_row_a_model_and_the_reasons_for_the_missing():
+def test_comparison_prints_a_row_per_model_and_reasons_of_missing_models():
     answers = bs.compare(bs.joints["tilting-pad-pivot"], force=1000.0)
     assert "plane-layer" in answers.missing
     assert "ask hertz" in repr(answers)
@@ -47,7 +47,7 @@ def test_compare_prints_a_row_a_model_and_the_reasons_for_the_missing():
         bs.compare(HIP, force=-1.0)
 
 
-def test_contacts_are_dictionaries_and_frames():
+def test_contacts_convert_to_dictionaries_and_frames():
     pytest.importorskip("pandas")
     contact = bs.Exact().press(HIP, force=np.array([[1000.0], [3000.0]]))
     assert contact.to_dict() == contact.summary()
@@ -58,7 +58,7 @@ def test_contacts_are_dictionaries_and_frames():
     assert len(PRESSED.to_frame()) == 1
 
 
-def test_a_comparison_is_a_frame():
+def test_a_comparison_converts_to_a_frame():
     pytest.importorskip("pandas")
     answers = bs.compare(HIP.replace(liner_thickness=np.inf), force=1000.0)
     frame = answers.to_frame()
@@ -70,7 +70,7 @@ def test_a_comparison_is_a_frame():
     assert many.loc[("exact", 1)].force_N == 3000.0
 
 
-def test_contacts_and_comparisons_draw_themselves():
+def test_contacts_and_comparisons_have_plots():
     (left, right), few = PRESSED.plot().axes, {"exact": bs.Exact(), "hertz": bs.Hertz()}
     assert left.lines[0].get_ydata()[0] == PRESSED.max_pressure
     assert right.lines[-1].get_ydata() == pytest.approx([3.0])
@@ -89,7 +89,7 @@ def test_a_displacement_has_three_components():
             model.force_vector(HIP, wrong)
 
 
-def test_area_and_ratios():
+def test_area_and_ratios_follow_their_definitions():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
     assert contact.area == pytest.approx(2 * np.pi * 17.9**2 * (1 - np.cos(contact.half_angle)))
     assert contact.indentation_ratio == pytest.approx(contact.indentation / 6.75)
@@ -97,20 +97,20 @@ def test_area_and_ratios():
     assert contact.conformity == pytest.approx(0.1 / contact.indentation)
 
 
-def test_a_plain_contact_keeps_its_joint():
+def test_a_contact_of_floats_has_the_joint_that_was_pressed():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
     assert contact.joint is HIP
     assert type(contact.joint.ball_radius) is float
 
 
-def test_ratios_without_load():
+def test_conformity_is_infinite_without_load():
     contact = bs.HessForsbach().press(HIP, force=0.0)
     assert contact.conformity == np.inf
     assert contact.foundation_modulus == pytest.approx(bs.hess_forsbach(HIP))
     assert bs.Hertz().press(HIP, force=0.0).foundation_modulus == np.inf
 
 
-def test_friction_and_displacement_are_checked():
+def test_negative_friction_and_nan_displacements_are_rejected():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
     with pytest.raises(ValueError, match="coefficient = -0.1 is not allowed"):
         contact.friction_torque(-0.1)

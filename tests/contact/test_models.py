@@ -1,4 +1,4 @@
-"""Every model: what it takes, where it travels, and of nothing."""
+"""Contract of all models: domain, pickling, broadcasting and zero load."""
 
 import pickle
 
@@ -12,7 +12,7 @@ from ..joints import HIP
 GOOD = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "liner": bs.UHMWPE}
 
 
-def test_a_modulus_asked_outside_its_domain_says_why():
+def test_a_modulus_outside_its_domain_states_the_reason():
     joint = bs.Joint(**(GOOD | {"liner": bs.Material(young=1000.0, poisson=0.5)}))
     with pytest.raises(ValueError, match=r"spherical-vessel has no answer for ν = 0\.5: the modulus is unbounded"):
         bs.spherical_vessel(joint)
@@ -21,7 +21,7 @@ def test_a_modulus_asked_outside_its_domain_says_why():
 @pytest.mark.parametrize(
     "model", [*bs.catalogue.values(), bs.RadialFoundation(modulus=bs.polynomial(1, 2, 3))], ids=str
 )
-def test_models_and_contacts_travel_between_processes(model):
+def test_models_and_contacts_can_be_pickled(model):
     contact = model.press(HIP, force=3000.0)
     again = pickle.loads(pickle.dumps(contact))
     assert again.model == model
@@ -41,7 +41,7 @@ def test_parameters_of_models_broadcast():
 
 
 @pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
-def test_nothing_pressed_is_nothing(model):
+def test_a_contact_without_load_is_zero(model):
     contact = model.press(HIP, force=[])
     assert contact.indentation.shape == (0,)
     assert contact.max_pressure.shape == (0,)

@@ -1,4 +1,4 @@
-"""A new model costs what CONTRIBUTING says: its file and a line of the catalogue, tried in a copy of the package."""
+"""Cost of a new model: one file and one line of the catalogue, in a copy of the package."""
 
 import os
 import re
@@ -58,7 +58,7 @@ def test_a_new_file_and_a_line_of_the_catalogue_pass_the_contract(package):
     assert int(re.search(r"(\d+) passed", done.stdout)[1]) >= 30
 
 
-def test_it_has_a_row_of_the_accuracy_table(package, monkeypatch):
+def test_a_new_model_has_a_row_of_the_accuracy_table(package, monkeypatch):
     place = spec_from_file_location("ballsocket.models.mattress", package / "ballsocket" / "models" / "mattress.py")
     monkeypatch.setitem(sys.modules, place.name, module := module_from_spec(place))
     place.loader.exec_module(module)
@@ -74,7 +74,7 @@ STRAYS = {
 }
 
 
-def test_a_new_file_that_knows_another_room_of_mechanics_is_found(package):
+def test_imports_between_rooms_of_mechanics_are_found(package):
     pytest.importorskip("importlinter")
     lint = ("-c", "from importlinter.cli import lint_imports_command; lint_imports_command()", "--no-cache")
     kept = run(package, package, *lint)

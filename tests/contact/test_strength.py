@@ -1,4 +1,4 @@
-"""Where a material yields, linear elasticity ends, and every model says so."""
+"""Yield, validity of linear elasticity, and notes about strengths."""
 
 from dataclasses import replace
 from math import inf, radians
@@ -24,7 +24,7 @@ def test_eighty_kilonewtons_in_a_hip_are_valid_for_no_model(model):
     assert contact.status.failed or any("times the yield stress of the liner" in note for note in contact.notes)
 
 
-def test_yield_is_said_from_one_on_and_ends_validity_at_the_stated_factor():
+def test_yield_is_noted_above_one_and_ends_validity_at_the_stated_factor():
     at = {times: _pressed_to(times) for times in (0.97, 1.1, 1.35, 1.41)}
     assert [contact.valid for contact in at.values()] == [True, True, True, False]
     told = [[note for note in contact.notes if "yield stress" in note] for contact in at.values()]
@@ -42,7 +42,7 @@ def _pressed_to(utilisation: float):
 
 
 @pytest.mark.parametrize("model", [bs.Exact(), bs.FiniteElement(meshes=1)], ids=lambda model: model.name)
-def test_models_that_know_the_inside_say_what_is_there(model):
+def test_models_that_solve_for_stresses_report_the_largest(model):
     contact = model.press(HIP, force=20e3)
     assert contact.von_mises == contact.peak_stress.von_mises
     assert contact.utilisation == contact.von_mises / HIP.liner.yield_stress
@@ -54,7 +54,7 @@ def test_models_that_know_the_inside_say_what_is_there(model):
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45, 0.499])
 @pytest.mark.parametrize("thickness", [2.0, 6.75, inf])
-def test_the_share_of_the_pressure_is_that_of_the_exact_answer(poisson, thickness):
+def test_fitted_stress_ratio_agrees_with_the_exact_solution(poisson, thickness):
     joint = bs.Joint(
         ball_radius=17.9,
         clearance=0.1,
@@ -71,7 +71,7 @@ def test_the_share_of_the_pressure_is_that_of_the_exact_answer(poisson, thicknes
         assert least <= contact.von_mises <= most
 
 
-def test_the_inside_of_a_soft_backed_socket_is_looked_at_where_yield_is_near(monkeypatch):
+def test_stresses_of_a_soft_backed_socket_are_solved_only_near_yield(monkeypatch):
     cement = bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)
     soft = HIP.replace(backing=(cement, bs.Layer(thickness=4.0, material=bs.CANCELLOUS_BONE)))
     forces = np.array([300.0, 1000.0, 3000.0, 9000.0, 30000.0])
@@ -87,14 +87,14 @@ def test_the_inside_of_a_soft_backed_socket_is_looked_at_where_yield_is_near(mon
     assert len(looks) == 1
 
 
-def test_the_share_in_a_ball_is_hertz():
+def test_stress_ratio_of_the_ball_is_that_of_hertz():
     z = np.linspace(0.01, 2.0, 4000)
     for poisson in (0.0, 0.3, 0.5):
         stress = 1.5 / (1 + z * z) - (1 + poisson) * (1 - z * np.arctan(1 / z))
         assert ball_stress_ratio(poisson) == pytest.approx(stress.max(), rel=0.02)
 
 
-def test_a_weak_ball_counts():
+def test_utilisation_includes_a_weak_ball():
     soft = replace(HIP, ball=replace(bs.COCR, yield_stress=5.0))
     contact = bs.HessForsbach().press(soft, force=3000.0)
     assert contact.utilisation == pytest.approx(0.62 * contact.max_pressure / 5.0, rel=0.01)
@@ -118,13 +118,13 @@ def test_a_liner_without_a_yield_stress_is_noted_once_for_any_shape(model):
     assert NOT_CHECKED in repr(model.press(joint, force=3000.0))
 
 
-def test_a_liner_with_a_yield_stress_has_no_such_note():
+def test_a_liner_with_a_yield_stress_has_no_note():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
     assert contact.notes == ()
     assert contact.summary()["utilisation_note"] is None
 
 
-def test_the_reason_names_the_other_known_strengths():
+def test_the_reason_depends_on_the_known_strengths():
     pressed = replace(BARE, allowable_pressure=20.0)
     assert "yield not checked: the liner" in _note(replace(HIP, liner=pressed, ball=None))
     note = _note(replace(HIP, liner=BARE, ball=bs.COCR))
@@ -138,7 +138,7 @@ def _note(joint):
     return bs.HessForsbach().press(joint, force=3000.0).notes[0]
 
 
-def test_a_ball_without_a_yield_stress_is_noted_only_where_it_is_strained():
+def test_a_ball_without_a_yield_stress_is_noted_above_a_strain():
     ball_note = "strength of the ball not checked"
     steel = bs.Exact().press(replace(HIP, ball=bs.STEEL), force=3000.0)
     assert not any(ball_note in note for note in steel.notes)
@@ -148,7 +148,7 @@ def test_a_ball_without_a_yield_stress_is_noted_only_where_it_is_strained():
     assert not any(ball_note in note for note in rigid.notes)
 
 
-def test_a_comparison_has_the_note_once_with_its_models():
+def test_a_comparison_lists_a_note_once_with_its_models():
     comparison = bs.compare(replace(HIP, liner=BARE, ball=None), force=3000.0)
     told = [note for note in comparison.notes() if NOT_CHECKED in note]
     assert len(told) == 1
@@ -188,7 +188,7 @@ def test_proportional_limits_may_be_arrays_of_any_library():
         assert contact.notes[0].startswith("1 of 2: estimated von Mises stress up to")
 
 
-def test_fatigue_and_allowable_pressure_are_said_and_leave_the_answer_valid():
+def test_fatigue_and_allowable_pressure_are_noted_and_do_not_end_validity():
     contact = bs.HessForsbach().press(replace(HIP, liner=WEAK), force=3000.0)
     assert contact.valid
     assert [note.split(" of the liner")[0] for note in contact.notes] == [
@@ -197,7 +197,7 @@ def test_fatigue_and_allowable_pressure_are_said_and_leave_the_answer_valid():
     ]
 
 
-def test_strengths_may_be_arrays_and_widen_the_answer():
+def test_contacts_broadcast_against_arrays_of_strengths():
     liner = replace(HIP.liner, yield_stress=np.array([4.0, 21.0]))
     for model in (bs.HessForsbach(), bs.Tabulated(), bs.Exact()):
         contact = model.press(replace(HIP, liner=liner), force=3000.0)
@@ -206,14 +206,14 @@ def test_strengths_may_be_arrays_and_widen_the_answer():
         assert contact.notes[-1].startswith("1 of 2: von Mises stress up to")
 
 
-def test_studies_and_limits_know_the_utilisation():
+def test_studies_compute_the_utilisation():
     study = bs.study(bs.HessForsbach(), HIP, force=[3000.0, 80e3], quantities=["utilisation"])
     assert study.utilisation.values == pytest.approx(
         bs.HessForsbach().press(HIP, force=np.array([3000.0, 80e3])).utilisation
     )
 
 
-def test_validity_asks_for_no_stresses_where_it_can_be_told_without(monkeypatch):
+def test_validity_solves_for_no_stresses_where_bounds_decide(monkeypatch):
     def never(*words):
         raise AssertionError("asked for the inside")
 
@@ -224,7 +224,7 @@ def test_validity_asks_for_no_stresses_where_it_can_be_told_without(monkeypatch)
     assert len(bs.Exact().press(HIP, force=6000.0).notes) == 1
 
 
-def test_layers_are_looked_into():
+def test_stresses_of_layered_sockets_are_solved():
     """A liner on bone bends: no share of the pressure tells its stress."""
     bone = bs.Layer(thickness=inf, material=bs.CANCELLOUS_BONE)
     contact = bs.Exact().press(replace(HIP, liner_thickness=2.0, backing=(bone,)), force=3000.0)
@@ -233,14 +233,14 @@ def test_layers_are_looked_into():
     assert contact.von_mises > 1.3 * flat * contact.max_pressure
 
 
-def test_a_single_number_that_is_not_allowed_is_refused():
+def test_strengths_that_are_not_allowed_are_rejected():
     with pytest.raises(ValueError, match="yield_stress = 0 is not allowed: a yield stress \\(MPa\\) is above 0"):
         bs.Material(young=1.0, poisson=0.3, yield_stress=0.0)
     with pytest.raises(TypeError, match="fatigue_limit must be a number"):
         bs.Material(young=1.0, poisson=0.3, fatigue_limit="5 MPa")
 
 
-def test_presets_that_have_a_yield_stress_say_where_it_is_from():
+def test_presets_with_a_yield_stress_state_its_source():
     for name, material in bs.materials.items():
         assert ("yield: " in material.source) == (material.yield_stress is not None), name
     assert bs.CROSSLINKED_PE.yield_stress is not None
@@ -252,7 +252,7 @@ def test_presets_with_a_proportional_limit_state_its_source():
     assert bs.UHMWPE.proportional_limit < bs.UHMWPE.yield_stress
 
 
-def test_each_material_of_an_axis_is_as_strong_as_it_is():
+def test_each_material_of_an_axis_has_its_own_strength():
     axis = {"liner": [bs.UHMWPE, bs.POM], "force": 3000.0}
     study = bs.study(bs.HessForsbach(), HIP, bs.studies.grid(**axis), quantities=["utilisation"])
     for material, found in zip(axis["liner"], study.utilisation.values, strict=True):

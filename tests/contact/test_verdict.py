@@ -1,4 +1,4 @@
-"""Whether the materials bear a contact, in a sentence."""
+"""Verdicts on the strength of the materials."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from ballsocket.contact.verdict import assess_strength, strength_uses
 HIP = bs.joints["hip-36"]
 
 
-def test_a_share_is_that_of_the_strength_it_names():
+def test_use_of_a_strength_is_stress_over_strength():
     liner = replace(HIP.liner, allowable_pressure=20.0)
     contact = bs.Exact().press(replace(HIP, liner=liner), force=3000.0)
     by_name = {share.strength: share for share in strength_uses(contact)}
@@ -28,13 +28,13 @@ def test_a_share_is_that_of_the_strength_it_names():
         (bs.Exact().press(HIP, half_angle=1.55), None, "no answer"),
     ],
 )
-def test_what_is_said(contact, bears, words):
+def test_verdicts_state_their_reason(contact, bears, words):
     said = assess_strength(contact)
     assert said.bears is bears
     assert said.words.startswith(words)
 
 
-def test_without_a_strength_nothing_is_said():
+def test_without_a_strength_there_is_no_verdict():
     joint = replace(HIP, liner=HIP.liner.without_strengths(), ball=None)
     said = assess_strength(bs.HessForsbach().press(joint, force=3000.0))
     assert (said.bears, said.words) == (None, "strength not checked: the liner has no yield stress")

@@ -27,7 +27,7 @@ SUBMODULES = {
 
 
 @pytest.mark.parametrize(("old", "new"), [*MOVED.items(), *SUBMODULES.items()])
-def test_an_old_path_gives_the_module(old, new, monkeypatch):
+def test_an_old_path_imports_the_module(old, new, monkeypatch):
     for name in [name for name in sys.modules if name == old or name.startswith(old + ".")]:
         monkeypatch.delitem(sys.modules, name)
     module = import_module(new)
@@ -37,7 +37,7 @@ def test_an_old_path_gives_the_module(old, new, monkeypatch):
     assert module.__name__ == new
 
 
-def test_old_lines_still_run():
+def test_imports_of_version_1_still_run():
     lines = (
         "import ballsocket as bs",
         "from ballsocket.elastic.exact import Exact",
@@ -51,7 +51,7 @@ def test_old_lines_still_run():
     subprocess.run([sys.executable, "-W", "error", "-c", "\n".join(lines)], check=True)
 
 
-def test_other_names_are_not_found():
+def test_unknown_names_are_not_found():
     assert new_path("ballsocket") is None
     assert new_path("ballsocket.models.liu") is None
     with pytest.raises(ModuleNotFoundError):

@@ -1,4 +1,4 @@
-"""Every quantity is described once, and whoever speaks of it reads that."""
+"""One description of each quantity, used by tables, files, studies and messages."""
 
 import json
 import os
@@ -73,7 +73,7 @@ def test_every_quantity_of_contact_joint_and_cup_is_an_attribute_and_no_other_nu
 
 
 @EVERY
-def test_units_are_known_to_the_door(quantity):
+def test_units_are_read_and_have_the_stated_factors(quantity):
     """A number as files give it is the number inside, and the factors are those of the units' names."""
     for unit in (Unit(quantity.unit), quantity.written, quantity.shown):
         text = unit.text.replace("°", "deg") if unit.text not in ("", "1") else ""
@@ -86,11 +86,11 @@ def test_units_are_known_to_the_door(quantity):
 
 
 @EVERY
-def test_angles_say_in_their_names_that_files_have_degrees(quantity):
+def test_keys_of_angles_end_in_degrees(quantity):
     assert (quantity.written.text == "°") == (quantity.unit == "rad") == quantity.key.endswith("_deg")
 
 
-def test_tables_studies_and_json_speak_of_the_same_objects():
+def test_tables_studies_and_json_use_the_same_quantities():
     assert [column.quantity for column in COLUMNS] == list(CONTACT.values())
     assert all(column.quantity is QUANTITIES[column.attribute] for column in COLUMNS)
     assert all(parameter is QUANTITIES[name] for name, parameter in PARAMETERS.items())
@@ -100,7 +100,7 @@ def test_tables_studies_and_json_speak_of_the_same_objects():
     assert all(any(head.startswith(QUANTITIES[name].symbol) for head in COLUMN_HEADS) for name in quantities.HEADLINE)
 
 
-def test_nothing_is_named_or_written_twice():
+def test_names_symbols_and_titles_are_unique():
     assert len(QUANTITIES) == sum(
         map(len, (CONTACT, BEARING, JOINT, FIT, MATERIAL, STRESS_LIMITS, PARTS, LAYER, CUP, AIM, FIELD, DERIVED))
     )
@@ -133,7 +133,7 @@ _WRONG = {
 
 
 @pytest.mark.parametrize("quantity", CHECKED, ids=attrgetter("name"))
-def test_a_number_that_is_not_allowed_is_refused_in_the_words_of_its_quantity(quantity):
+def test_messages_of_invalid_numbers_state_what_is_allowed(quantity):
     for wrong in (_WRONG.get(quantity.name, -1.0), nan, np.array([nan])):
         with pytest.raises(ValueError, match=re.escape(quantity.allowed)) as refused:
             quantity.checked(wrong)
@@ -146,7 +146,7 @@ def test_a_number_that_is_not_allowed_is_refused_in_the_words_of_its_quantity(qu
 @pytest.mark.parametrize(
     ("name", "ends"), [("poisson", (-1.0, 0.5)), ("half_angle", (0.0, pi / 2)), ("force", (0, inf))]
 )
-def test_what_is_allowed_ends_where_the_sentence_says(name, ends):
+def test_allowed_ranges_end_at_the_stated_limits(name, ends):
     low, high = ends
     allows = QUANTITIES[name].allows
     assert allows(low) == (name != "poisson")
@@ -157,7 +157,7 @@ def test_what_is_allowed_ends_where_the_sentence_says(name, ends):
 
 
 @pytest.mark.parametrize("name", ["ball_radius", "clearance", "liner_thickness"])
-def test_joint_press_and_study_refuse_the_same_numbers(name):
+def test_joint_and_study_reject_the_same_numbers(name):
     wrong = _WRONG.get(name, -1.0)
     with pytest.raises(ValueError, match=re.escape(JOINT[name].allowed)):
         replace(HIP, **{name: wrong})
@@ -166,16 +166,16 @@ def test_joint_press_and_study_refuse_the_same_numbers(name):
 
 
 @pytest.mark.parametrize("name", LOADS)
-def test_a_load_is_refused_in_the_words_of_its_quantity(name):
+def test_messages_of_invalid_loads_state_what_is_allowed(name):
     with pytest.raises(ValueError, match=re.escape(LOADS[name].allowed)):
         bs.Hertz().press(HIP, **{name: _WRONG[name]})
 
 
-def test_only_the_thickness_of_a_liner_may_be_infinite():
+def test_only_the_liner_thickness_may_be_infinite():
     assert {name for name, parameter in PARAMETERS.items() if parameter.allows(inf)} == {"liner_thickness"}
 
 
-def test_what_a_file_holds_is_what_the_table_names():
+def test_keys_of_files_are_names_of_quantities():
     tables = tables_of(JointFile(HIP, {"force": 3000.0}))
     assert set(tables["joint"]) | set(tables["load"]) <= set(QUANTITIES)
 
@@ -220,7 +220,7 @@ def test_a_quantity_is_added_by_one_entry(tmp_path):
     assert any(line.split()[:2] == ["model", "c/d"] for line in rest)
 
 
-def test_a_range_is_written_with_the_symbol_and_the_unit_of_its_quantity():
+def test_ranges_have_symbol_and_unit_of_their_quantity():
     assert str(bs.Range(quantity="half_angle", high=pi / 18)) == "ε ≤ 10°"
     assert str(bs.Range(quantity="joint.thickness_ratio", low=2.0)) == "R2/L ≥ 2"
     assert str(bs.Range(quantity="joint.liner.poisson", low=0.3, high=0.4)) == "ν 0.3 to 0.4"
@@ -238,6 +238,6 @@ def test_the_glossary_of_the_site_has_every_quantity(monkeypatch):
         assert each.allowed[1:] in entry
 
 
-def test_the_package_offers_the_table_and_nothing_hides_it():
+def test_the_package_offers_the_table_of_quantities():
     assert bs.quantities is quantities
     assert "quantities" not in bs.__all__

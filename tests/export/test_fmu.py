@@ -108,7 +108,7 @@ def test_the_velocity_of_the_trajectory_is_that_of_its_position():
     ("words", "said"),
     [
         (("--out", "hip.zip"), "out 'hip.zip' must end in .fmu"),
-        (("--out", "nowhere/hip.fmu"), "'nowhere' is no folder to write hip.fmu into"),
+        (("--out", "nowhere/hip.fmu"), "cannot write hip.fmu: 'nowhere' is not a folder"),
         (("--out", "hip.fmu", "--fmi", "4"), "FMI version = 4 is not allowed: 2 or 3"),
         (("--out", "hip.fmu", "--model", "fem"), "finite elements are too noisy for a law"),
         (("--out", "hip.fmu", "--hysteresis", "-1"), "hysteresis"),

@@ -15,7 +15,7 @@ from ballsocket.cli import root
 from ballsocket.cli.tools.call import words_of
 from ballsocket.core.input_files import restricted
 from ballsocket.core.kinds import Kind
-from ballsocket.core.storage.npz import read_arrays
+from ballsocket.core.storage.array_files import read_arrays
 from ballsocket.elasticity.off_axis.scans import read_scan
 from ballsocket.evidence.question import read_question
 from ballsocket.hip.config import read_hip

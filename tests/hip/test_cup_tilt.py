@@ -14,7 +14,7 @@ from ballsocket.app.gaiting import gait_of
 from ballsocket.app.in_use import Use, hip_of
 from ballsocket.app.screen import START, link_of, read_link
 from ballsocket.app.wearing import life_of
-from ballsocket.hip import Archard, HipSimulation, Scatter, iso_14242_1
+from ballsocket.hip import Archard, HipSimulation, PatientVariability, iso_14242_1
 from ballsocket.hip.config import read_hip
 from ballsocket.io.joint_file import JointFile
 from ballsocket.io.joint_toml import cup_table, tables_of
@@ -77,7 +77,7 @@ def test_a_cup_remembers_that_an_angle_was_given():
 
 def test_patients_with_a_tilt_of_zero():
     use = HipSimulation(joint=bs.joints["hip-28"], cycle=iso_14242_1(24), wear=Archard(coefficient=1e-6), cup=bs.Cup())
-    scatter = Scatter(use=use, distributions={"tilt": Normal(mean=0.2, deviation=0.05)})
+    scatter = PatientVariability(use=use, distributions={"tilt": Normal(mean=0.2, deviation=0.05)})
     assert tilt_of(scatter.patient({"tilt": 0.0}).use) == 0
     assert tilt_of(scatter.patient({}).use) == 30
 

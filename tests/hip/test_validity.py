@@ -13,7 +13,7 @@ from ballsocket.hip import (
     Archard,
     HipSimulation,
     Mix,
-    Scatter,
+    PatientVariability,
     constant_load,
     in_vivo,
     iso_14242_1,
@@ -176,7 +176,7 @@ def test_a_stored_run_keeps_its_checks(tmp_path):
 
 
 def test_patients_have_their_validity():
-    scatter = Scatter(
+    scatter = PatientVariability(
         use=use_of(HIP, iso_14242_1(24)), distributions={"body_weight": LogNormal(median=800.0, factor=3.0)}
     )
     cohort, bands = population(scatter, [1e5, 1e6], patients=32)

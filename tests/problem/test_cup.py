@@ -1,4 +1,4 @@
-"""A cup in the body: where it faces, how far it reaches, what it refuses."""
+"""Orientation, rim and checks of a cup."""
 
 from math import cos, degrees, pi, radians, sin
 
@@ -30,7 +30,7 @@ ORIENTED = {
         (18.0, 6.0, 65.0, 15.0, 51.6, 12.06, -1.61),
     ],
 )
-def test_hips_of_28_and_36_mm(radius, thickness, inclination, anteversion, tilt, centre, edge):
+def test_rim_distance_of_hips_of_28_and_36_mm(radius, thickness, inclination, anteversion, tilt, centre, edge):
     """3 kN, 15° medial, on hemispheres of 1 GPa; arcs in mm on the ball. A steep cup is loaded at its edge."""
     cup = bs.Cup(inclination=radians(inclination), anteversion=radians(anteversion))
     hip = bs.Joint(
@@ -113,7 +113,7 @@ def test_angles_are_radians(words, message):
         ({"interface": None}, "interface must be Interface.BONDED or Interface.SLIDING"),
     ],
 )
-def test_a_cup_is_made_of_plain_numbers_and_known_words(words, message):
+def test_arrays_and_unknown_enumerations_are_rejected(words, message):
     with pytest.raises(TypeError, match=message):
         bs.Cup(**words)
 
@@ -127,12 +127,12 @@ def test_a_cup_is_made_of_plain_numbers_and_known_words(words, message):
         (1.0, "a direction has three components"),
     ],
 )
-def test_what_is_no_direction_is_refused(direction, message):
+def test_invalid_directions_are_rejected(direction, message):
     with pytest.raises(ValueError, match=message):
         bs.Cup().tilt(direction)
 
 
-def test_only_models_that_know_cups_take_one():
+def test_only_models_with_a_rim_have_a_cup():
     """And to those the load is along the cup's axis, wherever that faces."""
     cup = bs.Cup(arc_of_cover=2.5, inclination=0.7, side=bs.Side.LEFT)
     assert bs.FiniteElement(meshes=1).in_cup(cup) == bs.FiniteElement(cup=cup, meshes=1)

@@ -1,4 +1,4 @@
-"""Joints, their materials and layers: checked once, varied, told, sourced."""
+"""Joints, materials and layers: checks, changes, text and sources."""
 
 import json
 import pickle
@@ -27,7 +27,7 @@ GOOD = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "liner": 
         ({"liner_thickness": 0.0}, r"liner_thickness = 0 is not allowed: .* inf is a massive socket"),
     ],
 )
-def test_a_joint_that_is_not_allowed_is_named(changes, message):
+def test_invalid_numbers_of_a_joint_are_named(changes, message):
     with pytest.raises(ValueError, match=message):
         bs.Joint(**(GOOD | changes))
 
@@ -42,12 +42,12 @@ def test_a_joint_that_is_not_allowed_is_named(changes, message):
         ({"poisson": np.nan}, "poisson = nan is not allowed"),
     ],
 )
-def test_a_material_that_is_not_allowed_is_named(changes, message):
+def test_invalid_numbers_of_a_material_are_named(changes, message):
     with pytest.raises(ValueError, match=message):
         bs.Material(**({"young": 1000.0, "poisson": 0.4} | changes))
 
 
-def test_what_is_no_number_or_no_material_is_a_type_error():
+def test_values_of_other_types_raise_a_type_error():
     with pytest.raises(TypeError, match="ball_radius must be a number or an array .* got '16 mm'"):
         bs.Joint(**(GOOD | {"ball_radius": "16 mm"}))
     with pytest.raises(TypeError, match="clearance must be a number or an array .* got True"):
@@ -64,7 +64,7 @@ def test_what_is_no_number_or_no_material_is_a_type_error():
         bs.Joint(16.0, 0.1, 6.0, bs.UHMWPE)
 
 
-def test_lengths_in_other_words_make_the_same_joint():
+def test_equivalent_lengths_make_the_same_joint():
     rest = {"liner": bs.UHMWPE}
     same = bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=5.9, **rest)
     assert bs.Joint(head_diameter=36.0, diametral_clearance=0.2, outer_diameter=48.0, **rest) == same
@@ -83,7 +83,7 @@ def test_lengths_in_other_words_make_the_same_joint():
         ({"head_diamter": 32.0}, "'head_diamter' .* is not known; did you mean 'head_diameter'"),
     ],
 )
-def test_a_length_that_is_given_twice_is_refused_though_it_agrees(lengths, message):
+def test_redundant_lengths_are_rejected_even_if_they_agree(lengths, message):
     with pytest.raises(ValueError, match=message):
         bs.Joint(**GOOD, **lengths)
 
@@ -100,12 +100,12 @@ def test_a_length_that_is_given_twice_is_refused_though_it_agrees(lengths, messa
         ({"ball_radius": 16.0, "socket_radius": 15.0, "liner_thickness": 6.0}, "clearance = -1 is not allowed"),
     ],
 )
-def test_lengths_that_make_no_joint_are_told(lengths, message):
+def test_lengths_of_an_impossible_joint_are_rejected(lengths, message):
     with pytest.raises(ValueError, match=message):
         bs.Joint(**lengths, liner=bs.UHMWPE)
 
 
-def test_a_joint_is_varied():
+def test_a_changed_joint_keeps_its_other_numbers():
     hip = bs.joints["hip-36"]
     varied = hip.replace(liner=bs.UHMWPE, head_diameter=32)
     assert varied == replace(hip, ball_radius=16, liner=bs.UHMWPE, name="hip-36, varied", source="")
@@ -140,12 +140,12 @@ BONE = bs.Layer(thickness=np.inf, material=bs.CORTICAL_BONE)
         ({"support": "free"}, "support must be Support.FIXED or Support.FREE, got 'free'"),
     ],
 )
-def test_what_is_no_backing_is_a_type_error(changes, message):
+def test_invalid_backings_raise_a_type_error(changes, message):
     with pytest.raises(TypeError, match=message):
         bs.Joint(**(GOOD | changes))
 
 
-def test_a_layer_is_checked():
+def test_invalid_layers_are_rejected():
     with pytest.raises(ValueError, match=r"thickness = 0 is not allowed: a thickness \(mm\) is above 0; inf is"):
         bs.Layer(thickness=0.0, material=bs.TITANIUM)
     with pytest.raises(TypeError, match="material must be a Material, got 'titanium'"):
@@ -187,7 +187,7 @@ def test_a_backing_is_part_of_the_joint():
     assert (plain["backing"], plain["support"]) == ([], "fixed")
 
 
-def test_a_backing_is_told():
+def test_a_backing_is_printed():
     text = str(bs.Joint(**GOOD, backing=(SHELL, BONE), support=bs.Support.FREE))
     behind = " on 4 mm of titanium (E 110000 MPa, nu 0.3) on a massive body of cortical bone (E 17000 MPa, nu 0.3)"
     assert f"liner 6 mm of UHMWPE (E 1000 MPa, nu 0.4){behind}, free outside; ball rigid" in text
@@ -195,7 +195,7 @@ def test_a_backing_is_told():
     assert "free" not in str(bs.Joint(**GOOD))
 
 
-def test_backing_ratio():
+def test_backing_ratio_is_that_of_the_softest_layer():
     free = bs.Support.FREE
     assert bs.Joint(**GOOD).backing_ratio == 0.0
     assert bs.Joint(**GOOD, backing=(SHELL,)).backing_ratio == pytest.approx(1 / 110)
@@ -220,20 +220,20 @@ def test_numbers_of_a_backing_broadcast():
     assert "<array 3> mm of E <array 2x1> MPa" in str(joint)
 
 
-def test_words_are_frozen_values():
+def test_joints_and_materials_are_frozen():
     assert bs.Joint(**GOOD) == bs.Joint(**GOOD)
     with pytest.raises(FrozenInstanceError):
         bs.UHMWPE.young = 2.0
 
 
-def test_the_ends_of_what_is_allowed():
+def test_limits_of_allowed_numbers_are_allowed():
     joint = bs.Joint(ball_radius=16.0, clearance=0.0, liner_thickness=np.inf, liner=bs.Material(young=1.0, poisson=0.5))
     assert joint.thickness_ratio == 0.0
     assert joint.modulus_ratio == 0.0
     assert joint.ball is None
 
 
-def test_effective_modulus():
+def test_effective_modulus_combines_ball_and_liner():
     assert HIP.effective_modulus == pytest.approx(1 / (0.84 / 1000.0 + 0.91 / 230000.0))
     assert bs.Joint(**GOOD).effective_modulus == pytest.approx(1000.0 / 0.84)
 
@@ -255,7 +255,7 @@ def test_joints_have_sources_and_press(name):
     assert all(contact.max_pressure > 0 for contact in answers.values())
 
 
-def test_presets_travel_between_processes():
+def test_presets_can_be_pickled():
     assert pickle.loads(pickle.dumps(bs.materials)) == bs.materials
 
 
@@ -267,11 +267,11 @@ def test_presets_travel_between_processes():
     ],
     ids=repr,
 )
-def test_what_is_no_real_number_is_refused_in_one_sentence(value):
+def test_values_that_are_not_real_numbers_are_rejected(value):
     with pytest.raises(TypeError, match="clearance must be a number or an array of real numbers in mm"):
         bs.Joint(**(GOOD | {"clearance": value}))
 
 
-def test_an_integer_beyond_floating_point_is_refused():
+def test_integers_beyond_floating_point_are_rejected():
     with pytest.raises(ValueError, match="force is not allowed: the integer is too large"):
         bs.HessForsbach().press(HIP, force=10**400)

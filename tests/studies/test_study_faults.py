@@ -163,7 +163,7 @@ def test_a_worker_of_another_version_is_refused():
     from ballsocket.studies.run import _task
 
     task = replace(_task(bs.HessForsbach(), HIP, None, {"force": [1000.0]}, ()), code="0.0.0+old")
-    with pytest.raises(ValueError, match="this worker has ballsocket .* and 0.0.0.old asks"):
+    with pytest.raises(ValueError, match="this worker has ballsocket .*, but the run was started by 0.0.0.old"):
         task(0)
     assert grid(force=[1.0]).size == 1
 
@@ -247,9 +247,9 @@ def test_what_a_killed_process_was_writing_goes_with_the_next(store):
 
 
 def test_what_is_being_written_stays(tmp_path):
-    from ballsocket.core.storage.atomic import at_once, write_text
+    from ballsocket.core.storage.atomic_files import write_atomically, write_text
 
-    with at_once(tmp_path / "a.txt") as draft:
+    with write_atomically(tmp_path / "a.txt") as draft:
         os.utime(draft.parent, (0, 0))
         write_text(tmp_path / "a.txt", "theirs")
         draft.write_text("ours", encoding="utf-8")
@@ -258,9 +258,9 @@ def test_what_is_being_written_stays(tmp_path):
 
 
 def test_a_full_disk_is_said_of_the_file_that_was_asked_for(tmp_path):
-    from ballsocket.core.storage.atomic import at_once
+    from ballsocket.core.storage.atomic_files import write_atomically
 
-    with pytest.raises(OSError, match="No space left on device: .*a.txt") as told, at_once(tmp_path / "a.txt"):
+    with pytest.raises(OSError, match="No space left on device: .*a.txt") as told, write_atomically(tmp_path / "a.txt"):
         raise OSError(28, "No space left on device")
     assert told.value.filename == str(tmp_path / "a.txt")
     assert not list(tmp_path.iterdir())

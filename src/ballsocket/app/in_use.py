@@ -34,7 +34,7 @@ _CREEP_PREFIX = "creep_"
 
 def _inputs(laws: Mapping[str, type[Law]], prefix: str = "") -> dict[str, LawField]:
     """Return the required numbers of laws by the names of their inputs."""
-    parts = (part for law in reversed(laws.values()) for part in law.law_fields())
+    parts = (part for law in reversed(list(laws.values())) for part in law.law_fields())
     return {prefix + part.key: part for part in parts if part.required and not part.listed}
 
 

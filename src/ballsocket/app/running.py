@@ -9,7 +9,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
-from ..core.executors.local import available_cores, leave_with_parent, one_thread_each
+from ..core.executors.processes import available_cores, exit_with_parent, limit_threads
 from ..core.validity import OutsideDomainError
 
 LONGEST = 60.0
@@ -118,7 +118,7 @@ class Run:
         context = get_context("spawn")
         pipe, there = context.Pipe(duplex=False)
         process = context.Process(target=_run, args=(there, self.work), daemon=True)
-        with one_thread_each():
+        with limit_threads():
             process.start()
         there.close()
         self._process, self._pipe, self._start = process, pipe, time.monotonic()
@@ -144,7 +144,7 @@ def looked_at() -> bool:
 
 def _run(pipe: Connection, work: Work) -> None:
     """In the process."""
-    leave_with_parent()
+    exit_with_parent()
     limit_memory()
     try:
         pipe.send(Done(work(pipe.send)))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 
 from ..elasticity.off_axis.grid import Grid
-from ..hip import HipSimulation, History, Scatter, population
+from ..hip import HipSimulation, History, PatientVariability, population
 from ..hip.cycle_registry import CYCLES
 from ..io.joint_file import JointFile
 from ..output.hip_plots import penetration_curve
@@ -109,7 +109,7 @@ def _life(hip: HipSimulation, use: Use, reached: Any) -> Worn:
         reached(0.72, "the band of the wear coefficient")
         wear = {"coefficient": LogNormal(median=use.coefficient, factor=use.spread)}
         counts = [report.cycles for report in history.reports]
-        _, bands = population(Scatter(use=hip, distributions=wear), counts, patients=_PATIENTS)
+        _, bands = population(PatientVariability(use=hip, distributions=wear), counts, patients=_PATIENTS)
     reached(0.95, "drawing")
     return _plain(hip, history, bands)
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ..core.executors.dask import Distributed
-from ..core.executors.local import Engine, Processes
+from ..core.executors.processes import Engine, Processes
 
 Workers = Annotated[int | None, typer.Option(help="So many processes on this machine.")]
 Scheduler = Annotated[str | None, typer.Option(help="The address of a Dask scheduler, 'tcp://host:8786'.")]

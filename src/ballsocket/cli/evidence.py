@@ -15,7 +15,7 @@ from rich.progress import Progress
 import ballsocket as bs
 
 from ..core.checks import needs
-from ..core.executors.local import Engine, Processes
+from ..core.executors.processes import Engine, Processes
 from ..core.storage.fingerprint import fingerprint
 from ..evidence.comparison import Signed, compare, signature_of
 from ..evidence.folder import WORK, check_room, digest_of, sign_pack, write

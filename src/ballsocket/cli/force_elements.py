@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from ..core.storage.atomic import check_folder
+from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..io.joint_file import JointFile
 from ..problem.cup import Cup
@@ -68,7 +68,7 @@ def checked_out(out: Path, ending: str) -> Path:
     """
     if out.suffix.lower() != ending:
         raise ValueError(f"out {str(out)!r} must end in {ending}")
-    check_folder(out)
+    check_parent_folder(out)
     return out
 
 

@@ -13,11 +13,12 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 import ballsocket as bs
 
-from ..core.executors.local import Engine, Serial
+from ..core.executors.processes import Engine, Serial
+from ..hip.bands import Bands
+from ..hip.cohort import cohort_store, write_csv
 from ..hip.config import HipFile, read_hip
 from ..hip.history import History
-from ..hip.lives import kept, write_csv
-from ..hip.uncertainty import Bands, population, uncertainty
+from ..hip.uncertainty import population, uncertainty
 from ..output.hip_bands import print_bands, print_notes
 from ..output.hip_report import check_page, write_hip_report
 from ..output.hip_terminal import print_hip
@@ -77,9 +78,9 @@ def _bands(given: HipFile, history: History, engine: Engine) -> Bands | None:
     said = given.uncertain
     if said is None:
         return None
-    patients = said.count * (len(said.scatter.distributions) + 2)
+    patients = said.count * (len(said.variability.distributions) + 2)
     with _bar("other patients", patients, "patients") as listen:
-        return uncertainty(said.scatter, history, count=said.count, seed=said.seed, engine=engine, listen=listen)
+        return uncertainty(said.variability, history, count=said.count, seed=said.seed, engine=engine, progress=listen)
 
 
 def _echo(history: History, bands: Bands | None) -> None:
@@ -96,19 +97,19 @@ def _many(given: HipFile, patients: int, engine: Engine, store: Path | None, as_
     if said is None:
         raise ValueError("--patients needs a table [uncertainty] that says what differs between them")
     counts = tuple(sorted({*given.report_at, given.cycles}))
-    where = None if store is None else kept(store, said.scatter, counts, said.seed)
+    where = None if store is None else cohort_store(store, said.variability, counts, said.seed)
     with _bar("patients", patients, "patients") as listen:
         lives, bands = population(
-            said.scatter, counts, patients=patients, seed=said.seed, engine=engine, store=where, listen=listen
+            said.variability, counts, patients=patients, seed=said.seed, engine=engine, store=where, progress=listen
         )
     if as_json:
-        notes = [*bands.usual_notes, *bands.notes]
+        notes = [*bands.nominal_notes, *bands.notes]
         echo_json({"version": bs.__version__, "valid": bands.valid, **bands.summary(), "notes": notes})
     else:
         print_bands(bands)
-        print_notes(bands.usual_notes)
+        print_notes(bands.nominal_notes)
     if store is not None:
-        path = write_csv(store / "patients.csv", lives, bands.lived)
+        path = write_csv(store / "patients.csv", lives, bands.cohort)
         if not as_json:
             echo_path(path)
 

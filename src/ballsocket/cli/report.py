@@ -11,7 +11,7 @@ import typer
 
 from ..catalogue import off_axis, reference
 from ..compare import Comparison
-from ..core.storage.atomic import at_once, check_folder
+from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..io.joint_file import JointFile
 from ..output.press_report import press_report
 from ..output.unit_systems import Units
@@ -38,14 +38,14 @@ class ReportWords:
             return
         if self.report.suffix.lower() != _ENDING:
             raise ValueError(f"report {str(self.report)!r} must end in {_ENDING}")
-        check_folder(self.report)
+        check_parent_folder(self.report)
 
     def write(self, comparison: Comparison, file: JointFile, units: Units) -> None:
         """Write it, if it is asked for."""
         if self.report is None:
             return
         page = press_report(comparison, file, _leading(comparison), units, self._around(comparison, file))
-        with at_once(self.report) as draft:
+        with write_atomically(self.report) as draft:
             draft.write_text(page, encoding="utf-8")
 
     def _around(self, comparison: Comparison, file: JointFile) -> Around | None:

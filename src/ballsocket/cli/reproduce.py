@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from ..core.checks import needs
-from ..core.executors.local import Processes
+from ..core.executors.processes import Processes
 from ..output.report import write_report
 from ..paper.plan import full_plan, quick_plan
 from .root import app, echo_path

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.checks import shown
-from ..core.executors.local import Engine, Serial
+from ..core.executors.processes import Engine, Serial
 from ..core.storage.fingerprint import fingerprint
 from .folder import PAGE, QUESTION, RECORD, SIGNATURE, SUMS, PageMaker, digest, names_of, page_bytes, sums_bytes
 from .folder import record_bytes as canonical

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.checks import shown
-from ..core.storage.atomic import at_once, is_draft
+from ..core.storage.atomic_files import is_draft, write_atomically
 from .question import Question
 from .signature import sign
 
@@ -128,6 +128,6 @@ def _tops(names: set[str]) -> set[str]:
 
 def _write(path: Path, content: bytes) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
-    with at_once(path) as draft:
+    with write_atomically(path) as draft:
         draft.write_bytes(content)
     return path

@@ -9,13 +9,15 @@ from math import radians
 import numpy
 
 from ..core.arrays import Numbers
+from ..hip.bands import DEFAULT_LEVEL
+from ..hip.cohort_results import RESULT_UNITS
 from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.cycle_registry import named_cycle
-from ..hip.patients import ANSWERS, Scatter
 from ..hip.simulation import HipSimulation
 from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
-from ..hip.uncertainty import LEVEL, population
+from ..hip.uncertainty import population
+from ..hip.variability import PatientVariability
 from ..hip.wear_law import WearLaw
 from ..hip.wear_laws import Archard, ContactAreaWear
 from ..problem import Joint, Material
@@ -134,7 +136,7 @@ def simulators(count: int = PATIENTS) -> Iterator[Predicted]:
     ):
         use = in_use(diameter, cycle, tilt, Archard(coefficient=k))
         table = _table(use, {"coefficient": _of(k), "clearance": _CLEARANCE}, [1e6, 3e6], count)
-        volume = table[:, :, list(ANSWERS).index("volume")]
+        volume = table[:, :, list(RESULT_UNITS).index("volume")]
         yield _band(name, (volume[:, 1] - volume[:, 0]) / 2)
 
 
@@ -150,14 +152,14 @@ def patients(count: int = PATIENTS) -> Iterator[Predicted]:
             seconds_per_cycle=YEAR / STEPS,
         )
         table = _table(use, _patients(k), [STEPS / 4, STEPS, 5 * STEPS, 10 * STEPS], count)
-        sunk = table[:, :, list(ANSWERS).index("penetration")]
+        sunk = table[:, :, list(RESULT_UNITS).index("penetration")]
         rate = dict.fromkeys(names, (sunk[:, 3] - sunk[:, 0]) / 9.75)
         rate |= {names[0]: sunk[:, 0]}
         rate |= {name: (sunk[:, 2] - sunk[:, 1]) / 4 for name in names if name.startswith("mccalden")}
         for name, values in rate.items():
             yield _band(name, values)
         if k == LINKED:
-            yield _band("lachiewicz-volume", table[:, 2, list(ANSWERS).index("volume")] / 5)
+            yield _band("lachiewicz-volume", table[:, 2, list(RESULT_UNITS).index("volume")] / 5)
 
 
 def _patients(k: float) -> dict[str, Distribution]:
@@ -175,10 +177,10 @@ def _of(k: float) -> LogNormal:
 
 
 def _table(use: HipSimulation, distributions: dict[str, Distribution], counts: list[float], count: int) -> Numbers:
-    return population(Scatter(use=use, distributions=distributions), counts, patients=count)[1].lived.table
+    return population(PatientVariability(use=use, distributions=distributions), counts, patients=count)[1].lived.table
 
 
 def _band(name: str, values: Numbers) -> Predicted:
-    rest = (1 - LEVEL) / 2
+    rest = (1 - DEFAULT_LEVEL) / 2
     low, median, high = (float(each) for each in numpy.nanquantile(values, [rest, 0.5, 1 - rest]))
     return Predicted(name=name, low=low, median=median, high=high)

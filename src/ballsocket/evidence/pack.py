@@ -13,7 +13,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
-from ..core.executors.local import Engine, Serial
+from ..core.executors.processes import Engine, Serial
 from ..core.storage.fingerprint import fingerprint
 from ..paper.plan import Piece, Plan, Results, Summary
 from ..studies.parameters import pressable

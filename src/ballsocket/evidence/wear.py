@@ -57,7 +57,7 @@ def worn(question: Question, case: Case) -> dict[str, Any]:
     answer: dict[str, Any] = {**history.summary(), "file": question.hip.name, "call": _CALL}
     if given.uncertain is not None:
         said = given.uncertain
-        scatter = replace(said.scatter, use=use)
+        scatter = replace(said.variability, use=use)
         answer |= uncertainty(scatter, history, count=said.count, seed=said.seed).summary()
     return answer
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
-from ..core.storage.atomic import write_text
+from ..core.storage.atomic_files import write_text
 from ..dynamics import ForceElement, Touch, reaction
 from ..dynamics.load import status_of
 from ..dynamics.potential import CurvePotential, energy_curve

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from ..core.storage.atomic import write_text
+from ..core.storage.atomic_files import write_text
 from ..dynamics import ForceElement, Touch
 from ..dynamics.reaction import Constants
 from .c_element import CElement

@@ -1,5 +1,6 @@
 """Wear simulation of hip joints: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
+from .bands import Bands
 from .creep_law import constrained_share
 from .creep_laws import KelvinVoigtChain, LogarithmicCreep, logarithmic
 from .cycle import Cycle, Frame, Spring
@@ -8,7 +9,6 @@ from .film import Film, Lubricant
 from .history import History
 from .in_vivo import in_vivo
 from .mix import Activity, Mix
-from .patients import Scatter
 from .simulation import HipSimulation
 from .simulator_cycles import (
     constant_load,
@@ -19,11 +19,16 @@ from .simulator_cycles import (
     rocking,
     two_axis,
 )
-from .uncertainty import Bands, population, uncertainty
+from .uncertainty import population, uncertainty
+from .variability import PatientVariability
 from .wear_laws import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 
-AreaLaw, EnergyLaw, OwnLaw = ContactAreaWear, FrictionEnergyWear, CustomWearLaw
-InUse, Ladder = HipSimulation, KelvinVoigtChain
+AreaLaw = ContactAreaWear
+EnergyLaw = FrictionEnergyWear
+OwnLaw = CustomWearLaw
+InUse = HipSimulation
+Ladder = KelvinVoigtChain
+Scatter = PatientVariability
 
 __all__ = [
     "Activity",
@@ -47,6 +52,7 @@ __all__ = [
     "Lubricant",
     "Mix",
     "OwnLaw",
+    "PatientVariability",
     "Scatter",
     "Spring",
     "constant_load",

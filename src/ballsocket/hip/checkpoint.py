@@ -1,4 +1,4 @@
-"""A run on disk: after each block as far as it is, so that a process that is killed loses no more than one."""
+"""Checkpoints of a wear simulation on disk: a killed process loses at most one block of cycles."""
 
 from __future__ import annotations
 
@@ -11,23 +11,32 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.storage.npz import read_arrays, write_arrays
+from ..core.storage.array_files import read_arrays, write_arrays
+from ..core.storage.fingerprint import digest_of
 from .hip_setup import HipSetup
 from .history import Report
 
 _VERSION = 6
-_NAME = "hip_in_use.npz"
+"""Version of the file's format."""
+
+_FILE_NAME = "hip_in_use.npz"
+
+_REPORT_FIELDS = fields(Report)
+
+_CONVERTERS = {"float": float, "bool": bool}
+"""Converters of a stored array to a field of a report, by the field's type; other fields are arrays."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Checkpoint:
-    """The folder in which one run is kept.
+    """File with the state and the reports of one run.
 
     Attributes
     ----------
     folder : Path
+        Folder of the file.
     identity : str
-        Of the hip, its cycle, its law, and how they are cut up.
+        Digest of the joint, the cycle, the wear laws and the discretization.
     """
 
     folder: Path
@@ -35,63 +44,74 @@ class Checkpoint:
 
     @property
     def path(self) -> Path:
-        return self.folder / _NAME
+        """Path of the file."""
+        return self.folder / _FILE_NAME
 
     def write(self, state: Mapping[str, Any], reports: tuple[Report, ...]) -> None:
-        """Keep the state of a run and what was seen so far."""
+        """Store the state of a run and its reports so far.
+
+        Raises
+        ------
+        OSError
+            The folder is not writable or the disk is full.
+        """
         self.folder.mkdir(parents=True, exist_ok=True)
-        seen = {f"report_{i}_{each.name}": getattr(one, each.name) for i, one in enumerate(reports) for each in _FIELDS}
-        write_arrays(self.path, identity=self.identity, count=len(reports), **state, **seen)
+        report_arrays = {
+            f"report_{number}_{field.name}": getattr(report, field.name)
+            for number, report in enumerate(reports)
+            for field in _REPORT_FIELDS
+        }
+        write_arrays(self.path, identity=self.identity, count=len(reports), **state, **report_arrays)
 
     def read(self) -> tuple[dict[str, Numbers], tuple[Report, ...]] | None:
-        """What was kept, or None where nothing is.
+        """Read the stored state and reports; return None if nothing is stored.
 
         Raises
         ------
         ValueError
-            Another run is kept there, or a file that is none.
+            The file belongs to another run, or is damaged.
         """
         if not self.path.exists():
             return None
         try:
-            found = read_arrays(self.path)
-            identity, count = str(found.pop("identity")), int(found.pop("count"))
+            arrays = read_arrays(self.path)
+            identity, n_reports = str(arrays.pop("identity")), int(arrays.pop("count"))
             if identity == self.identity:
-                reports = tuple(_report(found, f"report_{i}_") for i in range(count))
+                reports = tuple(_read_report(arrays, f"report_{number}_") for number in range(n_reports))
         except (OSError, ValueError, KeyError) as error:
-            raise ValueError(f"{self.path} is not a run that was kept; remove it to begin anew") from error
+            raise ValueError(f"{self.path} is not a checkpoint of a run; delete it to start again") from error
         if identity != self.identity:
-            raise ValueError(f"{self.folder} keeps another run: another hip, cycle or law; give another folder")
-        return {name: each for name, each in found.items() if not name.startswith("report_")}, reports
+            raise ValueError(
+                f"{self.folder} has the checkpoint of another run: another hip, cycle, law or version; "
+                "choose another folder"
+            )
+        return {name: array for name, array in arrays.items() if not name.startswith("report_")}, reports
 
 
-_FIELDS = fields(Report)
-_NUMBERS = {"float": float, "bool": bool}
-
-
-def _report(found: Mapping[str, Numbers], prefix: str) -> Report:
+def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
+    """Build a report from the arrays whose names begin with a prefix."""
     values: dict[str, Any] = {}
-    for each in _FIELDS:
-        as_it_was: Any = _NUMBERS.get(str(each.type), numpy.asarray)
-        values[each.name] = as_it_was(found[prefix + each.name])
+    for field in _REPORT_FIELDS:
+        convert: Any = _CONVERTERS.get(str(field.type), numpy.asarray)
+        values[field.name] = convert(arrays[prefix + field.name])
     return Report(**values)
 
 
 def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
-    """Where the run of a hip is kept.
+    """Return the checkpoint of a hip's run in a folder.
 
     Raises
     ------
     ValueError
-        A wear law by a function, which cannot be identified.
+        A wear law by a function, which has no fingerprint.
     """
     for law in (use.wear, use.ball_wear):
         if not getattr(law, "storable", True):
-            raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function cannot be identified")
-    cycle = sha256(
-        b"".join(each.tobytes() for each in (use.loads, use.lateral_stiffness, use.rotation_increments, use.loaded))
+            raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function has no fingerprint")
+    loads = sha256(
+        b"".join(array.tobytes() for array in (use.loads, use.lateral_stiffness, use.rotation_increments, use.loaded))
     ).hexdigest()
-    parts = (
+    inputs = (
         use.joint,
         use.placed,
         use.wear,
@@ -102,4 +122,4 @@ def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
         use.creep,
         use.seconds,
     )
-    return Checkpoint(folder=folder, identity=sha256(f"{_VERSION} {cycle} {parts!r}".encode()).hexdigest())
+    return Checkpoint(folder=folder, identity=digest_of(_VERSION, loads, inputs))

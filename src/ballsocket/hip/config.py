@@ -26,9 +26,8 @@ from .cycle_file import parse_cycle
 from .film import Lubricant
 from .law_fields import law_keys
 from .mix import Mix
-from .scatter_file import KEYS as SCATTER_KEYS
-from .scatter_file import Uncertain, uncertain
 from .simulation import HipSimulation, check_cycles
+from .uncertainty_config import UNCERTAINTY_KEYS, UncertaintySettings, read_uncertainty
 from .wear_laws import BALL_COEFFICIENT, WEAR_LAWS, read_ball_law, read_wear_law
 
 _TABLES: Mapping[str, tuple[str, ...]] = {
@@ -41,7 +40,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
     "creep": ("law", *law_keys(CREEP_LAWS), "confinement", "seconds_per_cycle"),
     "film": ("viscosity", "ball_roughness", "cup_roughness", "friction"),
     "wear": ("law", *law_keys(WEAR_LAWS), BALL_COEFFICIENT, "contact", "model", "ring_width"),
-    "uncertainty": SCATTER_KEYS,
+    "uncertainty": UNCERTAINTY_KEYS,
 }
 FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
 """Keys of a hip file by table; an empty name stands for the top."""
@@ -70,7 +69,7 @@ class HipFile:
     cycles: float
     report_at: tuple[float, ...]
     lubricant: Lubricant
-    uncertain: Uncertain | None = None
+    uncertain: UncertaintySettings | None = None
 
 
 def read_hip(path: str | Path) -> HipFile:
@@ -131,7 +130,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         cycles=cycles,
         report_at=report_at,
         lubricant=_parse_lubricant(table_of(content, "film")),
-        uncertain=uncertain(content, use) if "uncertainty" in content else None,
+        uncertain=read_uncertainty(content, use) if "uncertainty" in content else None,
     )
 
 

@@ -10,10 +10,10 @@ import scipy.fft
 
 from ..core.arrays import Numbers
 from ..elasticity.finite_elements.shapes import socket_shape
-from ..elasticity.off_axis.bore_contact import BoreContact
-from ..elasticity.off_axis.bore_contact import EquilibriumBatch as BedRest
+from ..elasticity.off_axis.bore_contact import BoreContact, EquilibriumBatch
 from ..elasticity.off_axis.compliance import Compliance, make_compliance
 from ..elasticity.off_axis.directions import magnitudes_and_directions
+from ..elasticity.off_axis.equilibrium import solve_force
 from ..elasticity.off_axis.gap import GapField, initial_displacement
 from ..elasticity.off_axis.grid import Grid, even_grid
 from ..elasticity.off_axis.surfaces import ClosedShell, EdgeRelation, RealCup
@@ -104,7 +104,7 @@ class GridSmoothing:
         """Factors of the harmonics about the axis: (rings, harmonics)."""
         # cos²(π m / 2M') is [1 2 1]/4 on M' cells a half circle
         half_circle = numpy.maximum(self.grid.meridians / 2 * numpy.sin(self.grid.polar), 1.0)[:, None]
-        m = numpy.arange(self.grid.degrees + 1)
+        m = numpy.arange(self.grid.max_harmonic + 1)
         return numpy.where(m < half_circle, numpy.cos(numpy.pi * m / (2 * half_circle)) ** 2, 0.0)
 
     @cached_property
@@ -223,40 +223,38 @@ class ElasticFoundation:
         """
         levels = uninterpolated(loads) if lateral_stiffness.any() else interpolate_loads(loads)
         shape = (len(levels.loads), self.grid.rings, self.grid.meridians)
-        separation = GapField(
+        gap = GapField(
             grid=self.grid,
             clearance=self.clearance,
             socket_radius=self.socket_radius,
             depth=depth.reshape(shape[1:]),
             kind=LinearGap,
         )
-        bed = BoreContact(compliance=self.compliance, separation=separation, tether=lateral_stiffness)
+        bed = BoreContact(compliance=self.compliance, gap=gap, tether=lateral_stiffness)
         solved = self._solve_levels(bed, levels, depth, start)
         flat = solved.pressure.reshape(shape[0], -1)
         return CycleEquilibrium(
             displacement=levels.interpolate(solved.displacement),
             pressure=levels.interpolate(flat),
-            converged=bool(solved.found.all()),
+            converged=bool(solved.converged.all()),
             levels=(solved.displacement, solved.pressure),
         )
 
     def _solve_levels(
         self, bed: BoreContact, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
-    ) -> BedRest:
+    ) -> EquilibriumBatch:
         """Solve the load levels from the previous equilibrium; others start again from a deeper displacement."""
-        count, deep = (
-            len(levels.loads),
-            initial_displacement(self, self.compliance.evenly, depth, *magnitudes_and_directions(levels.loads)),
-        )
+        count, sizes = len(levels.loads), magnitudes_and_directions(levels.loads)
+        deep = initial_displacement(self, self.compliance.uniform_stiffness, depth, *sizes)
         previous = None if start is None else start.levels
         begin, pressure = previous if previous is not None and len(previous[0]) == count else (deep, None)
-        solved = bed.under(levels.loads, begin, numpy.ones(count, dtype=bool), pressure)
+        solved = solve_force(bed, levels.loads, begin, numpy.ones(count, dtype=bool), pressure)
         for factor in _DEEPER_STARTS:
-            if solved.found.all():
+            if solved.converged.all():
                 break
-            retried = bed.under(levels.loads, factor * deep, ~solved.found)
-            unsolved = ~solved.found
-            for name in ("displacement", "pressure", "found"):
+            retried = solve_force(bed, levels.loads, factor * deep, ~solved.converged)
+            unsolved = ~solved.converged
+            for name in ("displacement", "pressure", "converged"):
                 getattr(solved, name)[unsolved] = getattr(retried, name)[unsolved]
         return solved
 

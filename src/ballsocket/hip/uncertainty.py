@@ -1,390 +1,272 @@
-"""How sure a prediction is: bands over patients who differ, and which of the differences matter."""
+"""Uncertainty of a wear prediction: bands over sampled patients, and Sobol indices of the sampled quantities."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from types import MappingProxyType
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.executors.local import Engine, Serial
-from ..elasticity.off_axis.surfaces import Springs
+from ..core.deprecation import renamed_arguments, renamed_names
+from ..core.executors.processes import Engine, Serial
 from ..studies.room import check_samples
 from ..studies.sobol import sobol
-from .coefficient_response import COEFFICIENT, CONVERTED, SharedCoefficient, share_coefficient
-from .contact_checks import list_notes
+from .bands import COEFFICIENT, CONVERTED, DEFAULT_LEVEL, INFLUENCED_RESULTS, Bands, SharedCoefficient
+from .cohort import CohortRun, CohortStore, ProgressCallback, sample_patients
+from .cohort_results import RESULT_UNITS, CohortResult, join_results, result_table
 from .history import History, Report
-from .lives import Kept, Listener, Lived, Lives, drawn, joined, summary_of
-from .patients import ANSWERS, Patient, Scatter, answers_of
-from .wear_law import coefficient_field
+from .variability import DEFAULT_COUNT, Patient, PatientVariability
 
-LEVEL = 0.95
-COUNT = 64
-"""Samples of each of as many sets as numbers scatter, and two."""
+_CONVERTED_COLUMNS = [list(RESULT_UNITS).index(name) for name in CONVERTED]
 
-SHARED = ("volume", "depth", "penetration")
-"""Whose scatter is shared out among what scatters."""
+_NODES = 12
+"""Number of runs of the nominal patient over the range of the coefficient."""
 
-_HERE = Serial()
+_SERIAL = Serial()
 
 
-def _nothing(done: int) -> None:
+def _ignore_progress(finished: int) -> None:
     pass
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Bands:
-    """What many patients' hips come to.
-
-    Attributes
-    ----------
-    scatter : Scatter
-    counts : tuple of float
-        Cycles of the usual patient at which was looked.
-    lived : Lived
-    seed : int
-    level : float
-        Share of the predictions within a band, and of the patients within a band for one coefficient.
-    shared : SharedCoefficient, optional
-        Results of the patients for a shared wear coefficient; None without a sampled coefficient and another quantity.
-    indices : mapping of str to array (answers of `SHARED`, what scatters), optional
-        Sobol's: `first_order`, `total_order`, and the ends of their intervals, `_low` and `_high`.
-    off : mapping of str to float
-        How far the usual patient's quick run is from the full one, relative to it.
-    """
-
-    scatter: Scatter
-    counts: tuple[float, ...]
-    lived: Lived
-    seed: int = 0
-    level: float = LEVEL
-    indices: Mapping[str, Numbers] | None = None
-    off: Mapping[str, float] = field(default_factory=dict)
-    shared: SharedCoefficient | None = None
-
-    @property
-    def subject(self) -> str:
-        """Noun for the members of a band: "predictions" for an unknown wear coefficient, else "patients"."""
-        return "predictions" if COEFFICIENT in self.scatter.distributions else "patients"
-
-    @property
-    def patients(self) -> int:
-        return len(self.lived.refused)
-
-    @property
-    def without(self) -> int:
-        """Patients without an answer."""
-        return int((self.lived.refused != "").sum())
-
-    def quantile(self, name: str, share: float) -> Numbers:
-        """The number of `ANSWERS` below which this share of the patients is, at each look."""
-        if self.without == self.patients:
-            return numpy.full(len(self.counts), numpy.nan)
-        return numpy.nanquantile(self.lived.table[:, :, list(ANSWERS).index(name)], share, axis=0)
-
-    def band(self, name: str) -> tuple[Numbers, Numbers]:
-        """The ends of the band of a number of `ANSWERS` at each look, over patients and coefficient together."""
-        rest = (1 - self.level) / 2
-        return self.quantile(name, rest), self.quantile(name, 1 - rest)
-
-    def population_band(self, name: str, coefficient: str = "median") -> tuple[Numbers, Numbers]:
-        """Compute the ends of the band of the patients at each report, for one shared wear coefficient.
-
-        Parameters
-        ----------
-        name : str
-            "volume", "depth" or "penetration".
-        coefficient : str
-            "low", "median" or "high": the ends and the middle of the band of the coefficient.
-
-        Raises
-        ------
-        ValueError
-            An unknown name or coefficient, or bands without a shared coefficient.
-        """
-        if self.shared is None:
-            raise ValueError("a band for one coefficient needs [uncertainty] with coefficient and another quantity")
-        if coefficient not in self.shared.values:
-            raise ValueError(f"coefficient = {coefficient!r} is not allowed: {', '.join(self.shared.values)}")
-        if name not in CONVERTED:
-            raise ValueError(f"{name!r} has no band for one coefficient: {', '.join(CONVERTED)}")
-        rest = (1 - self.level) / 2
-        low, high = (self.shared.quantile(coefficient, name, share) for share in (rest, 1 - rest))
-        return low, high
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What is to be said of it."""
-        assumed = f"what scatters, and how, is as given: {', '.join(self.scatter.distributions)}, independently"
-        elastic = () if isinstance(self.scatter.use.surface, Springs) else (_SPRINGS,)
-        return (assumed, *self._coefficient, *elastic, *self._refusals, *self._through, *self._outside)
-
-    @property
-    def usual_notes(self) -> tuple[str, ...]:
-        """Notes of the usual patient's run: contact model in the first cycle, cycle, cup and laws."""
-        checks = [("usual patient, in the first cycle", self.scatter.quick.unworn_checks)]
-        return (*list_notes(checks), *self.scatter.use.notes)
-
-    @property
-    def _coefficient(self) -> tuple[str, ...]:
-        """Note on the wear coefficient that all patients share."""
-        if COEFFICIENT not in self.scatter.distributions:
-            return ()
-        rest = (1 - self.level) / 2
-        low, high = self.scatter.distributions[COEFFICIENT].frozen.ppf([rest, 1 - rest])
-        coefficient = coefficient_field(self.scatter.use.wear)
-        unit = "" if coefficient is None else coefficient.unit.text
-        band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
-        return (f"the wear coefficient is unknown, but the same for all patients: {band}",)
-
-    @property
-    def _refusals(self) -> tuple[str, ...]:
-        if not self.without:
-            return ()
-        why = Counter(str(each).split(":")[0] for each in self.lived.refused if each).most_common(1)[0][0]
-        told = f"{self.without} of {self.patients} patients have no answer, most often: {why}"
-        return (f"{told}; bands are of the others",)
-
-    @property
-    def _through(self) -> tuple[str, ...]:
-        depth, liner = self.lived.table[:, -1, list(ANSWERS).index("depth")], self.scatter.use.joint.liner_thickness
-        through = int((depth > liner).sum())
-        return (f"{through} of {self.patients} patients wear their liner through",) if through else ()
-
-    @property
-    def _outside(self) -> tuple[str, ...]:
-        """Note on patients whose contact leaves the validity of its model."""
-        outside = int((self.lived.valid[:, -1] == 0).sum())
-        model = self.scatter.quick.contact_model.name
-        sentence = (
-            f"{outside} of {self.patients} patients have contacts outside the validity of the contact model ({model})"
-        )
-        return (sentence,) if outside else ()
-
-    @property
-    def peak_utilisation(self) -> Numbers:
-        """Largest utilisation of each patient from the first cycle to each report: (patients, looks)."""
-        return self.lived.peak_utilisation
-
-    def valid_share(self, look: int) -> float:
-        """Compute the share of patients with valid contacts from the first cycle to a report."""
-        valid = self.lived.valid[self.lived.refused == "", look]
-        return float(valid.mean()) if len(valid) else numpy.nan
-
-    @property
-    def valid(self) -> bool:
-        """True if every patient with an answer has valid contacts from the first cycle to each report."""
-        valid = self.lived.valid[self.lived.refused == ""]
-        return bool(valid.size and (valid == 1).all())
-
-    def utilisation_quantile(self, share: float) -> Numbers:
-        """Compute the quantile of the largest utilisation so far at each report; NaN where unknown."""
-        known = self.peak_utilisation[~numpy.isnan(self.peak_utilisation).any(axis=1)]
-        return numpy.quantile(known, share, axis=0) if len(known) else numpy.full(len(self.counts), numpy.nan)
-
-    def summary(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "bands": [self._at(look) for look in range(len(self.counts))],
-            "sobol": self._shares(),
-            "uncertainty": {
-                "patients": self.patients,
-                "without_answer": self.without,
-                "seed": self.seed,
-                "level": self.level,
-                "scatter": summary_of(self.scatter),
-                "coefficient": None if self.shared is None else dict(self.shared.values),
-                "quick_run_off": dict(self.off),
-            },
-        }
-
-    def edge_loading(self, look: int) -> float:
-        """The share of the patients whose contact reaches the rim in some instant then."""
-        least = self.lived.table[self.lived.refused == "", look, list(ANSWERS).index("edge_distance")]
-        return float((least <= 0).mean()) if len(least) else numpy.nan
-
-    def _at(self, look: int) -> dict[str, Any]:
-        year = self.scatter.cycles_per_year
-        ends = {name: (*self.band(name), self.quantile(name, 0.5)) for name in ANSWERS}
-        found: dict[str, dict[str, Any]] = {
-            name: {"low": _plain(low[look]), "median": _plain(middle[look]), "high": _plain(high[look])}
-            for name, (low, high, middle) in ends.items()
-        }
-        if self.shared is not None:
-            for name in CONVERTED:
-                found[name]["given_coefficient"] = self._given_coefficient(self.shared, name, look)
-        contact = {"peak_utilisation": self._peak(look), "valid": _plain(self.valid_share(look))}
-        when = {} if year is None else {"years": self.counts[look] / year}
-        return {
-            "cycles": self.counts[look],
-            **when,
-            **found,
-            "edge_loading": _plain(self.edge_loading(look)),
-            **contact,
-        }
-
-    def _peak(self, look: int) -> dict[str, float | None]:
-        """Return the band of the largest utilisation from the first cycle to a report."""
-        rest = (1 - self.level) / 2
-        shares = {"low": rest, "median": 0.5, "high": 1 - rest}
-        return {end: _plain(self.utilisation_quantile(share)[look]) for end, share in shares.items()}
-
-    def _given_coefficient(self, shared: SharedCoefficient, name: str, look: int) -> dict[str, Any]:
-        """Return the bands of the patients for each shared coefficient."""
-        rest = (1 - self.level) / 2
-        shares = {"low": rest, "median": 0.5, "high": 1 - rest}
-        return {
-            coefficient: {end: _plain(shared.quantile(coefficient, name, share)[look]) for end, share in shares.items()}
-            for coefficient in shared.values
-        }
-
-    def _shares(self) -> dict[str, Any] | None:
-        if self.indices is None:
-            return None
-        return {
-            answer: {
-                name: {order: _plain(values[row, column]) for order, values in self.indices.items()}
-                for column, name in enumerate(self.scatter.distributions)
-            }
-            for row, answer in enumerate(SHARED)
-        }
-
-
-_SPRINGS = "bands are those of radial springs"
-
-
-def _plain(value: float) -> float | None:
-    return float(value) if numpy.isfinite(value) else None
-
-
+@renamed_arguments(scatter="variability", listen="progress")
 def uncertainty(
-    scatter: Scatter,
+    variability: PatientVariability,
     history: History,
     *,
-    count: int = COUNT,
+    count: int = DEFAULT_COUNT,
     seed: int = 0,
-    engine: Engine = _HERE,
-    listen: Listener = _nothing,
+    engine: Engine = _SERIAL,
+    progress: ProgressCallback = _ignore_progress,
 ) -> Bands:
-    """The bands of a hip in use, and what matters.
+    """Compute the uncertainty bands of a wear simulation, and the Sobol indices of the sampled quantities.
 
     Parameters
     ----------
-    scatter : Scatter
+    variability : PatientVariability
+        Distributions of the patients.
     history : History
-        Of the usual patient; looks are taken where it has them.
+        Simulation of the nominal patient. The bands have the same reports.
     count : int
-        Samples, a power of two: patients are as many, times the numbers that scatter and two. Bands are those of the
-        first two sets.
+        Number of samples in each sample set, a power of two. There are two sets more than sampled quantities. The bands
+        are those of the first two sets.
     seed : int
-        The same seed gives the same numbers.
+        Seed of the samples. The same seed gives the same results.
     engine : Engine
-        Who wears the patients' hips.
-    listen : function
-        Told how many patients are done.
+        Executor of the simulations.
+    progress : function
+        Called with the number of finished patients.
 
     Raises
     ------
     ValueError
-        A count that is no power of two, a seed below 0.
+        A count that is not a power of two, or a negative seed.
     """
-    require("count", count, count >= 2 and count & (count - 1) == 0, "a power of two of samples")
-    require("seed", seed, seed >= 0, "a seed is 0 or more")
+    require("count", count, count >= 2 and count & (count - 1) == 0, "it must be a power of two")
+    require("seed", seed, seed >= 0, "it must be at least 0")
     check_samples(count)
     counts = tuple(report.cycles for report in history.reports)
-    answers = _Answers(scatter, counts, engine, listen)
-    indices: Mapping[str, Numbers] | None = sobol(answers, list(scatter.distributions.values()), count, seed, LEVEL)
-    if any((one.refused != "").any() for one in answers.seen):
+    simulation = _SampleSimulation(variability, counts, engine, progress)
+    distributions = list(variability.distributions.values())
+    indices: Mapping[str, Numbers] | None = sobol(simulation, distributions, count, seed, DEFAULT_LEVEL)
+    if any((result.refused != "").any() for result in simulation.results):
         indices = None
-    plain = joined(answers.seen[:2])
+    cohort = join_results(simulation.results[:2])
     sampled = {
-        name: numpy.concatenate([values[name] for values in answers.sampled[:2]]) for name in scatter.distributions
+        name: numpy.concatenate([values[name] for values in simulation.sampled[:2]])
+        for name in variability.distributions
     }
     return Bands(
-        scatter=scatter,
+        variability=variability,
         counts=counts,
-        lived=plain,
+        cohort=cohort,
         seed=seed,
         indices=indices,
-        off=_off(scatter, history.reports),
-        shared=share_coefficient(scatter, counts, sampled, plain.table, LEVEL, engine),
+        quick_run_errors=_quick_run_errors(variability, history.reports),
+        shared=share_coefficient(variability, counts, sampled, cohort.table, DEFAULT_LEVEL, engine),
     )
 
 
+@renamed_arguments(scatter="variability", listen="progress")
 def population(
-    scatter: Scatter,
+    variability: PatientVariability,
     counts: Sequence[float],
     *,
     patients: int,
     seed: int = 0,
-    engine: Engine = _HERE,
-    store: Kept | None = None,
-    listen: Listener = _nothing,
-) -> tuple[Lives, Bands]:
-    """Many patients, and what their hips come to.
+    engine: Engine = _SERIAL,
+    store: CohortStore | None = None,
+    progress: ProgressCallback = _ignore_progress,
+) -> tuple[CohortRun, Bands]:
+    """Simulate a sampled patient cohort, and compute its bands.
 
     Parameters
     ----------
-    scatter : Scatter
+    variability : PatientVariability
+        Distributions of the patients.
     counts : sequence of float
-        Cycles of the usual patient at which to look.
+        Cycles of the nominal patient at the reports.
     patients : int
-        With more of them the first ones stay the same.
+        Number of patients. A larger number keeps the first patients.
     seed : int
+        Seed of the samples.
     engine : Engine
-        `Serial()`, `Processes()`, `Distributed()`: a piece of sixteen patients is a task.
-    store : Kept, optional
-        What lies there is not worn anew.
-    listen : function
-        Told how many patients are done.
+        Executor of the simulations: `Serial()`, `Processes()`, `Distributed()`. A task is a piece of sixteen patients.
+    store : CohortStore, optional
+        Store of the patients' results. Stored patients are not simulated again.
+    progress : function
+        Called with the number of finished patients.
 
     Raises
     ------
     ValueError
-        No number of patients; a seed below 0.
+        Fewer than one patient, too many, or a negative seed.
+    OSError
+        The store is not writable or the disk is full.
     """
-    lives = Lives(scatter=scatter, counts=tuple(sorted(counts)), values=drawn(scatter, patients, seed))
-    whole = Patient(use=scatter.use, pace=1.0).seen(lives.counts)
-    lived = lives.all(engine, store, listen)
-    shared = share_coefficient(scatter, lives.counts, lives.values, lived.table, LEVEL, engine)
-    off = _off(scatter, whole)
-    return lives, Bands(scatter=scatter, counts=lives.counts, lived=lived, seed=seed, off=off, shared=shared)
+    run = CohortRun(
+        variability=variability, counts=tuple(sorted(counts)), values=sample_patients(variability, patients, seed)
+    )
+    reports = Patient(use=variability.use, cycle_ratio=1.0).simulate(run.counts)
+    cohort = run.simulate(engine, store, progress)
+    bands = Bands(
+        variability=variability,
+        counts=run.counts,
+        cohort=cohort,
+        seed=seed,
+        quick_run_errors=_quick_run_errors(variability, reports),
+        shared=share_coefficient(variability, run.counts, run.values, cohort.table, DEFAULT_LEVEL, engine),
+    )
+    return run, bands
 
 
 @dataclass
-class _Answers:
-    """The numbers of `SHARED` at the end (answers, points) of samples (numbers, points), which it has `seen` whole."""
+class _SampleSimulation:
+    """Function of samples (quantities, points) for Sobol indices that stores the results of all samples.
 
-    scatter: Scatter
+    It returns `INFLUENCED_RESULTS` at the last report, with the shape (results, points).
+    """
+
+    variability: PatientVariability
     counts: tuple[float, ...]
     engine: Engine
-    listen: Listener
-    seen: list[Lived] = field(default_factory=list)
+    progress: ProgressCallback
+    results: list[CohortResult] = field(default_factory=list)
     sampled: list[Mapping[str, Numbers]] = field(default_factory=list)
-    done: int = 0
+    n_finished: int = 0
 
-    def __call__(self, values: Numbers) -> Numbers:
-        named = dict(zip(self.scatter.distributions, values.reshape(len(values), -1), strict=True))
-        lives = Lives(scatter=self.scatter, counts=self.counts, values=named)
-        lived = lives.all(self.engine, None, lambda done: self.listen(self.done + done))
-        self.done += len(lives)
-        self.seen.append(lived)
-        self.sampled.append(named)
-        last = lived.table[:, -1, [list(ANSWERS).index(name) for name in SHARED]]
-        return last.T.reshape(len(SHARED), *values.shape[1:]).copy()
+    def __call__(self, samples: Numbers) -> Numbers:
+        values = dict(zip(self.variability.distributions, samples.reshape(len(samples), -1), strict=True))
+        run = CohortRun(variability=self.variability, counts=self.counts, values=values)
+        result = run.simulate(self.engine, None, lambda finished: self.progress(self.n_finished + finished))
+        self.n_finished += len(run)
+        self.results.append(result)
+        self.sampled.append(values)
+        last = result.table[:, -1, [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]]
+        return last.T.reshape(len(INFLUENCED_RESULTS), *samples.shape[1:]).copy()
 
 
-def _off(scatter: Scatter, whole: Sequence[Report]) -> dict[str, float]:
-    """How far the usual patient's quick run is from the whole one."""
-    quick = answers_of(scatter.patient({}).seen([report.cycles for report in whole]))
-    full = answers_of(whole)
-    found = {}
-    for name in SHARED:
-        place = list(ANSWERS).index(name)
-        one, other = quick[:, place], full[:, place]
-        found[name] = float(abs(numpy.divide(one, other, out=numpy.ones_like(one), where=other > 0) - 1).max())
-    return found
+def _quick_run_errors(variability: PatientVariability, reports: Sequence[Report]) -> dict[str, float]:
+    """Compute the largest relative difference between the nominal patient's coarse simulation and the full one."""
+    coarse_reports = variability.patient({}).simulate([report.cycles for report in reports])
+    coarse, full = result_table(coarse_reports), result_table(reports)
+    errors = {}
+    for name in INFLUENCED_RESULTS:
+        column = list(RESULT_UNITS).index(name)
+        value, reference = coarse[:, column], full[:, column]
+        ratio = numpy.divide(value, reference, out=numpy.ones_like(value), where=reference > 0)
+        errors[name] = float(abs(ratio - 1).max())
+    return errors
+
+
+def share_coefficient(
+    variability: PatientVariability,
+    counts: tuple[float, ...],
+    sampled: Mapping[str, Numbers],
+    table: Numbers,
+    level: float,
+    engine: Engine,
+) -> SharedCoefficient | None:
+    """Convert the results of patients to shared wear coefficients.
+
+    Each result is multiplied by the ratio of the nominal patient's results at both coefficients. Twice the cycles wear
+    as much as twice the coefficient. The ratio is therefore taken at the coefficient times the patient's cycle ratio.
+
+    Parameters
+    ----------
+    variability : PatientVariability
+        Distributions of the patients.
+    counts : tuple of float
+        Cycles of the nominal patient at the reports.
+    sampled : mapping of str to array (patients,)
+        Sampled quantities of the patients.
+    table : array (patients, reports, results)
+        Results of `RESULT_UNITS` at the sampled coefficients.
+    level : float
+        Fraction of the coefficients inside their band.
+    engine : Engine
+        Executor of the simulations.
+
+    Returns
+    -------
+    SharedCoefficient or None
+        None without a sampled coefficient and another sampled quantity, for a coefficient of 0, or without results.
+    """
+    if COEFFICIENT not in variability.distributions or len(variability.distributions) == 1:
+        return None
+    tail = (1 - level) / 2
+    ends = variability.distributions[COEFFICIENT].frozen.ppf([tail, 0.5, 1 - tail])
+    values = dict(zip(("low", "median", "high"), map(float, ends), strict=True))
+    sampled_coefficients, cycle_ratios = sampled[COEFFICIENT], _cycle_ratios(variability, sampled)
+    low, high = (
+        min(sampled_coefficients.min(), ends[0]) * cycle_ratios.min(),
+        max(sampled_coefficients.max(), ends[-1]) * cycle_ratios.max(),
+    )
+    if not 0 < low < high or numpy.isnan(table).all():
+        return None
+    exposures = numpy.geomspace(low, high, _NODES)
+    nominal = CohortRun(variability=variability, counts=counts, values={COEFFICIENT: exposures}).simulate(engine)
+    known = nominal.refused == ""
+    if not known.any():
+        return None
+    response = _Response(exposures=exposures[known], table=nominal.table[known][:, :, _CONVERTED_COLUMNS])
+    factors = table[:, :, _CONVERTED_COLUMNS] / response.interpolate(sampled_coefficients * cycle_ratios)
+    results = {name: factors * response.interpolate(value * cycle_ratios) for name, value in values.items()}
+    return SharedCoefficient(values=MappingProxyType(values), results=MappingProxyType(results))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Response:
+    """Results of the nominal patient (nodes, reports, results) over coefficient times cycle ratio (nodes,)."""
+
+    exposures: Numbers
+    table: Numbers
+
+    def interpolate(self, exposures: Numbers) -> Numbers:
+        """Interpolate the results on logarithmic axes: (points, reports, results), NaN for zero wear."""
+        x, nodes = numpy.log(exposures), numpy.log(self.exposures)
+        with numpy.errstate(divide="ignore"):
+            columns = numpy.log(self.table).reshape(len(nodes), -1).T
+        values = numpy.exp(numpy.stack([numpy.interp(x, nodes, column) for column in columns], axis=-1))
+        return numpy.where(values > 0, values, numpy.nan).reshape(len(x), *self.table.shape[1:])
+
+
+def _cycle_ratios(variability: PatientVariability, sampled: Mapping[str, Numbers]) -> Numbers:
+    """Compute the ratio of each patient's cycles to those of the nominal patient."""
+    nominal = variability.cycles_per_year
+    if "cycles_per_year" not in sampled or not nominal:
+        return numpy.ones(len(sampled[COEFFICIENT]))
+    return sampled["cycles_per_year"] / nominal
+
+
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "LEVEL": "ballsocket.hip.bands.DEFAULT_LEVEL",
+        "SHARED": "ballsocket.hip.bands.INFLUENCED_RESULTS",
+        "COUNT": "ballsocket.hip.variability.DEFAULT_COUNT",
+    },
+)

@@ -131,7 +131,7 @@ def _machine(name: str, table: Any) -> Machine:
     if not isinstance(table, Mapping):
         raise ValueError(f"machine.{name} = {shown(table)} must be a table: [machine.{name}]")
     check_names(table, MACHINE_ERRORS, f"in [machine.{name}]")
-    sizes = {error: _number_or_range(f"{name}.{error}", value, error) for error, value in table.items()}
+    sizes: dict[str, Any] = {error: _number_or_range(f"{name}.{error}", value, error) for error, value in table.items()}
     return Machine(name=name, **sizes)
 
 

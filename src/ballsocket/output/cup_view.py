@@ -11,7 +11,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import needs
 from ..core.quantities import FIELD
-from ..core.storage.atomic import at_once
+from ..core.storage.atomic_files import write_atomically
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import unit_vectors
 from .cup_map import drawn, highest
@@ -83,7 +83,7 @@ def save_view(contact: OffAxisContact, path: Path) -> None:
     """
     plotter = cup_view(contact, off_screen=True)
     try:
-        with at_once(path) as draft:
+        with write_atomically(path) as draft:
             plotter.screenshot(str(draft))
     finally:
         plotter.close()

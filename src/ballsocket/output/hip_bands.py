@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy
 from rich.table import Table
 
+from ..hip.bands import INFLUENCED_RESULTS, Bands
 from ..hip.history import History
-from ..hip.uncertainty import SHARED, Bands
 from .hip_plots import penetration_curve
 from .html import drawn, picture, table
 from .style import BLUE, ORANGE, finish
@@ -83,11 +83,11 @@ def share_figure(bands: Bands) -> Figure:
     """First and total Sobol indices of what patients differ in, with their intervals."""
     from matplotlib.figure import Figure
 
-    names, indices = list(bands.scatter.distributions), bands.indices or {}
-    figure = Figure(figsize=(3.0 * len(SHARED) + 1.2, 0.5 * len(names) + 1.6), layout="constrained")
+    names, indices = list(bands.variability.distributions), bands.indices or {}
+    figure = Figure(figsize=(3.0 * len(INFLUENCED_RESULTS) + 1.2, 0.5 * len(names) + 1.6), layout="constrained")
     rows = numpy.arange(len(names))
-    panels = figure.subplots(1, len(SHARED), squeeze=False, sharey=True).ravel()
-    for number, (axes, answer) in enumerate(zip(panels, SHARED, strict=True)):
+    panels = figure.subplots(1, len(INFLUENCED_RESULTS), squeeze=False, sharey=True).ravel()
+    for number, (axes, answer) in enumerate(zip(panels, INFLUENCED_RESULTS, strict=True)):
         for order, offset, colour in zip(("first", "total"), (-0.17, 0.17), _INK, strict=True):
             value, low, high = (indices[f"{order}_order{end}"][number] for end in ("", "_low", "_high"))
             off = numpy.nan_to_num(numpy.clip([value - low, high - value], 0.0, None))
@@ -102,7 +102,7 @@ def share_figure(bands: Bands) -> Figure:
 
 
 def _told(bands: Bands) -> str:
-    share, patients = f"{100 * bands.level:g} %", bands.patients - bands.without
+    share, patients = f"{100 * bands.level:g} %", bands.patients - bands.n_failed
     if bands.shared is None:
         among = "" if bands.subject == "patients" else "predictions from "
         return f"{share} of {among}{patients} patients"
@@ -137,24 +137,28 @@ def _contact(bands: Bands) -> str:
     """Describe validity and utilisation of the contacts from the first cycle to the last report."""
     rest = (1 - bands.level) / 2
     low, high = (bands.utilisation_quantile(share)[-1] for share in (rest, 1 - rest))
-    reasons = [check.utilisation_note for check in bands.scatter.quick.unworn_checks] or ["nothing is pressed"]
+    reasons = [check.utilisation_note for check in bands.variability.quick.unworn_checks] or ["nothing is pressed"]
     peak = reasons[0] if isnan(low) else f"utilisation σv/σy {low:.3g} to {high:.3g}"
-    model = bands.scatter.quick.contact_model.name
-    return f"contact ({model}): valid in {100 * bands.valid_share(-1):.3g} % of the {bands.subject}; {peak}"
+    model = bands.variability.quick.contact_model.name
+    return f"contact ({model}): valid in {100 * bands.valid_fraction(-1):.3g} % of the {bands.subject}; {peak}"
 
 
 def _rows(bands: Bands, shares: Sequence[float]) -> Iterator[tuple[str, ...]]:
-    year = bands.scatter.cycles_per_year
+    year = bands.variability.cycles_per_year
     for look, count in enumerate(bands.counts):
         years = "-" if year is None else f"{count / year:.3g}"
         when = f"{count / 1e6:g}", years
-        found = [_ends(bands.quantile(name, share)[look] for share in shares) for name in SHARED]
+        found = [_ends(bands.quantile(name, share)[look] for share in shares) for name in INFLUENCED_RESULTS]
         if bands.shared is None:
             yield (*when, *found, f"{100 * bands.edge_loading(look):.3g} %")
             continue
         for coefficient in bands.shared.values:
             quantile = partial(bands.shared.quantile, coefficient)
-            yield (*when, coefficient, *(_ends(quantile(name, share)[look] for share in shares) for name in SHARED))
+            yield (
+                *when,
+                coefficient,
+                *(_ends(quantile(name, share)[look] for share in shares) for name in INFLUENCED_RESULTS),
+            )
         yield (*when, _ANY, *found)
 
 
@@ -169,10 +173,10 @@ def _shares(bands: Bands) -> Iterator[str]:
     """What makes how much of the scatter, most first."""
     if bands.indices is None:
         return
-    for row, answer in enumerate(SHARED):
+    for row, answer in enumerate(INFLUENCED_RESULTS):
         values = bands.indices["total_order"][row]
         low, high = (bands.indices[f"total_order_{end}"][row] for end in ("low", "high"))
         order = numpy.argsort(-numpy.nan_to_num(values, nan=-inf))
-        names = list(bands.scatter.distributions)
+        names = list(bands.variability.distributions)
         told = ", ".join(f"{names[i]} {values[i]:.2f} ({low[i]:.2f} to {high[i]:.2f})" for i in order)
         yield f"what matters to {answer} (Sobol, total order): {told}"

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..hip.ball_wear import ball_directions
+from ..hip.bands import Bands
 from ..hip.history import History, Report
 from ..hip.kinematics import tracks
 from ..hip.mix import Mix
-from ..hip.uncertainty import Bands
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

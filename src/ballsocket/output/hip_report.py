@@ -8,10 +8,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ..core.storage.atomic import write_text
+from ..core.storage.atomic_files import check_parent_folder, write_text
+from ..hip.bands import Bands
 from ..hip.film import CONFORMITY_NOTE
 from ..hip.history import History
-from ..hip.uncertainty import Bands
 from . import hip_plots
 from .hip_bands import band_sections
 from .hip_contact import HEADS, contact_line, contact_rows
@@ -61,8 +61,7 @@ def check_page(path: Path) -> None:
     """Raise ValueError unless a page can be written there."""
     if path.suffix.lower() != ".html":
         raise ValueError(f"report {str(path)!r} must end in .html")
-    if not path.parent.is_dir():
-        raise ValueError(f"{str(path.parent)!r} is no folder to write {path.name} into")
+    check_parent_folder(path)
 
 
 def write_hip_report(history: History, path: Path, bands: Bands | None = None) -> Path:

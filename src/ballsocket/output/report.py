@@ -11,8 +11,8 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..core.executors.local import Engine, Serial
-from ..core.storage.atomic import at_once, write_text
+from ..core.executors.processes import Engine, Serial
+from ..core.storage.atomic_files import write_atomically, write_text
 from ..paper.figure import Figure
 from . import accuracy_table, report_tables
 from . import html as html_page
@@ -102,7 +102,7 @@ def _accuracy(rows: Sequence[Mapping[str, Any]], folder: Path, picture: bytes) -
 def _pictured(name: str, drawing: Drawing, folder: Path) -> bytes:
     """The picture as PNG; it is written as SVG too."""
     for suffix in ("png", "svg"):
-        with at_once(folder / f"{name}.{suffix}") as draft:
+        with write_atomically(folder / f"{name}.{suffix}") as draft:
             drawing.savefig(draft, dpi=140)
     return (folder / f"{name}.png").read_bytes()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.storage.atomic import at_once, check_folder
+from ..core.storage.atomic_files import check_parent_folder, write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,7 +18,7 @@ def check_format(path: Path) -> None:
     """Raise ValueError unless `path` ends in .png, .svg or .pdf, in a folder that is there."""
     if path.suffix.lower().lstrip(".") not in FORMATS:
         raise ValueError(f"figure {str(path)!r} must end in {', '.join('.' + name for name in FORMATS)}")
-    check_folder(path)
+    check_parent_folder(path)
 
 
 def save(figure: Figure, path: str | Path) -> None:
@@ -33,5 +33,5 @@ def save(figure: Figure, path: str | Path) -> None:
     """
     path = Path(path)
     check_format(path)
-    with at_once(path) as draft:
+    with write_atomically(path) as draft:
         figure.savefig(draft, dpi=160)

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import product
+from itertools import chain, product
 from pathlib import Path
 from typing import Any
 
 from ..catalogue import catalogue
 from ..contact import Model
-from ..core.executors.local import Engine, Serial
-from ..core.storage.atomic import write_text
+from ..core.executors.processes import Engine, Serial
+from ..core.storage.atomic_files import write_text
 from ..core.storage.fingerprint import fingerprint
+from ..core.storage.pieces import PieceRun, PieceStore
 from ..elasticity.exact.model import Exact
 from ..elasticity.finite_elements.model import FiniteElement
 from . import cases, curves
@@ -47,30 +48,25 @@ class Plan:
         return sum(map(len, self.parts.values()))
 
     def run(self, folder: Path, engine: Engine = _HERE) -> Iterator[tuple[str, str, Any]]:
-        """The pieces with part, name and result, as they are there. Those that lie in the folder of the
-        plan's name already are read.
+        """Yield part, name and result of each piece: stored results first, then the others as they are computed.
+
+        Results are stored in a subfolder with the plan's name.
 
         Raises
         ------
         OSError
-            A folder that cannot be written to.
+            The folder is not writable or the disk is full.
         """
         folder = folder / self.name
         folder.mkdir(parents=True, exist_ok=True)
         pieces = [(part, name) for part, pieces in self.parts.items() for name in pieces]
-        work = _Pieces(
-            tuple(folder / f"{part}{_plain(name)}.json" for part, name in pieces),
-            tuple(self.parts[part][name] for part, name in pieces),
-            tuple(f"ballsocket {fingerprint()}, {self.name}, {part} {name}" for part, name in pieces),
+        store = _ResultFiles(
+            paths=tuple(folder / f"{part}{_plain(name)}.json" for part, name in pieces),
+            keys=tuple(f"ballsocket {fingerprint()}, {self.name}, {part} {name}" for part, name in pieces),
         )
-        missing = []
-        for number, (part, name) in enumerate(pieces):
-            kept = _kept(work.paths[number], work.keys[number])
-            if kept is None:
-                missing.append(number)
-            else:
-                yield part, name, kept
-        for number, result in engine.run(work, missing):
+        work = _PlanWork(tuple(self.parts[part][name] for part, name in pieces))
+        run = PieceRun(work, range(len(pieces)), store)
+        for number, result in chain(run.stored.items(), run.compute_missing(engine)):
             yield *pieces[number], result
 
     def results(
@@ -85,15 +81,35 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class _Pieces:
-    """Computes a piece and keeps it in its file."""
+class _PlanWork:
+    """Work of a plan; a call with a number computes that piece."""
 
-    paths: tuple[Path, ...]
     pieces: tuple[Piece, ...]
-    keys: tuple[str, ...]
 
     def __call__(self, number: int) -> Any:
-        result = self.pieces[number]()
+        return self.pieces[number]()
+
+
+@dataclass(frozen=True)
+class _ResultFiles(PieceStore):
+    """Results of a plan in JSON files, one file a piece, each with a key that names the piece and the code."""
+
+    paths: tuple[Path, ...]
+    keys: tuple[str, ...]
+
+    def load(self, numbers: Sequence[int]) -> dict[int, Any]:
+        """Load the results of the pieces whose files are undamaged and have their key."""
+        results = {number: self._read(number) for number in numbers}
+        return {number: result for number, result in results.items() if result is not None}
+
+    def save(self, number: int, result: Any) -> Any:
+        """Write the result of a piece, and return it.
+
+        Raises
+        ------
+        ValueError
+            The result has a number that is NaN or infinite.
+        """
         try:
             record = json.dumps({"key": self.keys[number], "result": result}, allow_nan=False)
         except ValueError as error:
@@ -101,14 +117,13 @@ class _Pieces:
         write_text(self.paths[number], record)
         return result
 
-
-def _kept(path: Path, key: str) -> Any:
-    """What a file holds; None where it is another run's, or broken."""
-    try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-        return record["result"] if record["key"] == key else None
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
+    def _read(self, number: int) -> Any:
+        """Read the result of a piece; return None if it is missing, damaged or of another run."""
+        try:
+            record = json.loads(self.paths[number].read_text(encoding="utf-8"))
+            return record["result"] if record["key"] == self.keys[number] else None
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
 
 
 def _plain(name: str) -> str:

@@ -16,6 +16,7 @@ import numpy
 
 from ..core.arrays import Numbers, gauss_legendre
 from ..core.checks import shown
+from ..core.deprecation import RenamedAttribute
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +55,8 @@ class LinearGap:
         """Compute A[∂u/∂d](t)."""
         return numpy.cos(1.5 * t) + 0.0 * d
 
+    deepening = RenamedAttribute("indentation_derivative")
+
 
 @dataclass(frozen=True, kw_only=True)
 class CircularGap:
@@ -87,7 +90,9 @@ class CircularGap:
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute A[∂u/∂d](t)."""
-        return _transform(t, lambda w: self._deepening(w, d))
+        return _transform(t, lambda w: self._indentation_parts(w, d))
+
+    deepening = RenamedAttribute("indentation_derivative")
 
     def _parts(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
         """Compute u and its first two derivatives with respect to w; NaN beyond the ball."""
@@ -97,7 +102,7 @@ class CircularGap:
         tilt = e * e * (1 - w) / root
         return d - e * w - dropped / (R1 + root), -e - tilt, (e * e - tilt * tilt) / root
 
-    def _deepening(self, w: Numbers, d: Numbers) -> tuple[Numbers, Numbers]:
+    def _indentation_parts(self, w: Numbers, d: Numbers) -> tuple[Numbers, Numbers]:
         """Compute ∂u/∂d and its derivative with respect to w."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         sine = w * (2 - w)

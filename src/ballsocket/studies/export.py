@@ -9,7 +9,7 @@ import numpy
 
 from ..core.checks import needs
 from ..core.quantities import QUANTITIES
-from ..core.storage.atomic import at_once, check_folder
+from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from .pieces import blocks_of, dims_of, pieces
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ def check_suffix(path: Path) -> None:
     """Raise ValueError unless `path` ends like a format that is written, in a folder that is there."""
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{str(path)!r} must end in {' or '.join(SUFFIXES)}")
-    check_folder(path)
+    check_parent_folder(path)
 
 
 def export(study: xarray.Dataset, path: str | Path) -> None:
@@ -41,7 +41,7 @@ def export(study: xarray.Dataset, path: str | Path) -> None:
     """
     path = Path(path)
     check_suffix(path)
-    with at_once(path) as draft:
+    with write_atomically(path) as draft:
         if path.suffix.lower() == ".nc":
             needs("study", "h5netcdf")
             plain = study.assign_attrs({key: value for key, value in study.attrs.items() if isinstance(value, str)})

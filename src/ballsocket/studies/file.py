@@ -11,7 +11,7 @@ from ..catalogue import catalogue, judge, off_axis
 from ..contact import Model
 from ..core.checks import check_names, check_text, known_name, nearest, shown
 from ..core.executors.dask import Distributed
-from ..core.executors.local import Engine, Processes, Serial
+from ..core.executors.processes import Engine, Processes, Serial
 from ..elasticity.exact.exact_curve import ExactCurve
 from ..io.joint_file import KEYS, check_keys, named_material
 from ..io.named_joint import PARTS, joint_in

@@ -15,14 +15,15 @@ from ..catalogue import catalogue
 from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core.checks import check_names, needs, shown
-from ..core.executors.local import Engine, Serial
+from ..core.executors.processes import Engine, Serial
+from ..core.storage.pieces import PieceRun
 from ..problem import Joint
 from .blocks import Blocks
 from .design import Design, check_values, grid, is_one
 from .labels import arranged, dataset
 from .parameters import LOADS, check_aims
 from .room import check_room
-from .store import Store, Writing
+from .store import BlockStore, Store
 from .task import DTYPES, EDGE_DISTANCE, QUANTITIES, USUAL, Task, points_a_block
 
 if TYPE_CHECKING:
@@ -122,9 +123,9 @@ def study(
     if kept is None:
         return dataset(task, _in_memory(task, engine, listen))
     kept.prepare(task)
-    numbers = kept.missing(task)
-    check_room(task, kept.path, sum(map(task.blocks.points, numbers)))
-    _into(kept, task, numbers, engine, listen)
+    run = PieceRun(task, range(len(task.blocks)), BlockStore(task, kept))
+    check_room(task, kept.path, sum(map(task.blocks.points, run.missing)))
+    _into(kept, task, run, engine, listen)
     return read(kept.path)
 
 
@@ -183,10 +184,10 @@ def _in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.
     return whole
 
 
-def _into(store: Store, task: Task, numbers: list[int], engine: Engine, listen: Listener) -> None:
-    done = len(task.blocks) - len(numbers)
+def _into(store: Store, task: Task, run: PieceRun, engine: Engine, listen: Listener) -> None:
+    done = len(run.stored)
     try:
-        for _ in _told(engine.run(Writing(task, store), numbers), task, numbers, listen):
+        for _ in _told(run.compute_missing(engine), task, run.missing, listen):
             done += 1
     except ConnectionError:
         raise

@@ -5,7 +5,7 @@ from __future__ import annotations
 import filecmp
 import json
 import shutil
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import gettempdir
@@ -16,7 +16,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs
-from ..core.storage.atomic import at_once, draft_folder
+from ..core.storage.atomic_files import make_draft_folder, write_atomically
+from ..core.storage.pieces import PieceStore
 from .identity import differences, identity
 from .labels import attributes, coordinates, described
 from .task import DTYPES, Task
@@ -69,7 +70,7 @@ class Store:
     def _made(self, task: Task, asked: Mapping[str, Any]) -> bool:
         """Make the group; false where another process was quicker, and nothing is made."""
         try:
-            with at_once(self.path) as draft:
+            with write_atomically(self.path) as draft:
                 _make(draft, task, asked)
         except OSError:
             if not self.path.exists():
@@ -79,7 +80,7 @@ class Store:
 
     def _label(self, task: Task, asked: Mapping[str, Any]) -> None:
         """Put every label, which is all that a store without answers has, where it is damaged or gone."""
-        with draft_folder(Path(gettempdir()) / self.path.name) as folder:  # where the store is may be read-only
+        with make_draft_folder(Path(gettempdir()) / self.path.name) as folder:  # where the store is may be read-only
             draft = folder / self.path.name
             _make(draft, task, asked)
             for fresh in draft.rglob("*"):
@@ -105,19 +106,19 @@ class Store:
             raise ValueError(f"{self.path} is there already and is no study")
         return found
 
-    def missing(self, task: Task) -> list[int]:
-        """Blocks that are not there, or are not what was written."""
+    def intact_blocks(self, task: Task, numbers: Sequence[int]) -> list[int]:
+        """Return the numbers of those blocks that are stored and have their checksum."""
         import zarr
 
         group = zarr.open_group(self.path, mode="r")
         try:
             checksums = numpy.asarray(group[CHECKSUM][:])  # type: ignore[index]
-        except Exception:  # a damaged list: every block is looked at anew
-            return list(range(len(task.blocks)))
+        except Exception:  # without the list of checksums, every block is computed again
+            return []
         return [
             number
-            for number, checksum in enumerate(checksums.tolist())
-            if checksum < 0 or checksum != _checksum_of(group, task, number)
+            for number in numbers
+            if checksums[number] >= 0 and checksums[number] == _checksum_of(group, task, number)
         ]
 
     def write(self, task: Task, number: int, answers: Mapping[str, Numbers]) -> None:
@@ -137,14 +138,25 @@ class Store:
 
 
 @dataclass(frozen=True, eq=False)
-class Writing:
-    """Computes a block and writes it where it belongs."""
+class BlockStore(PieceStore):
+    """Store of the blocks of a study in its Zarr group, from which xarray reads them."""
 
     task: Task
     store: Store
 
-    def __call__(self, number: int) -> None:
-        self.store.write(self.task, number, self.task(number))
+    def load(self, numbers: Sequence[int]) -> dict[int, None]:
+        """Return the numbers of the intact blocks, without their values."""
+        return dict.fromkeys(self.store.intact_blocks(self.task, numbers))
+
+    def save(self, number: int, result: Mapping[str, Numbers]) -> None:
+        """Write the values of a block.
+
+        Raises
+        ------
+        OSError
+            The store is not writable or the disk is full.
+        """
+        self.store.write(self.task, number, result)
 
 
 def _make(path: Path, task: Task, study: Mapping[str, Any]) -> None:

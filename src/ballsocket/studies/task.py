@@ -12,7 +12,7 @@ from ..contact import Model
 from ..contact.describe import COLUMNS
 from ..core.arrays import Numbers
 from ..core.quantities import BEARING
-from ..core.storage.fingerprint import fingerprint
+from ..core.storage.fingerprint import check_worker_code, fingerprint
 from ..core.validity import OutsideDomainError, Status
 from ..problem import Joint
 from .blocks import Blocks
@@ -65,8 +65,7 @@ class Task:
         ValueError
             Another version of this package than that which asks.
         """
-        if fingerprint() != self.code:
-            raise ValueError(f"this worker has ballsocket {fingerprint()}, and {self.code} asks")
+        check_worker_code(self.code)
         place = self.blocks[number]
         shape = tuple(part.stop - part.start for part in place)
         whole = {name: numpy.empty(shape, dtype=DTYPES[name]) for name in self.variables}

@@ -1,4 +1,4 @@
-"""Ring matrices of spheres and cups, their interpolation in the harmonics, and their cache on disk."""
+"""Ring matrices of spheres and cups, and their interpolation in the harmonics."""
 
 from math import pi, radians
 
@@ -9,7 +9,6 @@ import ballsocket as bs
 from ballsocket.elasticity.exact.modes import Ball, socket_of
 from ballsocket.elasticity.finite_elements.harmonics import socket_harmonics
 from ballsocket.elasticity.finite_elements.shapes import socket_shape
-from ballsocket.elasticity.off_axis import kept
 from ballsocket.elasticity.off_axis.compliance import AxisymmetricOperator
 from ballsocket.elasticity.off_axis.grid import graded_grid
 from ballsocket.elasticity.off_axis.ring_matrices import interpolate_harmonics, legendre_ring_integrals, sphere_rings
@@ -82,31 +81,3 @@ def test_cosine_pressure_does_not_deform_a_ball():
     cosine = np.broadcast_to(np.cos(sphere.polar)[:, None], (1, sphere.rings, sphere.meridians))
     moved = AxisymmetricOperator(matrices=sphere.average_over_cells(rings))(cosine)
     assert abs(moved).max() < 1e-2 * 18.0 / 1000.0
-
-
-def test_cached_array_is_read_again_unless_damaged(tmp_path, monkeypatch):
-    monkeypatch.setenv("BALLSOCKET_CACHE", str(tmp_path))
-    made = []
-
-    def make():
-        made.append(1)
-        return np.arange(24.0).reshape(2, 3, 4)
-
-    first = kept.kept("key", make)
-    again = kept.kept("key", make)
-    assert len(made) == 1
-    assert (first == again).all()
-    assert again.shape == (2, 3, 4)
-    (file,) = tmp_path.glob("cup-*")
-    sound = file.read_bytes()
-    for damaged in (sound[:200] + b"?" + sound[201:], sound.replace(b"(2, 3, 4)", b"(1, 3, 4)"), b"short", b""):
-        file.write_bytes(damaged)
-        before = len(made)
-        assert (kept.kept("key", make) == first).all()
-        assert len(made) == before + 1
-
-
-def test_unwritable_cache_computes_each_time(tmp_path, monkeypatch):
-    (tmp_path / "file").write_text("", encoding="utf-8")
-    monkeypatch.setenv("BALLSOCKET_CACHE", str(tmp_path / "file" / "folder"))
-    assert (kept.kept("key", lambda: np.zeros((1, 1, 1))) == 0).all()

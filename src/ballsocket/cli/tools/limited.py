@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ...app.running import limit_memory
-from ...core.executors.local import leave_with_parent
+from ...core.executors.processes import exit_with_parent
 from ..root import main
 
 if __name__ == "__main__":
-    leave_with_parent()
+    exit_with_parent()
     limit_memory()
     main()

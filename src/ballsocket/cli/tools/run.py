@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core.input_files import restricted
-from ...elasticity.off_axis.kept import folder as cache_folder
+from ...core.storage.array_files import cache_folder
 from ..root import DONE
 
 LARGEST = 2_000_000

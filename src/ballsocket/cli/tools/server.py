@@ -13,7 +13,7 @@ import mcp_types as types
 from mcp.server.lowlevel import Server
 from mcp.server.stdio import stdio_server
 
-from ...core.executors.local import available_cores
+from ...core.executors.processes import available_cores
 from ...version import __version__
 from .call import words_of
 from .run import Told, run

@@ -1,6 +1,6 @@
-"""Who computes: this process, several on this machine, or a Dask cluster; the pieces of work are the same."""
+"""Executors of numbered pieces of work: this process, several processes of this machine, or a Dask cluster."""
 
 from .dask import Distributed
-from .local import Engine, Processes, Serial
+from .processes import Engine, Processes, Serial
 
 __all__ = ["Distributed", "Engine", "Processes", "Serial"]

@@ -1,7 +1,8 @@
-"""Dask as an engine: a cluster of one's own, or any scheduler by its address."""
+"""Executor on Dask workers: a cluster on this machine, or a scheduler at an address."""
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,35 +12,39 @@ from uuid import uuid4
 import numpy
 
 from ..checks import needs, require
-from .local import MOST, Work, available_cores
+from .processes import MAX_WORKERS, Work, available_cores
 
 if TYPE_CHECKING:
     import xarray
     from distributed import Client, LocalCluster
 
+_CONNECTION_TIMEOUT = 10
+"""Seconds to wait for a scheduler."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Distributed:
-    """Dask workers. Blocks are cut by `xarray.map_blocks`: a task of Dask's for each block, not for each press.
+    """Executor on Dask workers: `xarray.map_blocks` makes one Dask task of each piece.
 
-    A worker that dies costs its blocks once more. Workers on other machines need this package in the same version,
-    and a store that they reach under the same path.
+    If a worker dies, its pieces are computed again. Workers on other machines need the same version of this package.
+    They must reach the store under the same path.
 
     Parameters
     ----------
     address : str, optional
-        Of a scheduler, such as "tcp://10.0.0.1:8786"; without one a cluster is started on this machine, and ended
-        with the study. A script that does so needs the guard `if __name__ == "__main__":`.
+        Address of a scheduler, such as "tcp://10.0.0.1:8786". Without an address, a cluster is started on this machine
+        and ended after the run. A script that does so needs the guard `if __name__ == "__main__":`.
     workers : int, optional
-        Of a cluster of one's own: as many as there are cores. Each has one thread.
+        Number of workers of the cluster on this machine, each with one thread. Default: number of available cores.
     retries : int
-        How often a block is tried anew after an error. Of workers that die under a block a cluster of one's own
-        forgives as many; elsewhere it is the scheduler that says how many (`distributed.scheduler.allowed-failures`).
+        Number of times that a piece is computed again after an error. A cluster on this machine also tolerates as many
+        deaths of the workers of one piece. Elsewhere this is the scheduler's setting
+        `distributed.scheduler.allowed-failures`.
 
     Raises
     ------
     ValueError
-        An address and workers, or not 1 to 1000 workers.
+        Both an address and workers, fewer than one worker, or more than 1000.
     """
 
     address: str | None = None
@@ -48,47 +53,51 @@ class Distributed:
 
     def __post_init__(self) -> None:
         if self.workers is not None:
-            require("workers", self.workers, 1 <= self.workers <= MOST, f"at least one worker, at most {MOST}")
+            require("workers", self.workers, 1 <= self.workers <= MAX_WORKERS, f"it must be 1 to {MAX_WORKERS}")
             if self.address is not None:
-                raise ValueError(f"{self.address} has workers of its own: give an address or a number of workers")
+                raise ValueError(
+                    f"workers = {self.workers} is not allowed for the scheduler at {self.address}, which has its own "
+                    "workers: give an address or a number of workers"
+                )
 
     def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
-        """Each number with what its work returned, as soon as it is there.
+        """Yield each number with the result of its work, in any order, as soon as it is finished.
 
         Raises
         ------
         ImportError
             Dask is not installed.
         ConnectionError
-            There is no scheduler at the address.
+            The scheduler does not respond.
         RuntimeError
-            A block that lost its worker too often.
+            The workers of a piece died more often than the scheduler allows.
         """
         if not len(numbers):
             return
         needs("study", "dask", "distributed", "xarray")
         from distributed import KilledWorker, as_completed, futures_of
 
-        with self._client() as client, _given(client, work) as name:
-            blocks = client.persist(_blocks(name, numbers), retries=self.retries)
-            coming = as_completed(futures_of(blocks), with_results=True)
-            del blocks  # an answer is let go by its worker once it is here
+        with self._connect() as client, _send_work(client, work) as plugin_name:
+            blocks = client.persist(_dask_blocks(plugin_name, numbers), retries=self.retries)
+            completed = as_completed(futures_of(blocks), with_results=True)
+            del blocks  # a worker frees each result after it has been received
             try:
-                for future, answers in coming:
-                    yield from answers.tolist()
+                for future, results in completed:
+                    yield from results.tolist()
                     future.release()
             except KilledWorker as error:
-                raise RuntimeError(f"a block lost its worker too often: {error}") from error
+                raise RuntimeError(f"the workers of a piece died too often: {error}") from error
 
     @contextmanager
-    def _client(self) -> Iterator[Client]:
+    def _connect(self) -> Iterator[Client]:
+        """Connect to the scheduler, or to a new cluster on this machine."""
         from distributed import Client
 
         if self.address is not None:
             try:
-                client = Client(self.address, timeout=10)
+                client = Client(self.address, timeout=_CONNECTION_TIMEOUT)
             except OSError as error:
-                raise ConnectionError(None, "no scheduler answers", self.address) from error
+                raise ConnectionError(None, "the Dask scheduler does not respond", self.address) from error
             with client:
                 yield client
             return
@@ -98,10 +107,10 @@ class Distributed:
 
 @contextmanager
 def local_cluster(workers: int, retries: int = 3) -> Iterator[LocalCluster]:
-    """Workers on this machine, of one thread each, which keep the memory that they will need again.
+    """Start a Dask cluster on this machine with workers of one thread, and stop it at the end of the block.
 
-    Dask has its workers hand memory back to the system at every turn, which makes exact presses a third slower;
-    workers elsewhere do without if `MALLOC_TRIM_THRESHOLD_` is large in their environment.
+    By default, Dask workers return freed memory to the system at once, which makes exact solutions a third slower. This
+    cluster disables that. Other clusters can set a large `MALLOC_TRIM_THRESHOLD_` in the environment of their workers.
     """
     import dask
     from distributed import LocalCluster
@@ -110,41 +119,44 @@ def local_cluster(workers: int, retries: int = 3) -> Iterator[LocalCluster]:
         "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
         "distributed.scheduler.allowed-failures": retries,
     }
-    options: dict[str, Any] = {"dashboard_address": "127.0.0.1:0", "host": "127.0.0.1", "silence_logs": 40}
+    options: dict[str, Any] = {"dashboard_address": "127.0.0.1:0", "host": "127.0.0.1", "silence_logs": logging.ERROR}
     with dask.config.set(settings), LocalCluster(n_workers=workers, threads_per_worker=1, **options) as cluster:
         yield cluster
 
 
 @contextmanager
-def _given(client: Client, work: Work) -> Iterator[str]:
-    """Give the work to every worker once, to those that come later too, and not with every block; its name there."""
+def _send_work(client: Client, work: Work) -> Iterator[str]:
+    """Send the work once to every worker, also to later ones, and yield the name of the plugin that holds it."""
     from distributed import WorkerPlugin
 
-    class Works(WorkerPlugin):
+    class WorkPlugin(WorkerPlugin):
         def __init__(self) -> None:
             self.work = work
 
     name = f"ballsocket-{uuid4()}"
-    client.register_plugin(Works(), name=name)
+    client.register_plugin(WorkPlugin(), name=name)
     try:
         yield name
     finally:
         client.unregister_worker_plugin(name)
 
 
-def _blocks(name: str, numbers: Sequence[int]) -> xarray.Dataset:
-    """A dataset along `block` whose one element per chunk is (number, answer)."""
+def _dask_blocks(plugin_name: str, numbers: Sequence[int]) -> xarray.Dataset:
+    """Build a dataset along `block` with one piece per chunk; a computed element is (number, result)."""
     import xarray
 
-    plan = xarray.Dataset({"answer": ("block", numpy.array(numbers))}).chunk(block=1)
-    return xarray.map_blocks(_answers, plan, kwargs={"name": name}, template=plan.astype(object))
+    pieces = xarray.Dataset({"result": ("block", numpy.array(numbers))}).chunk(block=1)
+    return xarray.map_blocks(
+        _compute_block, pieces, kwargs={"plugin_name": plugin_name}, template=pieces.astype(object)
+    )
 
 
-def _answers(block: xarray.Dataset, name: str) -> xarray.Dataset:
+def _compute_block(block: xarray.Dataset, plugin_name: str) -> xarray.Dataset:
+    """Compute the pieces of a chunk on a worker."""
     from distributed import get_worker
 
-    given: Any = get_worker().plugins[name]
-    answers = numpy.empty(block.sizes["block"], dtype=object)
-    for place, number in enumerate(block.answer.values.tolist()):
-        answers[place] = (number, given.work(number))
-    return block.assign(answer=("block", answers))
+    plugin: Any = get_worker().plugins[plugin_name]
+    results = numpy.empty(block.sizes["block"], dtype=object)
+    for index, number in enumerate(block.result.values.tolist()):
+        results[index] = (number, plugin.work(number))
+    return block.assign(result=("block", results))

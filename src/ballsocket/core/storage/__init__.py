@@ -1,1 +1,1 @@
-"""Files written and read safely: atomic replacement, named arrays, fingerprints of the code."""
+"""Safe storage of files and results: atomic files, named arrays, fingerprints, and the pieces of a resumable run."""

@@ -1,4 +1,4 @@
-"""Which code computed this? Kept results are trusted only by the code that made them."""
+"""Fingerprints of the package and digests of inputs, by which a stored result is known to be up to date."""
 
 from __future__ import annotations
 
@@ -8,15 +8,37 @@ from pathlib import Path
 
 from ...version import __version__
 
-_KINDS = {".py", ".npz", ".toml", ".csv"}
+_SUFFIXES = {".py", ".npz", ".toml", ".csv"}
 
 
 @cache
 def fingerprint() -> str:
-    """The version, and eight characters that change with any line of code or number of data of this package."""
-    room = Path(__file__).parents[2]
+    """Return the version of the package and eight characters that change with any line of its code or data."""
+    package = Path(__file__).parents[2]
     digest = sha256()
-    for path in sorted(path for path in room.rglob("*") if path.suffix in _KINDS):
-        digest.update(path.relative_to(room).as_posix().encode())
+    for path in sorted(path for path in package.rglob("*") if path.suffix in _SUFFIXES):
+        digest.update(path.relative_to(package).as_posix().encode())
         digest.update(path.read_bytes())
     return f"{__version__}+{digest.hexdigest()[:8]}"
+
+
+def check_worker_code(code: str) -> None:
+    """Check that this process runs the same code as the process that started the run.
+
+    Parameters
+    ----------
+    code : str
+        `fingerprint` of the process that started the run.
+
+    Raises
+    ------
+    ValueError
+        This process runs another code.
+    """
+    if fingerprint() != code:
+        raise ValueError(f"this worker has ballsocket {fingerprint()}, but the run was started by {code}")
+
+
+def digest_of(*inputs: object) -> str:
+    """Compute the SHA-256 digest of the `repr` of inputs, as 64 hexadecimal characters."""
+    return sha256(repr(inputs).encode()).hexdigest()

@@ -20,7 +20,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import require
-from ...core.storage.atomic import write_text
+from ...core.storage.atomic_files import write_text
 from ...problem import Joint
 from ...problem.cup import Cup, Interface
 from ..finite_elements.decks.calculix import last_output, read_printed, run_calculix

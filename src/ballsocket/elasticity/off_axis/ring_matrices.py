@@ -13,13 +13,13 @@ import numpy
 from scipy.interpolate import make_interp_spline
 
 from ...core.arrays import Numbers, gauss_legendre
+from ...core.storage.array_files import cached_array
 from ...problem import Joint
 from ...problem.cup import Cup
 from ..finite_elements.harmonics import socket_harmonics
 from ..finite_elements.shapes import SocketShape, socket_shape
 from ..finite_elements.solver import check_cup
 from .grid import Grid
-from .kept import kept
 
 _MAX_CONSECUTIVE_HARMONIC = 6
 """Largest m up to which every harmonic is computed."""
@@ -138,4 +138,4 @@ def _unit_cup_rings(shape: SocketShape, edges: tuple[float, ...], max_harmonic: 
         meridian = socket_harmonics(shape, rings)
         return interpolate_harmonics(lambda m: meridian.ring_compliance(rings, m), max_harmonic)
 
-    return kept((shape, edges, max_harmonic), compute)
+    return cached_array((shape, edges, max_harmonic), compute)

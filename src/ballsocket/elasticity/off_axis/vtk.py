@@ -9,7 +9,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import needs
-from ...core.storage.atomic import at_once
+from ...core.storage.atomic_files import write_atomically
 from ..finite_elements.decks.vtk import check_suffix
 from .contact import OffAxisContact
 from .directions import unit_vectors
@@ -60,7 +60,7 @@ def write_vtk(contact: OffAxisContact, path: Path) -> None:
     data = {name: [values.ravel(), *(numpy.zeros(size) for size in sizes[1:])] for name, values in fields.items()}
     bodies = [numpy.full(size, body) for size, body in zip(sizes, (BORE, BALL, EDGE), strict=True)]
     mesh = meshio.Mesh(numpy.concatenate(points), blocks, cell_data={"part": bodies, **data})
-    with at_once(path) as draft:
+    with write_atomically(path) as draft:
         mesh.write(draft)
 
 

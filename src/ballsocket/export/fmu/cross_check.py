@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy
 
 from ...core.arrays import Numbers
-from ...core.storage.atomic import write_text
+from ...core.storage.atomic_files import write_text
 from ...dynamics import ForceElement
 from .description import STEP, STOP
 from .variables import Variable, variables

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 from uuid import UUID
 
 from ...core.checks import require
-from ...core.storage.atomic import at_once
+from ...core.storage.atomic_files import write_atomically
 from ...dynamics import ForceElement
 from ...version import __version__
 from ..c_element import CElement, fill_template
@@ -161,7 +161,7 @@ class Fmu:
                 )
         except NoCompiler as error:
             missing = f"{error}; the archive contains the sources without a binary"
-        with at_once(Path(path)) as draft, zipfile.ZipFile(draft, "w") as archive:
+        with write_atomically(Path(path)) as draft, zipfile.ZipFile(draft, "w") as archive:
             for name in sorted(files):
                 entry = zipfile.ZipInfo(name, _ARCHIVE_DATE)
                 entry.external_attr, entry.create_system = 0o644 << 16, 3

@@ -17,7 +17,7 @@ from typing import Any
 import numpy
 
 from ....core.arrays import Numbers
-from ....core.storage.atomic import at_once
+from ....core.storage.atomic_files import write_atomically
 from ....problem import Joint, Material
 from ....problem.gaps import LinearGap
 from ..abel import AbelState
@@ -95,7 +95,7 @@ def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
     path = Path(path)
     if path.is_dir():
         raise IsADirectoryError(EISDIR, "a file is needed, but this is a folder", str(path))
-    with at_once(path) as draft:  # raises an error at once if the file cannot be written
+    with write_atomically(path) as draft:  # raises an error at once if the file cannot be written
         stored: dict[str, Numbers] = {}
         with _pool(workers) as pool:
             for name, spec in _TABLE_SPECS.items():

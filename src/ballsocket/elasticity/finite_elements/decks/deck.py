@@ -30,7 +30,7 @@ import numpy
 
 from ....core.arrays import Numbers
 from ....core.checks import require
-from ....core.storage.atomic import write_text
+from ....core.storage.atomic_files import write_text
 from ....problem.gaps import LinearGap
 from ....version import __version__
 from ..contact import MeshedContact

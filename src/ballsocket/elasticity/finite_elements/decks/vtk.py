@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy
 
 from ....core.checks import needs
-from ....core.storage.atomic import at_once, check_folder
+from ....core.storage.atomic_files import check_parent_folder, write_atomically
 from ..section import Section
 
 _CELLS = {4: "quad", 9: "quad9"}
@@ -18,7 +18,7 @@ def check_suffix(path: Path) -> None:
     """Raise ValueError unless `path` has the suffix of a VTK format and its folder exists."""
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{str(path)!r} must end in {', '.join(SUFFIXES)}")
-    check_folder(path)
+    check_parent_folder(path)
 
 
 def write_vtk(section: Section, path: Path) -> None:
@@ -63,7 +63,7 @@ def write_vtk(section: Section, path: Path) -> None:
         point_data={"displacement": _in_space(moved), **stresses},
         cell_data={"part": [numpy.full(part.elements.shape[1], i) for i, part in enumerate(section.parts)]},
     )
-    with at_once(path) as draft:
+    with write_atomically(path) as draft:
         mesh.write(draft)
 
 

@@ -1,4 +1,4 @@
-"""A law bound once to a joint says what a press says, at every indentation."""
+"""Force laws of all models, compared with presses."""
 
 from math import inf, isnan, nan, radians
 
@@ -23,7 +23,7 @@ def end(model, joint):
 
 @EVERY
 @EACH_JOINT
-def test_a_law_says_force_and_stiffness_of_a_press_from_first_touch_to_the_end(model, joint):
+def test_a_law_has_force_and_stiffness_of_a_press_up_to_its_end(model, joint):
     law = model.law(joint)
     d = np.append(0.0, np.geomspace(1e-6 * joint.clearance, end(model, joint), POINTS))
     said = np.array([law(float(depth)) for depth in d])
@@ -34,7 +34,7 @@ def test_a_law_says_force_and_stiffness_of_a_press_from_first_touch_to_the_end(m
 
 
 @EVERY
-def test_it_ends_where_presses_end(model):
+def test_a_law_ends_where_presses_fail(model):
     law, deepest = model.law(HIP), end(model, HIP)
     beyond = model.press(HIP, indentation=deepest * (1 + 1e-5))
     if model.press(HIP, indentation=deepest).status.failed or beyond.status.failed:
@@ -46,7 +46,7 @@ def test_it_ends_where_presses_end(model):
 
 
 @EVERY
-def test_its_tangent_is_the_slope_of_its_force(model):
+def test_tangent_stiffness_is_the_slope_of_the_force(model):
     law, deepest = model.law(HIP), end(model, HIP)
     for d in np.geomspace(1e-4 * HIP.clearance, 0.99 * deepest, 25):
         force, tangent = law(d)
@@ -56,27 +56,27 @@ def test_its_tangent_is_the_slope_of_its_force(model):
 
 
 @EVERY
-def test_there_is_no_force_without_contact(model):
+def test_force_is_zero_without_contact(model):
     law = model.law(HIP)
     assert law(-1e-3) == law(-inf) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("name", ["exact", "tabulated", "refined", "plane-layer"])
-def test_below_a_millionth_of_the_clearance_a_curve_goes_on_as_a_power(name):
+def test_a_curve_is_a_power_below_a_millionth_of_the_clearance(name):
     model = bs.catalogue[name]
     law, d = model.law(HIP), 1e-6 * HIP.clearance
     assert law(d / 10)[0] == pytest.approx(law(d)[0] * 0.1 ** (d * law(d)[1] / law(d)[0]), rel=1e-9)
     assert law(d / 10)[0] == pytest.approx(model.press(HIP, indentation=d / 10).force, rel=5e-3)
 
 
-def test_a_law_of_arrays_is_refused():
+def test_a_law_of_arrays_is_rejected():
     joint = bs.Joint(ball_radius=16.0, clearance=np.array([0.1, 0.2]), liner_thickness=6.0, liner=bs.UHMWPE)
     for model, pressed in ((bs.HessForsbach(), joint), (bs.AdhesiveSocket(work_of_adhesion=np.array([0.0])), HIP)):
         with pytest.raises(TypeError, match="a law needs one joint"):
             model.law(pressed)
 
 
-def test_so_are_a_joint_without_an_answer_and_a_noisy_model():
+def test_joints_outside_the_domain_and_noisy_models_have_no_law():
     filled = bs.Joint(ball_radius=16.0, clearance=0.0, liner_thickness=6.0, liner=bs.UHMWPE)
     with pytest.raises(bs.OutsideDomainError, match="c = 0"):
         bs.Refined().law(filled)
@@ -85,7 +85,7 @@ def test_so_are_a_joint_without_an_answer_and_a_noisy_model():
             model.law(HIP)
 
 
-def test_numbers_that_python_refuses_are_no_answer():
+def test_indentations_that_overflow_are_nan():
     vast = bs.Joint(ball_radius=1e200, clearance=1e190, liner_thickness=1e200, liner=bs.UHMWPE)
     for name in ("vessel", "bartel", "hertz", "adhesive"):
         assert isnan(bs.catalogue[name].press(vast, indentation=0.1).force)
@@ -93,6 +93,6 @@ def test_numbers_that_python_refuses_are_no_answer():
 
 
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Refined()], ids=lambda model: model.name)
-def test_a_cup_that_a_model_knows_nothing_of_leaves_its_law(model):
+def test_a_cup_does_not_change_the_law_of_a_model_without_a_rim(model):
     cup = bs.Cup(arc_of_cover=radians(120.0))
     assert model.in_cup(cup).law(HIP)(0.05) == model.law(HIP)(0.05)

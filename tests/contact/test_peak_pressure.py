@@ -1,4 +1,4 @@
-"""The largest pressure is not always at the pole, and every model says where it is."""
+"""Largest pressure and its angle, at the pole or on a ring."""
 
 from dataclasses import replace
 
@@ -40,7 +40,7 @@ def highest(contact):
     ],
     ids=["wall 4", "wall 2", "small"],
 )
-def test_a_stiff_shell_on_a_soft_backing_presses_hardest_on_a_ring(joint, pole, largest, angle):
+def test_a_stiff_shell_on_a_soft_backing_has_its_largest_pressure_on_a_ring(joint, pole, largest, angle):
     contact = bs.Exact().press(joint, force=3200.0)
     assert contact.pole_pressure == pytest.approx(pole, rel=4e-3)
     assert contact.max_pressure == pytest.approx(largest, rel=4e-3)
@@ -52,7 +52,7 @@ def test_a_stiff_shell_on_a_soft_backing_presses_hardest_on_a_ring(joint, pole, 
     assert contact.error["max_pressure"] == contact.error["pole_pressure"]
 
 
-def test_the_elements_find_the_same_ring():
+def test_finite_elements_find_the_same_ring():
     pytest.importorskip("skfem")
     joint = shell(25.0, 0.0725, 4.0, 20.0)
     exact = bs.Exact().press(joint, force=3200.0)
@@ -64,7 +64,7 @@ def test_the_elements_find_the_same_ring():
     assert on_plastic.max_pressure == on_plastic.pole_pressure
 
 
-def test_many_loads_at_once_find_each_its_own_ring():
+def test_the_ring_of_each_of_many_loads_is_found():
     joint, force = shell(25.0, 0.0725, 4.0, 20.0), np.array([0.0, 10.0, 1000.0, 3200.0])
     together = bs.Exact().press(joint, force=force)
     assert together.max_pressure_angle[0] == together.max_pressure[0] == 0.0
@@ -75,21 +75,21 @@ def test_many_loads_at_once_find_each_its_own_ring():
 
 
 @pytest.mark.parametrize(("order", "place", "excess"), [(1, 0.0, 1.0), (2, np.sqrt(0.5), np.sqrt(2.0))])
-def test_steuermanns_pressure_is_highest_where_the_polynomial_says(order, place, excess):
+def test_largest_pressure_of_steuermann_is_that_of_its_polynomial(order, place, excess):
     contact = bs.Steuermann(exponent=order).press(HIP, force=100.0)
     assert contact.max_pressure_angle == pytest.approx(place * contact.half_angle, rel=1e-12)
     assert contact.max_pressure == pytest.approx(excess * contact.pole_pressure, rel=1e-12)
 
 
 @pytest.mark.parametrize("order", [3, 5])
-def test_so_do_flatter_gaps(order):
+def test_largest_pressure_of_flatter_gaps_is_that_of_the_profile(order):
     contact = bs.Steuermann(exponent=order).press(HIP, force=100.0)
     peak, where = highest(contact)
     assert contact.max_pressure == pytest.approx(peak, rel=1e-7)
     assert contact.max_pressure_angle == pytest.approx(where, abs=1e-4 * contact.half_angle)
 
 
-def test_a_profile_of_refined_that_swells_is_told():
+def test_refined_finds_the_largest_pressure_off_the_pole():
     """Far outside its range β exceeds 1/2."""
     joint = replace(HIP, liner_thickness=60.0, liner=bs.Material(young=1000.0, poisson=-0.9))
     angles = np.radians([20.0, 50.0, 80.0, 84.0])
@@ -99,7 +99,7 @@ def test_a_profile_of_refined_that_swells_is_told():
         assert contact.max_pressure[place] == pytest.approx(profile.max(), rel=1e-6)
 
 
-def test_no_joint_of_the_tables_has_its_largest_pressure_off_the_pole():
+def test_tabulated_joints_have_their_largest_pressure_at_the_pole():
     rng, size = np.random.default_rng(3), 4000
     ratio = np.exp(rng.uniform(np.log(0.2), np.log(20.0), size))
     joint = bs.Joint(

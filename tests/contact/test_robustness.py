@@ -1,4 +1,4 @@
-"""An answer is a number or a status, whatever came in: alone and in company, in single precision, of nothing at all."""
+"""Results for extreme, empty, integer and single-precision inputs: numbers or a status."""
 
 from dataclasses import replace
 from math import isfinite
@@ -41,7 +41,7 @@ def wide_contacts(count: int, seed: int):
         yield joint, found[np.isfinite(found)]
 
 
-def test_an_answer_of_the_tables_is_the_same_alone_and_in_company():
+def test_tabulated_results_do_not_depend_on_the_other_loads():
     cases = [(WIDE, 1246.1909930719228 * np.linspace(0.9, 1.1, 41)), *wide_contacts(either(quick=150, long=1000), 7)]
     for joint, force in cases:
         company = bs.Tabulated().press(joint, force=force)
@@ -66,7 +66,7 @@ ABSURD = [(1e-200, 18.0), (1e-308, 18.0), (1.0, 1e-160), (1e-300, 1e200), (1e300
 
 @pytest.mark.parametrize(("young", "radius"), ABSURD)
 @pytest.mark.parametrize("load", [{"half_angle": 0.5}, {"force": 1.0}, {"indentation": 1e-3}])
-def test_absurd_joints_have_a_status_or_numbers(young, radius, load):
+def test_extreme_joints_have_a_status_or_numbers(young, radius, load):
     joint = bs.Joint(
         ball_radius=radius,
         clearance=1e-3 * radius,
@@ -79,7 +79,7 @@ def test_absurd_joints_have_a_status_or_numbers(young, radius, load):
 
 
 @pytest.mark.parametrize("model", EVERY.values(), ids=EVERY)
-def test_nothing_is_pressed_to_nothing(model):
+def test_empty_arrays_give_empty_contacts(model):
     none = np.zeros(0)
     for joint, force, shape in (
         (HIP, none, (0,)),
@@ -94,7 +94,7 @@ def test_nothing_is_pressed_to_nothing(model):
         assert contact.pressure(0.1).shape == shape
 
 
-def test_integers_of_any_kind_are_numbers():
+def test_integers_of_all_types_are_numbers():
     small = bs.Joint(
         ball_radius=np.array([250], dtype=np.uint8),
         clearance=np.array([10], dtype=np.uint8),
@@ -120,7 +120,7 @@ MODELS = (bs.Exact(), bs.FiniteElement(meshes=1))
 
 
 @pytest.mark.parametrize("joint", ENDLESS.values(), ids=ENDLESS)
-def test_two_bodies_that_differ_say_which_they_are(joint):
+def test_models_of_different_bodies_state_their_bodies(joint):
     exact, fem = (model.press(joint, force=3000.0) for model in MODELS)
     assert fem.indentation > 1.05 * exact.indentation
     assert fem.max_pressure == pytest.approx(exact.max_pressure, rel=0.04)
@@ -132,7 +132,7 @@ def test_two_bodies_that_differ_say_which_they_are(joint):
     assert any("is cut off at the plane of" in note and "d differs by more than 2 %" in note for note in fem.notes)
 
 
-def test_a_ball_as_soft_as_its_liner_is_said_to_be_a_whole_or_half_a_one():
+def test_models_of_soft_balls_state_a_full_or_half_ball():
     joint = bs.Joint(**{**BASE, "ball": bs.UHMWPE}, liner_thickness=5.0)
     exact, fem = (model.press(joint, force=1000.0) for model in MODELS)
     assert fem.indentation > 1.1 * exact.indentation
@@ -141,7 +141,7 @@ def test_a_ball_as_soft_as_its_liner_is_said_to_be_a_whole_or_half_a_one():
 
 
 @pytest.mark.parametrize("backing", [(), (SHELL,)])
-def test_bodies_that_agree_say_nothing(backing):
+def test_models_that_agree_have_no_notes(backing):
     exact, fem = (model.press(bs.Joint(**BASE, liner_thickness=5.0, backing=backing), force=1000.0) for model in MODELS)
     assert fem.indentation == pytest.approx(exact.indentation, rel=0.02)
     assert exact.notes == fem.notes == ()

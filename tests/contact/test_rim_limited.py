@@ -1,4 +1,4 @@
-"""A cup is obeyed by every model, or said to be beyond it."""
+"""Models in a cup: their validity ends before the rim."""
 
 from math import degrees, pi, radians
 
@@ -14,7 +14,7 @@ KNOWS_NONE = bs.catalogue
 
 
 @pytest.mark.parametrize("model", KNOWS_NONE.values(), ids=KNOWS_NONE)
-def test_a_model_that_knows_no_cups_is_not_trusted_where_its_contact_passes_the_rim(model):
+def test_a_model_without_a_rim_is_invalid_where_its_contact_passes_the_rim(model):
     contact = model.in_cup(NARROW).press(HIP, force=3000.0)
     whole = model.press(HIP, force=3000.0)
     assert not contact.valid
@@ -24,7 +24,7 @@ def test_a_model_that_knows_no_cups_is_not_trusted_where_its_contact_passes_the_
     assert model.in_cup(bs.Cup()) is model
 
 
-def test_the_elements_obey_the_cup():
+def test_finite_elements_end_the_contact_at_the_rim():
     fem = bs.FiniteElement(meshes=1)
     narrow = fem.in_cup(NARROW).press(HIP, force=3000.0)
     assert degrees(narrow.half_angle) == pytest.approx(30.0, abs=0.01)
@@ -32,14 +32,14 @@ def test_the_elements_obey_the_cup():
 
 
 @pytest.mark.parametrize(("gap", "trusted"), [(0.9, False), (1.1, True)])
-def test_trust_ends_a_liner_thickness_before_the_rim(gap, trusted):
+def test_validity_ends_a_liner_thickness_before_the_rim(gap, trusted):
     exact = bs.Exact().press(HIP, force=3000.0)
     rim = exact.half_angle + gap * HIP.liner_thickness / HIP.socket_radius
     contact = bs.Exact().in_cup(bs.Cup(arc_of_cover=2 * rim)).press(HIP, force=3000.0)
     assert contact.valid is trusted
 
 
-def test_there_the_elements_say_the_same_within_what_is_said():
+def test_finite_elements_agree_at_the_limit_of_validity():
     """At one liner thickness from the rim, ν 0.46: d 2.2 % deeper than in a whole sphere, pmax 0.8 % higher."""
     joint = bs.Joint(
         ball_radius=14.0, clearance=0.1, liner_thickness=5.0, liner=bs.Material(young=1000.0, poisson=0.46)
@@ -51,14 +51,14 @@ def test_there_the_elements_say_the_same_within_what_is_said():
     assert 0.0 < meshed.max_pressure / exact.max_pressure - 1 < 0.01
 
 
-def test_a_tilted_cup_has_its_rim_nearer():
+def test_tilt_brings_the_rim_closer_to_the_contact():
     upright = bs.Cup(arc_of_cover=radians(170.0))
     tilted = bs.Cup(arc_of_cover=radians(170.0), inclination=radians(45.0))
     assert bs.Exact().in_cup(upright).press(HIP, force=3000.0).valid
     assert not bs.Exact().in_cup(tilted).press(HIP, force=3000.0).valid
 
 
-def test_a_liner_that_slides_is_beyond_every_model_but_the_elements():
+def test_a_sliding_liner_is_valid_only_for_finite_elements():
     sliding = bs.Cup(interface=bs.Interface.SLIDING)
     contact = bs.Exact().in_cup(sliding).press(HIP, force=3000.0)
     assert not contact.valid
@@ -66,7 +66,7 @@ def test_a_liner_that_slides_is_beyond_every_model_but_the_elements():
     assert bs.FiniteElement().in_cup(sliding).cup is sliding
 
 
-def test_comparisons_and_studies_take_the_cup_along():
+def test_comparisons_and_studies_take_a_cup():
     answers = bs.compare(HIP, force=np.array([300.0, 3000.0]), cup=bs.Cup(arc_of_cover=2 * pi / 3))
     assert answers["exact"].valid.tolist() == [True, False]
     found = bs.study(bs.Exact().in_cup(NARROW), HIP, force=[3000.0])

@@ -1,0 +1,223 @@
+"""Executors of numbered pieces of work on this machine: this process, or several worker processes."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_context, parent_process
+from threading import Thread
+from typing import Any, Protocol
+
+from ..checks import require
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+MAX_WORKERS = 1000
+"""Largest number of worker processes."""
+
+Work = Callable[[int], Any]
+"""Function that computes the piece with a given number. It must be picklable: no lambda, no local function."""
+
+_QUEUED_PER_WORKER = 2
+"""Submitted pieces per worker: one is computed while the next one waits."""
+
+_PARENT_CHECK_INTERVAL = 0.5
+"""Seconds between two checks that the parent process still runs."""
+
+_STDIN = 0
+"""File descriptor of the standard input."""
+
+_PARENT_ENDED = 1
+"""Exit status of a process whose parent process has ended."""
+
+_THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+"""Environment variables that limit the threads of linear algebra."""
+
+_WORKER_DIED: Any = object()
+"""Result of a piece whose worker process died."""
+
+
+class Engine(Protocol):
+    """Executor of numbered pieces of work."""
+
+    def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
+        """Yield each number with the result of its work, in any order, as soon as it is finished."""
+        ...
+
+
+@dataclass(frozen=True)
+class Serial:
+    """Executor in this process, one piece after another."""
+
+    def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
+        """Yield each number with the result of its work, in order."""
+        for number in numbers:
+            yield number, work(number)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Processes:
+    """Executor in worker processes of this machine, each with one thread of linear algebra.
+
+    If a worker process dies, its piece is computed again. As always with `multiprocessing`, a script that uses this
+    executor needs the guard `if __name__ == "__main__":`.
+
+    Parameters
+    ----------
+    workers : int, optional
+        Number of processes. Default: number of available cores.
+    retries : int
+        Number of times that the worker process of one piece may die before an error is raised.
+
+    Raises
+    ------
+    ValueError
+        Fewer than one worker, or more than `MAX_WORKERS`.
+    """
+
+    workers: int | None = None
+    retries: int = 3
+
+    def __post_init__(self) -> None:
+        if self.workers is not None:
+            require("workers", self.workers, 1 <= self.workers <= MAX_WORKERS, f"it must be 1 to {MAX_WORKERS}")
+
+    def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
+        """Yield each number with the result of its work, in any order, as soon as it is finished.
+
+        Raises
+        ------
+        RuntimeError
+            The worker process of a piece died more than `retries` times.
+        """
+        pending, deaths = deque(numbers), Counter[int]()
+        while pending:
+            with _start_pool(self._n_workers, work) as pool:
+                for number, future in _run_until_broken(pool, pending, _QUEUED_PER_WORKER * self._n_workers):
+                    if future is _WORKER_DIED:
+                        deaths[number] += 1
+                        pending.append(number)
+                    else:
+                        yield number, future.result()
+            failed = [number for number, count in deaths.items() if count > self.retries]
+            if failed:
+                raise RuntimeError(
+                    f"the worker process of piece {failed[0]} died {deaths[failed[0]]} times; run again to resume"
+                )
+
+    @property
+    def _n_workers(self) -> int:
+        return self.workers or available_cores()
+
+
+def available_cores() -> int:
+    """Return the number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _run_until_broken(pool: ProcessPoolExecutor, pending: deque[int], max_queued: int) -> Iterator[tuple[int, Any]]:
+    """Take numbers from `pending` and yield each with its future, until all are finished or a worker process died."""
+    submitted: dict[Future[Any], int] = {}
+    broken = False
+    while submitted or (pending and not broken):
+        try:
+            while pending and len(submitted) < max_queued and not broken:
+                submitted[pool.submit(_compute_piece, pending[0])] = pending[0]
+                pending.popleft()
+        except BrokenProcessPool:
+            broken = True
+        for future in wait(submitted, return_when=FIRST_COMPLETED).done:
+            number = submitted.pop(future)
+            died = isinstance(future.exception(), BrokenProcessPool)
+            broken |= died
+            yield number, _WORKER_DIED if died else future
+
+
+@contextmanager
+def _start_pool(workers: int, work: Work) -> Iterator[ProcessPoolExecutor]:
+    """Start worker processes, and stop them at the end of the block."""
+    with limit_threads():
+        pool = ProcessPoolExecutor(
+            workers, mp_context=get_context("spawn"), initializer=_initialize_worker, initargs=(work,)
+        )
+        try:
+            yield pool
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def limit_threads() -> Iterator[None]:
+    """Limit linear algebra to one thread in processes that are started within the block.
+
+    Threads of several processes on the same cores are many times slower.
+    """
+    before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
+    os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+_work: Work | None = None
+"""Work of this worker process."""
+
+
+def _initialize_worker(work: Work) -> None:
+    """Set the work of this worker process once, and let the parent process handle Ctrl-C."""
+    global _work
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    exit_with_parent()
+    _work = work
+
+
+def _compute_piece(number: int) -> Any:
+    assert _work is not None
+    return _work(number)
+
+
+def exit_with_parent() -> None:
+    """End this process when its parent process ends or is killed.
+
+    The parent holds the other end of a pipe, which closes with it. The system then sends a signal that ends this
+    process even while no Python thread can run. A thread does the same on systems without such signals.
+    """
+    Thread(target=_watch_parent, args=(os.getppid(),), daemon=True).start()
+    if fcntl is not None and hasattr(os, "O_ASYNC"):
+        parent = parent_process()
+        pipe = _STDIN if parent is None else parent.sentinel
+        signal.signal(signal.SIGIO, signal.SIG_DFL)
+        fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
+        if _is_closed(pipe):
+            os._exit(_PARENT_ENDED)  # the parent ended before the signal was set
+
+
+def _is_closed(pipe: int) -> bool:
+    """Check if the other end of a pipe is closed."""
+    poll = select.poll()
+    poll.register(pipe, select.POLLHUP)
+    return any(events & select.POLLHUP for _, events in poll.poll(0))
+
+
+def _watch_parent(parent: int) -> None:
+    """End this process after its parent process has ended."""
+    while os.getppid() == parent:
+        time.sleep(_PARENT_CHECK_INTERVAL)
+    os._exit(_PARENT_ENDED)

@@ -1,0 +1,114 @@
+"""Atomic writing: a file or folder appears complete under its name, or not at all."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from shutil import rmtree
+from tempfile import TemporaryDirectory
+
+try:
+    import fcntl
+except ImportError:  # Windows: draft folders of killed processes are not removed
+    fcntl = None  # type: ignore[assignment]
+
+_DRAFT_SUFFIX = ".draft"
+
+_PREFIX_LENGTH = 40
+"""Characters of the final name in the name of its draft folder, which keeps that below the system's limit."""
+
+_MIN_AGE = 60.0
+"""Age in s below which an unlocked draft folder is not removed: its process may be about to lock it."""
+
+
+def is_draft(name: str) -> bool:
+    """Check if a name is that of a draft folder."""
+    return name.startswith(".") and name.endswith(_DRAFT_SUFFIX)
+
+
+def check_parent_folder(path: Path) -> None:
+    """Raise ValueError if the parent folder of a file does not exist."""
+    if not path.parent.is_dir():
+        raise ValueError(f"cannot write {path.name}: {str(path.parent)!r} is not a folder; create it first")
+
+
+@contextmanager
+def write_atomically(path: Path) -> Iterator[Path]:
+    """Yield a draft path with the same file name, and move the draft to `path` if no error was raised.
+
+    The draft is a file or a folder.
+
+    Raises
+    ------
+    OSError
+        The folder is not writable or the disk is full. The error names `path`.
+    """
+    with make_draft_folder(path) as folder:
+        draft = folder / path.name
+        try:
+            yield draft
+            os.replace(draft, path)
+        except OSError as error:
+            if error.errno is None or error.filename not in (None, str(draft)):
+                raise
+            raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+@contextmanager
+def make_draft_folder(path: Path) -> Iterator[Path]:
+    """Yield a temporary folder in the parent folder of `path`, and remove the draft folders of killed processes.
+
+    Raises
+    ------
+    OSError
+        The parent folder is not writable. The error names `path`.
+    """
+    prefix = f".{path.name[:_PREFIX_LENGTH]}."
+    with suppress(OSError):
+        for folder in path.parent.iterdir():
+            if folder.name.startswith(prefix) and is_draft(folder.name) and _is_abandoned(folder):
+                rmtree(folder, ignore_errors=True)
+    try:
+        temporary_folder = TemporaryDirectory(prefix=prefix, suffix=_DRAFT_SUFFIX, dir=path.parent)
+    except OSError as error:  # the error names the path of the caller instead of the draft folder
+        raise OSError(error.errno, error.strerror, str(path)) from error
+    with temporary_folder as name, _lock(Path(name)):
+        yield Path(name)
+
+
+@contextmanager
+def _lock(folder: Path) -> Iterator[bool]:
+    """Lock a folder until the end of the block or of this process; yield False if it cannot be locked."""
+    if fcntl is None:
+        yield False
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield True
+    except BlockingIOError:
+        yield False
+    finally:
+        os.close(descriptor)
+
+
+def _is_abandoned(folder: Path) -> bool:
+    """Check if a draft folder belongs to a process that has ended."""
+    with _lock(folder) as locked:
+        return locked and time.time() - folder.stat().st_mtime > _MIN_AGE
+
+
+def write_text(path: Path, text: str, encoding: str = "utf-8") -> Path:
+    """Write a text file atomically, and return its path.
+
+    Raises
+    ------
+    OSError
+        The folder is not writable or the disk is full.
+    """
+    with write_atomically(path) as draft:
+        draft.write_text(text, encoding=encoding)
+    return path

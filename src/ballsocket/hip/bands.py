@@ -1,0 +1,311 @@
+"""Uncertainty bands of a wear prediction over patients, and the influence of each sampled quantity."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.deprecation import RenamedAttribute
+from ..elasticity.off_axis.surfaces import Springs
+from .cohort_results import RESULT_UNITS, CohortResult
+from .contact_checks import list_notes
+from .variability import PatientVariability, summarize_distributions
+from .wear_law import coefficient_field
+
+DEFAULT_LEVEL = 0.95
+"""Default fraction of the predictions within a band."""
+
+COEFFICIENT = "coefficient"
+"""Name of the wear coefficient among the sampled quantities."""
+
+CONVERTED = ("volume", "depth", "penetration")
+"""Results that are converted to shared coefficients."""
+
+INFLUENCED_RESULTS = ("volume", "depth", "penetration")
+"""Results whose variance is divided among the sampled quantities."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SharedCoefficient:
+    """Results of all patients with one shared wear coefficient, for three coefficients.
+
+    Attributes
+    ----------
+    values : mapping of str to float
+        Coefficients at the lower end, the middle and the upper end of the band of the coefficient.
+    results : mapping of str to array (patients, reports, results)
+        Results of `CONVERTED`, by the names in `values`.
+    """
+
+    values: Mapping[str, float]
+    results: Mapping[str, Numbers]
+
+    def quantile(self, coefficient: str, name: str, fraction: float) -> Numbers:
+        """Compute the quantile of a result of `CONVERTED` over the patients at each report, for one coefficient."""
+        return numpy.nanquantile(self.results[coefficient][:, :, CONVERTED.index(name)], fraction, axis=0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bands:
+    """Bands of the results of a patient cohort.
+
+    Attributes
+    ----------
+    variability : PatientVariability
+        Distributions of the patients.
+    counts : tuple of float
+        Cycles of the nominal patient at the reports.
+    cohort : CohortResult
+        Results of the patients.
+    seed : int
+        Seed of the samples.
+    level : float
+        Fraction of the predictions within a band, and of the patients within a band for one coefficient.
+    indices : mapping of str to array (results, sampled quantities), optional
+        Sobol indices of `INFLUENCED_RESULTS`: `first_order`, `total_order`, and the ends of their intervals with the
+        suffixes `_low` and `_high`.
+    quick_run_errors : mapping of str to float
+        Relative difference between the nominal patient's coarse and full simulations.
+    shared : SharedCoefficient, optional
+        Results of the patients for a shared wear coefficient; None without a sampled coefficient and another quantity.
+    """
+
+    variability: PatientVariability
+    counts: tuple[float, ...]
+    cohort: CohortResult
+    seed: int = 0
+    level: float = DEFAULT_LEVEL
+    indices: Mapping[str, Numbers] | None = None
+    quick_run_errors: Mapping[str, float] = field(default_factory=dict)
+    shared: SharedCoefficient | None = None
+
+    @property
+    def subject(self) -> str:
+        """Noun for the members of a band: "predictions" for an unknown wear coefficient, else "patients"."""
+        return "predictions" if COEFFICIENT in self.variability.distributions else "patients"
+
+    @property
+    def patients(self) -> int:
+        """Number of patients."""
+        return len(self.cohort.refused)
+
+    @property
+    def n_failed(self) -> int:
+        """Number of patients without a result."""
+        return int((self.cohort.refused != "").sum())
+
+    @property
+    def _tails(self) -> tuple[float, float]:
+        """Fractions of the predictions below the lower and below the upper end of a band."""
+        tail = (1 - self.level) / 2
+        return tail, 1 - tail
+
+    @property
+    def _fractions(self) -> dict[str, float]:
+        """Fractions of the predictions below the ends and the median of a band."""
+        low, high = self._tails
+        return {"low": low, "median": 0.5, "high": high}
+
+    def quantile(self, name: str, fraction: float) -> Numbers:
+        """Compute the quantile of a result over the patients at each report; NaN if no patient has a result.
+
+        Parameters
+        ----------
+        name : str
+            Name in `RESULT_UNITS`.
+        fraction : float
+            Fraction of the patients below the quantile.
+        """
+        if self.n_failed == self.patients:
+            return numpy.full(len(self.counts), numpy.nan)
+        return numpy.nanquantile(self.cohort.table[:, :, list(RESULT_UNITS).index(name)], fraction, axis=0)
+
+    def band(self, name: str) -> tuple[Numbers, Numbers]:
+        """Compute both ends of the band of a result of `RESULT_UNITS` at each report, over all predictions."""
+        low, high = (self.quantile(name, fraction) for fraction in self._tails)
+        return low, high
+
+    def population_band(self, name: str, coefficient: str = "median") -> tuple[Numbers, Numbers]:
+        """Compute the ends of the band of the patients at each report, for one shared wear coefficient.
+
+        Parameters
+        ----------
+        name : str
+            "volume", "depth" or "penetration".
+        coefficient : str
+            "low", "median" or "high": the ends and the middle of the band of the coefficient.
+
+        Raises
+        ------
+        ValueError
+            An unknown name or coefficient, or bands without a shared coefficient.
+        """
+        if self.shared is None:
+            raise ValueError("a band for one coefficient needs [uncertainty] with coefficient and another quantity")
+        if coefficient not in self.shared.values:
+            raise ValueError(f"coefficient = {coefficient!r} is not allowed: {', '.join(self.shared.values)}")
+        if name not in CONVERTED:
+            raise ValueError(f"{name!r} has no band for one coefficient: {', '.join(CONVERTED)}")
+        low, high = (self.shared.quantile(coefficient, name, fraction) for fraction in self._tails)
+        return low, high
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Assumptions and limits of the bands."""
+        assumed = f"assumed: given and independent distributions of {', '.join(self.variability.distributions)}"
+        surface = () if isinstance(self.variability.use.surface, Springs) else ("the bands are for radial springs",)
+        return (
+            assumed,
+            *self._coefficient_note,
+            *surface,
+            *self._failure_note,
+            *self._wear_through_note,
+            *self._validity_note,
+        )
+
+    @property
+    def nominal_notes(self) -> tuple[str, ...]:
+        """Notes of the nominal patient's simulation: contact model in the first cycle, cycle, cup and laws."""
+        checks = [("nominal patient, in the first cycle", self.variability.quick.unworn_checks)]
+        return (*list_notes(checks), *self.variability.use.notes)
+
+    @property
+    def _coefficient_note(self) -> tuple[str, ...]:
+        """Note on the wear coefficient that all patients share."""
+        if COEFFICIENT not in self.variability.distributions:
+            return ()
+        low, high = self.variability.distributions[COEFFICIENT].frozen.ppf(self._tails)
+        coefficient = coefficient_field(self.variability.use.wear)
+        unit = "" if coefficient is None else coefficient.unit.text
+        band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
+        return (f"the wear coefficient is unknown, but the same for all patients: {band}",)
+
+    @property
+    def _failure_note(self) -> tuple[str, ...]:
+        """Note on patients without a result."""
+        if not self.n_failed:
+            return ()
+        reasons = Counter(str(error).split(":")[0] for error in self.cohort.refused if error)
+        reason = reasons.most_common(1)[0][0]
+        failed = f"{self.n_failed} of {self.patients} patients have no result, most often: {reason}"
+        return (f"{failed}; the bands are for the others",)
+
+    @property
+    def _wear_through_note(self) -> tuple[str, ...]:
+        """Note on patients whose liner is worn through."""
+        depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
+        n_patients = int((depth > self.variability.use.joint.liner_thickness).sum())
+        return (f"{n_patients} of {self.patients} patients wear their liner through",) if n_patients else ()
+
+    @property
+    def _validity_note(self) -> tuple[str, ...]:
+        """Note on patients whose contact leaves the validity of its model."""
+        outside = int((self.cohort.valid[:, -1] == 0).sum())
+        model = self.variability.quick.contact_model.name
+        sentence = (
+            f"{outside} of {self.patients} patients have contacts outside the validity of the contact model ({model})"
+        )
+        return (sentence,) if outside else ()
+
+    @property
+    def peak_utilisation(self) -> Numbers:
+        """Largest utilisation of each patient from the first cycle to each report: (patients, reports)."""
+        return self.cohort.peak_utilisation
+
+    def valid_fraction(self, report: int) -> float:
+        """Compute the fraction of patients with valid contacts from the first cycle to a report."""
+        valid = self.cohort.valid[self.cohort.refused == "", report]
+        return float(valid.mean()) if len(valid) else numpy.nan
+
+    @property
+    def valid(self) -> bool:
+        """True if every patient with an answer has valid contacts from the first cycle to each report."""
+        valid = self.cohort.valid[self.cohort.refused == ""]
+        return bool(valid.size and (valid == 1).all())
+
+    def utilisation_quantile(self, fraction: float) -> Numbers:
+        """Compute the quantile of the largest utilisation so far at each report; NaN if unknown."""
+        known = self.peak_utilisation[~numpy.isnan(self.peak_utilisation).any(axis=1)]
+        return numpy.quantile(known, fraction, axis=0) if len(known) else numpy.full(len(self.counts), numpy.nan)
+
+    def edge_loading(self, report: int) -> float:
+        """Compute the fraction of patients with edge loading in some instant of the cycle at a report."""
+        column = list(RESULT_UNITS).index("edge_distance")
+        distance = self.cohort.table[self.cohort.refused == "", report, column]
+        return float((distance <= 0).mean()) if len(distance) else numpy.nan
+
+    def summary(self) -> dict[str, Any]:
+        """Return the bands as plain data for JSON."""
+        return {
+            "bands": [self._summarize_report(report) for report in range(len(self.counts))],
+            "sobol": self._summarize_indices(),
+            "uncertainty": {
+                "patients": self.patients,
+                "without_answer": self.n_failed,
+                "seed": self.seed,
+                "level": self.level,
+                "scatter": summarize_distributions(self.variability),
+                "coefficient": None if self.shared is None else dict(self.shared.values),
+                "quick_run_off": dict(self.quick_run_errors),
+            },
+        }
+
+    def _summarize_report(self, report: int) -> dict[str, Any]:
+        """Return the bands at a report."""
+        bands: dict[str, dict[str, Any]] = {
+            name: {end: _finite(self.quantile(name, fraction)[report]) for end, fraction in self._fractions.items()}
+            for name in RESULT_UNITS
+        }
+        if self.shared is not None:
+            for name in CONVERTED:
+                bands[name]["given_coefficient"] = self._summarize_coefficients(self.shared, name, report)
+        year = self.variability.cycles_per_year
+        return {
+            "cycles": self.counts[report],
+            **({} if year is None else {"years": self.counts[report] / year}),
+            **bands,
+            "edge_loading": _finite(self.edge_loading(report)),
+            "peak_utilisation": {
+                end: _finite(self.utilisation_quantile(fraction)[report]) for end, fraction in self._fractions.items()
+            },
+            "valid": _finite(self.valid_fraction(report)),
+        }
+
+    def _summarize_coefficients(self, shared: SharedCoefficient, name: str, report: int) -> dict[str, Any]:
+        """Return the bands of the patients for each shared coefficient."""
+        return {
+            coefficient: {
+                end: _finite(shared.quantile(coefficient, name, fraction)[report])
+                for end, fraction in self._fractions.items()
+            }
+            for coefficient in shared.values
+        }
+
+    def _summarize_indices(self) -> dict[str, Any] | None:
+        """Return the Sobol indices by result and sampled quantity; None without indices."""
+        if self.indices is None:
+            return None
+        return {
+            result: {
+                name: {order: _finite(values[row, column]) for order, values in self.indices.items()}
+                for column, name in enumerate(self.variability.distributions)
+            }
+            for row, result in enumerate(INFLUENCED_RESULTS)
+        }
+
+    scatter = RenamedAttribute("variability")
+    lived = RenamedAttribute("cohort")
+    without = RenamedAttribute("n_failed")
+    off = RenamedAttribute("quick_run_errors")
+    usual_notes = RenamedAttribute("nominal_notes")
+    valid_share = RenamedAttribute("valid_fraction")
+
+
+def _finite(value: float) -> float | None:
+    """Return a finite number as it is, and None for others."""
+    return float(value) if numpy.isfinite(value) else None

@@ -1,0 +1,290 @@
+"""Wear simulations of a sampled patient cohort, in parallel and resumable."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from math import ceil
+from pathlib import Path
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import require
+from ..core.deprecation import renamed_names
+from ..core.executors.processes import Engine, Serial
+from ..core.storage.array_files import read_arrays, write_arrays
+from ..core.storage.atomic_files import write_text
+from ..core.storage.fingerprint import check_worker_code, digest_of, fingerprint
+from ..core.storage.pieces import PieceRun, PieceStore
+from ..studies.axes import SampleAxis
+from .checkpoint import checkpoint
+from .cohort_results import RESULT_UNITS, CohortResult, contact_table, join_results, result_table
+from .variability import ANGLES, PatientVariability
+
+PATIENTS_PER_PIECE = 16
+"""Patients of one piece of work: about half a second."""
+
+_MAX_PATIENTS = 1_000_000
+
+_LABEL_NAME = "patients.json"
+"""Name of the file with the identity of a stored cohort."""
+
+_SERIAL = Serial()
+
+_SUFFIXES = {"clearance": "_mm", "body_weight": "_N", **dict.fromkeys(ANGLES, "_deg")}
+"""Unit suffixes of the table's columns."""
+
+ProgressCallback = Callable[[int], None]
+"""Function that is called with the number of finished patients."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CohortRun:
+    """Simulation of sampled patients in pieces of a few patients; a call with a number computes that piece.
+
+    Attributes
+    ----------
+    variability : PatientVariability
+        Distributions of the patients.
+    counts : tuple of float
+        Cycles of the nominal patient at the reports, in ascending order.
+    values : mapping of str to array (patients,)
+        Sampled quantities by name of `SAMPLED_QUANTITIES`.
+    code : str
+        Fingerprint of the code that the workers must have.
+    """
+
+    variability: PatientVariability
+    counts: tuple[float, ...]
+    values: Mapping[str, Numbers]
+    code: str = field(default_factory=fingerprint)
+
+    def __len__(self) -> int:
+        """Return the number of patients."""
+        return len(next(iter(self.values.values())))
+
+    @property
+    def pieces(self) -> range:
+        """Numbers of the pieces."""
+        return range(ceil(len(self) / PATIENTS_PER_PIECE))
+
+    def patients(self, piece: int) -> range:
+        """Return the numbers of the patients in a piece."""
+        return range(piece * PATIENTS_PER_PIECE, min((piece + 1) * PATIENTS_PER_PIECE, len(self)))
+
+    def __call__(self, piece: int) -> CohortResult:
+        """Simulate the patients of a piece.
+
+        Raises
+        ------
+        ValueError
+            This worker has another version of the package than the process that started the run.
+        """
+        check_worker_code(self.code)
+        tables, contacts, errors = zip(*(self._simulate(number) for number in self.patients(piece)), strict=True)
+        return CohortResult(table=numpy.stack(tables), refused=numpy.array(errors), contact=numpy.stack(contacts))
+
+    def _simulate(self, number: int) -> tuple[Numbers, Numbers, str]:
+        """Simulate one patient, and return the results, the contacts and an error message."""
+        values = {name: float(column[number]) for name, column in self.values.items()}
+        try:
+            patient = self.variability.patient(values)
+            reports = patient.simulate(self.counts)
+            return result_table(reports), contact_table(patient.use, reports), ""
+        except ValueError as error:
+            results = numpy.full((len(self.counts), len(RESULT_UNITS)), numpy.nan)
+            contact = numpy.full((1 + len(self.counts), 2), numpy.nan)
+            return results, contact, str(error)
+
+    def simulate(
+        self,
+        engine: Engine = _SERIAL,
+        store: CohortStore | None = None,
+        progress: ProgressCallback = lambda finished: None,
+    ) -> CohortResult:
+        """Simulate all patients whose results are not in the store.
+
+        Raises
+        ------
+        OSError
+            The store is not writable or the disk is full.
+        """
+        if store is not None:
+            store.create()
+        coarse = replace(self, variability=replace(self.variability, use=self.variability.quick))
+        run = PieceRun(coarse, self.pieces, None if store is None else replace(store, n_patients=len(self)))
+        results = dict(run.stored)
+        finished = sum(len(self.patients(piece)) for piece in results)
+        progress(finished)
+        for piece, result in run.compute_missing(engine):
+            results[piece] = result
+            finished += len(self.patients(piece))
+            progress(finished)
+        return join_results([results[piece] for piece in self.pieces])
+
+
+@dataclass(frozen=True, kw_only=True)
+class CohortStore(PieceStore):
+    """Folder with the results of a cohort, one file a piece.
+
+    Attributes
+    ----------
+    folder : Path
+        Absolute path of the folder.
+    identity : str
+        Digest of the nominal hip, the distributions, the seed and the code, without the number of patients.
+    n_patients : int
+        Number of patients of the present run. A stored last piece with fewer patients is computed again.
+    """
+
+    folder: Path
+    identity: str
+    n_patients: int = 0
+
+    @property
+    def _label_path(self) -> Path:
+        return self.folder / _LABEL_NAME
+
+    def _piece_path(self, piece: int) -> Path:
+        return self.folder / f"patients_{piece:06d}.npz"
+
+    def create(self) -> None:
+        """Create the folder and its label, unless they exist.
+
+        Raises
+        ------
+        OSError
+            The folder is not writable.
+        """
+        self.folder.mkdir(parents=True, exist_ok=True)
+        if not self._label_path.exists():
+            write_text(self._label_path, json.dumps({"identity": self.identity}))
+
+    def check(self) -> None:
+        """Check that an existing store belongs to this cohort.
+
+        Raises
+        ------
+        ValueError
+            The folder has another cohort or a damaged label.
+        """
+        label = self._label_path
+        if not label.exists():
+            return
+        try:
+            identity = json.loads(label.read_bytes())["identity"]
+        except (ValueError, LookupError, TypeError) as error:
+            raise ValueError(f"{label} is not the label of a patient cohort; delete it to start again") from error
+        if identity != self.identity:
+            raise ValueError(f"{self.folder} has another cohort, or one of another version; choose another folder")
+
+    def load(self, numbers: Sequence[int]) -> dict[int, CohortResult]:
+        """Load the stored pieces that are complete and undamaged."""
+        results = {piece: self._read(piece) for piece in numbers}
+        return {piece: result for piece, result in results.items() if result is not None}
+
+    def save(self, number: int, result: CohortResult) -> CohortResult:
+        """Store the result of a piece, and return it.
+
+        Raises
+        ------
+        OSError
+            The folder is not writable or the disk is full.
+        """
+        arrays = {array.name: getattr(result, array.name) for array in fields(result)}
+        write_arrays(self._piece_path(number), identity=self.identity, **arrays)
+        return result
+
+    def _read(self, piece: int) -> CohortResult | None:
+        """Read the result of a piece; return None if it is missing, damaged or of another cohort."""
+        try:
+            arrays = read_arrays(self._piece_path(piece))
+            if str(arrays.pop("identity")) != self.identity:
+                return None
+            result = CohortResult(**arrays)
+        except (OSError, ValueError, TypeError, KeyError):
+            return None
+        expected = min(PATIENTS_PER_PIECE, self.n_patients - piece * PATIENTS_PER_PIECE)
+        return result if len(result.table) == expected else None
+
+
+def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence[float], seed: int) -> CohortStore:
+    """Return the store of a sampled cohort in a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the store. It is created by the first run.
+    variability : PatientVariability
+        Distributions of the patients.
+    counts : sequence of float
+        Cycles of the nominal patient at the reports.
+    seed : int
+        Seed of the samples.
+
+    Raises
+    ------
+    ValueError
+        The folder has another cohort or a damaged label.
+    """
+    nominal = checkpoint(variability.quick, folder).identity
+    distributions = dict(variability.distributions)
+    identity = digest_of(fingerprint(), nominal, distributions, variability.body_weight, tuple(counts), seed)
+    store = CohortStore(folder=folder.absolute(), identity=identity)
+    store.check()
+    return store
+
+
+def sample_patients(variability: PatientVariability, count: int, seed: int) -> Mapping[str, Numbers]:
+    """Sample the quantities of patients from a Sobol sequence; a larger count keeps the first patients.
+
+    Raises
+    ------
+    ValueError
+        Fewer than one patient, too many, or a negative seed.
+    """
+    require("patients", count, 1 <= count <= _MAX_PATIENTS, f"it must be 1 to {_MAX_PATIENTS}")
+    require("seed", seed, seed >= 0, "it must be at least 0")
+    return SampleAxis(count=count, distributions=tuple(variability.distributions.items()), seed=seed).values
+
+
+def table_columns(run: CohortRun, result: CohortResult) -> Iterator[tuple[str, Numbers]]:
+    """Yield name and values of each column of the table of patients; angles are in degrees."""
+    for name, values in run.values.items():
+        yield f"{name}{_SUFFIXES.get(name, '')}", numpy.degrees(values) if name in ANGLES else values
+    for report, count in enumerate(run.counts):
+        for column, (name, unit) in enumerate(RESULT_UNITS.items()):
+            yield f"{name}_{unit}_at_{count:g}", result.table[:, report, column]
+        yield f"peak_utilisation_at_{count:g}", result.peak_utilisation[:, report]
+        yield f"valid_at_{count:g}", result.valid[:, report]
+
+
+def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
+    """Write a CSV file with one row per patient, and return its path.
+
+    Raises
+    ------
+    OSError
+        The folder is not writable or the disk is full.
+    """
+    names, columns = zip(*table_columns(run, result), strict=True)
+    rows = (
+        ",".join("" if numpy.isnan(value) else f"{value:.9g}" for value in row) for row in numpy.stack(columns, axis=1)
+    )
+    return write_text(path, "\n".join([",".join(names), *rows]) + "\n")
+
+
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "kept": "cohort_store",
+        "drawn": "sample_patients",
+        "Lives": "CohortRun",
+        "Lived": "ballsocket.hip.cohort_results.CohortResult",
+        "Kept": "CohortStore",
+        "joined": "ballsocket.hip.cohort_results.join_results",
+        "columns": "table_columns",
+    },
+)

@@ -1,0 +1,263 @@
+"""Variability between patients with one kind of hip: distributions of their quantities, and the hip of each patient."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from math import degrees, inf, isfinite, radians
+from typing import Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import check_names, require
+from ..core.deprecation import RenamedAttribute, renamed_names
+from ..elasticity.off_axis.surfaces import Springs
+from ..studies.distributions import Distribution
+from .cycle import Cycle
+from .history import Report
+from .mix import Mix
+from .simulation import HipSimulation, check_total_wear, make_report
+from .wear_integrator import WearIntegrator
+from .wear_law import with_coefficient
+
+SAMPLED_QUANTITIES = (
+    "coefficient",
+    "clearance",
+    "inclination",
+    "anteversion",
+    "tilt",
+    "body_weight",
+    "cycles_per_year",
+)
+"""Quantities that may differ between patients: mm³/(N m), mm, rad, rad, rad, N, and a number."""
+
+DEFAULT_COUNT = 64
+"""Default number of samples in each sample set of an uncertainty analysis."""
+
+_COARSE_RINGS = radians(8.0)
+"""Least ring width in a patient's simulation, which is quick: its error is below the variability."""
+
+_COARSE_INSTANTS = 32
+"""Largest number of instants of a cycle in a patient's simulation."""
+
+ANGLES = ("inclination", "anteversion", "tilt")
+"""Quantities that summaries and tables show in degrees."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PatientVariability:
+    """Independent distributions of the quantities that differ between patients.
+
+    Parameters
+    ----------
+    use : HipSimulation
+        Hip of the nominal patient. The other patients have radial springs, rings of 8° and 32 instants a cycle.
+    distributions : mapping of str to Rectangular, Normal or LogNormal
+        Distributions by name of `SAMPLED_QUANTITIES`. Forces are proportional to `body_weight`, cycles in a given time
+        to `cycles_per_year`. `coefficient` is that of the wear law. Of a law with two coefficients it is that on a
+        straight track, and their ratio stays the same.
+    body_weight : float, optional
+        Body weight in N that the cycle's forces belong to. Default: the median.
+
+    Raises
+    ------
+    ValueError
+        No distribution, an unknown quantity, a tilt with another orientation, or a law without a coefficient.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.hip import Archard, HipSimulation, PatientVariability, iso_14242_1
+    >>> from ballsocket.studies import LogNormal
+    >>> joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
+    >>> use = HipSimulation(joint=joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6))
+    >>> distributions = {"coefficient": LogNormal(median=1e-6, factor=1.5)}
+    >>> variability = PatientVariability(use=use, distributions=distributions)
+    >>> reports = variability.patient({"coefficient": 2e-6}).simulate([1e6])
+    >>> round(reports[0].volume / variability.patient({}).simulate([1e6])[0].volume, 1)
+    2.1
+    """
+
+    use: HipSimulation
+    distributions: Mapping[str, Distribution]
+    body_weight: float | None = None
+
+    def __post_init__(self) -> None:
+        check_names(self.distributions, SAMPLED_QUANTITIES, "among the quantities of patients")
+        if not self.distributions:
+            raise ValueError("no quantity differs between patients: give one of " + ", ".join(SAMPLED_QUANTITIES))
+        if "tilt" in self.distributions:
+            for name in ("inclination", "anteversion"):
+                if name in self.distributions:
+                    raise ValueError(f"tilt and {name} both orient the cup: give one of them")
+        if "coefficient" in self.distributions:
+            with_coefficient(self.use.wear, 0.0)
+        for name in ("body_weight", "cycles_per_year"):
+            if name in self.distributions:
+                median = float(self.distributions[name].frozen.median())
+                require(f"the median of {name}", median, 0 < median < inf, "it must be positive")
+
+    @cached_property
+    def _medians(self) -> dict[str, float]:
+        return {name: float(distribution.frozen.median()) for name, distribution in self.distributions.items()}
+
+    @property
+    def cycles_per_year(self) -> float | None:
+        """Cycles of the nominal patient in a year: those of a mix or the median; None if unknown."""
+        cycle = self.use.cycle
+        return cycle.per_year if isinstance(cycle, Mix) else self._medians.get("cycles_per_year")
+
+    @cached_property
+    def quick(self) -> HipSimulation:
+        """Hip of the nominal patient with the coarse discretization of the other patients."""
+        use = self.use
+        return replace(
+            use,
+            surface=use.surface if isinstance(use.surface, Springs) else Springs(),
+            ring_width=max(use.ring_width, _COARSE_RINGS),
+            cycle=_tabulate(use.cycle),
+            cup=use.placed,
+        )
+
+    def patient(self, values: Mapping[str, float]) -> Patient:
+        """Build the patient with these values.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            Values by name of `SAMPLED_QUANTITIES`. The nominal patient has the others.
+
+        Raises
+        ------
+        ValueError
+            A value that is not allowed, or an orientation in which the cup does not hold the ball.
+        """
+        use, cup = self.quick, self.quick.cup
+        cup = cup.tilted(values["tilt"]) if "tilt" in values else cup
+        orientation: Any = {name: values[name] for name in ("inclination", "anteversion") if name in values}
+        cup = replace(cup, **orientation)
+        cycle_ratio, force_ratio = self._ratio(values, "cycles_per_year"), self._ratio(values, "body_weight")
+        wear = use.wear
+        if "coefficient" in values:
+            require("coefficient", values["coefficient"], values["coefficient"] >= 0, "it must be at least 0")
+            wear = with_coefficient(wear, values["coefficient"])
+        seconds = use.seconds_per_cycle
+        return Patient(
+            use=replace(
+                use,
+                joint=replace(use.joint, clearance=values.get("clearance", use.joint.clearance)),
+                cup=cup,
+                wear=wear,
+                cycle=use.cycle.scaled(force_ratio) if force_ratio != 1 else use.cycle,
+                seconds_per_cycle=None if seconds is None else seconds / cycle_ratio,
+            ),
+            cycle_ratio=cycle_ratio,
+        )
+
+    def _ratio(self, values: Mapping[str, float], name: str) -> float:
+        """Compute the ratio of a patient's quantity to that of the nominal patient."""
+        if name not in values:
+            return 1.0
+        nominal = self.body_weight if name == "body_weight" else self.cycles_per_year
+        require(name, values[name], 0 < values[name] < inf, "it must be positive")
+        return values[name] / (nominal or self._medians[name])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Patient:
+    """Hip of one patient.
+
+    Attributes
+    ----------
+    use : HipSimulation
+        Hip of the patient.
+    cycle_ratio : float
+        Ratio of the patient's cycles to those of the nominal patient in the same time.
+    """
+
+    use: HipSimulation
+    cycle_ratio: float
+
+    def simulate(self, counts: Sequence[float]) -> tuple[Report, ...]:
+        """Simulate the wear of this patient, and report after given cycles of the nominal patient.
+
+        Raises
+        ------
+        ValueError
+            A contact did not balance its load, or the liner would be worn through many times.
+        """
+        check_total_wear(self.use, self.cycle_ratio * counts[-1])
+        run = WearIntegrator(setup=self.use)
+        reports = tuple(make_report(run.run_until(self.cycle_ratio * count, lambda cycles: None)) for count in counts)
+        if not all(report.converged for report in reports):
+            raise ValueError("a contact did not balance its load")
+        return reports
+
+    pace = RenamedAttribute("cycle_ratio")
+    seen = RenamedAttribute("simulate")
+
+
+@dataclass(frozen=True, eq=False)
+class _CycleTable:
+    """Periodic function of the phase, linear between tabulated values; unlike a local function it can be pickled.
+
+    Attributes
+    ----------
+    phases : array (n,)
+        Phases in parts of the cycle.
+    values : array (..., n)
+        Values at these phases.
+    """
+
+    phases: Numbers
+    values: Numbers
+
+    def __call__(self, phases: Numbers) -> Numbers:
+        rows = [numpy.interp(phases, self.phases, row, period=1.0) for row in numpy.atleast_2d(self.values)]
+        return numpy.reshape(rows, (*self.values.shape[:-1], -1))
+
+
+def _tabulate(cycle: Cycle | Mix) -> Cycle | Mix:
+    """Tabulate a cycle, or each cycle of a mix, at a few instants."""
+    if isinstance(cycle, Mix):
+        return Mix(
+            activities=tuple(replace(activity, cycle=_tabulate_one(activity.cycle)) for activity in cycle.activities)
+        )
+    return _tabulate_one(cycle)
+
+
+def _tabulate_one(cycle: Cycle) -> Cycle:
+    """Tabulate the force at the midpoints and the angles at the starts of a few steps."""
+    coarse = replace(cycle, n_steps=min(cycle.n_steps, _COARSE_INSTANTS))
+    midpoints, starts = coarse.phases, numpy.arange(coarse.n_steps) / coarse.n_steps
+    force, angles = (
+        numpy.asarray(coarse.force(midpoints), dtype=float),
+        numpy.asarray(coarse.angles(starts), dtype=float),
+    )
+    return replace(coarse, force=_CycleTable(midpoints, force), angles=_CycleTable(starts, angles))
+
+
+def summarize_distributions(variability: PatientVariability) -> dict[str, Any]:
+    """Return the distributions of the patients as plain data in mm, N and degrees."""
+    return {name: _summarize(name, distribution) for name, distribution in variability.distributions.items()}
+
+
+def _summarize(name: str, distribution: Distribution) -> dict[str, Any]:
+    factor = degrees(1.0) if name in ANGLES else 1.0
+    parameters = {parameter.name: getattr(distribution, parameter.name) for parameter in fields(distribution)}
+    shown = {key: factor * value for key, value in parameters.items() if isfinite(value)}
+    return {"distribution": type(distribution).__name__, **shown}
+
+
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "Scatter": "PatientVariability",
+        "SCATTERS": "SAMPLED_QUANTITIES",
+        "ANSWERS": "ballsocket.hip.cohort_results.RESULT_UNITS",
+        "answers_of": "ballsocket.hip.cohort_results.result_table",
+        "contact_over": "ballsocket.hip.cohort_results.contact_table",
+    },
+)

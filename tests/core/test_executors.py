@@ -1,0 +1,334 @@
+"""Executors: every piece is computed once, and a worker process that dies costs another attempt at its piece."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections import deque
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from ballsocket.core.executors import Distributed, Processes, Serial
+from ballsocket.core.executors import processes as module
+from ballsocket.core.executors.dask import _dask_blocks, local_cluster
+from ballsocket.core.executors.processes import available_cores, limit_threads
+
+WORK = """
+import os, signal
+from dataclasses import dataclass
+from pathlib import Path
+
+KILL = getattr(signal, "SIGKILL", signal.SIGTERM)  # Windows ends a process by any signal
+
+
+@dataclass(frozen=True)
+class Square:
+    def __call__(self, number):
+        return number * number
+
+
+@dataclass(frozen=True)
+class Dies:
+    folder: Path
+    at: int
+    times: int
+
+    def __call__(self, number):
+        deaths = len(list(self.folder.iterdir()))
+        if number == self.at and deaths < self.times:
+            (self.folder / str(deaths)).touch()
+            os.kill(os.getpid(), KILL)
+        return os.environ["OPENBLAS_NUM_THREADS"]
+
+
+@dataclass(frozen=True)
+class Fails:
+    def __call__(self, number):
+        raise ValueError(f"piece {number} = {number} is not allowed")
+"""
+
+
+@pytest.fixture
+def work(tmp_path, monkeypatch):
+    """Return a module of work that other processes can import."""
+    (tmp_path / "some_work.py").write_text(WORK, encoding="utf-8")
+    (tmp_path / "deaths").mkdir()
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "some_work", raising=False)
+    return import_module("some_work")
+
+
+def test_every_executor_computes_every_piece_once(work):
+    expected = [(number, number * number) for number in range(20)]
+    assert list(Serial().run(work.Square(), range(20))) == expected
+    assert sorted(Processes(workers=2).run(work.Square(), range(20))) == expected
+
+
+def test_no_pieces_start_no_worker(work, monkeypatch):
+    monkeypatch.setattr(module, "ProcessPoolExecutor", None)
+    monkeypatch.setattr(Distributed, "_connect", None)
+    for executor in (Serial(), Processes(workers=2), Distributed(workers=2)):
+        assert list(executor.run(work.Square(), [])) == []
+
+
+def test_a_killed_process_costs_an_attempt_and_has_one_thread(tmp_path, work, monkeypatch):
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    executor = Processes(workers=1, retries=1)
+    results = dict(executor.run(work.Dies(tmp_path / "deaths", at=1, times=1), range(3)))
+    assert results == dict.fromkeys(range(3), "1")
+    assert "OPENBLAS_NUM_THREADS" not in os.environ
+
+
+def test_a_piece_that_always_kills_its_process_is_an_error(tmp_path, work):
+    with pytest.raises(RuntimeError, match="the worker process of piece 0 died 2 times; run again to resume"):
+        list(Processes(workers=1, retries=1).run(work.Dies(tmp_path / "deaths", at=0, times=100), range(1)))
+    assert len(list((tmp_path / "deaths").iterdir())) == 2
+
+
+def test_an_error_of_a_piece_is_raised_as_it_is(work):
+    for executor in (Serial(), Processes(workers=1)):
+        with pytest.raises(ValueError, match="piece 5 = 5 is not allowed"):
+            list(executor.run(work.Fails(), [5]))
+
+
+@pytest.mark.parametrize("kind", [Processes, Distributed])
+def test_the_number_of_workers_is_checked(kind):
+    for workers in (1, 1000, None):
+        assert kind(workers=workers).workers == workers
+    for workers in (0, 1001):
+        with pytest.raises(ValueError, match=f"workers = {workers} is not allowed: it must be 1 to 1000"):
+            kind(workers=workers)
+
+
+def test_an_address_excludes_a_number_of_workers():
+    with pytest.raises(ValueError, match="workers = 2 is not allowed for the scheduler at tcp://host:1"):
+        Distributed(address="tcp://host:1", workers=2)
+
+
+def test_available_cores_are_those_of_this_process(monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0: {3, 4, 7}}[process], raising=False)
+    assert available_cores() == 3
+    monkeypatch.delattr(os, "sched_getaffinity")
+    for count, cores in ((5, 5), (None, 1)):
+        monkeypatch.setattr(os, "cpu_count", lambda count=count: count)
+        assert available_cores() == cores
+
+
+def test_the_number_of_processes_is_that_of_the_available_cores(monkeypatch):
+    monkeypatch.setattr(module, "available_cores", lambda: 5)
+    assert (Processes()._n_workers, Processes(workers=2)._n_workers) == (5, 2)
+
+
+def test_threads_are_limited_only_within_the_block(monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
+    with limit_threads():
+        assert [os.environ[f"{name}_NUM_THREADS"] for name in ("OPENBLAS", "MKL", "OMP")] == ["1"] * 3
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "MKL_NUM_THREADS" not in os.environ
+
+
+class FakePool:
+    """Pool whose pieces are finished at once, and whose process dies at some of them."""
+
+    def __init__(self, dies_at=(), refuses_at=()):
+        self.submitted, self.dies_at, self.refuses_at = [], dies_at, refuses_at
+
+    def submit(self, function, number):
+        if number in self.refuses_at:
+            raise BrokenProcessPool
+        self.submitted.append(number)
+        future = Future()
+        if number in self.dies_at:
+            future.set_exception(BrokenProcessPool())
+        else:
+            future.set_result(number)
+        return future
+
+
+def test_few_pieces_are_submitted_at_a_time():
+    pool, pending = FakePool(), deque(range(10))
+    results = module._run_until_broken(pool, pending, 4)
+    next(results)
+    assert pool.submitted == [0, 1, 2, 3]
+    finished = [number for number, _ in results]
+    assert pool.submitted == list(range(10))
+    assert len(finished) == 9
+    assert not pending
+
+
+def test_two_pieces_are_submitted_for_each_worker(monkeypatch):
+    limits = []
+
+    def record(pool, pending, limit):
+        limits.append(limit)
+        pending.clear()
+        return iter(())
+
+    monkeypatch.setattr(module, "_run_until_broken", record)
+    assert list(Processes(workers=3).run(abs, [1])) == []
+    assert limits == [6]
+
+
+def test_a_broken_pool_leaves_the_other_pieces_pending():
+    pool, pending = FakePool(dies_at={1}), deque(range(9))
+    results = dict(module._run_until_broken(pool, pending, 3))
+    assert results[1] is module._WORKER_DIED
+    assert sorted(results) == pool.submitted
+    assert sorted([*results, *pending]) == list(range(9))
+    assert pending
+
+    pool, pending = FakePool(refuses_at={2}), deque(range(4))
+    results = dict(module._run_until_broken(pool, pending, 3))
+    assert sorted(results) == [0, 1]
+    assert list(pending) == [2, 3]
+
+
+PARENT = """
+import subprocess, sys, time
+subprocess.Popen([sys.executable, "-c", {child!r}], stdin=subprocess.PIPE)
+time.sleep(60)
+"""
+
+WORKER = """
+import os, time
+from ballsocket.core.executors import processes
+processes._PARENT_CHECK_INTERVAL = 0.02
+{before}
+processes.exit_with_parent()
+print(os.getpid(), flush=True)
+time.sleep(60)
+"""
+
+
+def is_running(process):
+    """Check if a process runs; an ended process of another parent may stay as a zombie."""
+    try:
+        status = Path(f"/proc/{process}/stat").read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return False
+    return status.rpartition(")")[2].split()[0] != "Z"
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are listed in /proc")
+@pytest.mark.parametrize("before", ["", "processes.fcntl = None"], ids=["signal", "thread"])
+def test_a_worker_ends_with_its_parent(before):
+    script = PARENT.format(child=WORKER.format(before=before))
+    with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True) as parent:
+        worker = int(parent.stdout.readline())
+        time.sleep(0.1)
+        assert is_running(worker)
+        parent.kill()
+    end = time.monotonic() + 10
+    while is_running(worker) and time.monotonic() < end:
+        time.sleep(0.02)
+    assert not is_running(worker)
+
+
+@pytest.mark.skipif(not hasattr(os, "O_ASYNC"), reason="signals of pipes of a system like Unix")
+def test_a_closed_pipe_is_recognized():
+    receiver, sender = os.pipe()
+    assert not module._is_closed(receiver)
+    os.close(sender)
+    assert module._is_closed(receiver)
+    os.close(receiver)
+
+
+# Dask
+
+
+@pytest.fixture(scope="module")
+def scheduler():
+    """Return the address of a Dask scheduler with a worker in this process."""
+    distributed = pytest.importorskip("distributed")
+    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
+    with distributed.LocalCluster(processes=False, **options) as cluster:
+        yield cluster.scheduler_address
+
+
+def test_dask_workers_compute_every_piece_once(scheduler):
+    executor = Distributed(address=scheduler)
+    assert sorted(executor.run(abs, [-3, 1, -2])) == [(-3, 3), (-2, 2), (1, 1)]
+    assert sorted(executor.run(hex, [16])) == [(16, "0x10")]
+
+
+def test_an_error_on_a_dask_worker_is_raised(scheduler):
+    with pytest.raises(TypeError):
+        list(Distributed(address=scheduler, retries=0).run(len, [1]))
+
+
+def test_a_piece_is_a_task_of_dask():
+    pytest.importorskip("dask")
+    blocks = _dask_blocks("plugin", [4, 5, 9])
+    assert blocks.chunksizes == {"block": (1, 1, 1)}
+    assert blocks.result.dtype == object
+
+
+def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable(monkeypatch):
+    import dask
+
+    distributed = pytest.importorskip("distributed")
+    started = {}
+
+    class Cluster:
+        def __init__(self, **options):
+            failures = dask.config.get("distributed.scheduler.allowed-failures")
+            trim = dask.config.get("distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_")
+            started.update(options, failures=failures, trim=trim)
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            started["stopped"] = True
+
+    monkeypatch.setattr(distributed, "LocalCluster", Cluster)
+    with local_cluster(3, retries=2):
+        assert (started["n_workers"], started["threads_per_worker"], started["host"]) == (3, 1, "127.0.0.1")
+        assert (started["failures"], started["trim"], started["dashboard_address"]) == (2, None, "127.0.0.1:0")
+        assert started["silence_logs"] == 40  # errors only
+    assert started["stopped"]
+
+
+def test_a_scheduler_that_does_not_respond_is_an_error(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+
+    def refuse(address, timeout):
+        raise OSError(f"timed out after {timeout} s")
+
+    monkeypatch.setattr(distributed, "Client", refuse)
+    with pytest.raises(ConnectionError, match="the Dask scheduler does not respond: 'tcp://127.0.0.1:1'"):
+        list(Distributed(address="tcp://127.0.0.1:1").run(abs, [1]))
+
+
+# a whole command
+
+
+def kill_after(pieces, words, data):
+    """Start a reproduction, and kill it with all its processes when it has stored some pieces."""
+    running = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+    while len(list(data.glob("*.json"))) < pieces and running.poll() is None:
+        time.sleep(0.02)
+    os.killpg(running.pid, signal.SIGKILL)
+    running.wait()
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="groups of processes of a system like Unix")
+def test_a_killed_reproduction_resumes(tmp_path):
+    """The whole command, killed after its first pieces, and then run to its end."""
+    out = tmp_path / "out"
+    words = [sys.executable, "-m", "ballsocket", "reproduce", "--quick", "--workers", "1", "--out", str(out)]
+    data = out / "data" / "quick"
+    kill_after(3, words, data)
+    stored = {path: path.stat().st_mtime_ns for path in data.glob("*.json")}
+    assert len(stored) >= 3
+    subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    assert (out / "report.html").stat().st_size > 100_000
+    assert len(list(data.glob("*.json"))) >= len(stored) + 2
+    assert all(path.stat().st_mtime_ns == when for path, when in stored.items())

@@ -1,0 +1,336 @@
+"""Storage: atomic files, named arrays and their cache, fingerprints, and resumable runs of pieces."""
+
+import os
+import stat
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.core.executors import Serial
+from ballsocket.core.storage import array_files
+from ballsocket.core.storage.array_files import cache_folder, cached_array, read_arrays, write_arrays
+from ballsocket.core.storage.atomic_files import (
+    check_parent_folder,
+    is_draft,
+    make_draft_folder,
+    write_atomically,
+    write_text,
+)
+from ballsocket.core.storage.fingerprint import check_worker_code, digest_of, fingerprint
+from ballsocket.core.storage.pieces import PieceRun, PieceStore
+
+SECONDS_AGO = {"young": 30.0, "old": 90.0}
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+# atomic files
+
+
+def test_a_file_appears_only_after_it_is_complete(tmp_path):
+    path = tmp_path / "a.txt"
+    with write_atomically(path) as draft:
+        draft.write_text("new", encoding="utf-8")
+        assert draft.name == "a.txt"
+        assert draft.parent.parent == tmp_path
+        assert not path.exists()
+    assert path.read_text(encoding="utf-8") == "new"
+    assert names(tmp_path) == ["a.txt"]
+
+
+def test_an_error_leaves_the_old_file_and_no_draft(tmp_path):
+    path = write_text(tmp_path / "a.txt", "old")
+
+    def interrupted():
+        with write_atomically(path) as draft:
+            draft.write_text("half", encoding="utf-8")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert path.read_text(encoding="utf-8") == "old"
+    assert names(tmp_path) == ["a.txt"]
+
+
+def test_a_folder_is_written_atomically(tmp_path):
+    with write_atomically(tmp_path / "store") as draft:
+        draft.mkdir()
+        write_text(draft / "part", "1")
+    assert (tmp_path / "store" / "part").read_text(encoding="utf-8") == "1"
+
+
+def test_write_text_uses_the_encoding(tmp_path):
+    assert write_text(tmp_path / "a.txt", "µ", "latin-1").read_bytes() == b"\xb5"
+    assert write_text(tmp_path / "a.txt", "µ").read_bytes() == b"\xc2\xb5"
+
+
+def test_errors_name_the_requested_file(tmp_path):
+    path = tmp_path / "missing" / "a.txt"
+    with pytest.raises(FileNotFoundError) as error:
+        write_text(path, "x")
+    assert error.value.filename == str(path)
+    with (
+        pytest.raises(OSError, match="No space left on device") as error,
+        write_atomically(tmp_path / "a.txt") as draft,
+    ):
+        raise OSError(28, "No space left on device", str(draft))
+    assert error.value.filename == str(tmp_path / "a.txt")
+
+
+def test_an_error_of_another_file_keeps_its_name(tmp_path):
+    with pytest.raises(OSError, match="other") as error, write_atomically(tmp_path / "a.txt"):
+        raise OSError(2, "No such file", "other")
+    assert error.value.filename == "other"
+
+
+@pytest.mark.parametrize(("name", "draft"), [(".a.x.draft", True), ("a.draft", False), (".a", False), ("a", False)])
+def test_names_of_drafts_are_recognized(name, draft):
+    assert is_draft(name) is draft
+
+
+def test_draft_folders_of_killed_processes_are_removed(tmp_path):
+    for age, seconds in SECONDS_AGO.items():
+        folder = tmp_path / f".a.txt.{age}.draft"
+        folder.mkdir()
+        then = os.stat(tmp_path).st_mtime - seconds
+        os.utime(folder, (then, then))
+    write_text(tmp_path / "a.txt", "x")
+    assert names(tmp_path) == [".a.txt.young.draft", "a.txt"]
+
+
+def test_a_locked_draft_folder_is_kept_at_any_age(tmp_path):
+    with make_draft_folder(tmp_path / "a.txt") as folder:
+        os.utime(folder, (0, 0))
+        write_text(tmp_path / "a.txt", "x")
+        assert folder.is_dir()
+    assert names(tmp_path) == ["a.txt"]
+
+
+def test_draft_folders_of_other_files_are_kept(tmp_path):
+    folder = tmp_path / ".b.txt.x.draft"
+    folder.mkdir()
+    os.utime(folder, (0, 0))
+    write_text(tmp_path / "a.txt", "x")
+    assert folder.is_dir()
+
+
+def test_names_of_the_greatest_length_can_be_written(tmp_path):
+    name = "n" * 255
+    assert write_text(tmp_path / name, "x").read_text(encoding="utf-8") == "x"
+    with make_draft_folder(tmp_path / name) as folder:
+        assert folder.name.startswith(f".{'n' * 40}.")
+
+
+def test_a_missing_parent_folder_is_an_error(tmp_path):
+    check_parent_folder(tmp_path / "a.txt")
+    with pytest.raises(ValueError, match="cannot write a.txt: '.*none' is not a folder; create it first"):
+        check_parent_folder(tmp_path / "none" / "a.txt")
+
+
+# named arrays
+
+
+def test_arrays_are_read_as_they_were_written(tmp_path):
+    path = tmp_path / "a.npz"
+    write_arrays(path, table=np.arange(6.0).reshape(2, 3), count=3, text="µ", empty=np.zeros((0, 2)))
+    arrays = read_arrays(path)
+    assert list(arrays) == ["table", "count", "text", "empty"]
+    np.testing.assert_array_equal(arrays["table"], [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]])
+    assert (int(arrays["count"]), str(arrays["text"]), arrays["empty"].shape) == (3, "µ", (0, 2))
+
+
+def damaged(content):
+    """Return damaged forms of the content of a file."""
+    end = len(content) - 22
+    return {
+        "empty": b"",
+        "cut": content[:-5],
+        "half": content[: len(content) // 2],
+        "changed": content[:100] + bytes([content[100] ^ 255]) + content[101:],
+        "more members": content[: end + 10] + b"\x03" + content[end + 11 :],
+        "fewer members": content[: end + 10] + b"\x01" + content[end + 11 :],
+        "no archive": b"PK" + bytes(100),
+    }
+
+
+@pytest.mark.parametrize("damage", damaged(bytes(200)))
+def test_a_damaged_file_of_arrays_is_refused(tmp_path, damage):
+    path = tmp_path / "a.npz"
+    write_arrays(path, x=np.arange(9.0), y=np.ones(2))
+    path.write_bytes(damaged(path.read_bytes())[damage])
+    with pytest.raises((ValueError, OSError)):
+        read_arrays(path)
+
+
+def test_a_missing_file_of_arrays_is_an_os_error(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        read_arrays(tmp_path / "none.npz")
+
+
+def test_python_objects_are_not_read(tmp_path):
+    np.savez(tmp_path / "a.npz", x=np.array([{}], dtype=object))
+    with pytest.raises(ValueError, match="Object arrays"):
+        read_arrays(tmp_path / "a.npz")
+
+
+# cache
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("BALLSOCKET_CACHE", str(tmp_path))
+    return tmp_path
+
+
+def counted(value):
+    """Return a function that returns an array, and the list of its calls."""
+    calls = []
+
+    def compute():
+        calls.append(value)
+        return np.full((2, 3), value)
+
+    return compute, calls
+
+
+def test_a_cached_array_is_computed_once_for_each_key(cache):
+    compute, calls = counted(1.5)
+    for key in ((1.0, "a"), (1.0, "a"), (2.0, "a")):
+        np.testing.assert_array_equal(cached_array(key, compute), np.full((2, 3), 1.5))
+    assert len(calls) == 2
+    digest = sha256(b"3 (1.0, 'a')").hexdigest()[:32]
+    assert f"cup-{digest}.npz" in names(cache)
+
+
+def test_a_damaged_cached_array_is_computed_again(cache):
+    compute, calls = counted(2.0)
+    cached_array("key", compute)
+    (file,) = cache.iterdir()
+    content = file.read_bytes()
+    for damage in (content.replace(b"(2, 3)", b"(1, 3)"), b"", b"short"):
+        file.write_bytes(damage)
+        assert (cached_array("key", compute) == 2.0).all()
+    assert len(calls) == 4
+    assert file.read_bytes() == content
+
+
+def test_the_oldest_cached_arrays_are_removed_above_the_size_limit(cache, monkeypatch):
+    for number in range(4):
+        cached_array(number, lambda: np.zeros(100))
+        newest = max(cache.glob("cup-*"), key=lambda path: path.stat().st_mtime_ns)
+        os.utime(newest, (1000.0 + number, 1000.0 + number))
+    size = newest.stat().st_size
+    (cache / "mine.txt").write_bytes(bytes(10 * size))
+    monkeypatch.setattr(array_files, "_MAX_CACHE_SIZE", 2 * size)
+    cached_array("new", lambda: np.zeros(100))
+    times = sorted(path.stat().st_mtime for path in cache.glob("cup-*"))
+    assert len(times) == 2
+    assert times[0] == 1003.0
+    assert (cache / "mine.txt").exists()
+
+
+def test_an_array_is_computed_without_a_writable_cache(tmp_path, monkeypatch):
+    write_text(tmp_path / "file", "")
+    monkeypatch.setenv("BALLSOCKET_CACHE", str(tmp_path / "file" / "folder"))
+    compute, calls = counted(1.0)
+    assert (cached_array("key", compute) == 1.0).all()
+    assert (cached_array("key", compute) == 1.0).all()
+    assert len(calls) == 2
+
+
+def test_the_cache_folder_follows_the_environment(monkeypatch):
+    monkeypatch.setenv("BALLSOCKET_CACHE", "/here")
+    monkeypatch.setenv("XDG_CACHE_HOME", "/cache")
+    assert cache_folder() == Path("/here")
+    monkeypatch.delenv("BALLSOCKET_CACHE")
+    assert cache_folder() == Path("/cache/ballsocket")
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.setattr(Path, "home", lambda: Path("/home/me"))
+    assert cache_folder() == Path("/home/me/.cache/ballsocket")
+
+
+# fingerprints
+
+
+def test_the_fingerprint_is_the_version_and_a_digest_of_the_package():
+    package = Path(bs.__file__).parent
+    digest = sha256()
+    for path in sorted(package.rglob("*")):
+        if path.suffix in {".py", ".npz", ".toml", ".csv"}:
+            digest.update(path.relative_to(package).as_posix().encode())
+            digest.update(path.read_bytes())
+    assert fingerprint() == f"{bs.__version__}+{digest.hexdigest()[:8]}"
+
+
+def test_a_worker_of_another_version_is_refused():
+    check_worker_code(fingerprint())
+    with pytest.raises(ValueError, match="this worker has ballsocket .*, but the run was started by 0.9[+]old"):
+        check_worker_code("0.9+old")
+
+
+def test_digests_differ_by_value_type_and_order():
+    inputs = [(1, 2), (2, 1), (1.0, 2), ("1", 2), ((1, 2),), (12,)]
+    digests = {digest_of(*values) for values in inputs}
+    assert len(digests) == len(inputs)
+    assert {len(digest) for digest in digests} == {64}
+    assert digest_of(1, "a") == digest_of(1, "a")
+
+
+# resumable runs
+
+
+class MemoryStore(PieceStore):
+    def __init__(self, **results):
+        self.results = {int(number.strip("_")): result for number, result in results.items()}
+
+    def load(self, numbers):
+        return {number: self.results[number] for number in numbers if number in self.results}
+
+    def save(self, number, result):
+        self.results[number] = result
+        return f"stored {result}"
+
+
+def square(number):
+    if number == 13:
+        raise ValueError("thirteen")
+    return number * number
+
+
+def test_a_run_computes_and_stores_only_the_missing_pieces():
+    store = MemoryStore(_1="one", _3=None, _9="other run")
+    run = PieceRun(square, range(5), store)
+    assert run.stored == {1: "one", 3: None}
+    assert run.missing == [0, 2, 4]
+    assert list(run.compute_missing(Serial())) == [(0, "stored 0"), (2, "stored 4"), (4, "stored 16")]
+    assert store.results == {0: 0, 1: "one", 2: 4, 3: None, 4: 16, 9: "other run"}
+    again = PieceRun(square, range(5), store)
+    assert again.missing == []
+    assert list(again.compute_missing(Serial())) == []
+
+
+def test_a_run_without_a_store_computes_every_piece():
+    run = PieceRun(square, [2, 1])
+    assert (run.stored, run.missing) == ({}, [2, 1])
+    assert list(run.compute_missing(Serial())) == [(2, 4), (1, 1)]
+
+
+def test_a_failed_run_resumes_with_the_failed_piece():
+    store = MemoryStore()
+    with pytest.raises(ValueError, match="thirteen"):
+        list(PieceRun(square, [11, 12, 13, 14], store).compute_missing(Serial()))
+    assert PieceRun(square, [11, 12, 13, 14], store).missing == [13, 14]
+
+
+def test_files_have_the_permissions_of_the_system(tmp_path):
+    mask = os.umask(0o022)
+    try:
+        path = write_text(tmp_path / "a.txt", "x")
+    finally:
+        os.umask(mask)
+    assert stat.S_IMODE(path.stat().st_mode) == 0o644

@@ -1,0 +1,288 @@
+"""Simulated patient cohorts: samples, pieces, the store and its resumption, and the table of patients."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+from ballsocket.core.executors import Distributed, Processes, Serial
+from ballsocket.hip import population
+from ballsocket.hip.cohort import (
+    CohortRun,
+    cohort_store,
+    sample_patients,
+    table_columns,
+    write_csv,
+)
+from ballsocket.hip.cohort_results import RESULT_UNITS, CohortResult, join_results
+from ballsocket.studies import LogNormal, Rectangular
+
+from ..cli.command import run
+from .test_uncertainty import short_file
+from .test_variability import COEFFICIENT, FEW_CYCLES, TIGHT, WEIGHT, variability
+from .test_wear import K, hip
+
+COARSE = {"ring_width": radians(10.0)}
+
+
+def quick_variability(**distributions):
+    return variability(hip(**COARSE), **(distributions or {"clearance": TIGHT}))
+
+
+def result(n_patients, value=1.0, error=""):
+    return CohortResult(
+        table=np.full((n_patients, 1, len(RESULT_UNITS)), value),
+        refused=np.array([error] * n_patients),
+        contact=np.full((n_patients, 2, 2), value),
+    )
+
+
+def cohort_run(n_patients, **distributions):
+    one = quick_variability(**distributions)
+    return CohortRun(variability=one, counts=(FEW_CYCLES,), values=sample_patients(one, n_patients, 0))
+
+
+def fake(monkeypatch, calls):
+    """Let patients have results that are their numbers, and note each of them."""
+
+    def simulate(self, number):
+        calls.append(number)
+        return np.full((1, len(RESULT_UNITS)), float(number)), np.ones((2, 2)), ""
+
+    monkeypatch.setattr(CohortRun, "_simulate", simulate)
+
+
+# samples and pieces
+
+
+def test_more_patients_keep_the_first_ones():
+    one = variability(clearance=TIGHT, body_weight=WEIGHT)
+    few, more = sample_patients(one, 5, 3), sample_patients(one, 9, 3)
+    for name in ("clearance", "body_weight"):
+        np.testing.assert_array_equal(more[name][:5], few[name])
+    assert (sample_patients(one, 5, 4)["clearance"] != few["clearance"]).any()
+    assert len(sample_patients(one, 1, 0)["clearance"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("count", "seed", "message"),
+    [
+        (0, 0, "patients = 0 is not allowed: it must be 1 to 1000000"),
+        (1_000_001, 0, "patients = 1000001 is not allowed"),
+        (1, -1, "seed = -1 is not allowed: it must be at least 0"),
+    ],
+)
+def test_counts_and_seeds_that_are_not_allowed_are_refused(count, seed, message):
+    with pytest.raises(ValueError, match=message):
+        sample_patients(variability(clearance=TIGHT), count, seed)
+
+
+@pytest.mark.parametrize(("n_patients", "sizes"), [(1, [1]), (16, [16]), (17, [16, 1]), (40, [16, 16, 8])])
+def test_a_piece_has_sixteen_patients_or_the_last_ones(n_patients, sizes):
+    run = cohort_run(n_patients)
+    assert len(run) == n_patients
+    assert [len(run.patients(piece)) for piece in run.pieces] == sizes
+    assert [number for piece in run.pieces for number in run.patients(piece)] == list(range(n_patients))
+
+
+def test_every_patient_is_simulated_in_order(monkeypatch):
+    calls, finished = [], []
+    fake(monkeypatch, calls)
+    cohort = cohort_run(35).simulate(Serial(), progress=finished.append)
+    assert calls == list(range(35))
+    assert finished == [0, 16, 32, 35]
+    np.testing.assert_array_equal(cohort.table[:, 0, 0], np.arange(35.0))
+
+
+def test_a_patient_without_a_result_has_its_error():
+    run = cohort_run(4, tilt=Rectangular(low=0.0, high=2.0))
+    run = replace(run, values={"tilt": np.array([0.1, 1.9, 0.1])})
+    cohort = run.simulate()
+    assert [bool(error) for error in cohort.refused] == [False, True, False]
+    assert np.isnan(cohort.table[1]).all()
+    assert np.isnan(cohort.contact[1]).all()
+    np.testing.assert_array_equal(cohort.table[0], cohort.table[2])
+    assert np.isfinite(cohort.table[0]).all()
+    assert cohort.table.shape == (3, 1, len(RESULT_UNITS))
+    assert cohort.contact.shape == (3, 2, 2)
+
+
+def test_results_are_joined_in_order():
+    joined = join_results([result(2, 1.0), result(1, 5.0, "dislocated")])
+    assert joined.table[:, 0, 0].tolist() == [1.0, 1.0, 5.0]
+    assert joined.contact.shape == (3, 2, 2)
+    assert joined.refused.tolist() == ["", "", "dislocated"]
+
+
+def test_a_worker_of_another_version_is_refused():
+    with pytest.raises(ValueError, match="the run was started by 0.9[+]old"):
+        replace(cohort_run(1), code="0.9+old")(0)
+
+
+# store
+
+
+def test_stored_patients_are_not_simulated_again(tmp_path, monkeypatch):
+    one, calls, finished = quick_variability(), [], []
+    fake(monkeypatch, calls)
+    store = cohort_store(tmp_path / "store", one, [FEW_CYCLES], 0)
+    first = cohort_run(20).simulate(store=store).table
+    assert calls == list(range(20))
+    (tmp_path / "store" / "patients_000000.npz").write_bytes(b"damaged")
+    calls.clear()
+    more = cohort_run(40).simulate(store=store, progress=finished.append).table
+    assert sorted(calls) == list(range(40))  # the first piece is damaged, the second one was incomplete
+    assert finished == [0, 16, 32, 40]
+    np.testing.assert_array_equal(more[:20], first)
+    calls.clear()
+    np.testing.assert_array_equal(cohort_run(40).simulate(store=store).table, more)
+    np.testing.assert_array_equal(cohort_run(32).simulate(store=store, progress=finished.append).table, more[:32])
+    assert calls == []
+    assert finished[4:] == [32]
+
+
+def test_a_stored_result_is_read_as_it_was_written(tmp_path):
+    store = replace(cohort_store(tmp_path, quick_variability(), [FEW_CYCLES], 0), n_patients=19)
+    store.create()
+    store.save(1, result(3, np.nan, "dislocated: µ"))
+    assert store.load([0, 2]) == {}
+    loaded = store.load([0, 1])[1]
+    assert loaded.refused.tolist() == ["dislocated: µ"] * 3
+    assert np.isnan(loaded.table).all()
+    assert replace(store, n_patients=20).load([1]) == {}  # one patient is missing
+    assert replace(store, identity="another").load([1]) == {}
+
+
+def test_another_cohort_is_refused(tmp_path):
+    one = quick_variability(coefficient=COEFFICIENT)
+    cohort_store(tmp_path, one, [FEW_CYCLES], 0).create()
+    cohort_store(tmp_path, one, [FEW_CYCLES], 0)
+    others = [
+        (quick_variability(coefficient=LogNormal(median=K, factor=2.0)), [FEW_CYCLES], 0),
+        (replace(one, body_weight=800.0), [FEW_CYCLES], 0),
+        (variability(hip(**COARSE, clearance=0.2), coefficient=COEFFICIENT), [FEW_CYCLES], 0),
+        (one, [2 * FEW_CYCLES], 0),
+        (one, [FEW_CYCLES], 1),
+    ]
+    for other in others:
+        with pytest.raises(ValueError, match="has another cohort, or one of another version; choose another folder"):
+            cohort_store(tmp_path, *other)
+
+
+@pytest.mark.parametrize("content", [b"", b"[]", b"3", b"{}", b"\xff"], ids=range(5))
+def test_a_damaged_label_is_refused(tmp_path, content):
+    (tmp_path / "patients.json").write_bytes(content)
+    with pytest.raises(ValueError, match="patients.json is not the label of a patient cohort; delete it"):
+        cohort_store(tmp_path, quick_variability(), [FEW_CYCLES], 0)
+
+
+def test_a_refused_number_of_patients_leaves_no_folder(tmp_path):
+    one = quick_variability()
+    store = cohort_store(tmp_path / "none", one, [FEW_CYCLES], 0)
+    with pytest.raises(ValueError, match="patients = 0 is not allowed"):
+        population(one, [FEW_CYCLES], patients=0, store=store)
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_store_does_not_change_the_results(tmp_path):
+    one = quick_variability()
+    store = cohort_store(tmp_path, one, [FEW_CYCLES], 0)
+    plain, stored, again = (population(one, [FEW_CYCLES], patients=3, store=s)[1].cohort for s in (None, store, store))
+    for cohort in (stored, again):
+        np.testing.assert_array_equal(cohort.table, plain.table)
+        np.testing.assert_array_equal(cohort.contact, plain.contact)
+
+
+# table
+
+
+def test_the_table_has_a_row_for_each_patient(tmp_path):
+    distributions = {"clearance": TIGHT, "tilt": Rectangular(low=0.0, high=1.0), "cycles_per_year": TIGHT}
+    run = CohortRun(
+        variability=variability(**distributions),
+        counts=(1e3, 5e6),
+        values={
+            "clearance": np.array([0.1, 0.2]),
+            "tilt": np.array([0.0, np.pi / 6]),
+            "cycles_per_year": np.array([1e6, 2e6]),
+        },
+    )
+    table = np.arange(24.0).reshape(2, 2, 6)
+    table[1, 0, 3] = np.nan
+    contact = np.array([[[0.1, 1], [0.3, 1], [0.2, 1]], [[0.5, 1], [0.4, 0], [0.6, 1]]])
+    cohort = CohortResult(table=table, refused=np.array(["", ""]), contact=contact)
+    columns = {name: values.tolist() for name, values in table_columns(run, cohort)}
+    assert list(columns)[:4] == ["clearance_mm", "tilt_deg", "cycles_per_year", "volume_mm3_at_1000"]
+    assert columns["tilt_deg"] == pytest.approx([0.0, 30.0])
+    assert columns["max_pressure_MPa_at_5e+06"] == [9.0, 21.0]
+    assert columns["peak_utilisation_at_1000"] == [0.3, 0.5]
+    assert columns["peak_utilisation_at_5e+06"] == [0.3, 0.6]
+    assert columns["valid_at_5e+06"] == [1.0, 0.0]
+    assert len(columns) == 3 + 2 * (len(RESULT_UNITS) + 2)
+    names, first, second = write_csv(tmp_path / "a.csv", run, cohort).read_text(encoding="utf-8").splitlines()
+    assert names.split(",") == list(columns)
+    assert first.split(",")[:5] == ["0.1", "0", "1000000", "0", "1"]
+    assert second.split(",")[:7] == ["0.2", "30", "2000000", "12", "13", "14", ""]
+
+
+# the command
+
+
+def test_the_command_stores_every_patient(tmp_path):
+    file = short_file(tmp_path)
+    done = run("hip", str(file), "--patients", "5", "--store", str(tmp_path / "store"), "--json")
+    assert done.returncode == 0, done.stderr
+    names, *rows = (tmp_path / "store" / "patients.csv").read_text(encoding="utf-8").splitlines()
+    assert names.startswith("coefficient,clearance_mm,volume_mm3_at_5000,")
+    assert len(rows) == 5
+    volumes = [float(row.split(",")[2]) for row in rows]
+    answer = json.loads(done.stdout)
+    assert answer["bands"][0]["volume"]["median"] == pytest.approx(np.median(volumes), rel=1e-6)
+    assert 0 < answer["uncertainty"]["quick_run_off"]["volume"] < 0.01
+    assert answer["valid"] is True
+
+
+def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path):
+    """In 80 columns, with springs outside the range of their formula."""
+    path = short_file(tmp_path)
+    path.write_text(path.read_text().replace('liner_thickness = "8 mm"', 'liner_thickness = "1.2 mm"'))
+    words = "hip", str(path), "--patients", "4"
+    shown = run(*words, columns=80)
+    assert shown.returncode == 0, shown.stderr
+    assert "…" not in shown.stdout
+    assert "valid in 0 % of the predictions" in shown.stdout
+    assert "contact at the rim: " in shown.stdout
+    notes = json.loads(run(*words, "--json").stdout)["notes"]
+    assert any(note.startswith("outside R2/L") and "nominal patient, in the first cycle" in note for note in notes)
+    assert any("4 of 4 patients have contacts outside the validity" in note for note in notes)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("engine", [Processes(workers=2), Distributed(workers=2)], ids=["processes", "dask"])
+def test_results_do_not_depend_on_the_executor(engine):
+    run = cohort_run(40)
+    np.testing.assert_array_equal(run.simulate().table, run.simulate(engine).table)
+
+
+@pytest.mark.long
+def test_a_killed_cohort_resumes(tmp_path):
+    file, store = short_file(tmp_path, ("cycles = 1e4", "cycles = 1e6")), tmp_path / "store"
+    words = ["hip", str(file), "--patients", "160", "--store", str(store), "--json"]
+    started = subprocess.Popen([sys.executable, "-m", "ballsocket", *words], stdout=subprocess.DEVNULL)
+    while len(list(store.glob("*.npz"))) < 3:
+        assert started.poll() is None
+        time.sleep(0.02)
+    os.kill(started.pid, signal.SIGKILL)
+    started.wait()
+    times = {path.name: path.stat().st_mtime_ns for path in store.glob("*.npz")}
+    assert 3 <= len(times) < 10
+    again = json.loads(run(*words).stdout)
+    assert all((store / name).stat().st_mtime_ns == when for name, when in times.items())
+    assert again["bands"] == json.loads(run(*words[:4], "--json").stdout)["bands"]

@@ -1,0 +1,219 @@
+"""Variability between patients: the hip of a patient, its coarse simulation, and its results."""
+
+import pickle
+from dataclasses import replace
+from math import inf, radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.hip import (
+    Activity,
+    CrossShear,
+    CustomWearLaw,
+    Mix,
+    PatientVariability,
+    iso_14242_1,
+    iso_14242_4,
+    logarithmic,
+    rocking,
+)
+from ballsocket.hip.cohort_results import RESULT_UNITS, contact_table, result_table
+from ballsocket.hip.variability import Patient
+from ballsocket.problem.cup import Side
+from ballsocket.studies import LogNormal, Normal, Rectangular
+
+from .test_wear import K, hip
+
+FEW_CYCLES = 1e3
+"""Cycles after which the bore is as good as unworn."""
+
+TIGHT = Rectangular(low=0.05, high=0.2)
+WEIGHT = Normal(mean=800.0, deviation=100.0)
+COEFFICIENT = LogNormal(median=K, factor=1.5)
+
+
+def variability(use=None, **distributions):
+    return PatientVariability(use=use or hip(), distributions=distributions)
+
+
+def test_a_patient_has_the_given_quantities():
+    every = PatientVariability(
+        use=hip(seconds_per_cycle=20.0),
+        distributions={
+            "body_weight": WEIGHT,
+            "cycles_per_year": LogNormal(median=1e6, factor=2.0),
+            "inclination": Normal(mean=0.5, deviation=0.1),
+            "anteversion": Normal(mean=0.2, deviation=0.1),
+            "clearance": TIGHT,
+        },
+        body_weight=750.0,
+    )
+    values = {"body_weight": 900.0, "inclination": 0.4, "anteversion": 0.1, "clearance": 0.15, "cycles_per_year": 2e6}
+    patient = every.patient(values)
+    assert patient.use.cycle.largest_force == pytest.approx(1.2 * every.quick.cycle.largest_force)
+    assert patient.use.placed == bs.Cup(inclination=0.4, anteversion=0.1)
+    assert patient.use.joint.clearance == 0.15
+    assert patient.cycle_ratio == 2.0
+    assert patient.use.seconds == 10.0  # the same time with twice as many cycles
+    assert patient.simulate([FEW_CYCLES])[0].cycles == 2 * FEW_CYCLES
+
+
+def test_a_patient_without_values_is_the_nominal_patient():
+    one = variability(body_weight=WEIGHT, clearance=TIGHT, coefficient=COEFFICIENT)
+    patient = one.patient({})
+    assert patient.cycle_ratio == 1.0
+    assert patient.use.joint == one.use.joint
+    assert patient.use.wear == one.use.wear
+    assert patient.use.placed == one.use.placed
+    assert patient.use.cycle is one.quick.cycle
+
+
+def test_the_median_weight_belongs_to_the_forces_of_the_cycle_by_default():
+    one = variability(body_weight=WEIGHT)
+    patient = one.patient({"body_weight": 1000.0})
+    assert patient.use.cycle.largest_force == pytest.approx(1.25 * one.quick.cycle.largest_force)
+
+
+def test_a_tilt_turns_the_cup():
+    one = variability(tilt=Rectangular(low=0.0, high=1.0))
+    tilted = one.patient({"tilt": 0.3}).use.placed
+    assert tilted == one.quick.cup.tilted(0.3)
+    assert tilted != one.use.placed
+
+
+def test_cycles_per_year_are_the_median_or_those_of_a_mix():
+    assert variability(clearance=TIGHT).cycles_per_year is None
+    assert variability(cycles_per_year=LogNormal(median=1.5e6, factor=2.0)).cycles_per_year == pytest.approx(1.5e6)
+    mix = Mix(activities=(Activity(cycle=iso_14242_1(), per_year=1e6), Activity(cycle=rocking(), per_year=1e5)))
+    mixed = variability(hip(cycle=mix), cycles_per_year=LogNormal(median=2e6, factor=2.0))
+    assert mixed.cycles_per_year == 1.1e6
+    assert mixed.patient({"cycles_per_year": 2.2e6}).cycle_ratio == pytest.approx(2.0)
+
+
+def test_twice_the_coefficient_wears_twice_the_volume_in_few_cycles():
+    one = variability(coefficient=COEFFICIENT)
+    volumes = [one.patient({"coefficient": k}).simulate([FEW_CYCLES])[0].volume for k in (K, 2 * K)]
+    assert volumes[1] / volumes[0] == pytest.approx(2.0, rel=1e-3)
+
+
+def test_a_law_of_two_coefficients_keeps_their_ratio():
+    law = variability(hip(wear=CrossShear(straight=1e-7, circular=5e-7)), coefficient=COEFFICIENT)
+    wear = law.patient({"coefficient": 3e-7}).use.wear
+    assert (wear.straight, wear.circular) == pytest.approx((3e-7, 1.5e-6))
+
+
+def test_a_law_without_a_coefficient_has_no_variable_coefficient():
+    with pytest.raises(ValueError, match="coefficient"):
+        variability(hip(wear=CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)), coefficient=COEFFICIENT)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"coefficient": -1e-9}, "coefficient = -1e-09 is not allowed: it must be at least 0"),
+        ({"body_weight": 0.0}, "body_weight = 0 is not allowed: it must be positive"),
+        ({"body_weight": inf}, "body_weight = inf is not allowed: it must be positive"),
+        ({"cycles_per_year": -1.0}, "cycles_per_year = -1 is not allowed: it must be positive"),
+    ],
+)
+def test_values_that_are_not_allowed_are_refused(values, message):
+    every = variability(body_weight=WEIGHT, coefficient=COEFFICIENT, cycles_per_year=LogNormal(median=1e6, factor=2.0))
+    with pytest.raises(ValueError, match=message):
+        every.patient(values)
+
+
+@pytest.mark.parametrize(
+    ("distributions", "message"),
+    [
+        ({}, "no quantity differs between patients: give one of coefficient, clearance"),
+        ({"weight": WEIGHT}, "'weight'"),
+        ({"tilt": TIGHT, "anteversion": TIGHT}, "tilt and anteversion both orient the cup: give one of them"),
+        ({"tilt": TIGHT, "inclination": TIGHT}, "tilt and inclination both orient the cup"),
+        ({"body_weight": Rectangular(low=-3.0, high=1.0)}, "the median of body_weight = -1 is not allowed"),
+        ({"cycles_per_year": Rectangular(low=-1.0, high=1.0)}, "the median of cycles_per_year = 0 is not allowed"),
+    ],
+)
+def test_distributions_that_are_not_allowed_are_refused(distributions, message):
+    with pytest.raises(ValueError, match=message):
+        variability(**distributions)
+
+
+# coarse simulation
+
+
+def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants():
+    fine = variability(hip(surface=bs.ClosedShell(), ring_width=radians(3.0)), clearance=TIGHT).quick
+    assert isinstance(fine.surface, type(hip().surface))
+    assert (fine.ring_width, fine.cycle.n_steps) == (radians(8.0), 32)
+    coarse = hip(cycle=iso_14242_1(16), ring_width=radians(9.0))
+    same = variability(coarse, clearance=TIGHT).quick
+    assert (same.ring_width, same.cycle.n_steps) == (radians(9.0), 16)
+    assert same.surface is coarse.surface
+
+
+@pytest.mark.parametrize("cycle", [iso_14242_1(40), iso_14242_4(), rocking()], ids=lambda cycle: cycle.name)
+def test_the_coarse_cycle_has_the_forces_and_angles_of_the_cycle_at_its_instants(cycle):
+    coarse = variability(hip(cycle=cycle), clearance=TIGHT).quick.cycle
+    midpoints, starts = (np.arange(32) + 0.5) / 32, np.arange(32) / 32
+    np.testing.assert_allclose(coarse.force(midpoints), cycle.force(midpoints), rtol=1e-12)
+    np.testing.assert_allclose(coarse.angles(starts), cycle.angles(starts), atol=1e-12)
+    assert np.shape(coarse.angles(starts[:5])) == (3, 5)
+    np.testing.assert_allclose(coarse.angles(starts + 1.0), coarse.angles(starts), atol=1e-12)  # periodic
+    between = coarse.angles(np.array([1.5 / 32]))[:, 0]
+    np.testing.assert_allclose(between, cycle.angles(starts)[:, 1:3].mean(axis=1), atol=1e-12)  # linear
+
+
+@pytest.mark.parametrize(
+    "cycle",
+    [
+        rocking(),
+        iso_14242_4(),
+        Mix(activities=(Activity(cycle=iso_14242_1(), per_year=1e6), Activity(cycle=rocking(), per_year=1e5))),
+    ],
+    ids=lambda cycle: cycle.name,
+)
+def test_the_coarse_hip_can_be_pickled_and_wears_as_the_full_one(cycle):
+    use = hip(cycle=cycle, cup=bs.Cup(inclination=radians(30.0), side=Side.LEFT))
+    sent = pickle.loads(pickle.dumps(variability(use, clearance=TIGHT).quick))
+    volume = Patient(use=sent, cycle_ratio=1.0).simulate([FEW_CYCLES])[0].volume
+    assert 1e6 / FEW_CYCLES * volume == pytest.approx(use.first.volume, rel=2e-2)
+
+
+# results
+
+
+def test_results_are_those_of_the_reports():
+    joint = replace(hip().joint, liner=bs.UHMWPE)
+    patient = variability(replace(hip(creep=logarithmic()), joint=joint), clearance=TIGHT).patient({"clearance": 0.1})
+    reports = patient.simulate([FEW_CYCLES, 1e4])
+    table = result_table(reports)
+    assert table.shape == (2, len(RESULT_UNITS))
+    for row, report in zip(table, reports, strict=True):
+        results = dict(zip(RESULT_UNITS, row, strict=True))
+        assert results["edge_distance"] == report.edge_distance.min()
+        assert results["creep_depth"] == report.creep_depth > 0
+        assert results["max_pressure"] == report.max_pressure
+        assert results["penetration"] == report.penetration
+    contact = contact_table(patient.use, reports)
+    assert contact.shape == (3, 2)
+    assert ((contact[:, 0] > 0) & (contact[:, 0] < 1)).all()
+    assert (contact[:, 1] == 1).all()
+    unloaded = replace(reports[0], edge_distance=np.array([]))
+    assert result_table([unloaded])[0, list(RESULT_UNITS).index("edge_distance")] == inf
+
+
+def test_a_contact_that_does_not_balance_its_load_is_refused(monkeypatch):
+    from ballsocket.hip import variability as module
+
+    patient = variability(clearance=TIGHT).patient({})
+    report = patient.simulate([FEW_CYCLES])[0]
+    monkeypatch.setattr(module, "make_report", lambda run: replace(report, converged=False))
+    with pytest.raises(ValueError, match="a contact did not balance its load"):
+        patient.simulate([FEW_CYCLES])
+
+
+def test_a_patient_who_would_wear_out_many_liners_is_refused():
+    with pytest.raises(ValueError, match="cycles"):
+        variability(coefficient=COEFFICIENT).patient({"coefficient": 1.0}).simulate([1e7])
