@@ -54,7 +54,7 @@ def identify(results: Results, folder: Path) -> None:
         values=oscillation(mass=2.0).read(pressed)[:3],
         uncertainty=4.0,
         force=force[:3],
-        own=oscillation(mass=2.0),
+        observable=oscillation(mass=2.0),
     )
     free: dict[str, Any] = {"clearance": (0.02, 0.3), "liner.young": (400.0, 2000.0)}
     poisson = design.Normal(mean=0.4, deviation=0.02)

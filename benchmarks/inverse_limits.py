@@ -43,7 +43,7 @@ def table(inputs: list[numpy.ndarray], chunk: int) -> Rows:
     import numba
 
     from ballsocket.compiled import Compiled
-    from ballsocket.compiled.foundation import kernel as kernel_of
+    from ballsocket.compiled.kernels import foundation_kernel as kernel_of
 
     kernel: Any = kernel_of(bs.hess_forsbach.formula, bs.linear_kinematics)
     fast, joint, points = Compiled(model=bs.HessForsbach()), joint_of(inputs), inputs[0].size

@@ -12,7 +12,7 @@ pytest.importorskip("numba")
 import numba
 
 from ballsocket.compiled import Compiled, compiled_law
-from ballsocket.compiled.foundation import _angle_polynomial
+from ballsocket.compiled.kernels import _angle_polynomial
 from ballsocket.models.kinematics import angle_of
 
 KINEMATICS = (bs.linear_kinematics, bs.exact_kinematics, bs.cosine_kinematics)

@@ -38,7 +38,7 @@ def test_many_contacts_print_ranges_and_summarise_failures_as_none():
 def test_comparison_prints_a_row_per_model_and_reasons_of_missing_models():
     answers = bs.compare(bs.joints["tilting-pad-pivot"], force=1000.0)
     assert "plane-layer" in answers.missing
-    assert "ask hertz" in repr(answers)
+    assert "use hertz" in repr(answers)
     assert len(answers.rows()) == len(answers)
     assert "<table>" in answers._repr_html_()
     with pytest.raises(KeyError, match="a layer of infinite thickness"):

@@ -20,7 +20,7 @@ from scipy.optimize import least_squares, linprog
 
 import ballsocket as bs
 from ballsocket.models.liner_compliance import liner_of
-from ballsocket.models.refined_state import NUMBERS, Fit, fit_of, state
+from ballsocket.models.refined_state import NUMBERS, Fit, make_fit, scaled_contact
 
 SIZES = {"waves": 4, "level": 4, "edge": 10, "exponent": 5}
 ROUGH = np.array([0.6, 2.0, 4.0, 20.0, *[0.0] * 4, 0.1, 0.25, *[0.0] * 8, -0.3, -0.5, *[0.0] * 3])
@@ -70,7 +70,7 @@ def fit_from(x: np.ndarray) -> Fit:
     """The coefficients by their names."""
     ends = np.cumsum([0, *SIZES.values()])
     parts = {name: x[first:last].tolist() for name, (first, last) in zip(SIZES, pairwise(ends), strict=True)}
-    return fit_of(**parts, plane=NUMBERS["plane"])
+    return make_fit(**parts, plane=NUMBERS["plane"])
 
 
 def logs_of(x: np.ndarray, points: Points, angle: np.ndarray, which: np.ndarray) -> np.ndarray:
@@ -78,7 +78,7 @@ def logs_of(x: np.ndarray, points: Points, angle: np.ndarray, which: np.ndarray)
     joint = joint_of(*points.pairs[which].T)
     with np.errstate(all="ignore"):
         liner = liner_of(joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius)
-        at = state(angle, liner, fit_from(x))
+        at = scaled_contact(angle, liner, fit_from(x))
         d = joint.clearance * at.indentation
         p0 = d * joint.liner.young / (joint.socket_radius * at.compliance)
         force = d * joint.liner.young * joint.socket_radius * at.secant

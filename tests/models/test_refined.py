@@ -188,7 +188,7 @@ def test_wild_joints_press_back_and_forth():
 
 
 def test_what_it_does_not_answer():
-    with pytest.raises(ValueError, match="refined has no answer for c = 0: .* ask cosine-limit"):
+    with pytest.raises(ValueError, match="refined has no answer for c = 0: .* use cosine-limit"):
         MODEL.press(bs.Joint(ball_radius=18.0, clearance=0.0, liner_thickness=6.0, liner=bs.UHMWPE), force=1.0)
     with pytest.raises(ValueError, match="refined has no answer for L = inf"):
         MODEL.press(bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=np.inf, liner=bs.UHMWPE), force=1.0)

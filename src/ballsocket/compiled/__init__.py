@@ -1,7 +1,7 @@
-"""The same formulas, compiled: many presses in one pass, and the law of a joint for programs that are compiled too.
+"""Compiled formulas: presses of large arrays in one pass, and laws of joints for compiled programs.
 
-Needs numba (`pip install 'ballsocket[fast]'`). Nothing is written twice: numba is taught what the few functions of
-`ballsocket.core.arrays` mean for one number (`teaching`), and then compiles the formulas of the models as they stand.
+Needs numba (`pip install 'ballsocket[fast]'`). No formula is written twice: `overloads` defines the few functions of
+`ballsocket.core.arrays` for one number, and numba compiles the formulas of the models as they are.
 """
 
 from .law import CompiledLaw, compiled_law

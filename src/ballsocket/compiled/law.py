@@ -1,4 +1,4 @@
-"""The law of a joint for compiled programs: `law(indentation)` in Python and inside numba's functions alike."""
+"""Law of a joint for compiled programs: `law(indentation)` in Python and in functions compiled by numba."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ from numba.extending import (
 from ..contact import law as formulas
 from ..contact.law import CurveLaw, ForceLaw
 from ..models.closed_form import ClosedLaw
-from ..models.foundation import Springs
+from ..models.foundation import FoundationLaw
 from ..models.kinematics import Kinematics
-from . import foundation as _foundation  # noqa: F401 - teaches the formulas of the springs
-from .teaching import taught
+from . import kernels as _kernels  # noqa: F401 - registers the formulas of the foundation
+from .overloads import jit_formula
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CompiledLaw:
-    """The law of a joint, for Python and for functions that numba compiles: pass it to them as an argument.
+    """Law of a joint for Python and for functions compiled by numba, which take it as an argument.
 
     Attributes
     ----------
     function : numba function
-        From an indentation, and the numbers one after the other, to force and stiffness.
+        Function of an indentation, followed by the numbers, that returns force and stiffness.
     numbers : tuple
-        What it knows of the joint.
+        Numbers of the joint.
 
     Examples
     --------
@@ -65,30 +65,37 @@ class CompiledLaw:
 
 
 def compiled_law(law: ForceLaw) -> CompiledLaw:
-    """The law of any model, compiled: of a radial foundation its formulas, of all others a curve.
+    """Compile the law of any model: the formulas of a radial foundation, else a curve.
 
     Parameters
     ----------
     law : Law
-        As `model.law(joint)` returns it.
+        Result of `model.law(joint)`.
 
     Raises
     ------
     TypeError
-        Another kind of function; a closed form whose loads are not all above 0, which a curve needs: `AdhesiveSocket`.
+        The law is another function, or one with forces that are not positive (`AdhesiveSocket`).
     """
-    if isinstance(law, Springs):
-        return CompiledLaw(function=_springs(law.kinematics), numbers=(law.socket_radius, law.clearance, law.modulus))
+    if isinstance(law, FoundationLaw):
+        return CompiledLaw(
+            function=_foundation_function(law.kinematics), numbers=(law.socket_radius, law.clearance, law.modulus)
+        )
     curve = law.model.curve(law.joint) if isinstance(law, ClosedLaw) else law
     if not isinstance(curve, CurveLaw):
         raise TypeError(f"law must be one that model.law(joint) returned, got {law!r}")
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return CompiledLaw(function=_curve(), numbers=(*ends, curve.pieces))
+    return CompiledLaw(function=_curve_function(), numbers=(*ends, curve.pieces))
 
 
 @cache
-def _springs(motion: Kinematics) -> Any:
-    force, stiffness, answered = taught(motion.force), taught(motion.stiffness), taught(formulas.finite_or_nan)
+def _foundation_function(motion: Kinematics) -> Any:
+    """Return the compiled law of one kinematics."""
+    force, stiffness, answered = (
+        jit_formula(motion.force),
+        jit_formula(motion.stiffness),
+        jit_formula(formulas.finite_or_nan),
+    )
 
     @njit(error_model="numpy")
     def force_and_tangent(indentation, R2, c, K):  # type: ignore[no-untyped-def]
@@ -100,12 +107,13 @@ def _springs(motion: Kinematics) -> Any:
 
 
 @cache
-def _curve() -> Any:
+def _curve_function() -> Any:
+    """Return the compiled law of a curve."""
     return njit(error_model="numpy")(formulas.force_and_tangent)
 
 
 class _LawType(types.Type):
-    """A `CompiledLaw` for numba: one type for each function."""
+    """Type of a `CompiledLaw` in numba: one for each function."""
 
     def __init__(self, function: Any, numbers: Any) -> None:
         self.function, self.numbers = function, numbers
@@ -131,9 +139,9 @@ def _unboxed(kind: _LawType, value: Any, context: Any) -> NativeValue:
     numbers = context.pyapi.object_getattr_string(value, "numbers")
     native = context.unbox(kind.numbers, numbers)
     context.pyapi.decref(numbers)
-    made = cgutils.create_struct_proxy(kind)(context.context, context.builder)
-    made.numbers = native.value
-    return NativeValue(made._getvalue(), is_error=native.is_error)
+    result = cgutils.create_struct_proxy(kind)(context.context, context.builder)
+    result.numbers = native.value
+    return NativeValue(result._getvalue(), is_error=native.is_error)
 
 
 @overload_method(_LawType, "__call__")
@@ -144,5 +152,5 @@ def _called(law, indentation):  # type: ignore[no-untyped-def]
 
 @lower_builtin(_LawType, _LawType, types.Any)
 def _lowered(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """The code of a call: numba finds what the call of a value means, and asks for its code separately."""
+    """Generate the code of a call, which numba requests separately from its type."""
     return context.compile_internal(builder, _called(*signature.args), signature, arguments)

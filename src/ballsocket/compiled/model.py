@@ -1,4 +1,4 @@
-"""A model whose presses of large arrays are compiled, and whose law compiled programs can call."""
+"""Model with compiled presses of large arrays, and a law for compiled programs."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from ..core.arrays import Array
 from ..core.checks import reject_unnamed_loads, shown
 from ..core.validity import Status, check_domain
 from ..elasticity.exact.tabulated.model import Tabulated
-from ..models.closed_form import Bound
+from ..models.closed_form import ClosedFormSolution
 from ..models.foundation import RadialFoundation
 from ..models.refined import Refined
 from ..problem import Joint
-from . import foundation, refined, tabulated
+from . import kernels
 from .law import CompiledLaw, compiled_law
 
 
 @dataclass(frozen=True, kw_only=True)
 class Compiled(ModelWrapper):
-    """A model whose presses of NumPy float64 arrays are compiled: by force, and by indentation where that is solved.
+    """Model with compiled presses of NumPy float64 arrays by force, and by indentation if that needs a solution.
 
-    Everything else (half angles, other array libraries, dtypes, plain numbers) is passed on to the model. `law(joint)`
-    can be called by compiled programs.
+    The wrapped model solves everything else (half angles, other array libraries, dtypes, plain numbers). Compiled
+    programs can call `law(joint)`.
 
     Parameters
     ----------
     model : RadialFoundation, Refined or Tabulated
-        For instance `HessForsbach()`.
+        Wrapped model, for instance `HessForsbach()`.
 
     Examples
     --------
@@ -61,27 +61,29 @@ class Compiled(ModelWrapper):
     ) -> Contact:
         reject_unnamed_loads(unnamed)
         check_joint(joint)
-        kind, given = check_load(force=force, indentation=indentation, half_angle=half_angle)
-        given = broadcast_load(given, joint.strengths())
-        if kind == "force" and isinstance(self.model, RadialFoundation) and self._in_one_pass(joint, given):
-            return self._passed(self.model, joint, given)
+        kind, load = check_load(force=force, indentation=indentation, half_angle=half_angle)
+        load = broadcast_load(load, joint.strengths())
+        if kind == "force" and isinstance(self.model, RadialFoundation) and self._is_compilable(joint, load):
+            return self._solve_forces(self.model, joint, load)
         return super().press(joint, force=force, indentation=indentation, half_angle=half_angle)
 
-    def _in_one_pass(self, joint: Joint, load: Array) -> bool:
+    def _is_compilable(self, joint: Joint, load: Array) -> bool:
+        """Return True for float64 arrays and a model of plain numbers."""
         large = [number for number in (*joint.numbers(), load) if not arrays.is_plain(number)]
         return bool(large) and all(map(_is_float64, large)) and all(map(arrays.is_plain, self.parameters))
 
-    def _passed(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:
-        _, whole, load = as_arrays(joint, force)
-        points = check_domain((*self.fits, *self.domain), whole, self.name)
-        d, p0, angle, status = foundation.passed(model, whole, load)
-        if not arrays.all_true(points):
-            status = numpy.where(points, status, numpy.int8(Status.OUTSIDE_DOMAIN))
-            d, p0, angle = (numpy.where(points, part, numpy.nan) for part in (d, p0, angle))
+    def _solve_forces(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:
+        """Press a radial foundation in one compiled pass."""
+        _, array_joint, load = as_arrays(joint, force)
+        in_domain = check_domain((*self.fits, *self.domain), array_joint, self.name)
+        d, p0, angle, status = kernels.solve_forces(model, array_joint, load)
+        if not arrays.all_true(in_domain):
+            status = numpy.where(in_domain, status, numpy.int8(Status.OUTSIDE_DOMAIN))
+            d, p0, angle = (numpy.where(in_domain, values, numpy.nan) for values in (d, p0, angle))
         contact = Contact(
             model=self,
-            laws=Bound(model=model, joint=whole, indentation=d),
-            joint=whole,
+            laws=ClosedFormSolution(model=model, joint=array_joint, indentation=d),
+            joint=array_joint,
             force=numpy.broadcast_to(load, d.shape),
             indentation=d,
             status=status,
@@ -92,9 +94,9 @@ class Compiled(ModelWrapper):
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         if kind != "half_angle" and all(map(_is_float64, (*joint.numbers(), load))):
             if isinstance(self.model, Refined):
-                return refined.solved(joint, kind, load)
+                return kernels.solve_refined(joint, kind, load)
             if isinstance(self.model, Tabulated):
-                return tabulated.solved(self.model, joint, kind, load)
+                return kernels.solve_tabulated(self.model, joint, kind, load)
         return super()._solve(joint, kind, load)
 
     def _law(self, joint: Joint) -> CompiledLaw:

@@ -1,4 +1,4 @@
-"""Teach JAX that materials, layers, joints and contacts are trees of numbers.
+"""Registration of materials, layers, joints and contacts as JAX pytrees.
 
     import ballsocket.compiled.pytrees
 
@@ -15,22 +15,22 @@ from jax.tree_util import register_pytree_node
 from ..contact import Contact
 from ..core.quantities import STRESS_LIMITS
 from ..elasticity.exact.tabulated.solution import TableSolution
-from ..models.closed_form import Bound
+from ..models.closed_form import ClosedFormSolution
 from ..models.plane_layer import LayerSolution
 from ..models.refined import RefinedSolution
 from ..problem import Joint, Layer, Material, make_unchecked
 
-Parts = tuple[Any, ...]
+Leaves = tuple[Any, ...]
 
 
-def _register(cls: Any, parts: tuple[str, ...], fixed: tuple[str, ...]) -> None:
-    """`parts` are the branches of the tree, `fixed` what must be equal for two trees to be alike."""
+def _register(cls: Any, leaves: tuple[str, ...], fixed: tuple[str, ...]) -> None:
+    """Register a class: `leaves` are its children, `fixed` its static data."""
 
-    def flatten(made: Any) -> tuple[Parts, Parts]:
-        return tuple(getattr(made, name) for name in parts), tuple(getattr(made, name) for name in fixed)
+    def flatten(instance: Any) -> tuple[Leaves, Leaves]:
+        return tuple(getattr(instance, name) for name in leaves), tuple(getattr(instance, name) for name in fixed)
 
-    def unflatten(fixed_values: Parts, values: Parts) -> Any:
-        names = (*parts, *fixed)
+    def unflatten(fixed_values: Leaves, values: Leaves) -> Any:
+        names = (*leaves, *fixed)
         return make_unchecked(cls, **dict(zip(names, (*values, *fixed_values), strict=True)))
 
     register_pytree_node(cls, flatten, unflatten)
@@ -46,5 +46,5 @@ _register(
 _register(TableSolution, ("joint", "angle", "values"), ("file",))
 _register(LayerSolution, ("joint", "width"), ("widest",))
 _register(RefinedSolution, ("joint", "edge"), ())
-_register(Bound, ("joint", "indentation"), ("model",))
+_register(ClosedFormSolution, ("joint", "indentation"), ("model",))
 _register(Contact, ("laws", "joint", "force", "indentation", "status"), ("model",))

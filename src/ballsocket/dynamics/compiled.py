@@ -12,9 +12,9 @@ from typing import Any
 import numpy
 from numba import njit
 
-from ..compiled import foundation as _foundation  # noqa: F401 - teaches the formulas of the springs
+from ..compiled import kernels as _kernels  # noqa: F401 - registers the formulas of the foundation
 from ..compiled.law import CompiledLaw
-from ..compiled.teaching import compilable, taught
+from ..compiled.overloads import inline_formula, jit_formula
 from ..contact.law import ForceLaw
 from ..core.arrays import Numbers
 from ..models import kinematics
@@ -121,7 +121,7 @@ def _curve_of(joint: Joint, law: ForceLaw) -> Any:
 
 @cache
 def _springs(motion: Kinematics) -> Any:
-    energy, force, stiffness = taught(motion.energy), taught(motion.force), taught(motion.stiffness)
+    energy, force, stiffness = jit_formula(motion.energy), jit_formula(motion.force), jit_formula(motion.stiffness)
 
     @njit(error_model="numpy")
     def slopes(indentation, R2, c, K):  # type: ignore[no-untyped-def]
@@ -212,7 +212,7 @@ for _formula in (
     stepping.stepped,
     answered,
 ):
-    taught(_formula)
+    jit_formula(_formula)
 
 for _short in (reaction.stored, loaded):
-    compilable(_short)
+    inline_formula(_short)

@@ -14,7 +14,7 @@ from ..contact.law import CurveLaw, ForceLaw, PolynomialPieces, curve_law
 from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, exp, log, where
 from ..models.closed_form import ClosedForm, ClosedLaw
-from ..models.foundation import Springs
+from ..models.foundation import FoundationLaw
 from ..problem import Joint
 
 Slopes = tuple[Array, Array, Array]
@@ -37,7 +37,7 @@ class Potential(Protocol):
 class SpringPotential:
     """The energy of radial springs, by their formulas."""
 
-    springs: Springs
+    springs: FoundationLaw
     deepest: float = math.inf
 
     def __call__(self, indentation: Array) -> Slopes:
@@ -146,7 +146,7 @@ def potential_of(model: Model, joint: Joint) -> Potential:
         As `model.law(joint)`.
     """
     law = model.law(joint)
-    if isinstance(law, Springs):
+    if isinstance(law, FoundationLaw):
         return SpringPotential(springs=law)
     if isinstance(law, ClosedLaw):
         return FormulaPotential(model=law.model, joint=law.joint)

@@ -1,4 +1,4 @@
-"""The adhesive socket: a radial foundation whose springs hold on until they are stretched too far."""
+"""Radial foundation with adhesion: its springs detach beyond a critical stretch."""
 
 from __future__ import annotations
 
@@ -19,15 +19,16 @@ from .modulus import Modulus, hess_forsbach
 
 
 def _adhesion_number(model: AdhesiveSocket, contact: Any) -> Array:
+    """Return the adhesion number of a contact."""
     return model.adhesion_number(contact.joint)
 
 
 @dataclass(frozen=True, kw_only=True)
 class AdhesiveSocket(ClosedForm):
-    """A radial foundation with work of adhesion w: a spring lets go at the stretch u_c = sqrt(2w/K).
+    """Radial foundation with work of adhesion w: a spring detaches at the stretch u_c = sqrt(2w/K).
 
     The edge obeys u(ε) = -u_c, so (c + d) cos ε = c - u_c with the paper's linear kinematics. With the adhesion number
-    η = u_c/c: below 1 a ball that is pulled lets go at `pull_off`; from 1 on the whole hemisphere sticks by itself
+    η = u_c/c: below 1 a ball under tension detaches at `pull_off`. From 1 on the full hemisphere adheres without load
     (the bistability of Ciavarella 2018). Derived in the docs (theory).
 
     Parameters
@@ -48,8 +49,8 @@ class AdhesiveSocket(ClosedForm):
 
     Notes
     -----
-    Forces may be negative at small indentations (the ball hangs on); a press by force finds the stable state for
-    zero force or more.
+    Forces may be negative at small indentations, where adhesion holds the ball. A press by force finds the stable state
+    for forces of zero or more.
     """
 
     work_of_adhesion: Array = 5e-5
@@ -57,11 +58,12 @@ class AdhesiveSocket(ClosedForm):
 
     def __post_init__(self) -> None:
         w = check_numeric("work_of_adhesion", self.work_of_adhesion)
-        require("work_of_adhesion", w, (w >= 0) & (w < inf), "a work of adhesion (N/mm) is 0 or more and finite")
+        require("work_of_adhesion", w, (w >= 0) & (w < inf), "a work of adhesion (N/mm) must be 0 or more and finite")
         object.__setattr__(self, "work_of_adhesion", w)
 
     @property
     def parameters(self) -> tuple[Array, ...]:
+        """Work of adhesion and constants of the modulus."""
         return (self.work_of_adhesion, *self.modulus.constants)
 
     name: ClassVar[str] = "adhesive"
@@ -80,7 +82,7 @@ class AdhesiveSocket(ClosedForm):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        why = "from 1 on the whole hemisphere sticks by itself, and the rim decides"
+        why = "from 1 on the full hemisphere adheres without load, and the result depends on the rim"
         return (
             *self.modulus.validity,
             Range(quantity=partial(_adhesion_number, self), symbol="η", high=1.0, why=why),
@@ -88,27 +90,28 @@ class AdhesiveSocket(ClosedForm):
         )
 
     def critical_stretch(self, joint: Joint) -> Array:
-        """u_c = sqrt(2w/K) in mm."""
+        """Compute the critical stretch u_c = sqrt(2w/K) in mm."""
         return sqrt(2 * self.work_of_adhesion / self.modulus.of(joint))
 
     def adhesion_number(self, joint: Joint) -> Array:
-        """η = u_c/c."""
+        """Compute the adhesion number η = u_c/c."""
         c = joint.clearance
         return where(c > 0, self.critical_stretch(joint) / safe_divisor(c), inf)
 
     def pull_off(self, joint: Joint) -> Array:
-        """Largest force in N that can pull the ball without freeing it, positive; NaN where η is 1 or more.
+        """Compute the pull-off force in N, positive; NaN where η is 1 or more.
 
         -F = π R2² K c [1 - (1 - η)^(2/3) (1 + 2η)^(1/3)], about 2π w R2²/c for small η.
         """
         eta = self.adhesion_number(joint)
         eta = where(eta < 1, eta, float("nan"))
-        rest = 1 - eta * eta * (3 - 2 * eta)
-        share = eta * eta * (3 - 2 * eta) / (1 + rest ** (1 / 3) + rest ** (2 / 3))
-        pull = pi * joint.socket_radius**2 * self.modulus.of(joint) * joint.clearance * share
+        remainder = 1 - eta * eta * (3 - 2 * eta)
+        fraction = eta * eta * (3 - 2 * eta) / (1 + remainder ** (1 / 3) + remainder ** (2 / 3))
+        pull = pi * joint.socket_radius**2 * self.modulus.of(joint) * joint.clearance * fraction
         return float(pull) if isinstance(pull, float) else pull
 
     def _factor(self, joint: Joint) -> Array:
+        """Compute 2π R2² K in N/mm²."""
         return 2 * pi * joint.socket_radius**2 * self.modulus.of(joint)
 
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -125,7 +128,7 @@ class AdhesiveSocket(ClosedForm):
         return self._factor(joint) / 2 * where(u < c, partial, d * (d - c) / 3)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        # between the springs without adhesion (too strong) and with all of the hemisphere hanging on (too weak);
+        # between the springs without adhesion (too stiff) and with the full hemisphere in contact (too compliant);
         # a contact that is small against the clearance has F = π R2² K (d² - u_c²)/c, from which it starts
         R2, c, K = joint.socket_radius, joint.clearance, self.modulus.of(joint)
         low, stretch = linear_indentation(R2, c, K, force), self.critical_stretch(joint)
@@ -152,7 +155,7 @@ class AdhesiveSocket(ClosedForm):
         return self.modulus.of(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        """Negative (tension) towards the edge."""
+        """Compute the pressure in MPa, which is negative (tension) towards the edge."""
         versine = versine_of(angle)
         u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
         _, edge = _edge(indentation, joint.clearance, self.critical_stretch(joint))
@@ -160,22 +163,25 @@ class AdhesiveSocket(ClosedForm):
 
 
 def _edge(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
-    """k = cos ε, 0 where the hemisphere sticks, and m = 1 - k."""
+    """Compute k = cos ε, 0 where the full hemisphere adheres, and m = 1 - k."""
     e = safe_divisor(c + d)
     return clip((c - stretch) / e, 0.0, 1.0), clip((d + stretch) / e, 0.0, 1.0)
 
 
 def _force(d: Array, c: Array, stretch: Array) -> Array:
+    """Compute F/(2π R2² K)."""
     # F/(2π R2² K) = e (1 - k³)/3 - c (1 - k²)/2, with m = 1 - k taken out
     k, m = _edge(d, c, stretch)
     return m * (d * (1 + k) / 2 - (c + d) * m * (1 + 2 * k) / 6)
 
 
 def _stiffness(d: Array, c: Array, stretch: Array) -> Array:
+    """Compute the derivative of `_force` by d."""
     # the edge moves: dF/de + dF/dk dk/de
     k, m = _edge(d, c, stretch)
     return m * (1 + k + k * k) / 3 - k * k * stretch / safe_divisor(c + d)
 
 
 def _force_and_stiffness(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
+    """Compute F/(2π R2² K) and its derivative by d."""
     return _force(d, c, stretch), _stiffness(d, c, stretch)

@@ -1,4 +1,4 @@
-"""Models that are given by their laws: what happens at an indentation, in closed form, inverted once for all."""
+"""Models given by closed-form laws of the indentation, with one common inversion."""
 
 from __future__ import annotations
 
@@ -20,72 +20,73 @@ from ..problem import Joint
 
 
 class ClosedForm(Model):
-    """A model given by its laws: what happens at an indentation, element by element.
+    """Model given by its laws at an indentation, element by element.
 
-    A new model states `force`, `stiffness`, `energy`, `half_angle`, `pole_pressure` and `pressure`, and the
-    indentation that belongs to a half angle. The indentation that belongs to a force is found here, once for all;
-    a model with a closed inverse states that too, and one whose pressure is highest off the pole says where and how
-    high. All laws take a joint of arrays, or of Python numbers, and d > 0 or d = 0.
+    A new model states `force`, `stiffness`, `energy`, `half_angle`, `pole_pressure`, `pressure` and the indentation of
+    a half angle. The base class solves for the indentation of a force; a model with a closed inverse overrides that. A
+    model with the largest pressure off the pole states its angle and value. All laws take a joint of arrays, or of
+    Python numbers, and d >= 0.
     """
 
     accepts_floats: ClassVar[bool] = True
 
     @abstractmethod
     def force(self, joint: Joint, indentation: Array) -> Array:
-        """F in N."""
+        """Compute the force F in N."""
 
     @abstractmethod
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        """dF/dd in N/mm."""
+        """Compute the stiffness dF/dd in N/mm."""
 
     @abstractmethod
     def energy(self, joint: Joint, indentation: Array) -> Array:
-        """Integral of F over d from first touch, in N mm."""
+        """Compute the integral of F over d from first touch, in N mm."""
 
     @abstractmethod
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        """ε in rad."""
+        """Compute the half angle ε in rad."""
 
     @abstractmethod
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
-        """d in mm; NaN where no indentation gives this half angle."""
+        """Compute d in mm; NaN where no indentation gives this half angle."""
 
     @abstractmethod
     def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
-        """Pressure at the pole, p0 in MPa."""
+        """Compute the pressure p0 at the pole in MPa."""
 
     @abstractmethod
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        """p(φ) in MPa, 0 outside the contact."""
+        """Compute p(φ) in MPa, 0 outside the contact."""
 
     def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        """Largest pressure in MPa: that at the pole."""
+        """Compute the largest pressure in MPa; the default is that at the pole."""
         return self.pole_pressure(joint, indentation)
 
     def max_pressure_angle(self, joint: Joint, indentation: Array) -> Array:
-        """Where the pressure is largest, in rad from the pole."""
+        """Compute the polar angle of the largest pressure in rad; the default is 0."""
         return 0.0 * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        """K = p0/d in MPa/mm, Eq. (16) of the paper."""
+        """Compute K = p0/d in MPa/mm, Eq. (16) of the paper."""
         quotient = self.pole_pressure(joint, indentation) / arrays.safe_divisor(indentation)
         return where(indentation == 0, numpy.inf, quotient)  # a point contact: p0 ~ d^(1/2n), n >= 1
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        """∫ p dA in N over the spherical contact, by quadrature."""
+        """Integrate p dA over the spherical contact, in N, by quadrature."""
         edge = self.half_angle(joint, indentation)
 
         def ring(x: float) -> Array:
-            angle = edge * sin(pi / 2 * x)  # tames a square root at the edge
+            angle = edge * sin(pi / 2 * x)  # removes the square root at the edge
             return self.pressure(joint, indentation, angle) * arrays.sin(angle) * (pi / 2 * cos(pi / 2 * x))
 
         return 2 * pi * joint.socket_radius**2 * edge * arrays.integral(ring, 40)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        """d in mm that belongs to F.
+        """Compute the indentation d in mm of a force.
 
-        Force laws of contact are close to power laws, ln F against ln d has a slope between 1 and 2 (0.4 and 2.5 to
-        be safe), so one point of the curve brackets every other one, and Newton's method in the logarithms is quick.
+        Force laws of contact are close to power laws: the slope of ln F over ln d lies between 1 and 2 (0.4 and 2.5
+        with a margin). One point of the curve therefore brackets every other one, and Newton's method in the logarithms
+        converges fast.
         """
         scale = joint.clearance + 1e-3 * joint.socket_radius
         known = arrays.log(self.force(joint, scale))
@@ -113,15 +114,15 @@ class ClosedForm(Model):
         else:
             d, F = load, self.force(joint, load)
         safe = where(arrays.isfinite(d), d, 0.0)
-        # an error of rounding in d: F alone is no measure where it is a small difference of large parts (adhesion)
+        # rounding error of d; |F| alone is too small a scale where F is a difference of large terms (adhesion)
         scale = abs(F) + safe * self.stiffness(joint, safe)
-        near = abs(self.force(joint, safe) - F) <= 1e3 * arrays.machine_epsilon(safe) * scale
+        converged = abs(self.force(joint, safe) - F) <= 1e3 * arrays.machine_epsilon(safe) * scale
         return SolverResult(
-            laws=Bound(model=self, joint=joint, indentation=d),
+            laws=ClosedFormSolution(model=self, joint=joint, indentation=d),
             force=F,
             indentation=d,
             failures={
-                Status.NOT_CONVERGED: arrays.logical_not(near),
+                Status.NOT_CONVERGED: arrays.logical_not(converged),
                 Status.BEYOND_EQUATOR: self.half_angle(joint, safe) > pi / 2 * (1 + 1e-6),
             },
         )
@@ -132,7 +133,7 @@ class ClosedForm(Model):
 
 @dataclass(frozen=True, kw_only=True)
 class ClosedLaw:
-    """The force and the stiffness of a closed form, bound to a joint of floats."""
+    """Force and stiffness of a closed form as functions of the indentation, for a joint of floats."""
 
     model: ClosedForm
     joint: Joint
@@ -148,10 +149,10 @@ class ClosedLaw:
         return finite_or_nan(F, stiffness)
 
 
-def _bound(law: str) -> Any:
-    """A law of the model at the joint and the indentation that it is bound to."""
+def _evaluated(law: str) -> Any:
+    """Make a property that evaluates one law of the model at the stored joint and indentation."""
 
-    def value(self: Bound) -> Array:
+    def value(self: ClosedFormSolution) -> Array:
         return getattr(self.model, law)(self.joint, self.indentation)
 
     value.__doc__ = getattr(ClosedForm, law).__doc__
@@ -159,22 +160,22 @@ def _bound(law: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Bound:
-    """The laws of a closed form, bound to a joint of arrays and an indentation (mm)."""
+class ClosedFormSolution:
+    """Contacts of a closed form: its laws at a joint of arrays and an indentation (mm)."""
 
     model: ClosedForm
     joint: Joint
     indentation: Array
 
-    half_angle = _bound("half_angle")
-    max_pressure = _bound("max_pressure")
-    max_pressure_angle = _bound("max_pressure_angle")
-    pole_pressure = _bound("pole_pressure")
-    stiffness = _bound("stiffness")
-    energy = _bound("energy")
-    foundation_modulus = _bound("foundation_modulus")
-    pressure_integral = _bound("pressure_integral")
+    half_angle = _evaluated("half_angle")
+    max_pressure = _evaluated("max_pressure")
+    max_pressure_angle = _evaluated("max_pressure_angle")
+    pole_pressure = _evaluated("pole_pressure")
+    stiffness = _evaluated("stiffness")
+    energy = _evaluated("energy")
+    foundation_modulus = _evaluated("foundation_modulus")
+    pressure_integral = _evaluated("pressure_integral")
 
     def pressure(self, angle: Array) -> Array:
-        """p(φ) in MPa, 0 outside the contact."""
+        """Compute p(φ) in MPa, 0 outside the contact."""
         return self.model.pressure(self.joint, self.indentation, angle)

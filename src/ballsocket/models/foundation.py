@@ -1,4 +1,4 @@
-"""The radial foundation: a rigid ball on springs that act along the socket's radius. The paper's model and its kin."""
+"""Radial foundation: a rigid ball on radial springs of the socket. The paper's model and related ones."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ from .modulus import Modulus, bonded_layer, hess_forsbach, spherical_vessel
 
 @dataclass(frozen=True, kw_only=True)
 class RadialFoundation(ClosedForm):
-    """p = K u on the socket's surface, u the radial displacement under a rigid ball.
+    """Radial foundation: p = K u on the socket's surface, with u the radial displacement under a rigid ball.
 
     Parameters
     ----------
     modulus : Modulus
-        How stiff: `hess_forsbach` (default), `spherical_vessel`, `bonded_layer`, `polynomial(...)`, `constant(...)`.
+        Foundation modulus: `hess_forsbach` (default), `spherical_vessel`, `bonded_layer`, `polynomial(...)`,
+        `constant(...)`.
     kinematics : Kinematics
-        How the ball's shape is taken: `linear_kinematics` (Eq. 6, default), `exact_kinematics` (Eq. 5) or
+        Shape of the ball: `linear_kinematics` (Eq. 6, default), `exact_kinematics` (Eq. 5) or
         `cosine_kinematics` (Eq. 6 without clearance).
 
     References
@@ -38,6 +39,7 @@ class RadialFoundation(ClosedForm):
 
     @property
     def name(self) -> str:
+        """Name of a published model, else of modulus and kinematics."""
         return _NAMES.get((self.modulus.name, self.kinematics.name), f"{self.modulus.name}-{self.kinematics.name}")
 
     @property
@@ -46,8 +48,8 @@ class RadialFoundation(ClosedForm):
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        kin = _RELATIVES.get((self.modulus.name, self.kinematics.name), ())
-        return (*self.modulus.sources, *self.kinematics.sources, *kin)
+        related = _RELATED_SOURCES.get((self.modulus.name, self.kinematics.name), ())
+        return (*self.modulus.sources, *self.kinematics.sources, *related)
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -63,6 +65,7 @@ class RadialFoundation(ClosedForm):
 
     @property
     def parameters(self) -> tuple[Array, ...]:
+        """Constants of the modulus."""
         return self.modulus.constants
 
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -102,12 +105,12 @@ class RadialFoundation(ClosedForm):
 
     def _law(self, joint: Joint) -> ForceLaw:
         R2, c, K = joint.socket_radius, joint.clearance, float(self.modulus.of(joint))
-        return Springs(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=K)
+        return FoundationLaw(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=K)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Springs:
-    """The force and the stiffness of a radial foundation in one joint: lengths in mm, the modulus K in MPa/mm."""
+class FoundationLaw:
+    """Force and stiffness of a radial foundation in one joint: lengths in mm, the modulus K in MPa/mm."""
 
     kinematics: Kinematics
     socket_radius: float
@@ -120,7 +123,7 @@ class Springs:
         R2, c, K, motion = self.socket_radius, self.clearance, self.modulus, self.kinematics
         try:
             return finite_or_nan(motion.force(R2, c, K, indentation), motion.stiffness(R2, c, K, indentation))
-        except ArithmeticError:  # where Python's numbers raise, others become infinite
+        except ArithmeticError:  # Python's numbers raise an error where NumPy's become infinite
             return nan, nan
 
 
@@ -134,15 +137,15 @@ _NAMES = {
 }
 
 
-_RELATIVES = {
+_RELATED_SOURCES = {
     ("spherical-vessel", "linear"): (Source("jin1994"),),
     ("bonded-layer", "exact"): (Source("askari2018"),),
 }
-"""Published models of the same physics, beside the sources of modulus and kinematics."""
+"""Published models of the same physics, in addition to the sources of modulus and kinematics."""
 
 
-def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like the models it stands beside
-    """The paper's model: linear kinematics and the modulus fitted to finite elements (Table 3).
+def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as the other models
+    """Make the paper's model: linear kinematics and the modulus fitted to finite elements (Table 3).
 
     References
     ----------
@@ -152,9 +155,9 @@ def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like the models it
 
 
 def Vessel() -> RadialFoundation:  # noqa: N802
-    """Vessel modulus with linear kinematics: the closed form that the paper suggests in place of Bartel's integral.
+    """Make the model of vessel modulus and linear kinematics, the paper's closed form for Bartel's integral.
 
-    Also the constrained radial columns with K_B of Jin, Dowson & Fisher 1994.
+    It equals the constrained radial columns with K_B of Jin, Dowson & Fisher 1994.
 
     References
     ----------
@@ -164,7 +167,7 @@ def Vessel() -> RadialFoundation:  # noqa: N802
 
 
 def Bartel() -> RadialFoundation:  # noqa: N802
-    """Bartel et al. 1985: vessel modulus with exact kinematics, here in closed form.
+    """Make the model of Bartel et al. 1985: vessel modulus with exact kinematics, here in closed form.
 
     References
     ----------
@@ -174,7 +177,7 @@ def Bartel() -> RadialFoundation:  # noqa: N802
 
 
 def BondedLayer() -> RadialFoundation:  # noqa: N802
-    """Bonded-layer (constrained column) modulus with linear kinematics, as the paper compares it.
+    """Make the model of bonded-layer (constrained column) modulus and linear kinematics, as in the paper.
 
     References
     ----------
@@ -184,7 +187,9 @@ def BondedLayer() -> RadialFoundation:  # noqa: N802
 
 
 def BondedLayerExact() -> RadialFoundation:  # noqa: N802
-    """Bonded-layer modulus with exact kinematics: the physics of Askari & Andersen 2018 (their text was not read).
+    """Make the model of bonded-layer modulus and exact kinematics.
+
+    It is the physics of Askari & Andersen 2018, whose text was not available.
 
     References
     ----------
@@ -194,7 +199,7 @@ def BondedLayerExact() -> RadialFoundation:  # noqa: N802
 
 
 def CosineLimit() -> RadialFoundation:  # noqa: N802
-    """The paper's modulus in the limit of no clearance: p = p0 cos φ up to 90 degrees, F = (2π/3) K R2² d.
+    """Make the paper's model without clearance: p = p0 cos φ up to 90 degrees, F = (2π/3) K R2² d.
 
     References
     ----------

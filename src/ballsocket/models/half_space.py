@@ -19,7 +19,7 @@ from .closed_form import ClosedForm
 
 
 class HalfSpace(ClosedForm):
-    """Two elastic half-spaces with the gap A r^(2n) between them; r is the arc from the pole, a = R2 ε at the edge.
+    """Contact of two elastic half-spaces with the gap A r^(2n); r is the arc from the pole, a = R2 ε at the edge.
 
     d = κ A a^(2n) with κ = (2n)!!/(2n - 1)!!. The gap is the parabola of the two spheres at r = R2, so n = 1 is Hertz:
     A = R2^(2 - 2n)/(2 R*), R* = R1 R2/c.
@@ -44,13 +44,14 @@ class HalfSpace(ClosedForm):
         return _FIRST_TOUCH
 
     def _profile(self, joint: Joint) -> Array:
-        """κ A in mm^(1 - 2n)."""
+        """Compute κ A in mm^(1 - 2n)."""
         n = self.order
         kappa = 4**n * factorial(n) ** 2 / factorial(2 * n)
         R2 = joint.socket_radius
         return kappa * joint.clearance / (2 * joint.ball_radius * R2) * R2 ** (2 - 2 * n)
 
     def _radius(self, joint: Joint, indentation: Array) -> Array:
+        """Compute the contact radius a in mm."""
         return power(indentation / self._profile(joint), 1 / (2 * self.order))
 
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -109,17 +110,17 @@ class HalfSpace(ClosedForm):
 
 @cache
 def _peak(order: int) -> tuple[float, float]:
-    """Where the pressure is largest, r/a, and by how much it exceeds that at the pole; for n = 2 1/√2 and √2."""
+    """Compute the position r/a of the largest pressure and its ratio to p0; for n = 2 they are 1/√2 and √2."""
     if order == 1:
         return 0.0, 1.0
     # the pressure as a polynomial in y = sqrt(1 - r²/a²), its only maximum inside
     y, square = Polynomial([0.0, 1.0]), Polynomial([1.0, 0.0, -1.0])
-    parts = (comb(order - 1, j) / (2 * j + 1) * square ** (order - 1 - j) * y ** (2 * j + 1) for j in range(order))
-    profile = sum(parts, Polynomial([0.0]))
+    terms = (comb(order - 1, j) / (2 * j + 1) * square ** (order - 1 - j) * y ** (2 * j + 1) for j in range(order))
+    profile = sum(terms, Polynomial([0.0]))
     roots = profile.deriv().roots()
     inside = roots.real[(abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)]
-    best = float(inside[profile(inside).argmax()])
-    return float(sqrt(1 - best * best)), float(profile(best) / profile(1.0))
+    position = float(inside[profile(inside).argmax()])
+    return float(sqrt(1 - position * position)), float(profile(position) / profile(1.0))
 
 
 _FIRST_TOUCH = (
@@ -138,7 +139,7 @@ _PROMISE = Promise(within=0.15)
 
 @dataclass(frozen=True, kw_only=True)
 class Hertz(HalfSpace):
-    """Hertz 1882 with R* = R1 R2/c: the start of every contact, and no more than that in a close socket.
+    """Contact of Hertz 1882 with R* = R1 R2/c, valid at first touch only in a close socket.
 
     References
     ----------
@@ -157,18 +158,18 @@ class Hertz(HalfSpace):
 
 @dataclass(frozen=True, kw_only=True)
 class Steuermann(HalfSpace):
-    """Steuermann 1939: two half-spaces with a gap that grows like r^(2n), flatter at the pole than Hertz's parabola.
+    """Contact of Steuermann 1939: two half-spaces with a gap r^(2n), flatter at the pole than Hertz's parabola.
 
     Parameters
     ----------
     exponent : int
-        n, 1 or more; 1 is Hertz. What n stands for a given socket is the user's choice, which is the model's
-        known weakness. The pressure is highest off the pole for n > 1.
+        Exponent n, 1 or more; 1 is Hertz. No rule gives n for a given socket, which is the model's known weakness. The
+        pressure is largest off the pole for n > 1.
 
     Raises
     ------
     ValueError
-        An exponent that is no whole number of 1 or more.
+        The exponent is not an integer of 1 or more.
 
     References
     ----------
@@ -178,15 +179,15 @@ class Steuermann(HalfSpace):
     exponent: int = 2
 
     def __post_init__(self) -> None:
-        whole = isinstance(self.exponent, Integral) and not isinstance(self.exponent, bool)
-        if not whole or self.exponent < 1:
-            raise ValueError(f"exponent = {self.exponent!r} is not allowed: a whole number of 1 or more")
+        is_integer = isinstance(self.exponent, Integral) and not isinstance(self.exponent, bool)
+        if not is_integer or self.exponent < 1:
+            raise ValueError(f"exponent = {self.exponent!r} is not allowed: it must be an integer of 1 or more")
         object.__setattr__(self, "exponent", int(self.exponent))
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        other = NeverValid(why=f"a gap that grows like r^{2 * self.exponent} is not the gap of two spheres")
-        return super().validity if self.exponent == 1 else (other, *super().validity)
+        other_gap = NeverValid(why=f"a gap that grows like r^{2 * self.exponent} is not the gap of two spheres")
+        return super().validity if self.exponent == 1 else (other_gap, *super().validity)
 
     @property
     def promise(self) -> Promise | None:

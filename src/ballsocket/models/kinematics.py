@@ -1,13 +1,13 @@
-"""How far a displaced ball presses into each point of a radial foundation, and what follows from it.
+"""Kinematics of a rigid ball in a radial foundation: displacement, force, energy and half angle.
 
-Two closed forms of the same problem: a rigid ball of radius R1 whose centre sits e = c + d below the centre of a
+Closed forms of one problem: a rigid ball of radius R1, whose centre lies e = c + d below the centre of a
 socket of radius R2 = R1 + c, on springs that act along the radius. With u(φ) the radial displacement of the socket's
 surface and p = K u,
 
     F = 2π R2² ∫ p cos φ sin φ dφ.
 
-All lengths in mm, K in MPa/mm, forces in N. Every formula is written in the form that does not cancel, from
-d/c = 1e-12 to 1e6, and holds for c = 0. `versine` is 1 - cos ε of the half angle ε.
+Lengths are in mm, K in MPa/mm, forces in N. Every formula is written without cancellation from d/c = 1e-12 to 1e6,
+and holds for c = 0. `versine` is 1 - cos ε of the half angle ε.
 """
 
 from __future__ import annotations
@@ -22,37 +22,42 @@ from ..core.validity import Range
 
 
 def versine_of(angle: Array) -> Array:
-    """1 - cos of an angle, without cancellation."""
+    """Compute 1 - cos of an angle without cancellation."""
     return 2 * sin(angle / 2) ** 2
 
 
 def angle_of(versine: Array) -> Array:
-    """The angle up to π whose 1 - cos is given."""
+    """Compute the angle up to π from its 1 - cos."""
     return 2 * asin(sqrt(versine / 2))
 
 
 def linear_versine(R2: Array, c: Array, d: Array) -> Array:
+    """Compute 1 - cos ε for linear kinematics."""
     # Eq. (8): cos ε = c/(c + d)
     return d / safe_divisor(c + d)
 
 
 def linear_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
+    """Compute d from 1 - cos ε for linear kinematics."""
     # Eq. (8) solved for d; without clearance every load has the same half angle
     return where(c > 0, c * versine / safe_divisor(1 - versine), nan)
 
 
 def linear_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
+    """Compute the radial displacement at m = 1 - cos φ for linear kinematics."""
     # Eq. (6): u = d cos φ - c (1 - cos φ), with m = 1 - cos φ
     return d - (c + d) * m
 
 
 def linear_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute the force for linear kinematics."""
     # Eq. (13): F = π R2² K/3 [2d - c + c (c/(c + d))²]
     e = safe_divisor(c + d)
     return (pi / 3) * K * R2**2 * (d * d * (3 * c + 2 * d) / (e * e))
 
 
 def linear_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute the stiffness for linear kinematics."""
     # slope of Eq. (13)
     e = safe_divisor(c + d)
     x = c / e
@@ -60,18 +65,21 @@ def linear_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
 
 
 def linear_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute the energy for linear kinematics."""
     # integral of Eq. (13), which is also the energy of the springs
     return (pi / 3) * K * R2**2 * d * d * (d / safe_divisor(c + d))
 
 
 def linear_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute ∫ p dA for linear kinematics."""
     # ∫ p dA = 2π R2² K ∫ u sin φ dφ
     return pi * K * R2**2 * d * (d / safe_divisor(c + d))
 
 
 def linear_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
-    # Eq. (13) solved for d: a cubic. The first guess is right at both ends (d << c and d >> c) and never more than
-    # 3.1 % off; two Halley steps (on 2z - 3 + 1/z² = q, z = 1 + d/c) take that to 1e-18.
+    """Compute the indentation of a force for linear kinematics."""
+    # Eq. (13) solved for d: a cubic. The first guess is exact at both ends (d << c and d >> c) and within
+    # 3.1 % elsewhere; two Halley steps (on 2z - 3 + 1/z² = q, z = 1 + d/c) reduce that to 1e-18.
     s = 1.5 * F / (pi * R2**2 * K)
     d = 0.5 * (s + sqrt(s * (s + (8 / 3) * c)))
     for _ in range(2):
@@ -83,45 +91,54 @@ def linear_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
 
 
 def cosine_versine(R2: Array, c: Array, d: Array) -> Array:
+    """Compute 1 - cos ε without clearance: 1 under load."""
     return where(d > 0, 1.0, 0.0 * d)
 
 
 def cosine_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
-    # every indentation gives 90 degrees
+    """Return NaN: without clearance every indentation has the half angle 90 degrees."""
     return versine * nan
 
 
 def cosine_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
+    """Compute the radial displacement at m = 1 - cos φ without clearance."""
     return linear_displacement(R2, 0.0 * c, d, m)
 
 
 def cosine_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute the force without clearance."""
     return linear_force(R2, 0.0 * c, K, d)
 
 
 def cosine_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute the stiffness without clearance."""
     return linear_stiffness(R2, 0.0 * c, K, d)
 
 
 def cosine_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute the energy without clearance."""
     return linear_energy(R2, 0.0 * c, K, d)
 
 
 def cosine_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute ∫ p dA without clearance."""
     return linear_pressure_integral(R2, 0.0 * c, K, d)
 
 
 def cosine_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
+    """Compute the indentation of a force without clearance."""
     # F = (2π/3) K R2² d
     return 1.5 * F / (pi * R2**2 * K)
 
 
 def circular_versine(R2: Array, c: Array, d: Array) -> Array:
+    """Compute 1 - cos ε for exact kinematics."""
     # Eq. (5) with u = 0: cos ε = (e² + R2² - R1²)/(2 e R2)
     return d * (2 * (R2 - c) - d) / safe_divisor(2 * R2 * (c + d))
 
 
 def circular_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
+    """Compute d from 1 - cos ε for exact kinematics; NaN beyond the largest half angle."""
     # smaller root of e² - 2 e R2 cos ε + R2² - R1² = 0, written for d = e - c; NaN beyond the largest half angle
     b = R2 - c - R2 * versine
     d = 2 * R2 * c * versine / safe_divisor(b + sqrt(b * b - 2 * R2 * c * versine))
@@ -129,6 +146,7 @@ def circular_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Arra
 
 
 def circular_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
+    """Compute the radial displacement at m = 1 - cos φ for exact kinematics."""
     # Eq. (5): u = e cos φ + sqrt(R1² - e² sin² φ) - R2, with m = 1 - cos φ
     e = c + d
     R1 = R2 - c
@@ -137,6 +155,7 @@ def circular_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
 
 
 def circular_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute the force for exact kinematics; NaN if the ball's centre leaves the socket."""
     # Eq. (11) with Eq. (5): F = 2π R2² K {e (1 - k³)/3 + [R1³ - (R2 - e k)³]/(3 e²) - R2 (1 - k²)/2}, k = cos ε,
     # which is a Laurent polynomial in e with a double root at first touch. The ball's centre stays inside the socket.
     e = safe_divisor(c + d)
@@ -145,6 +164,7 @@ def circular_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
 
 
 def circular_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute the stiffness for exact kinematics."""
     # slope of the force
     e = safe_divisor(c + d)
     x = c / e
@@ -152,31 +172,35 @@ def circular_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
 
 
 def circular_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute the energy for exact kinematics."""
     # integral of the force
     return (pi / 12) * K * R2 * d * d * (d / safe_divisor(c + d)) * (4 * (R2 - c) - d)
 
 
 def circular_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
+    """Compute ∫ p dA for exact kinematics."""
     # ∫ p dA = 2π R2² K ∫ u dm over 0..versine by Gauss-Legendre with 8 points: u is nearly linear in m
     versine = circular_versine(R2, c, d)
     return 2 * pi * K * R2**2 * versine * integral(lambda x: circular_displacement(R2, c, d, x * versine), 8)
 
 
 def circular_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
-    # The force is less than that of Eq. (13), so the linear answer is a guess from below; the force is nearly linear
-    # in d there and Newton's method climbs from that side. NaN where the ball's centre would leave the socket.
+    """Compute the indentation of a force for exact kinematics, by Newton's method."""
+    # The force is less than that of Eq. (13), so the linear result is a lower bound; the force is nearly linear in d
+    # there and Newton's method converges from that side. NaN where the ball's centre would leave the socket.
     d = linear_indentation(R2, c, K, F)
     for _ in range(6):
         d = d - (circular_force(R2, c, K, d) - F) / safe_divisor(circular_stiffness(R2, c, K, d))
     return d
 
 
-Law = Callable[..., Array]
+Formula = Callable[..., Array]
+"""Formula of R2, c, K and d, or as `Kinematics` states."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Kinematics:
-    """The formulas of a radial foundation, as plain functions; `linear_kinematics` and `exact_kinematics` are the two.
+    """Formulas of a radial foundation as plain functions; see `linear_kinematics` and `exact_kinematics`.
 
     force, stiffness, energy and pressure_integral take (R2, c, K, d); indentation takes (R2, c, K, F); versine takes
     (R2, c, d), its inverse indentation_of_versine (R2, c, versine), displacement (R2, c, d, 1 - cos φ).
@@ -184,14 +208,14 @@ class Kinematics:
 
     name: str
     sources: tuple[Source, ...]
-    force: Law
-    stiffness: Law
-    energy: Law
-    pressure_integral: Law
-    indentation: Law
-    versine: Law
-    indentation_of_versine: Law
-    displacement: Law
+    force: Formula
+    stiffness: Formula
+    energy: Formula
+    pressure_integral: Formula
+    indentation: Formula
+    versine: Formula
+    indentation_of_versine: Formula
+    displacement: Formula
     validity: tuple[Range, ...] = ()
 
     def __repr__(self) -> str:
@@ -239,4 +263,4 @@ exact_kinematics = Kinematics(
     indentation_of_versine=circular_indentation_of_versine,
     displacement=circular_displacement,
 )
-"""u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5) of the paper: the circle that the ball is."""
+"""u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5) of the paper: the exact circular shape of the ball."""

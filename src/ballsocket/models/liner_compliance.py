@@ -1,4 +1,4 @@
-"""The modal compliance of a bonded liner between the integers: how it answers waves of any length.
+"""Modal compliance of a bonded liner as a function of a real wave number.
 
 c(n) E/R2 for real n > 0 is (1 + ν) N/D with k² = n(n + 1), q = n + ½, b = 1 + L/R2, k0 = 3 - 4ν, g = 8(1 - ν)(1 - 2ν):
 
@@ -21,10 +21,10 @@ Pair = tuple[Array, Array]
 
 
 class Liner(NamedTuple):
-    """What does not depend on the wave: coefficients of polynomials in Q = q².
+    """Coefficients of a liner that do not depend on the wave: polynomials in Q = q².
 
-    N b^-2q and D b^-2q are f(q) + y [rest + y b^-4 f(-q)] with y = b^(2 - 2q) and f(±q) = even ± q odd. `above` and
-    `below` are their coefficients, falling: of even (3), odd (2) and rest (4).
+    N b^-2q and D b^-2q are f(q) + y [middle + y b^-4 f(-q)] with y = b^(2 - 2q) and f(±q) = even ± q odd. `numerator`
+    and `denominator` are their coefficients, highest power first: of even (3), odd (2) and middle (4).
     """
 
     poisson: Array
@@ -32,15 +32,15 @@ class Liner(NamedTuple):
     """ln b"""
     shrink: Array
     """b^-2"""
-    above: tuple[Array, ...]
-    below: tuple[Array, ...]
+    numerator: tuple[Array, ...]
+    denominator: tuple[Array, ...]
 
 
 def liner_of(nu: Array, b: Array) -> Liner:
-    """The liner of Poisson's ratio ν and b = 1 + L/R2."""
+    """Compute the coefficients of a liner of Poisson's ratio ν and b = 1 + L/R2."""
     k0, g, t, z = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 2 * nu, 1 / (b * b)
     bent, none = 4 - 6 * nu, 0.0 * nu
-    above = (
+    numerator = (
         none,
         2 * k0 * bent - 4 * (1 - nu),
         t,
@@ -51,7 +51,7 @@ def liner_of(nu: Array, b: Array) -> Liner:
         1 - 4 * g + z * (10 * t - z * (k0 + 2 * g)),
         -2 * t * z,
     )
-    below = (
+    denominator = (
         4 * k0,
         3 * k0 - 3 - 4 * nu * (3 * k0 - 1),
         none - 2.25,
@@ -62,72 +62,74 @@ def liner_of(nu: Array, b: Array) -> Liner:
         2.25 - 9 * g - z * (24.5 - z * (2.25 + 16 * (1 - nu * nu))),
         4.5 * z + none,
     )
-    return Liner(poisson=nu, growth=log(b), shrink=z, above=above, below=below)
+    return Liner(poisson=nu, growth=log(b), shrink=z, numerator=numerator, denominator=denominator)
 
 
 def log_compliance(k: Array, liner: Liner) -> Pair:
-    """ln(c E/R2) and its slope by ln k, away from q = 1."""
+    """Compute ln(c E/R2) and its slope by ln k, away from q = 1."""
     poisson, growth, shrink, upper, lower = liner
     Q = k * k + 0.25
     q = sqrt(Q)
     y = exp((1 - q) * (2 * growth))
     shrunk, decay = y * y * shrink * shrink, growth / q
-    above, rise = _sum(q, Q, y, shrunk, decay, upper)
-    below, fall = _sum(q, Q, y, shrunk, decay, lower)
-    return log((1 + poisson) * (above / below)), 2 * k * k * (rise / above - fall / below)
+    numerator, rise = _scaled_polynomial(q, Q, y, shrunk, decay, upper)
+    denominator, fall = _scaled_polynomial(q, Q, y, shrunk, decay, lower)
+    return log((1 + poisson) * (numerator / denominator)), 2 * k * k * (rise / numerator - fall / denominator)
 
 
-def _sum(q: Array, Q: Array, y: Array, shrunk: Array, decay: Array, coefficients: tuple[Array, ...]) -> Pair:
-    """N or D over b^2q, and its slope by Q; `shrunk` is y² b^-4, `decay` the slope of -ln y."""
+def _scaled_polynomial(
+    q: Array, Q: Array, y: Array, shrunk: Array, decay: Array, coefficients: tuple[Array, ...]
+) -> Pair:
+    """Compute N or D over b^2q and its slope by Q; `shrunk` is y² b^-4, `decay` the slope of -ln y."""
     e2, e1, e0, o1, o0, r3, r2, r1, r0 = coefficients
     steep, high = e2 * Q, o1 * Q
     even, even_slope = (steep + e1) * Q + e0, 2 * steep + e1
     odd, odd_slope = q * (high + o0), (3 * high + o0) / (2 * q)
-    inner, yQ = r3 * Q + r2, y * Q  # y first: Q³ is infinite in short waves, where y is long zero
-    rest, rest_slope = inner * yQ * Q + r1 * yQ + r0 * y, (2 * inner + r3 * Q) * yQ + r1 * y
+    inner, yQ = r3 * Q + r2, y * Q  # y first: Q³ overflows for short waves, where y is zero
+    middle, middle_slope = inner * yQ * Q + r1 * yQ + r0 * y, (2 * inner + r3 * Q) * yQ + r1 * y
     back = shrunk * (even - odd)
-    slope = even_slope + odd_slope + rest_slope + shrunk * (even_slope - odd_slope) - decay * (rest + 2 * back)
-    return even + odd + rest + back, slope
+    slope = even_slope + odd_slope + middle_slope + shrunk * (even_slope - odd_slope) - decay * (middle + 2 * back)
+    return even + odd + middle + back, slope
 
 
 def log_compliance_anywhere(k: Array, liner: Liner) -> Pair:
-    """ln(c E/R2) and its slope by ln k, near q = 1 (k² = 3/4) too."""
-    away = k * k - 0.75
-    near = (away > -0.05) & (away < 0.05)
-    if arrays.all_true(arrays.logical_not(near)):
+    """Compute ln(c E/R2) and its slope by ln k, also near q = 1 (k² = 3/4)."""
+    offset = k * k - 0.75
+    is_near = (offset > -0.05) & (offset < 0.05)
+    if arrays.all_true(arrays.logical_not(is_near)):
         return log_compliance(k, liner)
-    value, slope = log_compliance(where(near, 2.0, k), liner)
+    value, slope = log_compliance(where(is_near, 2.0, k), liner)
     value_near, slope_near = _log_compliance_near(k, liner)
-    return where(near, value_near, value), where(near, slope_near, slope)
+    return where(is_near, value_near, value), where(is_near, slope_near, slope)
 
 
 def _log_compliance_near(k: Array, liner: Liner) -> Pair:
-    """The logarithm near q = 1, with q - 1 divided out of N and D."""
+    """Compute ln(c E/R2) near q = 1, with q - 1 divided out of N and D."""
     nu = liner.poisson
     k0, g, t = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 4 * nu
     q = sqrt(k * k + 0.25)
-    above, rise = _divided(
+    numerator, rise = _reduced_polynomial(
         q,
         liner,
-        liner.above,
+        liner.numerator,
         first=(-4.0, 1 - 4 * g, 0.0),
         middle=(16 * nu - 8, 2 - 4 * nu),
         grown_first=(-4.0, 2 * (g + t) - 4, 3 * g + 2 * t, g),
         decayed_last=(4 * k0, 2 * k0 * (2 - t), -g - 2 * k0 * t, -g),
     )
-    below, fall = _divided(
+    denominator, fall = _reduced_polynomial(
         q,
         liner,
-        liner.below,
+        liner.denominator,
         first=(4.0, 4 * g - 10, 2.25 - 9 * g, 0.0),
         middle=(-8.0, 20.0, -4.5),
         grown_first=(4.0, 14.0, 4 * g + 4 * t + 20, 12 * g + 10 * t + 16, 9 * g + 4 * t, 2 * g),
         decayed_last=(4.0, 14.0, 24 - 16 * nu, 10 + 8 * nu * t, 12 + 8 * nu * t, 8 * (1 - nu * nu)),
     )
-    return log((1 + nu) * (above / below)), k * k / q * (rise / above - fall / below)
+    return log((1 + nu) * (numerator / denominator)), k * k / q * (rise / numerator - fall / denominator)
 
 
-def _divided(
+def _reduced_polynomial(
     q: Array,
     liner: Liner,
     coefficients: tuple[Array, ...],
@@ -136,10 +138,10 @@ def _divided(
     grown_first: tuple[Array, ...],
     decayed_last: tuple[Array, ...],
 ) -> Pair:
-    """N or D over b^2q (q - 1), and its slope by q.
+    """Compute N or D over b^2q (q - 1), and its slope by q.
 
     f(q) b^2q with the first of the middle terms, and f(-q) b^-2q with the last, are q - 1 times polynomials of q - ½.
-    With those and z = (1 - y)/(q - 1) it is
+    With those and z = (1 - y)/(q - 1) the result is
 
         `grown_first` - z `first` + y b^-2 [(q + 1) `middle` + b^-2 (`decayed_last` - z f(-q))].
     """
@@ -160,23 +162,23 @@ def _divided(
 
 
 _DECAY = (-1 / 40320, 1 / 5040, -1 / 720, 1 / 120, -1 / 24, 1 / 6, -1 / 2, 1.0)
-"""(-1)^j/(j + 1)!, falling."""
+"""Coefficients (-1)^j/(j + 1)!, highest power first."""
 
 
 def _decay_mean(x: Array) -> Pair:
-    """(1 - exp(-x))/x and its slope, by their series near 0."""
+    """Compute (1 - exp(-x))/x and its slope, by series near 0."""
     small = (x > -0.05) & (x < 0.05)
     safe = where(small, 1.0, x)
     series, series_slope = _polynomial(x, _DECAY)
-    left = exp(-safe)
-    mean = (1 - left) / safe
-    return where(small, series, mean), where(small, series_slope, (left - mean) / safe)
+    decayed = exp(-safe)
+    mean = (1 - decayed) / safe
+    return where(small, series, mean), where(small, series_slope, (decayed - mean) / safe)
 
 
-def _polynomial(x: Array, falling: tuple[Array, ...]) -> Pair:
-    """The polynomial of x with these coefficients, the highest power first, and its slope."""
-    value, slope = falling[0] + 0.0 * x, 0.0 * x
-    for coefficient in falling[1:]:
+def _polynomial(x: Array, coefficients: tuple[Array, ...]) -> Pair:
+    """Evaluate a polynomial of x and its slope from coefficients, highest power first."""
+    value, slope = coefficients[0] + 0.0 * x, 0.0 * x
+    for coefficient in coefficients[1:]:
         slope = slope * x + value
         value = value * x + coefficient
     return value, slope

@@ -1,4 +1,4 @@
-"""Liu, Zhang & Yang's construction for spherical joints, reconstructed."""
+"""Reconstruction of the spherical joint model of Liu, Zhang & Yang."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from .kinematics import angle_of, linear_indentation_of_versine, linear_versine,
 
 @dataclass(frozen=True, kw_only=True)
 class LiuReconstruction(ClosedForm):
-    """F = (4π λ/3) E* R2 d²/(c + d), a reconstruction and not the published formula.
+    """Contact with F = (4π λ/3) E* R2 d²/(c + d): a reconstruction, not the published formula.
 
-    A rigid cone on a plane Winkler layer as thick as the socket's radius, with an ellipsoidal pressure over the
-    contact circle a = R2 sin ε, cos ε = c/(c + d). The text of Liu et al. 2006 and its coefficients were not
+    The model is a rigid cone on a plane Winkler layer as thick as the socket's radius, with an ellipsoidal pressure
+    over the contact circle a = R2 sin ε, cos ε = c/(c + d). The text of Liu et al. 2006 and its coefficients were not
     available; their construction is as Heß & Forsbach 2021 (section 2) describe it.
 
     Parameters
     ----------
     coefficient : float
-        λ, the one fitted number, above 0; 1/2 before any fit.
+        Coefficient λ, the only fitted number, above 0; the default 1/2 is not fitted.
 
     Raises
     ------
@@ -41,7 +41,7 @@ class LiuReconstruction(ClosedForm):
     coefficient: float = 0.5
 
     def __post_init__(self) -> None:
-        require("coefficient", self.coefficient, 0 < self.coefficient < inf, "a coefficient is above 0 and finite")
+        require("coefficient", self.coefficient, 0 < self.coefficient < inf, "a coefficient must be above 0 and finite")
 
     name: ClassVar[str] = "liu-reconstruction"
     title: ClassVar[str] = "cone on a plane Winkler layer, ellipsoidal pressure (a reconstruction)"
@@ -52,13 +52,14 @@ class LiuReconstruction(ClosedForm):
         same = "made for ball and socket of one material"
         massive = "made for a massive socket: the liner's thickness does not enter"
         return (
-            NeverValid(why="a reconstruction with a coefficient that was fitted to nothing"),
+            NeverValid(why="unvalidated reconstruction: one coefficient is not fitted to data"),
             Range(quantity="joint.modulus_ratio", low=0.5, high=2.0, why=same),
             Range(quantity="joint.thickness_ratio", high=1.0, why=massive),
             SMALL_STRAIN,
         )
 
     def _factor(self, joint: Joint) -> Array:
+        """Compute (4π λ/3) E* R2."""
         return 4 * pi * self.coefficient / 3 * joint.effective_modulus * joint.socket_radius
 
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -87,6 +88,7 @@ class LiuReconstruction(ClosedForm):
         return linear_indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
     def _square_sine(self, joint: Joint, indentation: Array) -> Array:
+        """Compute sin² ε."""
         # sin² ε = d (2c + d)/(c + d)²
         e = safe_divisor(joint.clearance + indentation)
         return indentation / e * (1 + joint.clearance / e)
@@ -97,8 +99,8 @@ class LiuReconstruction(ClosedForm):
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
         # F = (2/3) π a² p0; F and a² share the factor d/(c + d)
         c, d = joint.clearance, indentation
-        share = where(c + d > 0, (c + d) / safe_divisor(2 * c + d), 1.0)
-        return 1.5 * self._factor(joint) * share / (pi * joint.socket_radius**2)
+        ratio = where(c + d > 0, (c + d) / safe_divisor(2 * c + d), 1.0)
+        return 1.5 * self._factor(joint) * ratio / (pi * joint.socket_radius**2)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         square = sin(angle) ** 2 / safe_divisor(self._square_sine(joint, indentation))

@@ -1,4 +1,4 @@
-"""Foundation moduli: how stiff the springs of a radial foundation are, from geometry and material (MPa/mm)."""
+"""Foundation moduli (MPa/mm): stiffness of the springs of a radial foundation from geometry and material."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from ..problem import Joint
 from .table_3 import eq_18, table_formula
 
 Formula = Callable[..., Array]
-"""K of R2, L, E, ν and the modulus' own constants."""
+"""Function that computes K from R2, L, E, ν and the constants of the modulus."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Modulus:
-    """A foundation modulus: Joint -> MPa/mm, with its source, its domain and its validity.
+    """Foundation modulus, a function from Joint to MPa/mm, with its source, its domain and its validity.
 
     Attributes
     ----------
@@ -31,12 +31,12 @@ class Modulus:
     formula : function
         K in MPa/mm of R2 and L (mm), E (MPa), ν and the constants.
     constants : tuple of float or array
-        The formula's own numbers.
+        Constants of the formula.
     sources : tuple of Source
     promise : Promise or None
-        What the springs are worth inside the validity.
+        Accuracy of the springs inside the validity.
     domain, validity : tuple of Range
-        Where there is a formula (open), and where it can be trusted (closed).
+        Ranges in which the formula exists (open), and in which it is accurate (closed).
 
     Examples
     --------
@@ -56,13 +56,19 @@ class Modulus:
     promise: Promise | None = None
 
     def __call__(self, joint: Joint) -> Array:
-        """K in MPa/mm; OutsideDomainError (a ValueError) where there is no formula for any point of the joint."""
+        """Compute K in MPa/mm.
+
+        Raises
+        ------
+        OutsideDomainError
+            A ValueError: no point of the joint lies in the domain of the formula.
+        """
         check_domain(self.domain, joint, self.name)
         with numpy.errstate(all="ignore"):
             return self.of(joint)
 
     def of(self, joint: Joint) -> Array:
-        """K in MPa/mm, unchecked."""
+        """Compute K in MPa/mm without checks."""
         R2, L, E, nu = joint.socket_radius, joint.liner_thickness, joint.liner.young, joint.liner.poisson
         if type(R2) is float and type(L) is float and type(E) is float and type(nu) is float and not self.constants:
             return _of_numbers(self.formula, R2, L, E, nu)
@@ -74,11 +80,12 @@ class Modulus:
 
 @lru_cache(maxsize=256)
 def _of_numbers(formula: Formula, R2: float, L: float, E: float, nu: float) -> float:
-    """Kept, since the laws of a joint ask for it one after the other."""
+    """Compute K of plain numbers, cached because all laws of a joint use it."""
     return float(formula(R2, L, E, nu))
 
 
 def vessel_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
+    """Compute K_B of a spherical vessel."""
     # Eq. (14), K_B, with 1 - κ³ = (1 - κ)(1 + κ + κ²) and 1 - κ = L/(R2 + L)
     ratio = R2 / L
     kappa = ratio / (1 + ratio)
@@ -87,33 +94,40 @@ def vessel_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
 
 
 def layer_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
+    """Compute K_BL of a bonded layer."""
     # Eq. (15), K_BL
     return (1 - nu) / ((1 + nu) * (1 - 2 * nu)) * E / L
 
 
 def polynomial_formula(R2: Array, L: Array, E: Array, nu: Array, c1: Array, c2: Array, c3: Array) -> Array:
+    """Compute K by Eq. (18) with constants."""
     return E / R2 * eq_18((c1, c2, c3), R2 / L)
 
 
 def corrected_vessel_formula(R2: Array, L: Array, E: Array, nu: Array, a0: Array, a1: Array, a2: Array) -> Array:
+    """Compute K_B times a polynomial of κ = R2/(R2 + L)."""
     ratio = R2 / L
     kappa = ratio / (1 + ratio)
     return vessel_formula(R2, L, E, nu) * (a0 + kappa * (a1 + kappa * a2))
 
 
 def constant_formula(R2: Array, L: Array, E: Array, nu: Array, K: Array) -> Array:
+    """Return the constant K in the shape of the joint."""
     return K + 0.0 * R2
 
 
 def _poisson(low: float, high: float, why: str) -> Range:
+    """Make a range of the liner's Poisson's ratio."""
     return Range(quantity="joint.liner.poisson", low=low, high=high, why=why)
 
 
 def _thickness_ratio(low: float, high: float, why: str) -> Range:
+    """Make a range of R2/L."""
     return Range(quantity="joint.thickness_ratio", low=low, high=high, why=why)
 
 
 def _contact_width(low: float, why: str) -> Range:
+    """Make a lower limit of the contact width over the liner thickness."""
     return Range(quantity="width_ratio", low=low, why=why)
 
 
@@ -153,7 +167,7 @@ bonded_layer = Modulus(
         Range(
             quantity="joint.thickness_ratio",
             low=5.5,
-            why="a flat layer has one area inside and outside: a thicker shell gives way less",
+            why="a flat layer has one area inside and outside: a thicker shell is stiffer",
         ),
         _contact_width(1.5, "the layer must be thin against the contact radius"),
         RIGID_BALL,
@@ -165,14 +179,14 @@ bonded_layer = Modulus(
 
 
 def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
-    """K R2/E = c1 + c2 (R2/L) + c3 (R2/L)², Eq. (18) of Heß & Forsbach 2021, with constants of one's own.
+    """Make a modulus K R2/E = c1 + c2 (R2/L) + c3 (R2/L)², Eq. (18) of Heß & Forsbach 2021 with custom constants.
 
     Parameters
     ----------
     c1, c2, c3 : float or array
-        Without unit, zero or more; arrays broadcast against joint and load.
+        Dimensionless constants, zero or more; arrays broadcast against joint and load.
     source : str
-        Where they come from.
+        Source of the constants.
 
     Raises
     ------
@@ -181,25 +195,25 @@ def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
     """
     constants = tuple(check_numeric(name, value) for name, value in (("c1", c1), ("c2", c2), ("c3", c3)))
     for name, value in zip(("c1", "c2", "c3"), constants, strict=True):
-        require(name, value, (value >= 0) & (value < inf), "a constant of Eq. (18) is 0 or more and finite")
+        require(name, value, (value >= 0) & (value < inf), "a constant of Eq. (18) must be 0 or more and finite")
     total = sum(constants)
-    require("c1 + c2 + c3", total, total > 0, "one constant of Eq. (18) at least is above 0")
+    require("c1 + c2 + c3", total, total > 0, "at least one constant of Eq. (18) must be above 0")
     title = f"Eq. (18) with constants {c1}, {c2}, {c3}" + (f" ({source})" if source else "")
     sources = (Source("hess2021", "(18)"),)
     return Modulus(name="polynomial", title=title, formula=polynomial_formula, constants=constants, sources=sources)
 
 
 def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Modulus:
-    """K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L): the vessel corrected for a pressure that is not uniform.
+    """Make a modulus K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L): the vessel corrected for non-uniform pressure.
 
-    The idea is Imado's (2005), the factor one's own: fit it with `calibrate`.
+    The idea is Imado's (2005); the factor is custom, for instance fitted with `calibrate`.
 
     Parameters
     ----------
     a0, a1, a2 : float or array
-        Without unit; arrays broadcast against joint and load.
+        Dimensionless constants; arrays broadcast against joint and load.
     source : str
-        Where they come from.
+        Source of the constants.
 
     Raises
     ------
@@ -208,10 +222,10 @@ def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Mo
     """
     constants = tuple(check_numeric(name, value) for name, value in (("a0", a0), ("a1", a1), ("a2", a2)))
     for name, value in zip(("a0", "a1", "a2"), constants, strict=True):
-        require(name, value, abs(value) < inf, "a constant of the factor is finite")
+        require(name, value, abs(value) < inf, "a constant of the factor must be finite")
     for kappa in (i / 20 for i in range(21)):
         factor = constants[0] + kappa * (constants[1] + kappa * constants[2])
-        require(f"factor at κ = {kappa:g}", factor, factor > 0, "the factor on K_B is above 0")
+        require(f"factor at κ = {kappa:g}", factor, factor > 0, "the factor on K_B must be above 0")
     title = f"spherical vessel times {a0} + {a1} κ + {a2} κ²" + (f" ({source})" if source else "")
     return Modulus(
         name="corrected-vessel",
@@ -225,7 +239,7 @@ def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Mo
 
 
 def constant(modulus: Array) -> Modulus:
-    """A foundation modulus known from elsewhere.
+    """Make a constant foundation modulus.
 
     Parameters
     ----------
@@ -238,13 +252,13 @@ def constant(modulus: Array) -> Modulus:
         A modulus that is not positive and finite.
     """
     value = check_numeric("modulus", modulus)
-    require("modulus", value, (value > 0) & (value < inf), "a foundation modulus (MPa/mm) is above 0 and finite")
+    require("modulus", value, (value > 0) & (value < inf), "a foundation modulus (MPa/mm) must be above 0 and finite")
 
     return Modulus(name="constant", title=f"{modulus} MPa/mm", formula=constant_formula, constants=(value,))
 
 
 def _bulge(contact: Any) -> Array:
-    """How wide a contact is for a liner that is nearly incompressible; 0 for one that is not."""
+    """Compute (ν - 0.43) a/L, a measure of volume constraint; 0 for compressible liners."""
     excess = contact.joint.liner.poisson - 0.43
     return clip(excess, 0.0, inf) * contact.width_ratio
 
@@ -255,7 +269,7 @@ hess_forsbach = Modulus(
     formula=table_formula,
     sources=(Source("hess2021", "(18), Table 3"),),
     validity=(
-        _poisson(0.30, 0.49, "Table 3 ends there; its last column is kept beyond"),
+        _poisson(0.30, 0.49, "Table 3 ends there; its last column is used beyond"),
         _thickness_ratio(0.73, 7.7, "Table 1: R1 11 to 23 mm, L 3 to 15 mm"),
         Range(quantity="joint.clearance_ratio", high=0.018, why="Table 1: clearance up to 0.2 mm"),
         Range(
@@ -268,7 +282,7 @@ hess_forsbach = Modulus(
             quantity=_bulge,
             symbol="(ν - 0.43) a/L",
             high=0.04,
-            why="a wide contact on a nearly incompressible liner is held by its volume, which no spring knows",
+            why="the volume of a nearly incompressible liner stiffens a wide contact, which springs do not model",
         ),
         RIGID_BALL,
         RIGID_BACKING,

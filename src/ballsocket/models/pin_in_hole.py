@@ -1,4 +1,4 @@
-"""A pin in a hole: the plane relative of the ball in a socket, per unit of length."""
+"""Pin in a hole: the plane counterpart of the ball in a socket, per unit of length."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from ..problem import Joint
 
 @dataclass(frozen=True, kw_only=True)
 class PinInHole(ModelInfo):
-    """Persson 1964: a pin in a hole of nearly its radius in an infinite plate of the same material, plane strain.
+    """Persson's (1964) pin in a hole of nearly its radius in an infinite plate of the same material, plane strain.
 
-    With β = tan(ε/2) and E1 = E/(1 - ν²), the line load Q obeys
-    E1 c/Q = [2 - ln(1 + β²) - 2β⁴]/[π (1 + β²) β²]; the perfect fit (c = 0) has ε = 84.83° at any load.
-    A `Joint` describes it: `ball_radius` is the pin's, `clearance` radial, `liner` the material of both; the
-    thickness does not enter. There is no indentation: a line load has no finite approach in an infinite plate. So this
-    is a `Theory` of its own kind, listed and cited beside the models, which answer to a force.
+    With β = tan(ε/2) and E1 = E/(1 - ν²), the line load Q obeys E1 c/Q = [2 - ln(1 + β²) - 2β⁴]/[π (1 + β²) β²]; the
+    perfect fit (c = 0) has ε = 84.83° at any load. A `Joint` describes the pin: `ball_radius` is its radius,
+    `clearance` is radial, `liner` is the material of both. The liner thickness has no effect. There is no indentation,
+    because a line load has no finite approach in an infinite plate. The class is therefore not a `Model`, but it is
+    listed and cited with the models.
 
     References
     ----------
@@ -58,14 +58,14 @@ class PinInHole(ModelInfo):
         ----------
         joint : Joint
         line_load : float or array, optional
-            Q in N/mm, zero or more, finite.
+            Line load Q in N/mm, zero or more, finite.
         half_angle : float or array, optional
-            In rad, from 0 to below 84.83 degrees, the perfect fit.
+            Half angle in rad, from 0 to below 84.83 degrees, the perfect fit.
 
         Returns
         -------
         LineContact
-            Of the shape that joint and load broadcast to.
+            Contact in the common shape of joint and load.
 
         Raises
         ------
@@ -75,12 +75,12 @@ class PinInHole(ModelInfo):
         if unnamed:
             raise TypeError("a load needs its name: line_load in N/mm or half_angle in rad")
         check_joint(joint)
-        kind, given = select_load(line_load=line_load, half_angle=half_angle)
-        load = check_numeric(kind, given)
+        kind, value = select_load(line_load=line_load, half_angle=half_angle)
+        load = check_numeric(kind, value)
         if kind == "line_load":
-            require(kind, load, (load >= 0) & (load < numpy.inf), "a line load (N/mm) is 0 or more and finite")
+            require(kind, load, (load >= 0) & (load < numpy.inf), "a line load (N/mm) must be 0 or more and finite")
         else:
-            limit = f"a half angle (rad) is 0 or more and below {PERFECT_FIT:.6f} (perfect fit)"
+            limit = f"a half angle (rad) must be 0 or more and below {PERFECT_FIT:.6f} (perfect fit)"
             require(kind, load, (load >= 0) & (load < PERFECT_FIT), limit)
         plain, joint, load = as_arrays(joint, load)
         with numpy.errstate(all="ignore"):
@@ -91,8 +91,8 @@ class PinInHole(ModelInfo):
                 reached = stiffness / _flexibility(tan(load / 2) ** 2)
                 line_load, angle = where((stiffness > 0) | (load == 0), reached, numpy.nan), load
         line_load, angle = broadcast(line_load, angle), broadcast(angle, line_load)
-        found = arrays.isfinite(line_load) & arrays.isfinite(angle)
-        status = where(found, int(Status.OK), int(Status.NOT_REACHED))
+        is_finite = arrays.isfinite(line_load) & arrays.isfinite(angle)
+        status = where(is_finite, int(Status.OK), int(Status.NOT_REACHED))
         if plain:
             line_load, angle, status = float(line_load), float(angle), Status(int(status))
         return LineContact(model=self, joint=joint, line_load=line_load, half_angle=angle, status=status)
@@ -100,9 +100,9 @@ class PinInHole(ModelInfo):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class LineContact(Outcome):
-    """What a pin does to its hole, per length: `line_load` in N/mm, `half_angle` in rad, `max_pressure` in MPa.
+    """Contact of a pin and its hole, per length: `line_load` in N/mm, `half_angle` in rad, `max_pressure` in MPa.
 
-    It is told and trusted as a `Contact` is: by `status`, `valid` and `notes`.
+    As for a `Contact`, `status`, `valid` and `notes` describe its validity.
     """
 
     line_load: Array
@@ -114,21 +114,21 @@ class LineContact(Outcome):
 
     @cached_property
     def max_pressure(self) -> Array:
-        """p(0) in MPa."""
+        """Largest pressure p(0) in MPa."""
         return self.pressure(0.0)
 
     def pressure(self, angle: Array) -> Array:
-        """p(φ) in MPa, 0 outside the contact; `angle` in rad broadcasts against the contact's shape."""
+        """Compute p(φ) in MPa, 0 outside the contact; `angle` in rad broadcasts against the contact's shape."""
         return self._mask_failed(lambda: self.line_load / self._numbers.socket_radius * self._profile(angle))
 
     def _profile(self, angle: Array) -> Array:
-        """p R2/Q."""
+        """Compute p R2/Q."""
         square = tan(self.half_angle / 2) ** 2
         y = tan(angle / 2) ** 2
-        rest = clip(square - y, 0.0, inf)
+        remainder = clip(square - y, 0.0, inf)
         ends = 1 + square
-        smooth = 2 / pi * sqrt(rest / ends) / (1 + y)
-        peak = asinh(sqrt(rest / (1 + y))) / (pi * safe_divisor(square) * ends)
+        smooth = 2 / pi * sqrt(remainder / ends) / (1 + y)
+        peak = asinh(sqrt(remainder / (1 + y))) / (pi * safe_divisor(square) * ends)
         return where((y < square) & (abs(angle) < pi), smooth + peak, 0.0)
 
     def __repr__(self) -> str:
@@ -139,12 +139,12 @@ class LineContact(Outcome):
 
 
 def _flexibility(s: Array) -> Array:
-    """E1 c/Q at s = β²."""
+    """Compute E1 c/Q at s = β²."""
     return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * safe_divisor(s))
 
 
 def _squared_tangent(stiffness: Array, load: Array) -> Array:
-    """β² that belongs to a line load, E1 c = stiffness."""
+    """Solve for β² of a line load, with E1 c = stiffness."""
     ratio = stiffness / safe_divisor(load)
 
     def law(s: Array) -> tuple[Array, Array]:
@@ -153,8 +153,8 @@ def _squared_tangent(stiffness: Array, load: Array) -> Array:
 
     ratio = broadcast(ratio, load)
     start = 2 / (pi * ratio + 2.4)  # right for light loads, at most 4 % off
-    found = increasing_root(law, 0.0 * ratio, 0.0 * ratio, 0.0 * ratio + 1.0, start)
-    return where(load > 0, found, 0.0 * found)
+    root = increasing_root(law, 0.0 * ratio, 0.0 * ratio, 0.0 * ratio + 1.0, start)
+    return where(load > 0, root, 0.0 * root)
 
 
 PERFECT_FIT = float(2 * atan(sqrt(_squared_tangent(numpy.float64(0.0), numpy.float64(1.0)))))

@@ -1,4 +1,4 @@
-"""A rigid ball on a plane elastic layer bonded to a rigid base: numerical, and exact for that plane problem."""
+"""Rigid ball on a plane elastic layer bonded to a rigid base: numerical, and exact for that plane problem."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
 from ..problem import Joint
 
-THINNEST = 100.0
-"""R2/L up to which the quadrature is made."""
+MAX_THICKNESS_RATIO = 100.0
+"""Largest R2/L of the quadrature."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PlaneLayer(Model):
-    """Jin 2000: the ball-in-socket as a paraboloid of R* = R1 R2/c on a plane layer of the liner's thickness.
+    """Jin's (2000) ball in a socket: a paraboloid of R* = R1 R2/c on a plane layer of the liner's thickness.
 
-    The layer's Hankel kernel 2(1 - ν²)/E Φ(kL)/k turns, in Abel space, into an integral equation of the second kind
-    for H(t) on [0, a], which is solved with Gauss-Legendre points (see the docs, theory):
+    In Abel space the layer's Hankel kernel 2(1 - ν²)/E Φ(kL)/k gives an integral equation of the second kind for H(t)
+    on [0, a]. It is solved with Gauss-Legendre points (see the docs, theory):
 
         (π/2) H(t) + ∫ H(s) ∫ [Φ(kL) - 1] cos kt cos ks dk ds = (d - t²/R*) E / (2(1 - ν²)),   H(a) = 0.
 
@@ -66,12 +66,12 @@ class PlaneLayer(Model):
             quantity="joint.liner_thickness",
             low=0.0,
             high=inf,
-            why="a layer of infinite thickness is a half-space: ask hertz",
+            why="a layer of infinite thickness is a half-space: use hertz",
         ),
         Range(
             quantity="joint.thickness_ratio",
-            high=THINNEST,
-            why="a layer so thin would need very many points: ask bonded-layer",
+            high=MAX_THICKNESS_RATIO,
+            why="the layer is too thin for the quadrature: use bonded-layer",
         ),
     )
     validity: ClassVar[tuple[Range, ...]] = (
@@ -95,30 +95,30 @@ class PlaneLayer(Model):
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         solution = _solution(joint, kind, load)
         force, indentation = solution.values
-        given = indentation if kind == "indentation" else force
-        miss = 0.0 * given if kind == "half_angle" else arrays.namespace(given).abs(given - load)
+        reached = indentation if kind == "indentation" else force
+        residual = 0.0 * reached if kind == "half_angle" else arrays.namespace(reached).abs(reached - load)
         return SolverResult(
             laws=solution,
             force=force,
             indentation=indentation,
-            failures={Status.NOT_CONVERGED: ~(miss <= 1e5 * arrays.machine_epsilon(given) * load)},
+            failures={Status.NOT_CONVERGED: ~(residual <= 1e5 * arrays.machine_epsilon(reached) * load)},
         )
 
 
 def layer_ratio(x: Array, poisson: Array) -> Array:
-    """Φ(x) - 1 of the bonded layer: Φ = [2 k0 sinh 2x - 4x]/[2 k0 cosh 2x + 1 + k0² + 4x²], k0 = 3 - 4ν."""
+    """Compute Φ(x) - 1 of the bonded layer: Φ = [2 k0 sinh 2x - 4x]/[2 k0 cosh 2x + 1 + k0² + 4x²], k0 = 3 - 4ν."""
     k0 = 3 - 4 * poisson
     decay = exp(-2 * x)
-    below = k0 * (1 + decay * decay) + (1 + k0 * k0 + 4 * x * x) * decay
-    return -decay * (2 * k0 * decay + (1 + 2 * x) ** 2 + k0 * k0) / below
+    denominator = k0 * (1 + decay * decay) + (1 + k0 * k0 + 4 * x * x) * decay
+    return -decay * (2 * k0 * decay + (1 + 2 * x) ** 2 + k0 * k0) / denominator
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LayerSolution:
-    """The scaled solution at the contact width α = a/L: H = (a²/(R* C)) (δ h1 - h2), δ = d R*/a², C = 2(1 - ν²)/E.
+    """Scaled solution at the contact width α = a/L: H = (a²/(R* C)) (δ h1 - h2), δ = d R*/a², C = 2(1 - ν²)/E.
 
-    h1 and h2 answer the right-hand sides 1 and x², x = t/a; the quadrature is made for widths up to `widest`. Also
-    the `Laws` of the contact it belongs to.
+    h1 and h2 solve for the right-hand sides 1 and x², x = t/a. The quadrature is accurate for widths up to `widest`. A
+    `Contact` delegates its quantities to this class.
     """
 
     joint: Joint
@@ -127,7 +127,7 @@ class LayerSolution:
 
     @cached_property
     def _points(self) -> tuple[Array, Array, Array, Array]:
-        """The quadrature in the caller's library: x, its weights, k L, its weights."""
+        """Quadrature in the caller's array library: x, its weights, k L, its weights."""
         like = {"dtype": self.width.dtype, "device": arrays.device(self.width)}
         return tuple(arrays.namespace(self.width).asarray(part, **like) for part in _quadrature(self.widest))
 
@@ -138,10 +138,10 @@ class LayerSolution:
         return layer_ratio(k, self.joint.liner.poisson[..., None]) * wk
 
     @cached_property
-    def _parts(self) -> tuple[Array, Array, Array, Array]:
-        """Parts of h1 and h2 (last axis): the transform ∫ h cos(k x α) dx, the edge value h(1), ∫ h dx, ∫ h x² dx.
+    def _transforms(self) -> tuple[Array, Array, Array, Array]:
+        """Integrals of h1 and h2 (last axis): the transform ∫ h cos(k x α) dx, the edge value h(1), ∫ h dx, ∫ h x² dx.
 
-        In blocks, since the waves of all contacts at once may not fit into memory.
+        They are computed in blocks, since the waves of all contacts together may exceed the memory.
         """
         xp = arrays.namespace(self.width)
         x, _, k, _ = self._points
@@ -150,11 +150,12 @@ class LayerSolution:
         count, size = flat_width.shape[0], max(1, _BLOCK // (k.shape[0] * x.shape[0]))
         spans = [slice(first, min(first + size, count)) for first in range(0, max(count, 1), size)]
         blocks = [self._block(flat_width[span], flat_kernel[span, :]) for span in spans]
-        whole = (xp.concat(part, axis=0) if len(blocks) > 1 else part[0] for part in zip(*blocks, strict=True))
-        transform, edge, mean, second = (xp.reshape(part, (*self.width.shape, *part.shape[1:])) for part in whole)
+        joined = (xp.concat(part, axis=0) if len(blocks) > 1 else part[0] for part in zip(*blocks, strict=True))
+        transform, edge, mean, second = (xp.reshape(part, (*self.width.shape, *part.shape[1:])) for part in joined)
         return transform, edge, mean, second
 
     def _block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
+        """Solve a block of contacts."""
         xp = arrays.namespace(width)
         x, wx, k, _ = self._points
         alpha = width[:, None, None]
@@ -171,45 +172,49 @@ class LayerSolution:
 
     @cached_property
     def _scaled_indentation(self) -> Array:
-        edge = self._parts[1]
+        """Scaled indentation δ."""
+        edge = self._transforms[1]
         return edge[..., 1] / edge[..., 0]
 
     @property
     def _effective_radius(self) -> Array:
+        """Effective radius R* in mm."""
         return self.joint.ball_radius * self.joint.socket_radius / self.joint.clearance
 
     @property
     def _radius(self) -> Array:
+        """Contact radius a in mm."""
         return self.width * self.joint.liner_thickness
 
     @property
     def _compliance(self) -> Array:
+        """Plane compliance C in 1/MPa."""
         return 2 * (1 - self.joint.liner.poisson**2) / self.joint.liner.young
 
     def _steepness(self, x: Array) -> Array:
-        """-H'(x)/x in units of a²/(R* C): 4/π on a half-space."""
+        """Compute -H'(x)/x in units of a²/(R* C): 4/π on a half-space."""
         xp = arrays.namespace(self.width)
-        kernel, k, transform = self._kernel, self._points[2], self._parts[0]
+        kernel, k, transform = self._kernel, self._points[2], self._transforms[0]
         wave = k * self.width[..., None]
-        turn = wave * x[..., None]
-        sinc = where(turn > 1e-4, sin(turn) / safe_divisor(turn), 1 - turn * turn / 6)
+        phase = wave * x[..., None]
+        sinc = where(phase > 1e-4, sin(phase) / safe_divisor(phase), 1 - phase * phase / 6)
         mix = transform[..., 1] - self._scaled_indentation[..., None] * transform[..., 0]
         total = xp.sum(kernel * wave * wave * sinc * mix, axis=-1)
         return (2 / pi) * (2 + self.width * total)
 
     @cached_property
     def values(self) -> tuple[Array, Array]:
-        """F and d."""
-        mean = self._parts[2]
+        """Force F and indentation d."""
+        mean = self._transforms[2]
         delta, a = self._scaled_indentation, self._radius
         force = 2 * pi * a**3 / (self._compliance * self._effective_radius) * (delta * mean[..., 0] - mean[..., 1])
         return force, delta * a * a / self._effective_radius
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:
-        """dF/da and dd/da: a wider contact adds a flat punch of its own radius."""
+        """Derivatives dF/da and dd/da: a wider contact adds a flat punch of its radius."""
         steep = self._steepness(self.width**0)
-        deepening = self._radius / self._effective_radius * steep / self._parts[1][..., 0]
+        deepening = self._radius / self._effective_radius * steep / self._transforms[1][..., 0]
         return self.stiffness * deepening, deepening
 
     @property
@@ -218,15 +223,15 @@ class LayerSolution:
 
     @property
     def stiffness(self) -> Array:
-        return 2 * pi * self._radius * self._parts[2][..., 0] / self._compliance
+        return 2 * pi * self._radius * self._transforms[2][..., 0] / self._compliance
 
     @property
     def energy(self) -> Array:
         # half of ∫ p (d - r²/2R*) dA
-        second, delta, a = self._parts[3], self._scaled_indentation, self._radius
+        second, delta, a = self._transforms[3], self._scaled_indentation, self._radius
         force, d = self.values
-        spread = 4 * pi * a**5 / (self._compliance * self._effective_radius) * (delta * second[..., 0] - second[..., 1])
-        return (d * force - spread / (2 * self._effective_radius)) / 2
+        moment = 4 * pi * a**5 / (self._compliance * self._effective_radius) * (delta * second[..., 0] - second[..., 1])
+        return (d * force - moment / (2 * self._effective_radius)) / 2
 
     @cached_property
     def pole_pressure(self) -> Array:
@@ -251,36 +256,36 @@ class LayerSolution:
 
     def pressure(self, angle: Array) -> Array:
         # ∫ -H'(s)/sqrt(s² - r²) ds over r..a, with s² = r² + (a² - r²) y²
-        share = angle * self.joint.socket_radius / safe_divisor(self._radius)
-        rest = clip(1 - share * share, 0.0, 1.0)
-        total = integral(lambda y: self._steepness(sqrt(share * share + rest * y * y)), 32)
+        position = angle * self.joint.socket_radius / safe_divisor(self._radius)
+        remainder = clip(1 - position * position, 0.0, 1.0)
+        total = integral(lambda y: self._steepness(sqrt(position * position + remainder * y * y)), 32)
         scale = self._radius / (self._effective_radius * self._compliance)
-        return where(share < 1, scale * sqrt(rest) * total, 0.0)
+        return where(position < 1, scale * sqrt(remainder) * total, 0.0)
 
 
 _BLOCK = 4_000_000  # numbers in a block of waves: 32 MB
 
 
 TRACED_WIDTH = 8.0
-"""The widest contact (a/L) that a call inside `jax.jit` or `jax.grad` is prepared for; wider ones have no answer."""
+"""Largest a/L in a call inside `jax.jit` or `jax.grad`; wider contacts are NaN."""
 
 
 @cache
 def _quadrature(widest: float) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray]:
-    """Points and weights along the radius (0 to 1) and in k L, enough for a width a/L of `widest`: 1e-10."""
+    """Compute points and weights along the radius (0 to 1) and in k L, to 1e-10 for a width a/L of `widest`."""
     x, wx = map(numpy.array, gauss_legendre(20 + 4 * ceil(widest)))
     k, wk = map(numpy.array, gauss_legendre(60 + 14 * ceil(widest)))
     return x, wx, 22 * k, 22 * wk  # Φ - 1 is below 1e-16 beyond k L = 22
 
 
 _POWERS = {"force": (8.0, 3.4, 2.0), "indentation": (4.0, 1.6, 0.8)}
-"""Loads grow with the width like a power that lies between the first and the last of these, and near the second."""
+"""Bounds and estimate of the power of the width in the loads: first and last, and second."""
 
 
 def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
-    """The solution at the width that belongs to the load (NaN where none below a half angle of π/2 does)."""
+    """Solve for the width of the load; NaN where the half angle would exceed π/2."""
     shape = (load, *joint.numbers())
-    widest = broadcast(pi / 2 * clip(joint.thickness_ratio, 0.0, THINNEST), *shape)
+    widest = broadcast(pi / 2 * clip(joint.thickness_ratio, 0.0, MAX_THICKNESS_RATIO), *shape)
     if arrays.concrete_values(widest) is None:
         widest = clip(widest, 0.0, TRACED_WIDTH)
     reach = _reach(widest)
@@ -288,17 +293,17 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
         width = broadcast(load * joint.thickness_ratio, *shape)
         width = where(width <= widest, width, float("nan"))
         return LayerSolution(joint=joint, width=width, widest=reach)
-    which = 0 if kind == "force" else 1
+    index = 0 if kind == "force" else 1
     goal = log(broadcast(safe_divisor(load), *shape))
 
     def law(narrowing: Array, reach: float) -> tuple[Array, Array]:
-        """ln(load), negative, and its slope, of how much narrower than the widest a contact is, in logarithms."""
+        """Compute -ln(load) and its slope at a width `widest` exp(-narrowing)."""
         width = widest * exp(-narrowing)
         solution = LayerSolution(joint=joint, width=width, widest=reach)
-        value, slope = solution.values[which], solution.slopes[which]
+        value, slope = solution.values[index], solution.slopes[index]
         return -log(value), slope * width * joint.liner_thickness / value
 
-    missing = -goal - law(0.0 * goal, reach)[0]  # below 0 where even the widest does not suffice
+    missing = -goal - law(0.0 * goal, reach)[0]  # negative if even the widest contact has less than the load
     steep, guess, flat = (clip(missing, 0.0, inf) / power for power in _POWERS[kind])
     reach = _reach(widest * exp(-steep))
     root = increasing_root(lambda narrowing: law(narrowing, reach), -goal, steep, flat, guess, steps=24)
@@ -307,6 +312,6 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
 
 
 def _reach(width: Array) -> float:
-    """The width for which a quadrature serves all of these; that of a traced call where they are not known yet."""
+    """Return the width for a quadrature that is accurate for all widths; a constant one inside a traced call."""
     widths = arrays.concrete_values(width)
     return TRACED_WIDTH if widths is None else float(ceil(numpy.max(widths, initial=0.0, where=numpy.isfinite(widths))))

@@ -1,4 +1,4 @@
-"""A rigid ball in a bonded liner, closed: the liner's own compliance, read at four wavelengths of the contact."""
+"""Rigid ball in a bonded liner in closed form, from the liner's compliance at four wavelengths of the contact."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
 from ..problem import Joint
 from .liner_compliance import Liner, liner_of
-from .refined_state import WIDEST, State, edge_of_force, edge_of_indentation, state
+from .refined_state import MAX_HALF_ANGLE, ScaledContact, edge_of_force, edge_of_indentation, scaled_contact
 
-_FITTED = "fitted there, with a rigid ball"
+_FITTED = "fitted in this range with a rigid ball"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Refined(Model):
-    """The paper's model with the liner's own modes in place of a fitted modulus, and an edge that gives way.
+    """The paper's model with the liner's modes in place of a fitted modulus, and with a compliant edge.
 
     cos ε = (c + λ d)/(c + d), p0 = K d, p = p0 sqrt(1 - y)(1 + β y), y = sin²(φ/2)/sin²(ε/2). K, λ and the force
-    come from the compliance of the bonded liner at four wavelengths; 23 numbers are fitted to the exact answer (see
+    come from the compliance of the bonded liner at four wavelengths; 23 numbers are fitted to the exact solution (see
     the docs, refined). λ = 0 is Eq. (8) of the paper, K is that of Eq. (16).
 
     References
@@ -43,18 +43,18 @@ class Refined(Model):
         Range(
             quantity="joint.clearance",
             low=0.0,
-            why="without clearance every load gives the same half angle: ask cosine-limit",
+            why="without clearance every load gives the same half angle: use cosine-limit",
         ),
         Range(
             quantity="joint.liner_thickness",
             low=0.0,
             high=inf,
-            why="a layer of infinite thickness has no modes of its own: ask hertz or exact",
+            why="a layer of infinite thickness has no layer modes: use hertz or exact",
         ),
         Range(
             quantity="joint.thickness_ratio",
             high=100.0,
-            why="a layer so thin is lost to rounding: ask bonded-layer",
+            why="rounding errors are too large for so thin a layer: use bonded-layer",
         ),
     )
     validity: ClassVar[tuple[Range, ...]] = (
@@ -64,7 +64,7 @@ class Refined(Model):
         Range(
             quantity="joint.modulus_ratio",
             high=0.0045,
-            why="the model takes the ball as rigid, and is so close that softer ones show",
+            why="the ball is assumed rigid, and softer balls exceed the model's error",
         ),
         RIGID_BACKING,
         SMALL_STRAIN,
@@ -74,46 +74,49 @@ class Refined(Model):
     promise: ClassVar[Promise] = Promise(within=0.02)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        edge = _given(joint, load) if kind == "half_angle" else _found(joint, kind, load)
-        return answer_of(RefinedSolution(joint=joint, edge=edge), kind, load)
+        edge = _limit_half_angle(joint, load) if kind == "half_angle" else _solve_edge(joint, kind, load)
+        return make_answer(RefinedSolution(joint=joint, edge=edge), kind, load)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RefinedSolution:
-    """The contact at the half angle `edge` (0: no load, NaN: no answer), as the `Laws` of the contact it belongs to."""
+    """Solution at the half angle `edge` (0: no load, NaN: no solution), with the quantities of a `Contact`."""
 
     joint: Joint
     edge: Array
 
     @cached_property
     def _liner(self) -> Liner:
+        """Coefficients of the liner."""
         return _liner(self.joint)
 
     @cached_property
-    def _state(self) -> State:
-        return state(safe_divisor(self.edge), self._liner)
+    def _state(self) -> ScaledContact:
+        """Scaled contact at the half angle."""
+        return scaled_contact(safe_divisor(self.edge), self._liner)
 
     def _or_zero(self, value: Array) -> Array:
+        """Replace values without load by 0."""
         return where(self.edge > 0, value, 0.0 * self.edge)
 
     @property
     def _secant(self) -> Array:
-        """F/d in N/mm."""
+        """Secant stiffness F/d in N/mm."""
         return self.joint.liner.young * self.joint.socket_radius * self._state.secant
 
     def loads(self, kind: str, load: Array) -> tuple[Array, Array]:
-        """F and d, from the one that was given if one was."""
+        """Compute F and d; the applied one is returned unchanged."""
         if kind == "force":
             d = load / self._secant
             return self._or_zero(load), self._or_zero(d)
         d = load if kind == "indentation" else self.joint.clearance * self._state.indentation
         return self._or_zero(d * self._secant), self._or_zero(d)
 
-    def miss(self, indentation: Array) -> Array:
-        """By how much of itself the half angle misses an indentation."""
+    def relative_residual(self, indentation: Array) -> Array:
+        """Compute the relative error of the half angle for an indentation."""
         d = self._state.indentation
-        wrong = abs(1 - indentation / (self.joint.clearance * d)) / self._state.indentation_rate
-        return where(self.edge > 0, wrong, 0.0)
+        error = abs(1 - indentation / (self.joint.clearance * d)) / self._state.indentation_rate
+        return where(self.edge > 0, error, 0.0)
 
     @property
     def half_angle(self) -> Array:
@@ -121,7 +124,7 @@ class RefinedSolution:
 
     @property
     def indentation(self) -> Array:
-        """d in mm."""
+        """Indentation d in mm."""
         return self._or_zero(self.joint.clearance * self._state.indentation)
 
     @cached_property
@@ -130,23 +133,23 @@ class RefinedSolution:
 
     @cached_property
     def energy(self) -> Array:
-        # ∫ F (dd/dε) dε; the points crowd towards the edge as fast as d grows there
+        # ∫ F (dd/dε) dε; the points are dense near the edge, where d increases fast
         edge = safe_divisor(self.edge)
         rate = self._state.indentation_rate / edge
         width = arrays.log(1 + rate * edge)
 
         def work(x: float) -> Array:
-            far = arrays.exp(width * x)
-            angle = edge - (far - 1) / rate
-            at = state(angle, self._liner)
-            return at.secant * at.indentation**2 * at.indentation_rate / angle * (far * width / rate)
+            growth = arrays.exp(width * x)
+            angle = edge - (growth - 1) / rate
+            contact = scaled_contact(angle, self._liner)
+            return contact.secant * contact.indentation**2 * contact.indentation_rate / angle * (growth * width / rate)
 
         scale = self.joint.liner.young * self.joint.socket_radius * self.joint.clearance**2
         return self._or_zero(scale * integral(work, 24))
 
     @property
     def _modulus(self) -> Array:
-        """K = p0/d in MPa/mm."""
+        """Foundation modulus K = p0/d in MPa/mm."""
         return self.joint.liner.young / (self.joint.socket_radius * self._state.compliance)
 
     @property
@@ -159,7 +162,7 @@ class RefinedSolution:
 
     @property
     def _ring(self) -> Array:
-        """y of the largest pressure: 0 at the pole unless the profile swells towards the edge, β > 1/2."""
+        """Position y of the largest pressure: 0 (the pole) unless β > 1/2."""
         fullness = self._fullness
         return where(fullness > 0.5, (2 * fullness - 1) / where(fullness > 0.5, 3 * fullness, 1.0), 0.0)
 
@@ -173,12 +176,12 @@ class RefinedSolution:
 
     @property
     def _edge_share(self) -> Array:
-        """sin²(ε/2)."""
+        """Value sin²(ε/2)."""
         return sin(safe_divisor(self.edge) / 2) ** 2
 
     @cached_property
     def _fullness(self) -> Array:
-        """β of the profile, from 2π R2² ∫ p cos φ sin φ dφ = F."""
+        """Coefficient β of the profile, from 2π R2² ∫ p cos φ sin φ dφ = F."""
         S = self._edge_share
         mean = self._state.secant * self._state.compliance / (4 * pi * S)
         return (mean - 2 / 3 + 8 * S / 15) / (4 / 15 - 32 * S / 105)
@@ -189,7 +192,7 @@ class RefinedSolution:
         return ring * self.pole_pressure * (2 / 3 + 4 * self._fullness / 15)
 
     def _profile(self, y: Array) -> Array:
-        """p/p0 at y up to 1."""
+        """Compute p/p0 at y up to 1."""
         return arrays.sqrt(clip(1 - y, 0.0, 1.0)) * (1 + self._fullness * y)
 
     def pressure(self, angle: Array) -> Array:
@@ -197,44 +200,47 @@ class RefinedSolution:
         return where(y < 1, self.pole_pressure * self._profile(y), self._or_zero(0.0 * y))
 
 
-def _given(joint: Joint, half_angle: Array) -> Array:
-    """The half angle as it was given, NaN where it is too wide."""
+def _limit_half_angle(joint: Joint, half_angle: Array) -> Array:
+    """Return the half angle, NaN beyond the largest one."""
     edge = broadcast(half_angle, half_angle, *joint.numbers())
     d = RefinedSolution(joint=joint, edge=edge)._state.indentation
-    return where((edge == 0) | ((edge <= WIDEST) & (d > 0)), edge, nan)
+    return where((edge == 0) | ((edge <= MAX_HALF_ANGLE) & (d > 0)), edge, nan)
 
 
-def _found(joint: Joint, kind: str, given: Array) -> Array:
-    """The half angle that belongs to F or d, NaN where it is too wide."""
+def _solve_edge(joint: Joint, kind: str, load: Array) -> Array:
+    """Solve for the half angle of F or d, NaN beyond the largest one."""
     find = edge_of_force if kind == "force" else edge_of_indentation
-    return where(given > 0, find(scaled(joint, kind, given), _liner(joint)), 0.0 * given)
+    return where(load > 0, find(scaled_load(joint, kind, load), _liner(joint)), 0.0 * load)
 
 
-def scaled(joint: Joint, kind: str, given: Array) -> Array:
-    """F/(E R2 c) or d/c, and something above zero where there is no load."""
+def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
+    """Compute F/(E R2 c) or d/c, with a positive value in place of no load."""
     scale = joint.clearance * (joint.liner.young * joint.socket_radius if kind == "force" else 1.0)
-    return broadcast(safe_divisor(given) / scale, given, *joint.numbers())
+    return broadcast(safe_divisor(load) / scale, load, *joint.numbers())
 
 
-def answer_of(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
-    """What a solution says of the loads of one kind that it was found for."""
+def make_answer(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
+    """Make the answer of a solution for loads of one kind."""
     force, indentation = solution.loads(kind, load)
     return SolverResult(
         laws=solution,
         force=force,
         indentation=indentation,
         failures={
-            Status.NOT_CONVERGED: arrays.logical_not(solution.miss(indentation) <= 1e5 * arrays.machine_epsilon(load))
+            Status.NOT_CONVERGED: arrays.logical_not(
+                solution.relative_residual(indentation) <= 1e5 * arrays.machine_epsilon(load)
+            )
         },
     )
 
 
 def _liner(joint: Joint) -> Liner:
+    """Return the liner coefficients of a joint."""
     nu, b = joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius
     return _liner_of_numbers(nu, b) if type(nu) is float and type(b) is float else liner_of(nu, b)
 
 
 @lru_cache(maxsize=256)
 def _liner_of_numbers(nu: float, b: float) -> Liner:
-    """Kept, since more loads on the joint are likely."""
+    """Compute liner coefficients of plain numbers, cached for further loads."""
     return liner_of(nu, b)

@@ -1,4 +1,4 @@
-"""The formulas of `Refined` at a half angle, with their slopes: d, p0 and F of a contact in scaled numbers."""
+"""Formulas of `Refined` at a half angle, with their slopes: d, p0 and F of a contact in scaled numbers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .liner_compliance import Liner, Pair, log_compliance, log_compliance_anywhe
 
 
 class Fit(NamedTuple):
-    """The fitted numbers."""
+    """Fitted numbers of the model."""
 
     waves: tuple[float, ...]
     """Wave numbers times ε."""
@@ -24,19 +24,19 @@ class Fit(NamedTuple):
     edge: tuple[float, ...]
     exponent: tuple[float, ...]
     spans: tuple[float, float, float]
-    """From each of the waves to the next, in ln k."""
+    """Differences of ln k between successive waves."""
     gamma: tuple[float, float, float]
     """Coefficients of ln[(k2/2)^s Γ(1 - s/2) Γ(2 - s/2)] as a cubic in s."""
 
 
-def fit_of(
+def make_fit(
     waves: Sequence[float],
     level: Sequence[float],
     edge: Sequence[float],
     exponent: Sequence[float],
     plane: Sequence[float],
 ) -> Fit:
-    """From the numbers of `data/refined.toml`, by their names there."""
+    """Make a fit from the numbers of `data/refined.toml`, by their names there."""
     k1, k2, k3, k4 = waves
     scale, square, cube = plane
     return Fit(
@@ -52,72 +52,76 @@ def fit_of(
 NUMBERS: dict[str, list[float]] = tomllib.loads(
     (files("ballsocket") / "data" / "refined.toml").read_text(encoding="utf-8")
 )
-FIT = fit_of(**NUMBERS)
-"""`data/refined.toml`."""
+FIT = make_fit(**NUMBERS)
+"""Fit of `data/refined.toml`."""
 
 
-class State(NamedTuple):
-    """A contact of half angle ε in scaled numbers; slopes are those by ln ε, rates those of a logarithm by ln ε."""
+class ScaledContact(NamedTuple):
+    """Contact of half angle ε in scaled numbers; slopes are derivatives by ln ε, rates those of a logarithm by ln ε."""
 
     share: Array
-    """S = sin²(ε/2)."""
+    """Value S = sin²(ε/2)."""
     share_rate: Array
     gap: Array
-    """cos ε - λ: 0 where the fit is perfect, d infinite."""
+    """Value cos ε - λ, which is 0 at the perfect fit, where d is infinite."""
     gap_slope: Array
     compliance: Array
-    """χ = d E/(p0 R2)."""
+    """Scaled compliance χ = d E/(p0 R2)."""
     secant: Array
-    """F/(E R2 d)."""
+    """Scaled secant stiffness F/(E R2 d)."""
     secant_rate: Array
 
     @property
     def indentation(self) -> Array:
-        """d/c, from cos ε = (c + λ d)/(c + d)."""
+        """Ratio d/c, from cos ε = (c + λ d)/(c + d)."""
         return 2 * self.share / self.gap
 
     @property
     def indentation_rate(self) -> Array:
+        """Derivative of ln d by ln ε."""
         return self.share_rate - self.gap_slope / self.gap
 
 
-def state(half_angle: Array, liner: Liner, fit: Fit = FIT) -> State:
-    """The model itself: what belongs to a half angle ε > 0.
+def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledContact:
+    """Compute the scaled contact at a half angle ε > 0.
 
-    χ, λ = u(ε)/d and the pressure's exponent m come from ln c at four waves. Where c ~ k^-s they are those of a plane
-    bed, exactly: d/p0 = c(k) k^s 2^-s Γ(1 - s/2) Γ(2 - s/2), λ = s/2, m = 1 - s/2. The fitted terms vanish without the
+    χ, λ = u(ε)/d and the pressure's exponent m come from ln c at four waves. Where c ~ k^-s they equal those of a plane
+    layer exactly: d/p0 = c(k) k^s 2^-s Γ(1 - s/2) Γ(2 - s/2), λ = s/2, m = 1 - s/2. The fitted terms vanish without the
     bends v, w of ln c over ln k and the curvature S = sin²(ε/2).
     """
     waves = log_compliances(half_angle, liner, fit.waves)
     (c1, rise1), (c2, rise2), (c3, rise3), (c4, rise4) = waves  # by ln k, and k = k_i/ε
-    s, v, w = bends(c1, c2, c3, c4, fit.spans)
+    s, v, w = log_slopes(c1, c2, c3, c4, fit.spans)
     half = sin(half_angle / 2)
     S, S_rate = half * half, half_angle * cos(half_angle / 2) / half
-    s_, v_, w_ = bends(-rise1, -rise2, -rise3, -rise4, fit.spans)
+    s_, v_, w_ = log_slopes(-rise1, -rise2, -rise3, -rise4, fit.spans)
     slopes = s_, v_, w_, S * S_rate
     level = _log_compliance(c2, s, v, w, S, fit)
     edge, exponent = _edge(s, v, w, S, fit.edge), _exponent(s, v, w, S, fit.exponent)
-    m, m_slope = exponent[0], along(exponent, slopes)
-    taken = 2 * S / (m + 2)
+    m, m_slope = exponent[0], angle_derivative(exponent, slopes)
+    deficit = 2 * S / (m + 2)
     secant_rate = (
-        S_rate - taken * (S_rate - m_slope / (m + 2)) / (1 - taken) - m_slope / (m + 1) - (along(level, slopes) - rise2)
+        S_rate
+        - deficit * (S_rate - m_slope / (m + 2)) / (1 - deficit)
+        - m_slope / (m + 1)
+        - (angle_derivative(level, slopes) - rise2)
     )
     chi = exp(level[0])
-    return State(
+    return ScaledContact(
         share=S,
         share_rate=S_rate,
         gap=1 - 2 * S - edge[0],
-        gap_slope=-2 * S * S_rate - along(edge, slopes),
+        gap_slope=-2 * S * S_rate - angle_derivative(edge, slopes),
         compliance=chi,
-        secant=4 * pi * S * (1 - taken) / ((m + 1) * chi),  # of p0 (1 - y)^m, over p0 R2²
+        secant=4 * pi * S * (1 - deficit) / ((m + 1) * chi),  # of p0 (1 - y)^m, over p0 R2²
         secant_rate=secant_rate,
     )
 
 
 def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
-    """ln c and its slope by ln k at the four waves, of which only the longest may come near q = 1."""
+    """Compute ln c and its slope by ln k at the four waves; only the longest may come near q = 1."""
     if arrays.is_plain(half_angle):
-        return one_by_one(half_angle, liner, waves)
+        return log_compliances_of_number(half_angle, liner, waves)
     xp = arrays.namespace(half_angle)
     short = xp.asarray(waves[1:], dtype=half_angle.dtype, device=arrays.device(half_angle))
     values, slopes = log_compliance(xp.reshape(short, (-1, *(1 for _ in half_angle.shape))) / half_angle, liner)
@@ -125,8 +129,10 @@ def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -
     return log_compliance_anywhere(waves[0] / half_angle, liner), second, third, fourth
 
 
-def one_by_one(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
-    """The four functions at one number."""
+def log_compliances_of_number(
+    half_angle: Array, liner: Liner, waves: tuple[float, ...]
+) -> tuple[Pair, Pair, Pair, Pair]:
+    """Compute ln c and its slope at the four waves for one number."""
     return (
         log_compliance_anywhere(waves[0] / half_angle, liner),
         log_compliance(waves[1] / half_angle, liner),
@@ -135,18 +141,20 @@ def one_by_one(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tup
     )
 
 
-def bends(c1: Array, c2: Array, c3: Array, c4: Array, spans: tuple[float, float, float]) -> tuple[Array, Array, Array]:
-    """s, v and w of ln c: how steeply it falls over ln k, and how that changes."""
+def log_slopes(
+    c1: Array, c2: Array, c3: Array, c4: Array, spans: tuple[float, float, float]
+) -> tuple[Array, Array, Array]:
+    """Compute s, v and w of ln c: its negative slope over ln k, and the first and second difference of that."""
     s, s2, s3 = (c1 - c2) / spans[0], (c2 - c3) / spans[1], (c3 - c4) / spans[2]
     return s, s2 - s, s3 - s2
 
 
-Parts = tuple[Array, Array, Array, Array, Array]
-"""A value and its slopes by s, v, w and S."""
+ValueAndSlopes = tuple[Array, Array, Array, Array, Array]
+"""Value and its slopes by s, v, w and S."""
 
 
-def _log_compliance(c2: Array, s: Array, v: Array, w: Array, S: Array, fit: Fit) -> Parts:
-    """ln χ; its slope by ln c is 1."""
+def _log_compliance(c2: Array, s: Array, v: Array, w: Array, S: Array, fit: Fit) -> ValueAndSlopes:
+    """Compute ln χ; its slope by ln c is 1."""
     A1, A2, A3 = fit.gamma
     G1, G2, G3, G4 = fit.level
     return (
@@ -158,8 +166,8 @@ def _log_compliance(c2: Array, s: Array, v: Array, w: Array, S: Array, fit: Fit)
     )
 
 
-def _edge(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> Parts:
-    """λ"""
+def _edge(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
+    """Compute the edge displacement λ."""
     L1, L2, L3, L4, L5, L6, L7, L8, L9, L10 = fit
     by_s = 0.5 + L3 * v + L4 * w + S * (L9 + L10 * v)
     by_w = L1 + L5 * S + L8 * v * v
@@ -172,8 +180,8 @@ def _edge(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> Par
     )
 
 
-def _exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> Parts:
-    """m"""
+def _exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
+    """Compute the pressure's exponent m."""
     M1, M2, M3, M4, M5 = fit
     by_s = -0.5 + S * (M4 + M5 * v)
     return (
@@ -185,47 +193,54 @@ def _exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) ->
     )
 
 
-def along(parts: Parts, slopes: tuple[Array, Array, Array, Array]) -> Array:
-    """The slope of a formula by ln ε from those of s, v, w and S."""
-    return parts[1] * slopes[0] + parts[2] * slopes[1] + parts[3] * slopes[2] + parts[4] * slopes[3]
+def angle_derivative(value_and_slopes: ValueAndSlopes, slopes: tuple[Array, Array, Array, Array]) -> Array:
+    """Compute the slope of a formula by ln ε from those of s, v, w and S."""
+    return (
+        value_and_slopes[1] * slopes[0]
+        + value_and_slopes[2] * slopes[1]
+        + value_and_slopes[3] * slopes[2]
+        + value_and_slopes[4] * slopes[3]
+    )
 
 
-WIDEST = radians(85.0)
-"""The largest half angle that is answered."""
+MAX_HALF_ANGLE = radians(85.0)
+"""Largest half angle in rad that is solved."""
 
-_END = -1.0
-"""The unknown is ln ε, shifted so that it has this value at the widest contact and is zero nowhere."""
+_LOG_OFFSET = -1.0
+"""Value of the unknown, a shifted ln ε, at the widest contact; the shift keeps it away from zero."""
 
 
 def edge_of_indentation(load: Array, liner: Liner) -> Array:
-    """ε that belongs to d/c, NaN where it is too wide."""
-    return _edge_of(_indentation_miss, load, log(1.5 * load / (1 + load)) / 2, liner)
+    """Solve for ε of the indentation d/c, NaN beyond the largest half angle."""
+    return _solve_edge(_indentation_residual, load, log(1.5 * load / (1 + load)) / 2, liner)
 
 
 def edge_of_force(load: Array, liner: Liner) -> Array:
-    """ε that belongs to F/(E R2 c), NaN where it is too wide."""
-    return _edge_of(_force_miss, load, log(load / (2.5 + load / 3)) / 3, liner)
+    """Solve for ε of the force F/(E R2 c), NaN beyond the largest half angle."""
+    return _solve_edge(_force_residual, load, log(load / (2.5 + load / 3)) / 3, liner)
 
 
-def _edge_of(miss: Increasing, load: Array, start: Array, liner: Liner) -> Array:
-    """By Newton's method from ln ε = `start`, which is near: F ~ ε³ and d ~ ε² as in Hertz, but never wide."""
-    start = start + (_END - ln(WIDEST))
-    end = 0.0 * start + (_END + 1e-12)  # the widest contact itself is answered
-    root = increasing_root(miss, 0.0 * start, start - 6.0, end, start, arguments=(load, liner))
-    return where(root < end, exp(root - _END) * WIDEST, nan)
+def _solve_edge(residual: Increasing, load: Array, start: Array, liner: Liner) -> Array:
+    """Solve for ε by Newton's method from the close estimate ln ε = `start`."""
+    start = start + (_LOG_OFFSET - ln(MAX_HALF_ANGLE))
+    end = 0.0 * start + (_LOG_OFFSET + 1e-12)  # includes the widest contact itself
+    root = increasing_root(residual, 0.0 * start, start - 6.0, end, start, arguments=(load, liner))
+    return where(root < end, exp(root - _LOG_OFFSET) * MAX_HALF_ANGLE, nan)
 
 
-def _indentation_miss(unknown: Array, load: Array, liner: Liner) -> Pair:
-    """ln x/(1 + x) at a half angle less that of the load, x = d/c, and its slope: without a pole at the perfect fit."""
-    at = state(exp(unknown - _END) * WIDEST, liner)
-    whole = 2 * at.share + at.gap
-    miss = log(2 * at.share / whole * (1 + 1 / load))
-    return miss, (at.share_rate * at.gap - at.gap_slope) / whole
+def _indentation_residual(unknown: Array, load: Array, liner: Liner) -> Pair:
+    """Compute ln x/(1 + x), x = d/c, at a half angle less that of the load, and its slope."""
+    contact = scaled_contact(exp(unknown - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
+    total = 2 * contact.share + contact.gap
+    residual = log(2 * contact.share / total * (1 + 1 / load))
+    return residual, (contact.share_rate * contact.gap - contact.gap_slope) / total
 
 
-def _force_miss(unknown: Array, load: Array, liner: Liner) -> Pair:
-    """ln x/(1 + x) at a half angle less that of the indentation by the secant of the load there, and its slope."""
-    at = state(exp(unknown - _END) * WIDEST, liner)
-    whole = 2 * at.share + at.gap
-    miss = log(2 * at.share / whole * (1 + at.secant / load))
-    return miss, (at.share_rate * at.gap - at.gap_slope) / whole + at.secant_rate * at.secant / (at.secant + load)
+def _force_residual(unknown: Array, load: Array, liner: Liner) -> Pair:
+    """Compute ln x/(1 + x) at a half angle less that of the load's secant indentation, and its slope."""
+    contact = scaled_contact(exp(unknown - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
+    total = 2 * contact.share + contact.gap
+    residual = log(2 * contact.share / total * (1 + contact.secant / load))
+    return residual, (
+        contact.share_rate * contact.gap - contact.gap_slope
+    ) / total + contact.secant_rate * contact.secant / (contact.secant + load)

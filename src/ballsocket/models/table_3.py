@@ -12,14 +12,15 @@ from ..core.arrays import Array, Numbers, clip
 
 
 def table_3() -> dict[str, Any]:
-    """Table 3 of the paper: Poisson's ratios and the constants C1, C2, C3."""
+    """Read Table 3 of the paper: Poisson's ratios and the constants C1, C2, C3."""
     return tomllib.loads((files("ballsocket") / "data" / "hess_forsbach_2021.toml").read_text(encoding="utf-8"))
 
 
 def _monotone_slopes(x: Numbers, y: Numbers) -> Numbers:
-    """Slopes at the knots of the monotone cubic of Fritsch & Butland 1984 (doi 10.1137/0905021), in rows of y.
+    """Compute slopes at the knots of the monotone cubic of Fritsch & Butland 1984, in rows of y.
 
-    The same as `scipy.interpolate.PchipInterpolator`, which would double the time that importing takes.
+    They equal those of `scipy.interpolate.PchipInterpolator`, whose import would double the import time of the package
+    (doi 10.1137/0905021).
     """
     width = numpy.diff(x)
     rise = numpy.diff(y) / width
@@ -36,11 +37,15 @@ def _monotone_slopes(x: Numbers, y: Numbers) -> Numbers:
 
 
 Row = tuple[float, ...]
+"""Row of numbers."""
 
 
 def _cubics() -> tuple[Row, Row, Row, Any]:
-    """Table 3 as monotone cubics in ν: knots, widths, (C1, C2, C3) at the first knot, and for each interval the
-    coefficients of the part of it that is passed, of its square and of its cube, for each constant."""
+    """Compute Table 3 as monotone cubics in ν.
+
+    Returns knots, widths, (C1, C2, C3) at the first knot, and for each interval and constant the coefficients of the
+    distance to its first knot, of its square and of its cube.
+    """
     table = table_3()
     knots = numpy.array(table["poisson"])
     values = numpy.array([table["C1"], table["C2"], table["C3"]])
@@ -53,6 +58,7 @@ def _cubics() -> tuple[Row, Row, Row, Any]:
 
 
 def _row(values: Numbers) -> Row:
+    """Convert an array to a tuple of floats."""
     return tuple(map(float, values))
 
 
@@ -61,13 +67,14 @@ def _row(values: Numbers) -> Row:
 
 
 def eq_18(constants: tuple[Array, ...], ratio: Array) -> Array:
-    """K R2/E of R2/L."""
+    """Compute K R2/E from R2/L."""
     return constants[0] + ratio * (constants[1] + ratio * constants[2])
 
 
 def table_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
+    """Compute K by Eq. (18) with the constants of Table 3."""
     # Eq. (18) with the constants of Table 3, constant outside its columns. The increment over each interval is a
-    # cubic in the part of it that is passed: no branch, any array
+    # cubic in the distance to its first knot, clipped to the interval: no branch, any array library
     x = R2 / L
     t1, t2 = clip(nu - _X1, 0.0, _W1), clip(nu - _X2, 0.0, _W2)
     t3, t4 = clip(nu - _X3, 0.0, _W3), clip(nu - _X4, 0.0, _W4)

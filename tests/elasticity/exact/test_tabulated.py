@@ -168,3 +168,153 @@ def test_where_tables_cannot_be_written_is_told_before_anything_is_computed(tmp_
     for place in (tmp_path, tmp_path / "none" / "tables.npz"):
         with pytest.raises(OSError, match="this is a folder|No such file"):
             build_tables.build(place, workers=0)
+
+
+def test_builder_coordinates_invert_those_of_the_tables():
+    coordinate = np.linspace(-1.0, 1.0, 9)
+    poisson, ratio = build_tables._poisson_at(coordinate), build_tables._ratio_at(coordinate)
+    np.testing.assert_allclose(chebyshev.poisson_coordinate(poisson), coordinate, atol=1e-10)
+    np.testing.assert_allclose(chebyshev.thickness_coordinate(ratio), coordinate, atol=1e-10)
+    assert poisson[[0, -1]] == pytest.approx(chebyshev.POISSON[:: 1 if poisson[0] < 0 else -1])
+    assert ratio[[0, -1]] == pytest.approx(chebyshev.THICKNESS_RATIO)
+    for place in (-1.0, 0.2, 1.0):
+        share = build_tables._share_at(place, 0.4, 3.0)
+        assert chebyshev.ball_coordinate(share, 0.4, 3.0) == pytest.approx(place, abs=1e-10)
+    assert build_tables._share_at(1.0, 0.4, 3.0) == pytest.approx(chebyshev.MAX_BALL_SHARE)
+
+
+def test_sampled_functions_are_those_of_the_exact_solution():
+    liner, angle = (0.4, 18.0 / 6.75), np.radians([10.0, 40.0])
+    state = build_tables._solve_state(liner, angle, 40)
+    joint = build_tables.joint_of(0.4, 18.0 / 6.75, 0.0, 0.3)
+    exact = bs.Exact(tolerance=1e-9).press(joint, half_angle=angle)
+    np.testing.assert_allclose(state.indentation * 0.005, exact.indentation, rtol=1e-7)
+    np.testing.assert_allclose(state.force * 0.005, exact.force, rtol=1e-7)
+    opening, force, pole = np.exp(build_tables._rigid_functions(state))
+    total, C = 0.005 + exact.indentation, 2 * (1 - 0.4**2)
+    np.testing.assert_allclose(opening * (1 - np.cos(angle)), exact.indentation / total, rtol=1e-7)
+    np.testing.assert_allclose(force * total * angle**3 / C, exact.force, rtol=1e-7)
+    np.testing.assert_allclose(pole * total * angle / C, exact.pole_pressure, rtol=1e-7)
+    series = build_tables._profile_coefficients(state)
+    for v in (0.05, 0.5, 0.95):
+        phi = 2 * np.arcsin(np.sqrt(v) * np.sin(angle / 2))
+        profile = np.polynomial.chebyshev.chebval(2 * v - 1, series)
+        np.testing.assert_allclose(
+            profile * np.sqrt(1 - v) * exact.pole_pressure,
+            np.diag(exact.pressure(phi[:, None] + 0 * angle)),
+            rtol=2e-4,
+        )
+    elastic = build_tables._solve_state(liner, angle, 40, 0.01, 0.3)
+    share = elastic.kernel.ball.asymptote / elastic.kernel.compliance
+    assert share == pytest.approx(0.01)
+
+
+def test_a_small_table_interpolates_its_function():
+    """A specification with few points reproduces a polynomial of the coordinates."""
+
+    def sample(liner):
+        x, y = chebyshev.poisson_coordinate(liner[0]), chebyshev.thickness_coordinate(liner[1])
+        return np.array([[x + 2 * y, 0.5 * x * y], [1.0 + x, y]])  # (functions, angles)
+
+    spec = build_tables._TableSpec(sample=sample, counts=(3, 4), order=4, single=False)
+    stored = spec.fit(lambda function, liners, chunksize: map(function, liners))
+    assert stored.shape == (3, 4, 1, 1, 2, 2)
+    table = chebyshev.compress(stored, angles=5)
+    nu, ratio = np.array([0.3]), np.array([2.5])
+    coordinates = [chebyshev.poisson_coordinate(nu), chebyshev.thickness_coordinate(ratio)]
+    values = table.coefficients_at(coordinates)[:, :, 0]
+    assert values.shape == (2, 5)
+    points = chebyshev.chebyshev_points(2)
+    expected = sample((0.3, 2.5))
+    for function in (0, 1):
+        found = np.polynomial.chebyshev.chebval(points, values[function])
+        np.testing.assert_allclose(found, expected[function], rtol=1e-6, atol=1e-7)
+    single = table.coefficients_of_one([float(part[0]) for part in coordinates])
+    np.testing.assert_allclose(single, values, atol=1e-12)
+
+
+def test_orders_of_products_are_limited():
+    spec = build_tables._TableSpec(sample=lambda liner: np.ones((1, 1)) * np.exp(liner[0]), counts=(4, 4), order=2)
+    stored = spec.fit(lambda function, liners, chunksize: map(function, liners))
+    assert stored.dtype == np.float32
+    first, second = np.nonzero(stored[:, :, 0, 0, 0, 0])
+    assert (first + second <= 2).all()
+    assert abs(stored[2, 0]).max() > 0
+
+
+def test_balls_are_interpolated_in_their_shrinkage():
+    balls = (0.15, 0.27, 0.38)
+    values = np.array([[1.0 + 2.0 * chebyshev.ball_shrinkage(nu)] for nu in balls])
+    series = build_tables._in_ball_shrinkage(balls, values)
+    np.testing.assert_allclose(series[:, 0], [1.0, 2.0, 0.0], atol=1e-12)
+
+
+def test_exact_values_of_the_check_have_the_units_of_the_joint():
+    numbers = (np.radians(40.0), 0.4, 2.5, 0.01, 0.3)
+    expected = dict(zip(build_tables.QUANTITIES, build_tables._solve_exact(numbers), strict=True))
+    joint = build_tables.joint_of(*numbers[1:])
+    assert joint.clearance_ratio == pytest.approx(0.005)
+    contact = bs.Exact(tolerance=1e-9).press(joint, half_angle=numbers[0])
+    for name in ("indentation", "force", "pole_pressure", "energy", "pressure_integral", "half_angle"):
+        assert getattr(contact, name) == pytest.approx(expected[name], rel=1e-5), name
+    assert contact.stiffness == pytest.approx(expected["stiffness"] / 0.005, rel=1e-5)
+
+
+def test_the_largest_error_names_its_contact():
+    numbers = tuple(
+        np.array(column) for column in zip((0.1, 0.3, 1.0, 0.0, 0.3), (0.2, 0.4, 2.0, 0.01, 0.25), strict=True)
+    )
+    worst = build_tables._largest_error("force", np.array([1e-6, 2e-6]), numbers)
+    assert worst.error == 2e-6
+    assert str(worst) == "force              2.0e-06  at ε 11.46°, ν 0.4000, R2/L 2.000, E/E_ball 0.0100, ν_ball 0.250"
+    missing = build_tables._largest_error("force", np.array([np.nan, 2e-6]), numbers)
+    assert "ν 0.3000" in missing.location
+    assert "ball" not in missing.location
+
+
+def test_random_contacts_lie_in_their_ranges():
+    angle, poisson, ratio, softness, ball = build_tables.random_contacts(2000, seed=4, elastic=True)
+    for values, low, high in (
+        (np.degrees(angle), 2, 80),
+        (poisson, 0, 0.499),
+        (ratio, 0.2, 20),
+        (softness, 0, 0.02),
+        (ball, 0.2, 0.35),
+    ):
+        assert low <= values.min() < low + 0.05 * (high - low)
+        assert high - 0.05 * (high - low) < values.max() <= high
+    assert not build_tables.random_contacts(5, seed=4)[3].any()
+    assert np.median(ratio) == pytest.approx(2.0, rel=0.15)
+
+
+def test_one_joint_without_contacts_has_empty_results():
+    contact = bs.Tabulated().press(HIP, force=np.empty((0, 3)))
+    assert contact.indentation.shape == (0, 3)
+    assert contact.pressure(0.1 + np.empty((0, 3))).shape == (0, 3)
+
+
+def test_many_loads_on_a_grid_of_joints_are_those_of_single_joints():
+    """Few joints with many loads share their curves; the result does not depend on that."""
+    thickness = np.array([[4.0], [6.75]])
+    joints, force = replace(HIP, liner_thickness=thickness), np.geomspace(10.0, 3000.0, 3000)
+    grid = bs.Tabulated().press(joints, force=force)
+    for row, value in enumerate(thickness[:, 0]):
+        single = bs.Tabulated().press(replace(HIP, liner_thickness=float(value)), force=force)
+        np.testing.assert_allclose(grid.indentation[row], single.indentation, rtol=1e-12)
+        np.testing.assert_allclose(grid.energy[row], single.energy, rtol=1e-12)
+        np.testing.assert_allclose(grid.pressure(0.1)[row], single.pressure(0.1), rtol=1e-9, atol=1e-9)
+
+
+def test_foundation_modulus_and_pressure_integral_follow_from_their_definitions():
+    contact = bs.Tabulated().press(RIGID, force=np.array([0.0, 2000.0]))
+    assert contact.foundation_modulus[0] == np.inf
+    assert contact.foundation_modulus[1] == pytest.approx(contact.pole_pressure[1] / contact.indentation[1])
+    edge = contact.half_angle[1]
+    x, w = np.polynomial.legendre.leggauss(200)
+    angle = edge * np.sin(np.pi / 4 * (1 + x))
+    jacobian = edge * np.pi / 4 * np.cos(np.pi / 4 * (1 + x)) * w
+    single = bs.Tabulated().press(RIGID, force=2000.0)
+    ring = 2 * np.pi * RIGID.socket_radius**2 * np.sin(angle) * single.pressure(angle) * jacobian
+    assert ring.sum() == pytest.approx(contact.pressure_integral[1], rel=1e-4)
+    assert (ring * np.cos(angle)).sum() == pytest.approx(2000.0, rel=1e-4)
+    assert contact.pressure_integral[0] == 0

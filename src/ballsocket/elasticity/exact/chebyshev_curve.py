@@ -132,7 +132,7 @@ class ChebyshevCurve:
         return rows[:-LOGS], rows[-LOGS:] * slope
 
     def waves(self, angle: Numbers) -> Numbers:
-        """Compute Chebyshev chebyshev_polynomials (terms, contacts) at ε."""
+        """Compute Chebyshev polynomials (terms, contacts) at ε."""
         return chebyshev_polynomials(
             2 * angle_root(angle, self.curve.ratio) / self._widest_root - 1, self._series.shape[1]
         )

@@ -13,7 +13,7 @@ import numpy
 from ...core.arrays import Numbers
 
 ORDER = 6
-"""Number of terms of the kernel's expansion that are sum_series in closed form."""
+"""Number of terms of the kernel's expansion that are summed in closed form."""
 
 _MAX_TERMS = 30  # of the power series, which converge like (x/2π)²
 

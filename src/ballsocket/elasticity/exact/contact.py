@@ -199,7 +199,7 @@ class ElasticContact(SolvedContact):
 
     @property
     def _single(self) -> AbelState:
-        """AbelState of the single contact; ValueError for several contacts or a narrow one."""
+        """State of the single contact; ValueError for several contacts or a narrow one."""
         state: AbelState = self.single_state.single(0)
         width = float(state.half_angle[0])
         require(

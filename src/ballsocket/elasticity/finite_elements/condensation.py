@@ -22,7 +22,7 @@ _MAX_LEAF_SIZE = 24  # nodes in a part that is not halved further
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CondensedBody:
-    """ElasticBlock block with supports, and normal loads on its contact surface.
+    """Elastic block with supports, and normal loads on its contact surface.
 
     Parameters
     ----------

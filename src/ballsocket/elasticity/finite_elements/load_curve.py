@@ -74,12 +74,12 @@ class MeshedLoadCurve:
         """Return the class of a load by its estimated half angle on the coarse mesh of a nearby class."""
         last = len(self.classes) - 2
         if kind == "half_angle":
-            return min(sum(load <= angle for angle in self.classes[1:]), last)
+            return min(sum(load <= edge for edge in self.classes[1:]), last)
         for start in range(0, last, _STRIDE):
             bracket = self._bracket(start, COARSE)
             angle = bracket.estimate_angle(kind, load)
             if angle is not None:
-                return min(sum(angle <= angle for angle in self.classes[1:]), last)
+                return min(sum(angle <= edge for edge in self.classes[1:]), last)
             if bracket.is_exceeded(kind, load):
                 return start
         return last

@@ -131,7 +131,7 @@ def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _LoadedBody:
-    """CondensedBody of unit size with its true stiffness and load, on a patch of the radius `pressed`.
+    """Body of unit size with its true stiffness and load, on a patch of the radius `pressed`.
 
     `radius` scales the positions, which `lift` shifts; `drop` is a displacement of the full body.
     """

@@ -86,11 +86,11 @@ def ball_shrinkage(ball_poisson: Array) -> Array:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChebyshevTable:
-    """Functions of the half angle as sums of products of Chebyshev chebyshev_polynomials of liner and ball coordinates.
+    """Functions of the half angle as sums of products of Chebyshev polynomials of liner and ball coordinates.
 
     Few combinations of the products matter: those of `liner` (combinations, products) and, for an elastic ball, those
     of `ball` (combinations, products * combinations of the liner). `curves` (functions * angles, combinations)
-    turns them into Chebyshev coefficients. `counts` are the lengths of the series in ν, R2/L and the two ball
+    turns them into Chebyshev coefficients. `counts` are the numbers of polynomials of ν, R2/L and the ball's two
     coordinates.
     """
 

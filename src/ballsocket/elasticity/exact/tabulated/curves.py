@@ -82,12 +82,12 @@ class JointCurves:
 
     @cached_property
     def functions(self) -> Array:
-        """Coefficients of the functions functions."""
+        """Coefficients of the three functions."""
         return self.series("rigid") if self.shared is None else self._take_shared(self.shared.functions)
 
     @cached_property
     def slopes(self) -> Array:
-        """Coefficients of the derivatives of the functions functions."""
+        """Coefficients of the derivatives of the three functions."""
         if self.shared is not None:
             return self._take_shared(self.shared.slopes)
         xp = arrays.namespace(self.functions)

@@ -68,7 +68,7 @@ def evaluate(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> t
 
 
 def sum_series(coefficients: Array, waves: Array) -> Array:
-    """Sum series (angles, joints or 1) with chebyshev_polynomials (angles, contacts)."""
+    """Sum series (angles, joints or 1) with polynomials (angles, contacts)."""
     xp = arrays.namespace(waves)
     if coefficients.shape[-1] == 1:
         return coefficients[:, 0] @ waves

@@ -14,6 +14,7 @@ from typing import Any
 import numpy
 
 from ....core.arrays import Numbers
+from .bodies import TYPES
 from .deck import EXPECTED, NAME
 
 SECTORS = 180
@@ -113,7 +114,7 @@ def read(folder: Path) -> CcxAnswer:
         surfaces = _Surfaces(deck=deck, bore=bore[step], ball=ball[step], pressures=pressures[step])
         answer.indentation[step] = surfaces.indentation
         answer.force[step] = -float(forces[step][0, 1]) * SECTORS / deck["scale"]
-        if deck["element"] != "CAX4":
+        if deck["element"] != TYPES[1]:
             answer.half_angle[step] = surfaces.half_angle
             answer.pole_pressure[step] = surfaces.pole_pressure
     return answer

@@ -34,8 +34,7 @@ from ....core.storage.atomic_files import write_text
 from ....problem.gaps import LinearGap
 from ....version import __version__
 from ..contact import MeshedContact
-from .bodies import DeckBodies, faceting_gap
-from .solid import TYPES, DeckBody, node_set
+from .bodies import TYPES, DeckBodies, DeckBody, faceting_gap, node_set
 
 NAME, EXPECTED = "ballsocket", "expected.json"
 """Names of the deck for CalculiX, and of the file with the expected results."""

@@ -1,4 +1,4 @@
-"""What the functions of `ballsocket.core.arrays` mean for one number, for numba; and the words to teach it formulas."""
+"""Overloads of the functions of `ballsocket.core.arrays` for one number in numba, and registration of formulas."""
 
 from __future__ import annotations
 
@@ -14,37 +14,37 @@ from numba.extending import overload, register_jitable
 from ..contact import roots
 from ..core import arrays
 
-compilable = register_jitable(forceinline=True)
-"""Lets compiled code call a formula as it stands, and puts it into the caller's loop."""
+inline_formula = register_jitable(forceinline=True)
+"""Registration of a formula for compiled code, inlined into the caller's loop."""
 
-taught = register_jitable
-"""Lets compiled code call a formula as it stands, one that is too long to be put into every loop."""
+jit_formula = register_jitable
+"""Registration of a formula for compiled code, not inlined because of its length."""
 
 
-def compiled(function: Callable[..., Any]) -> Any:
-    """A pass over arrays, compiled for whichever mix of numbers and arrays it is called with."""
-    # contract: a product and a sum may be rounded once; the order of operations stays as written
+def compile_loop(function: Callable[..., Any]) -> Any:
+    """Compile a pass over arrays for any mix of numbers and arrays."""
+    # contract: a product and a sum may be rounded once; the order of operations does not change
     return numba.njit(function, error_model="numpy", fastmath={"contract"})
 
 
-def flat(number: Any, shape: tuple[int, ...]) -> Any:
-    """One number as it is, an array as one row of the common shape."""
+def as_row(number: Any, shape: tuple[int, ...]) -> Any:
+    """Return a number unchanged, an array as one row of the common shape."""
     if numpy.ndim(number) == 0:
         return float(number)
-    whole = number if number.shape == shape else numpy.broadcast_to(number, shape)
-    return numpy.ascontiguousarray(whole).reshape(-1)
+    expanded = number if number.shape == shape else numpy.broadcast_to(number, shape)
+    return numpy.ascontiguousarray(expanded).reshape(-1)
 
 
-def pick(part: Any, i: int) -> Any:
-    """Element i of an array; a number is the same for all i."""
-    return part[i] if isinstance(part, numpy.ndarray) else part
+def pick(values: Any, i: int) -> Any:
+    """Return element i of an array; a number is the same for all i."""
+    return values[i] if isinstance(values, numpy.ndarray) else values
 
 
 @overload(pick, strict=False, jit_options={"forceinline": True})
-def _pick(part: Any, i: Any) -> Callable[..., Any]:
-    if isinstance(part, types.Array):
-        return lambda part, i: part[i]
-    return lambda part, i: part
+def _pick(values: Any, i: Any) -> Callable[..., Any]:
+    if isinstance(values, types.Array):
+        return lambda values, i: values[i]
+    return lambda values, i: values
 
 
 @overload(arrays.sqrt, strict=False)
@@ -88,8 +88,8 @@ def _atan2(y: Any, x: Any) -> Callable[..., Any]:
 
 
 @overload(arrays.where, strict=False)
-def _where(condition: Any, this: Any, that: Any) -> Callable[..., Any]:
-    return lambda condition, this, that: this if condition else that
+def _where(condition: Any, yes: Any, no: Any) -> Callable[..., Any]:
+    return lambda condition, yes, no: yes if condition else no
 
 
 @overload(arrays.clip, strict=False)
@@ -116,5 +116,5 @@ def _increasing_root(
     )
 
 
-compilable(arrays.safe_divisor)
-taught(roots.root_of_number)
+inline_formula(arrays.safe_divisor)
+jit_formula(roots.root_of_number)

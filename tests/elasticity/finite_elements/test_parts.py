@@ -1,0 +1,332 @@
+"""Parts of the finite element model: meshes, harmonics, full contacts, error estimates and CalculiX results."""
+
+from dataclasses import replace
+from math import inf, pi, radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.elasticity.exact.modes import Shell, Socket
+from ballsocket.elasticity.finite_elements import load_curve, memory, mesh, tangent
+from ballsocket.elasticity.finite_elements.decks import calculix
+from ballsocket.elasticity.finite_elements.full_contact import FullContact
+from ballsocket.elasticity.finite_elements.harmonics import socket_harmonics
+from ballsocket.elasticity.finite_elements.load_search import ContactBracket
+from ballsocket.elasticity.finite_elements.round_contact import partial_contact, pressure_at_pole
+from ballsocket.elasticity.finite_elements.shapes import Resolution, SocketShape, ball_corners, socket_shape
+from ballsocket.elasticity.finite_elements.solver import Settings, load_curve_of
+from ballsocket.elasticity.finite_elements.surfaces import ContactSurface, lagrange
+from ballsocket.problem import Support
+from ballsocket.problem.cup import Interface
+from ballsocket.problem.gaps import CircularGap, LinearGap
+
+from ...joints import HIP
+
+RIGID = replace(HIP, ball=None)
+COARSE = bs.Adapted(elements=24)
+
+
+@pytest.fixture(scope="module")
+def curve():
+    cup = bs.Cup(arc_of_cover=radians(130.0))
+    settings = Settings(cup=cup, spacing=COARSE, ball_spacing=COARSE, order=2, meshes=1, gap=LinearGap)
+    return load_curve_of(settings, RIGID)
+
+
+@pytest.fixture(scope="module")
+def pair(curve):
+    return curve.pairs(0, load_curve.COARSE)
+
+
+def closed_shell(order=0.4, *, support=Support.FIXED, layers=((1.3, 1.0, 0.4),)):
+    return SocketShape(layers=layers, rim=radians(176.0), chamfer=0.0, interface=Interface.BONDED, support=support)
+
+
+LEGENDRE = {
+    0: (0, lambda t: 1.0 + 0.0 * t),
+    1: (1, np.sin),
+    2: (2, lambda t: np.sin(t) ** 2),
+    3: (3, lambda t: np.sin(t) ** 3),
+}
+
+
+@pytest.mark.parametrize("layers", [((1.3, 1.0, 0.4),), ((1.2, 1.0, 0.3), (1.35, 8.0, 0.25))], ids=["liner", "shell"])
+@pytest.mark.parametrize("m", LEGENDRE)
+def test_rings_of_one_harmonic_deform_like_the_mode_of_that_degree(m, layers):
+    """In a closed shell the compliance of a spherical harmonic depends on its degree alone."""
+    degree, wave = LEGENDRE[m]
+    edges = np.linspace(0.0, radians(176.0), 45)
+    harmonics = socket_harmonics(closed_shell(layers=layers), edges)
+    (matrix,) = harmonics.ring_compliance(edges, [m])
+    assert matrix == pytest.approx(matrix.T, abs=1e-14)
+    pressure = wave((edges[1:] + edges[:-1]) / 2)
+    t = np.linspace(0.0, pi, 4001)
+    norm = 2 * pi * np.trapezoid(wave(t) ** 2 * np.sin(t), t)
+    inner, shells = 1.0, []
+    for outer, young, poisson in layers:
+        shells.append(Shell(thickness=outer - inner, young=young, poisson=poisson))
+        inner = outer
+    exact = float(Socket(radius=1.0, shells=tuple(shells)).compliance([degree])[0])
+    assert pressure @ matrix @ pressure == pytest.approx(exact * norm, rel=6e-3)
+
+
+def test_ring_loads_are_the_areas_of_the_rings():
+    edges = np.linspace(0.0, pi / 2, 10)
+    harmonics = socket_harmonics(replace(closed_shell(), rim=pi / 2), edges)
+    loads = harmonics._ring_loads(edges)
+    np.testing.assert_allclose(loads.sum(axis=0), 2 * pi * -np.diff(np.cos(edges)), rtol=1e-9)
+    assert loads.min() > -1e-12
+
+
+def test_a_free_shell_moves_rigidly_along_its_axis_only_on_its_rim():
+    edges = np.linspace(0.0, pi / 2, 10)
+    fixed, free = (
+        socket_harmonics(replace(closed_shell(support=support), rim=pi / 2), edges).ring_compliance(edges, [0, 1, 2])
+        for support in (Support.FIXED, Support.FREE)
+    )
+    for tight, loose in zip(fixed, free, strict=True):
+        assert np.linalg.eigvalsh(loose - tight).min() > -1e-9
+        assert np.linalg.eigvalsh(tight).min() > 0
+
+
+def test_a_full_contact_obeys_equilibrium_and_superposition(pair):
+    gap = LinearGap(clearance=0.1, socket_radius=18.0)
+    start = partial_contact(pair, gap, float(pair.angle[-1])).indentation
+    contacts = [FullContact(pair=pair, gap=gap, indentation=factor * start) for factor in (1.5, 2.0, 2.5)]
+    forces = [contact.force for contact in contacts]
+    slope = (forces[2] - forces[0]) / start
+    assert forces[1] == pytest.approx((forces[0] + forces[2]) / 2, rel=1e-9)  # linear in the indentation
+    for contact in contacts:
+        assert contact.stiffness == pytest.approx(slope, rel=1e-6)
+        assert contact.half_angle == pair.angle[-1]
+        assert contact.overlap == -inf
+        assert contact.edge_element == 0
+        assert contact.tension < 0
+        x, w = np.polynomial.legendre.leggauss(200)
+        angle = contact.half_angle * (1 + x) / 2
+        ring = 2 * pi * 18.0**2 * contact.pressure(angle) * np.sin(angle) * w * contact.half_angle / 2
+        assert ring.sum() == pytest.approx(contact.pressure_integral, rel=2e-3)
+        assert (ring * np.cos(angle)).sum() == pytest.approx(contact.force, rel=2e-3)
+        assert contact.forces(0).sum() == pytest.approx(contact.pressure_integral, rel=1e-6)
+    np.testing.assert_array_equal(contacts[0].pressure(np.array([1.0001, 1.5]) * contacts[0].half_angle), 0.0)
+    assert contacts[0].pressure(0.0) == contacts[0].pole_pressure
+    work = (forces[1] + forces[0]) / 2 * 0.5 * start
+    assert contacts[1].strain_energy - contacts[0].strain_energy == pytest.approx(work, rel=1e-6)
+    assert tangent.work(contacts[0]) == contacts[0].strain_energy
+    assert tangent.stiffness(contacts[0]) == contacts[0].stiffness
+
+
+def test_work_of_a_full_contact_is_the_strain_energy(pair):
+    """The circular gap has no potential: its work is integrated, here for a gap that is nearly the linear one."""
+    linear = LinearGap(clearance=0.1, socket_radius=18.0)
+    start = partial_contact(pair, linear, float(pair.angle[-1])).indentation
+    full = FullContact(pair=pair, gap=linear, indentation=1.5 * start)
+    energy = tangent._partial_work(partial_contact(pair, linear, full.half_angle)) + tangent._rim_work(full)
+    assert energy == pytest.approx(full.strain_energy, rel=2e-3)
+    narrow = partial_contact(pair, linear, 0.8)
+    assert tangent._partial_work(narrow) == pytest.approx(narrow.strain_energy, rel=2e-3)
+
+
+def test_solving_a_full_contact_for_its_force(pair):
+    for gap in (LinearGap(clearance=0.1, socket_radius=18.0), CircularGap(clearance=0.1, socket_radius=18.0)):
+        contact = load_curve._solve_full_contact("force", 9000.0, pair, gap)
+        assert contact.force == pytest.approx(9000.0, rel=1e-10)
+    assert load_curve._solve_full_contact("indentation", 0.5, pair, gap).indentation == 0.5
+
+
+def test_a_bracket_finds_the_contacts_between_its_ends(pair):
+    gap = LinearGap(clearance=0.1, socket_radius=18.0)
+    bracket = ContactBracket(pair=pair, gap=gap, low=0.3, high=1.0)
+    low, high = partial_contact(pair, gap, 0.3), partial_contact(pair, gap, 1.0)
+    for kind in ("force", "indentation"):
+        first, last = getattr(low, kind), getattr(high, kind)
+        assert bracket.solve(kind, 0.99 * first) is None
+        assert bracket.estimate_angle(kind, 0.99 * first) is None
+        assert bracket.solve(kind, 1.01 * last) is None
+        assert bracket.estimate_angle(kind, 1.01 * last) is None
+        assert bracket.is_exceeded(kind, 1.01 * last)
+        assert not bracket.is_exceeded(kind, 0.99 * last)
+        for fraction in (0.0, 0.3, 0.9, 1.0):
+            load = first ** (1 - fraction) * last**fraction
+            load = min(max(load, first * (1 + 1e-12)), last * (1 - 1e-12))
+            contact = bracket.solve(kind, load)
+            assert getattr(contact, kind) == pytest.approx(load, rel=1e-9)
+            assert bracket.estimate_angle(kind, load) == pytest.approx(contact.half_angle, rel=0.02)
+            bisected = bracket._solve_by_bisection(kind, load, 0.29, 1.0)
+            assert bisected.half_angle == pytest.approx(contact.half_angle, rel=1e-8)
+
+
+def test_the_pressure_at_the_pole_is_extrapolated_by_an_even_polynomial():
+    angle = np.linspace(0.0, 1.0, 41)
+    pressures = 5.0 - 2.0 * angle**2 + 0.5 * angle**4
+    pressures[0] = 99.0
+    assert pressure_at_pole(angle, pressures, 1.0) == pytest.approx(5.0, rel=1e-9)
+    few = angle[::8]
+    assert pressure_at_pole(few, 5.0 - 2.0 * few**2, 1.0) == pytest.approx(5.0, rel=1e-9)
+
+
+def test_lagrange_polynomials_interpolate():
+    corners = np.array([0.0, 0.1, 0.3, 0.6])
+    for order in (1, 2):
+        nodes = mesh.add_midpoints(corners, order)
+        angle = np.array([0.0, 0.05, 0.1, 0.23, 0.6])
+        shapes = lagrange(corners, order, angle).toarray()
+        assert shapes.shape == (5, len(nodes))
+        np.testing.assert_allclose(shapes.sum(axis=1), 1.0, rtol=1e-14)
+        np.testing.assert_allclose(shapes @ nodes**order, angle**order, atol=1e-14)
+        surface = ContactSurface(angle=nodes, order=order, compliance=np.eye(len(nodes)))
+        np.testing.assert_array_equal(surface.corners, corners)
+        np.testing.assert_allclose(surface.nodal_sums(angle, np.arange(5.0)), shapes.T @ np.arange(5.0), atol=1e-14)
+
+
+def test_bisection_and_joining_of_points():
+    np.testing.assert_allclose(mesh.bisect_intervals(np.array([0.0, 1.0, 3.0])), [0.0, 0.5, 1.0, 2.0, 3.0])
+    np.testing.assert_allclose(mesh.join_points([np.array([0.0, 1.0]), np.array([1.0, 2.0, 4.0])]), [0, 1, 2, 4])
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_block_numbers_its_nodes_elements_and_layers(order):
+    layers = [np.array([1.0, 1.1, 1.3]), np.array([1.3, 1.5])]
+    bonded, sliding = (mesh.block(np.linspace(0.0, 1.0, 4), layers, order, cut) for cut in ((), (1,)))
+    assert bonded.radius.shape == (3 * order + 1, 3 * order + 1)
+    assert sliding.radius.shape == (3 * order + 1, 3 * order + 2)
+    assert bonded.elements.shape == ((order + 1) ** 2, 9)
+    np.testing.assert_array_equal(bonded.layers, [0, 0, 1] * 3)
+    assert len(bonded.sliding) == 0
+    np.testing.assert_array_equal(sliding.sliding, [2 * order])
+    np.testing.assert_array_equal(np.diff(sliding.level)[sliding.sliding], 0)
+    corners = bonded.nodes[:, bonded.elements[:4]]
+    area = 0.5 * sum(
+        corners[0, i] * corners[1, (i + 1) % 4] - corners[0, (i + 1) % 4] * corners[1, i] for i in range(4)
+    )
+    assert (area < 0).all() or (area > 0).all()
+    assert abs(area).sum() == pytest.approx((1.5**2 - 1) / 2, rel=0.02)
+
+
+def test_the_size_of_a_mesh_counts_both_bodies():
+    shape, cup = socket_shape(HIP, bs.Cup()), bs.Cup()
+    resolution = Resolution(size=0.1, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2)
+    size = memory.mesh_size(HIP, cup, resolution, resolution)
+    angle, radii = shape.corners(resolution)
+    ball = ball_corners(resolution)
+    along, deep = len(angle) - 1, len(radii[0]) - 1
+    ball_along, ball_deep = (len(corners) - 1 for corners in ball)
+    assert size.elements == along * deep + ball_along * ball_deep
+    assert size.largest == max((2 * along + 1) * (2 * deep + 1), (2 * ball_along + 1) * (2 * ball_deep + 1))
+    assert size.nodes == (2 * along + 1) * (2 * deep + 1) + (2 * ball_along + 1) * (2 * ball_deep + 1)
+    assert size.element_size == pytest.approx(angle[1] * 18.0)
+    assert memory.mesh_size(RIGID, cup, resolution, resolution).elements == along * deep
+    assert memory.bytes_needed(2048, 2) == 2 * 12 * 8 * 2 * 2048 * 11 + 1000 * 2048 * 2
+
+
+def test_resolutions_of_adapted_and_uniform_elements():
+    classes = COARSE.classes(1.5, 18.0)
+    assert len(classes) == 25
+    np.testing.assert_allclose(np.divide(classes[1:], classes[:-1]), np.sqrt(0.5))
+    coarse = bs.Adapted(elements=60).coarse(0.9, 18.0, 6.75, 2)
+    assert coarse.size == pytest.approx(2 * 0.9 / 60)
+    assert coarse.reach == pytest.approx(1.2 * 0.9)
+    assert (coarse.growth, coarse.order, coarse.halvings) == (1.3, 2, 0)
+    assert coarse.widest == pytest.approx(pi / 12)
+    assert coarse.deepest == pytest.approx(1 / 3)
+    thin = bs.Adapted(elements=60).coarse(0.9, 18.0, 0.36, 2)
+    assert thin.size == pytest.approx(0.36 / 36)
+    fine = bs.Adapted(elements=120).coarse(0.9, 18.0, 6.75, 1)
+    assert fine.size == pytest.approx(2 * 0.9 / 120)
+    assert fine.growth == pytest.approx(np.sqrt(1.3))
+    assert fine.widest == pytest.approx(pi / 24)
+    assert COARSE.coarse(0.9, 18.0, 6.75, 1).deepest == 0.5
+    uniform = bs.Uniform(size=0.09)
+    assert uniform.classes(1.5, 18.0) == (1.5, pytest.approx(12 * 0.09 / 18.0))
+    assert uniform.classes(0.01, 18.0)[1] == pytest.approx(0.005)
+    mesh_of_uniform = uniform.coarse(0.9, 18.0, 6.75, 1)
+    assert mesh_of_uniform.size == mesh_of_uniform.widest == pytest.approx(0.01)
+    assert mesh_of_uniform.deepest == pytest.approx(1 / 3)
+    assert mesh_of_uniform.reach == inf
+
+
+class Quantities:
+    """Stand-in for states with one value for every quantity."""
+
+    def __init__(self, value, edge=0.1):
+        self.edge_element = np.array([edge])
+        self._value = np.array([value])
+
+    def __getattr__(self, name):
+        return self._value
+
+
+@pytest.mark.parametrize(("order", "richardson", "factor"), [(1, 1.0, 3.0), (2, 3.0, 1.0)])
+def test_errors_are_extrapolated_and_bounded_from_below(order, richardson, factor):
+    errors = load_curve.estimate_errors("force", Quantities(1.0), Quantities(1.6), order)
+    assert errors["force"] == 0
+    assert errors["energy"] == pytest.approx(2.0 * 0.6 / richardson)
+    bounded = load_curve.estimate_errors("force", Quantities(1.0), Quantities(1.0), order)
+    assert bounded["stiffness"] == pytest.approx(1.0 * factor * 0.01)
+    assert bounded["half_angle"] == pytest.approx(0.7 * factor * 0.01)
+    assert bounded["indentation"] == pytest.approx(0.03 * factor * 0.01)
+    assert bounded["energy"] == pytest.approx(0.07 * factor * 0.01)
+    assert bounded["pressure_integral"] == pytest.approx(0.02 * factor * 0.01)
+    assert bounded["max_pressure"] == bounded["pole_pressure"] == pytest.approx(0.2 * factor * 0.01)
+
+
+def test_the_edge_is_extrapolated_from_the_opening_of_the_gap():
+    angle, edge = np.linspace(0.0, 1.0, 81), 0.613
+    gap = np.where(angle > edge, 0.4 * np.maximum(angle - edge, 0.0) ** 1.5, 0.0)
+    assert calculix.edge_angle(angle, gap) == pytest.approx(edge, abs=1e-9)
+    curved = np.where(angle > edge, (0.4 * (angle - edge).clip(0) + 0.05 * (angle - edge) ** 2) ** 1.5, 0.0)
+    assert calculix.edge_angle(angle, curved) == pytest.approx(edge, abs=1e-4)
+    assert calculix.edge_angle(angle, 0.0 * angle) == 1.0
+    few = np.append(np.zeros(79), [0.01, 0.02])
+    assert 0.9 < calculix.edge_angle(angle, few) <= 1.0
+
+
+def test_the_pole_pressure_ignores_the_nodes_next_to_the_pole():
+    angle = np.linspace(0.0, 1.0, 101)
+    pressures = 7.0 - 3.0 * angle**2 + angle**4
+    wrong = pressures.copy()
+    wrong[:10] *= 3.0
+    wrong[67:] = 0.0
+    assert calculix.pressure_at_pole(angle, wrong, 1.0) == pytest.approx(7.0, rel=1e-9)
+    coarse = np.linspace(0.0, 1.0, 9)
+    assert calculix.pressure_at_pole(coarse, 7.0 - 3.0 * coarse**2, 1.0) == pytest.approx(7.0, rel=1e-9)
+
+
+def test_printed_rows_are_read_by_step(tmp_path):
+    path = tmp_path / "a.dat"
+    path.write_text(
+        "\n".join(
+            [
+                " displacements (vx,vy,vz) for set BORE and time  0.5000000E+00",
+                "",
+                "  1  9.0 9.0 9.0",
+                " displacements (vx,vy,vz) for set BORE and time  0.1000000E+01",
+                "",
+                "  1  1.0 2.0 3.0",
+                "  2  4.0 5.0 6.0",
+                " displacements (vx,vy,vz) for set ROUND and time  0.1000000E+01",
+                "",
+                "  7  7.0 7.0 7.0",
+                " displacements (vx,vy,vz) for set BORE and time  0.2000000E+01",
+                "",
+                "  1  0.5 0.5 0.5",
+                "",
+            ]
+        ),
+        encoding="ascii",
+    )
+    rows = calculix.read_printed(path, "BORE")
+    assert sorted(rows) == [0, 1]
+    np.testing.assert_array_equal(rows[0], [[1, 1, 2, 3], [2, 4, 5, 6]])
+    np.testing.assert_array_equal(rows[1], [[1, 0.5, 0.5, 0.5]])
+    assert calculix.read_printed(tmp_path / "missing.dat", "BORE") == {}
+
+
+def test_bounds_of_the_stress_are_open_near_a_rim():
+    full = bs.FiniteElement(spacing=COARSE, meshes=1).press(RIGID, force=1000.0)
+    cut = bs.FiniteElement(spacing=COARSE, meshes=1, cup=bs.Cup(arc_of_cover=radians(170.0))).press(RIGID, force=1000.0)
+    low, high = cut.von_mises_bounds
+    assert not low > 0
+    assert high == inf
+    assert full.max_pressure > 0
