@@ -93,7 +93,7 @@ def test_a_life_is_that_of_python(at_once):
 def made(scale):
     cycles = np.array([0.0, 1.0, 2.0])
     grown = scale * cycles
-    grid = bs.sphere.grid.grid(radians(90.0), radians(10.0))
+    grid = bs.sphere.grid.graded_grid(radians(90.0), radians(10.0))
     unworn, worn = {"utilisation": 1.5 - scale}, {"utilisation": None}
     summary = {
         "history": [{"edge_distance": 1.0, "penetration_of_creep": 0.0, "max_pressure": 5.0, "contact": [worn]}],
