@@ -195,7 +195,7 @@ def hip(results: Results, folder: Path) -> None:
         if order == "xyz":
             results.add(f"cycle/{name}/courses", {"force": cycle.force(phases), "angles": cycle.angles(phases)})
             for change, changed in {"mirrored": cycle.mirrored(), "finer": cycle.finer()}.items():
-                results.add(f"cycle/{name}/{change}", {"forces": changed.forces, "rotation_increments": changed.turns})
+                results.add(f"cycle/{name}/{change}", {"forces": changed.forces, "turns": changed.rotation_increments})
             results.add(f"cycle/{name}/scaled", cycle.scaled(1.5).forces)
     for name, use in hips().items():
         with results.attempt(f"first/{name}"):
