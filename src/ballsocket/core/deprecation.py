@@ -45,7 +45,7 @@ MOVED = {
     "ballsocket.hip.coefficient_response": "ballsocket.hip.uncertainty",
     "ballsocket.hip.lives": "ballsocket.hip.cohort",
     "ballsocket.hip.patients": "ballsocket.hip.variability",
-    "ballsocket.hip.scatter_file": "ballsocket.hip.uncertainty_config",
+    "ballsocket.hip.scatter_file": "ballsocket.hip.config",
     "ballsocket.hip.coefficients": "ballsocket.hip.law_fields",
     "ballsocket.hip.creep": "ballsocket.hip.creep_laws",
     "ballsocket.hip.blocks": "ballsocket.hip.wear_integrator",
