@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, Damping, Flores, Friction, Touch
+from ballsocket.dynamics import Bristles, Damping, Flores, Friction, ContactState
 
 from ..extent import either
 from ..joints import HIP
@@ -133,7 +133,7 @@ def test_the_work_of_a_closed_way_is_nothing(cup, polar):
         assert np.ptp(load.energy) > 0.2 * load.energy.max()
         assert abs(power.mean()) <= 1e-10 * np.abs(power).max()
         if cup is not None:
-            assert set(load.status.tolist()) == {Touch.AT_RIM}
+            assert set(load.status.tolist()) == {ContactState.AT_RIM}
 
 
 def test_force_and_stiffness_are_continuous_at_touch_down_and_there_is_none_within_the_clearance():
@@ -166,7 +166,7 @@ def test_over_the_rim_the_force_dies_out_and_says_so():
     angles = np.radians([0.0, 30.0, 60.0, 90.0, 120.0, 130.0, 170.0])
     load = element(e * np.stack([np.sin(angles), 0 * angles, np.cos(angles)], axis=-1))
     size = np.linalg.norm(load.force, axis=1)
-    assert load.status.tolist() == [Touch.CONTACT] * 2 + [Touch.AT_RIM] * 4 + [Touch.OVER_RIM]
+    assert load.status.tolist() == [ContactState.CONTACT] * 2 + [ContactState.AT_RIM] * 4 + [ContactState.OVER_RIM]
     assert size[1] == pytest.approx(size[0], rel=1e-12)
     assert (np.diff(size[1:]) < 0).all()
     assert size[-1] == 0.0
@@ -193,13 +193,13 @@ def test_numbers_and_arrays_of_any_library_say_the_same():
 @pytest.mark.parametrize(
     ("state", "touch"),
     [
-        (((0.0, 0.0, C + 30.0),), Touch.THROUGH_WALL),
-        (((0.0, 0.0, inf),), Touch.NO_NUMBER),
-        (((nan, 0.0, 0.1),), Touch.NO_NUMBER),
-        (((0.0, 0.0, 0.12), (0.0, nan, 0.0)), Touch.NO_NUMBER),
-        (((1e200, 0.0, 0.0),), Touch.NO_NUMBER),
-        (((0.0, 0.0, 0.05),), Touch.FREE),
-        (((0.0, 0.0, 0.12),), Touch.CONTACT),
+        (((0.0, 0.0, C + 30.0),), ContactState.THROUGH_WALL),
+        (((0.0, 0.0, inf),), ContactState.NO_NUMBER),
+        (((nan, 0.0, 0.1),), ContactState.NO_NUMBER),
+        (((0.0, 0.0, 0.12), (0.0, nan, 0.0)), ContactState.NO_NUMBER),
+        (((1e200, 0.0, 0.0),), ContactState.NO_NUMBER),
+        (((0.0, 0.0, 0.05),), ContactState.FREE),
+        (((0.0, 0.0, 0.12),), ContactState.CONTACT),
     ],
 )
 @pytest.mark.parametrize("lost", [{}, LOSSY, {"friction": Bristles(coefficient=0.1)}], ids=["elastic", "lossy", "held"])
@@ -210,7 +210,7 @@ def test_a_state_without_an_answer_is_flagged_and_named(state, touch, lost):
     assert element(*map(np.array, state)).status == touch
     assert touch.failed == bool(np.isnan(load.force).any())
     assert bool(load.notes) == touch.failed
-    if touch is Touch.THROUGH_WALL:
+    if touch is ContactState.THROUGH_WALL:
         assert "deeper than the wall" in load.notes[0]
         assert "r = (0, 0, 30.1) mm, d = 30 mm" in load.notes[0]
 
@@ -219,12 +219,12 @@ def test_a_state_without_an_answer_is_flagged_and_named(state, touch, lost):
 @pytest.mark.parametrize("friction", [LOSSY["friction"], Bristles(coefficient=0.1)], ids=["friction", "bristles"])
 def test_rates_too_large_to_square_and_bristles_that_are_no_number_are_flagged(rates, friction):
     element = bs.ForceElement(bs.HessForsbach(), HIP, friction=friction)
-    assert element((0.0, 0.0, 0.12), *rates).status is Touch.NO_NUMBER
+    assert element((0.0, 0.0, 0.12), *rates).status is ContactState.NO_NUMBER
     several = element(np.array([[0.0, 0.0, 0.12]] * 2), *(np.array([(0.0, 0.0, 1.0), rate]) for rate in rates))
-    assert several.status.tolist() == [Touch.CONTACT, Touch.NO_NUMBER]
+    assert several.status.tolist() == [ContactState.CONTACT, ContactState.NO_NUMBER]
     if isinstance(friction, Bristles):
         bent = element((0.0, 0.0, 0.12), deflection=(nan, 0.0, 0.0, 0.0))
-        assert bent.status is Touch.NO_NUMBER
+        assert bent.status is ContactState.NO_NUMBER
 
 
 @pytest.mark.parametrize(

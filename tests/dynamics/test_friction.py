@@ -194,7 +194,7 @@ def test_bristles_make_nothing_out_of_nothing():
     for damping in (0.0, 1e-3, 1.0, 1e3):
         element = replace(HELD, friction=replace(HELD.friction, damping=damping, viscous=1e-5))
         load = element(position, speeds * velocity, spin, deflection)
-        assert (load.rubbed >= -1e-12 * np.abs(load.rubbed).max()).all()
+        assert (load.bristle_dissipation >= -1e-12 * np.abs(load.bristle_dissipation).max()).all()
         # power of friction = what is lost and what the bristles store
         plain = replace(element, friction=None)(position, speeds * velocity, spin)
         power = -np.sum((load.force - plain.force) * speeds * velocity + load.moment * spin, axis=1)
@@ -202,11 +202,11 @@ def test_bristles_make_nothing_out_of_nothing():
         across = deflection[:, :3] - np.sum(deflection[:, :3] * n, axis=1)[:, None] * n
         inner = np.sum(across * load.deflection_rate[:, :3], axis=1) + deflection[:, 3] * load.deflection_rate[:, 3]
         normal = -np.sum(plain.force * n, axis=1)
-        from ballsocket.dynamics.friction import grip
+        from ballsocket.dynamics.friction import widening_factor
 
         depth = np.maximum(np.linalg.norm(position, axis=1) - HIP.clearance, 0.0)
-        stored = 20.0 * normal * grip(depth / np.linalg.norm(position, axis=1)) * inner
-        np.testing.assert_allclose(power, stored + load.rubbed, atol=1e-9 * np.abs(power).max())
+        stored = 20.0 * normal * widening_factor(depth / np.linalg.norm(position, axis=1)) * inner
+        np.testing.assert_allclose(power, stored + load.bristle_dissipation, atol=1e-9 * np.abs(power).max())
 
 
 def test_a_ball_that_left_forgets_its_bristles():

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, Damping, Flores, Friction, Touch, of_restitution, relations, simulate
+from ballsocket.dynamics import Bristles, Damping, Flores, Friction, ContactState, of_restitution, relations, simulate
 from ballsocket.dynamics.restitution import restitution_of
 
 from ..extent import either
@@ -70,7 +70,7 @@ def test_an_orbit_in_a_cup_conserves_the_angular_momentum_about_the_dome_axis():
     thrown = {"mass": 0.35, "position": tuple(position), "velocity": tuple(velocity), "pull": tuple(30.0 * dome)}
     motion = simulate(replace(FREE, cup=cup), duration=either(0.006, 0.02), step=2e-5, **thrown)
     assert motion.ended == ""
-    assert (np.asarray(motion.load.status) == Touch.AT_RIM).sum() > 50
+    assert (np.asarray(motion.load.status) == ContactState.AT_RIM).sum() > 50
     assert motion.drift < 1e-12
     assert motion.angular_drift < 1e-13
 

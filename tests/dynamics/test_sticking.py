@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.dynamics import Damping, Friction, Touch, simulate
+from ballsocket.dynamics import Damping, Friction, ContactState, simulate
 
 from ..joints import HIP
 
@@ -32,7 +32,7 @@ def test_it_snaps_in_at_first_touch_and_lets_go_a_stretch_before():
     assert coming.attached.tolist() == [False, False, True, True]
     free = at(np.array([-1.001 * STRETCH]), True)
     assert free.force[0, 2] == 0
-    assert free.status[0] == Touch.FREE
+    assert free.status[0] == ContactState.FREE
     assert abs(at(np.array([-0.99999 * STRETCH]), True).force[0, 2]) < 1e-3 * pull
 
 

@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from ..core.arrays import Array, safe_divisor, sqrt, where
 from ..core.sources import Source
-from .friction import Coulomb, checked, coefficient_at, effective_slip, tilt_share
-from .reaction import Place, Sliding, versine
+from .friction import Coulomb, coefficient_at, effective_slip, set_checked_number, tilt_share
+from .reaction import BallCentre, Sliding, versine
 
 Four = tuple[Array, Array, Array, Array]
 """Deflections of the bristles in mm: x, y, z across the load, and about it, as an arc at the lever ρ."""
@@ -68,43 +68,49 @@ class Bristles(Coulomb):
 
     def __post_init__(self) -> None:
         for name in ("coefficient", "damping", "viscous"):
-            checked(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
+            set_checked_number(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
         for name in ("stiffness", "stribeck_speed", "release"):
-            checked(self, name, 5e-324, "it is above 0 and finite")
+            set_checked_number(self, name, 5e-324, "it is above 0 and finite")
         self.check_static()
 
 
-def bent(place: Place, slip: Sliding, deflection: Four, given: Bristles) -> tuple[Four, Four, Array]:
+def bristle_forces(centre: BallCentre, slip: Sliding, deflection: Four, bristles: Bristles) -> tuple[Four, Four, Array]:
     """What a load of 1 N is rubbed by (three components, and about the load over ρ), z', and what is lost of 1 N."""
     g = slip.x + slip.bx, slip.y + slip.by, slip.z + slip.bz, sqrt(slip.lever_squared) * slip.spin
     zx, zy, zz, zr = deflection
-    off = zx * place.x + zy * place.y + zz * place.z
-    z = zx - off * place.x, zy - off * place.y, zz - off * place.z, zr
-    speed, shares, least = _patch(g, place)
-    mu = safe_divisor(coefficient_at(speed, given.coefficient, given.static, given.stribeck_speed))
-    fall = given.stiffness * speed / mu
-    damping = given.damping / (1.0 + given.damping * speed / (4.0 * mu * least))
-    sinks = tuple(fall * bend / share for bend, share in zip(z, shares, strict=True))
-    rate = tuple(way - sink for way, sink in zip(g, sinks, strict=True))
-    held = zip(z, rate, g, strict=True)
-    force = tuple(given.stiffness * bend + damping * turn + given.viscous * way for bend, turn, way in held)
-    lost = given.stiffness * _dot(sinks, z) + damping * _dot(rate, g) + given.viscous * _dot(g, g)
+    normal_part = zx * centre.x + zy * centre.y + zz * centre.z
+    z = zx - normal_part * centre.x, zy - normal_part * centre.y, zz - normal_part * centre.z, zr
+    speed, slopes, least_slope = _patch(g, centre)
+    mu = safe_divisor(coefficient_at(speed, bristles.coefficient, bristles.static, bristles.stribeck_speed))
+    decay = bristles.stiffness * speed / mu
+    damping = bristles.damping / (1.0 + bristles.damping * speed / (4.0 * mu * least_slope))
+    losses = tuple(decay * bend / share for bend, share in zip(z, slopes, strict=True))
+    rate = tuple(slip_rate - loss for slip_rate, loss in zip(g, losses, strict=True))
+    states = zip(z, rate, g, strict=True)
+    force = tuple(
+        bristles.stiffness * bend + damping * rate + bristles.viscous * slip_rate for bend, rate, slip_rate in states
+    )
+    dissipated = bristles.stiffness * _dot(losses, z) + damping * _dot(rate, g) + bristles.viscous * _dot(g, g)
     touching = slip.normal > 0.0
-    forgotten = tuple(where(touching, turn, -bend / given.release) for turn, bend in zip(rate, deflection, strict=True))
-    return force, forgotten, lost
+    released_rate = tuple(
+        where(touching, rate, -bend / bristles.release) for rate, bend in zip(rate, deflection, strict=True)
+    )
+    return force, released_rate, dissipated
 
 
-_STILL = 1e-30
+_TRANSITION_SPEED_SQUARED = 1e-30
 """Square of the transition speed in (mm/s)²; too small to change the slip."""
 
 
-def _patch(slip: Four, place: Place) -> tuple[Array, Four, Array]:
+def _patch(slip: Four, centre: BallCentre) -> tuple[Array, Four, Array]:
     """Compute the effective slip speed, its slopes over half the squares of the slip, and the least of these."""
     gx, gy, gz, gr = slip
-    m = versine(place)
+    m = versine(centre)
     across, kappa = gx * gx + gy * gy + gz * gz, tilt_share(m)
     share = kappa * kappa
-    square, by_slip, by_tilt, by_spin, _ = effective_slip(across, share * across, gr * gr, 0.0, _STILL, share, m)
+    square, by_slip, by_tilt, by_spin, _ = effective_slip(
+        across, share * across, gr * gr, 0.0, _TRANSITION_SPEED_SQUARED, share, m
+    )
     push = by_slip + share * by_tilt
     return sqrt(square), (push, push, push, by_spin), where(push < by_spin, push, by_spin)
 

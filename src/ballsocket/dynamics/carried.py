@@ -10,33 +10,33 @@ from typing import Any, NamedTuple
 import numpy
 
 from ..core.arrays import Numbers
-from .element import ForceElement, three
+from .element import ForceElement, three_components
 from .load import Load
 from .reaction import Three
 
 _TOLERANCE = 1e-10
-_RATES = 15  # position, velocity, spin, four deflections, what was lost, and the work of the pull
+_STATE_SIZE = 15  # position, velocity, spin, four deflections, what was lost, and the work of the pull
 
 
-class Carried(NamedTuple):
+class StatefulTrajectory(NamedTuple):
     """What became of a ball at the times it got to; `stopped` is the state that has no load, if one was met."""
 
     states: Numbers
     deflection: Numbers
     attached: Numbers
-    lost: Numbers
+    dissipated: Numbers
     work: Numbers
-    stopped: Load | None
+    failure: Load | None
 
 
-class _Stopped(ArithmeticError):  # noqa: N818 - a way out of the integrator
+class _NoLoad(ArithmeticError):  # noqa: N818 - a way out of the integrator
     def __init__(self, load: Load) -> None:
         super().__init__("; ".join(load.notes))
         self.load = load
 
 
 @dataclass(frozen=True, kw_only=True)
-class Carrier:
+class StatefulIntegrator:
     """A ball and what pulls it: `mass` in t, `inertia` in t mm², a force in N of the time in s."""
 
     element: ForceElement
@@ -44,39 +44,41 @@ class Carrier:
     inertia: float
     pull: Callable[[float], Three]
 
-    def moved(self, begun: Any, times: Numbers, step: float) -> Carried:
+    def integrate(self, initial: Any, times: Numbers, step: float) -> StatefulTrajectory:
         """The ball at times that grow, the first of which is its beginning; no step is longer than `step`."""
-        state = numpy.zeros(_RATES)
-        state[:9] = begun
-        rows, held, stopped = [state], [self._touches(state)], None
+        state = numpy.zeros(_STATE_SIZE)
+        state[:9] = initial
+        states, attachments, failure = [state], [self._is_touching(state)], None
         try:
-            for part, attached in self._stretches(state, times, step):
-                rows.append(part)
-                held.append(attached)
-        except _Stopped as met:
-            stopped = met.load
-        found = numpy.array(rows)
-        return Carried(found[:, :9], found[:, 9:13], numpy.array(held), found[:, 13], found[:, 14], stopped)
+            for part, attached in self._segments(state, times, step):
+                states.append(part)
+                attachments.append(attached)
+        except _NoLoad as failure:
+            failure = failure.load
+        rows = numpy.array(states)
+        return StatefulTrajectory(
+            rows[:, :9], rows[:, 9:13], numpy.array(attachments), rows[:, 13], rows[:, 14], failure
+        )
 
-    def _stretches(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
+    def _segments(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
         """The state at each time after the first, in stretches between snapping in and letting go."""
         from scipy.integrate import LSODA
 
-        now, attached, change = float(times[0]), self._touches(state), 0.0
-        given = {"max_step": step, "rtol": _TOLERANCE, "atol": _TOLERANCE}
-        while now < times[-1]:
-            solver = LSODA(self._rates(attached), now, state, float(times[-1]), **given)
+        time, attached, change = float(times[0]), self._is_touching(state), 0.0
+        options = {"max_step": step, "rtol": _TOLERANCE, "atol": _TOLERANCE}
+        while time < times[-1]:
+            solver = LSODA(self._rates(attached), time, state, float(times[-1]), **options)
             while solver.status == "running":
                 solver.step()
                 if solver.status == "failed":
-                    raise _Stopped(self._load(solver.y, attached))
+                    raise _NoLoad(self._load(solver.y, attached))
                 path = solver.dense_output()
-                change = self._change(path, attached)
+                change = self._switch_time(path, attached)
                 for time in times[slice(*numpy.searchsorted(times, (path.t_old, min(path.t, change)), "right"))]:
                     yield path(time), attached
-                now = solver.t
+                time = solver.t
                 if change < inf:
-                    now, state, attached = change, path(change), not attached
+                    time, state, attached = change, path(change), not attached
                     break
             if attached and change < inf:  # what the energy falls by is lost
                 state[13] -= self._load(state, attached).energy
@@ -85,11 +87,18 @@ class Carrier:
         def rates(time: float, state: Numbers) -> list[float]:
             load, pull = self._load(state, attached), self.pull(time)
             if load.force[0] != load.force[0] or load.contact.covered <= -1.0:
-                raise _Stopped(load)
-            push = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
-            turn = [a / self.inertia for a in load.moment]
+                raise _NoLoad(load)
+            acceleration = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
+            angular_acceleration = [a / self.inertia for a in load.moment]
             work = _dot(pull, load.velocity)
-            return [*load.velocity, *push, *turn, *load.deflection_rate, _lost(load), work]
+            return [
+                *load.velocity,
+                *acceleration,
+                *angular_acceleration,
+                *load.deflection_rate,
+                _dissipated_power(load),
+                work,
+            ]
 
         return rates
 
@@ -97,13 +106,13 @@ class Carrier:
         s = state.tolist()
         return self.element(s[:3], s[3:6], s[6:9], s[9:13], attached)
 
-    def _touches(self, state: Numbers) -> bool:
+    def _is_touching(self, state: Numbers) -> bool:
         return bool(self._depth(state) >= 0.0)
 
     def _depth(self, state: Numbers) -> float:
         return float(numpy.linalg.norm(state[:3])) - float(self.element.joint.clearance)
 
-    def _change(self, path: Any, attached: bool) -> float:
+    def _switch_time(self, path: Any, attached: bool) -> float:
         """When a ball that sticks snaps in, or lets go, along a piece of its way; infinite where it does not."""
         from scipy.optimize import brentq
 
@@ -122,18 +131,18 @@ class Carrier:
 def pull_of(pull: Any) -> Callable[[float], Three]:
     """A force, or a function of the time, as such a function."""
     if callable(pull):
-        return lambda time: three(pull(time), "a pull")
-    always = three(pull, "a pull")
+        return lambda time: three_components(pull(time), "a pull")
+    always = three_components(pull, "a pull")
     return lambda time: always
 
 
-def _lost(load: Load) -> float:
+def _dissipated_power(load: Load) -> float:
     """The power of all that is not elastic, in N mm/s; bristles give a part of theirs back."""
-    contact, place = load.contact, load.place
-    speed = _dot(load.velocity, (place.x, place.y, place.z))
-    aside = _dot(load.velocity, (contact.px, contact.py, contact.pz))
-    fall = contact.normal * speed - contact.polar * aside
-    return -(_dot(load.force, load.velocity) + fall + _dot(load.moment, load.spin))
+    contact, centre = load.contact, load.centre
+    speed = _dot(load.velocity, (centre.x, centre.y, centre.z))
+    polar_speed = _dot(load.velocity, (contact.px, contact.py, contact.pz))
+    elastic_power = contact.normal * speed - contact.polar * polar_speed
+    return -(_dot(load.force, load.velocity) + elastic_power + _dot(load.moment, load.spin))
 
 
 def _dot(a: Any, b: Any) -> float:

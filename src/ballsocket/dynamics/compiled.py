@@ -103,16 +103,18 @@ class CompiledElement:
 
 def compiled_potential(element: ForceElement) -> CompiledLaw:
     """Energy, force and stiffness over the indentation as compiled functions take it."""
-    given = element.potential
-    if isinstance(given, SpringPotential):
-        springs = given.springs
+    energy_law = element.potential
+    if isinstance(energy_law, SpringPotential):
+        springs = energy_law.springs
         numbers: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
         return CompiledLaw(function=_springs(springs.kinematics), numbers=numbers)
     curve = (
-        given.curve if isinstance(given, CurvePotential) else _curve_of(element.joint, element.model.law(element.joint))
+        energy_law.curve
+        if isinstance(energy_law, CurvePotential)
+        else _curve_of(element.joint, element.model.law(element.joint))
     )
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return CompiledLaw(function=_slopes(), numbers=(*ends, curve.pieces))
+    return CompiledLaw(function=_compiled_slopes(), numbers=(*ends, curve.pieces))
 
 
 def _curve_of(joint: Joint, law: ForceLaw) -> Any:
@@ -131,20 +133,20 @@ def _springs(motion: Kinematics) -> Any:
 
 
 @cache
-def _slopes() -> Any:
+def _compiled_slopes() -> Any:
     return njit(error_model="numpy", fastmath={"contract"})(potential.slopes_of_number)
 
 
-def answered(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
+def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
     """Force, moment, energy and tangent (xx, yy, zz, xy, yz, zx) of one state, for compiled functions."""
-    place = reaction.place_of(position[0], position[1], position[2], constants.clearance)
-    return loaded(place, reaction.elastic(potential, place, constants), velocity, spin, constants)
+    centre = reaction.centre_of(position[0], position[1], position[2], constants.clearance)
+    return load_from_contact(centre, reaction.elastic(potential, centre, constants), velocity, spin, constants)
 
 
-def loaded(place, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
+def load_from_contact(centre, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
     """`answered` at a place whose contact is known."""
-    fx, fy, fz, mx, my, mz = reaction.reaction(place, contact, velocity, spin, constants)
-    return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(place, contact, constants)
+    fx, fy, fz, mx, my, mz = reaction.reaction(centre, contact, velocity, spin, constants)
+    return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(centre, contact, constants)
 
 
 _BLOCK = 256
@@ -155,21 +157,21 @@ _BLOCK = 256
 def _batch() -> Any:
     @njit(error_model="numpy", fastmath={"contract"})
     def run(potential, constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
-        known = numpy.empty((_BLOCK, 3))
+        slopes = numpy.empty((_BLOCK, 3))
         for first in range(0, len(energy), _BLOCK):
             last = min(first + _BLOCK, len(energy))
             for i in range(first, last):
-                place = reaction.place_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                U, F, k = potential(reaction.ramp(place.indentation, constants.smoothing)[0])
-                known[i - first, 0], known[i - first, 1], known[i - first, 2] = U, F, k
+                centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                U, F, k = potential(reaction.ramp(centre.indentation, constants.smoothing)[0])
+                slopes[i - first, 0], slopes[i - first, 1], slopes[i - first, 2] = U, F, k
             for i in range(first, last):
-                place = reaction.place_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                slopes = known[i - first, 0], known[i - first, 1], known[i - first, 2]
-                rounded = reaction.ramp(place.indentation, constants.smoothing)
-                contact = reaction.stored(place, rounded, slopes, constants)
+                centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                slopes = slopes[i - first, 0], slopes[i - first, 1], slopes[i - first, 2]
+                rounded = reaction.ramp(centre.indentation, constants.smoothing)
+                contact = reaction.elastic_from_slopes(centre, rounded, slopes, constants)
                 v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
                 w = spin[i, 0], spin[i, 1], spin[i, 2]
-                f, m, energy[i], J = loaded(place, contact, v, w, constants)
+                f, m, energy[i], J = load_from_contact(centre, contact, v, w, constants)
                 force[i, 0], force[i, 1], force[i, 2] = f
                 moment[i, 0], moment[i, 1], moment[i, 2] = m
                 tangent[i, 0], tangent[i, 1], tangent[i, 2], tangent[i, 3], tangent[i, 4], tangent[i, 5] = J
@@ -189,30 +191,30 @@ for _formula in (
     reaction.positive,
     reaction._rounded,
     reaction.rim_share,
-    friction.grip,
+    friction.widening_factor,
     friction.drill_lever,
     friction.coefficient_at,
     friction.tilt_share,
     friction.effective_slip,
-    reaction.place_of,
+    reaction.centre_of,
     reaction.elastic,
-    reaction.covered,
-    reaction.leaning,
+    reaction.elastic_at_rim,
+    reaction.dome_angle,
     reaction.pressed,
     reaction.sliding,
     reaction.versine,
     reaction.reaction,
     reaction.dissipation,
     reaction.tangent,
-    stepping.ended,
-    stepping.speed_of,
+    stepping.end_state,
+    stepping.surface_speed,
     stepping.mean_contact,
-    stepping.missing,
-    stepping.corrected,
-    stepping.stepped,
-    answered,
+    stepping.residual_of,
+    stepping.newton_correction,
+    stepping.advance,
+    loads_at,
 ):
     jit_formula(_formula)
 
-for _short in (reaction.stored, loaded):
+for _short in (reaction.elastic_from_slopes, load_from_contact):
     inline_formula(_short)

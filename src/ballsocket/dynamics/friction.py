@@ -28,7 +28,9 @@ class Coulomb:
     def check_static(self) -> None:
         """Raise ValueError for a static coefficient that is below that of sliding."""
         if self.static_coefficient is not None:
-            checked(self, "static_coefficient", self.coefficient, "static friction is not below that of sliding")
+            set_checked_number(
+                self, "static_coefficient", self.coefficient, "static friction is not below that of sliding"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,20 +79,20 @@ class Friction(Coulomb):
 
     def __post_init__(self) -> None:
         for name in ("coefficient", "viscous"):
-            checked(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
+            set_checked_number(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
         for name in ("transition_speed", "stribeck_speed"):
-            checked(self, name, 5e-324, "a speed (mm/s) is above 0 and finite")
+            set_checked_number(self, name, 5e-324, "a speed (mm/s) is above 0 and finite")
         self.check_static()
 
 
-def checked(friction: object, name: str, least: float, allowed: str) -> None:
+def set_checked_number(friction: object, name: str, least: float, allowed: str) -> None:
     """Make a number of a frozen value a float, if it is allowed."""
     value = check_number(name, getattr(friction, name))
     require(name, value, least <= value < math.inf, allowed)
     object.__setattr__(friction, name, value)
 
 
-def grip(versine: Array) -> Array:
+def widening_factor(versine: Array) -> Array:
     """∫ p |a x n| dA over the force: how much more a turning ball is braked than one that slides on a point.
 
     a is an axis across the load, 1 - cos ε the versine. A fit to radial springs, within 2e-6; a hundredth off where
@@ -138,7 +140,7 @@ ROLL_FIT = (0.40882, 0.62470)
 
 
 def effective_slip(
-    slip: Array, tilt: Array, spin: Array, mixed: Array, still: Array, tilt_squared: Array, versine: Array
+    slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, tilt_squared: Array, versine: Array
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Compute q² and its slopes over X = |S|², Y = κ²|D|², Z = (ρ ω_n)² and P = κ S·D, all in (mm/s)².
 
@@ -151,19 +153,19 @@ def effective_slip(
     The numbers are a least-squares fit to the slopes of ∫ p |w| dA of radial springs with half angles of 4° to 86°.
     """
     (a0, a1, a2, b, theta), (t0, t1, t2, n), (e0, e1, l0, l1), (g, zeta) = SLIP_FIT, TURN_FIT, DRILL_FIT, ROLL_FIT
-    m, total = versine, slip + tilt + spin + still
+    m, total = versine, slip + tilt + spin + transition_squared
     scale = 1.0 / total
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
     a, t, eta, lam_z = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, (l0 + l1 * m) * z
-    G = x + theta * y + scale * still
+    G = x + theta * y + scale * transition_squared
     along, turned = a * x + b * z, t * x + n * z
     over, roll = 1.0 / (G * (G + eta * z) + lam_z * z), g / (1.0 + (zeta - 1.0) * z)
     inner = x * along + p * turned
-    ratio, bent = z * inner * over, roll * y * z
+    ratio, bristle_forces = z * inner * over, roll * y * z
     fall = ratio * (2.0 * G + eta * z) * over
-    push = bent * roll / g
+    push = bristle_forces * roll / g
     return (
-        total * (1.0 - ratio - bent) - tilt_squared * slip,
+        total * (1.0 - ratio - bristle_forces) - tilt_squared * slip,
         1.0 - tilt_squared - z * (along + a * x + t * p) * over + fall + push,
         1.0 + theta * fall - roll * z + push,
         1.0 - (inner + z * (b * x + n * p) - ratio * (eta * G + 2.0 * lam_z)) * over - roll * y + zeta * push,
@@ -172,14 +174,14 @@ def effective_slip(
 
 
 def effective_slip_bends(
-    slip: Array, tilt: Array, spin: Array, mixed: Array, still: Array, versine: Array
+    slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, versine: Array
 ) -> dict[tuple[int, int], Array]:
     """Compute the second slopes of q² over X, Y, Z and P, numbered 0 to 3, as `effective_slip` has q²."""
     (a0, a1, a2, b, theta), (t0, t1, t2, n), (e0, e1, l0, l1), (g, zeta) = SLIP_FIT, TURN_FIT, DRILL_FIT, ROLL_FIT
-    m, scale = versine, 1.0 / (slip + tilt + spin + still)
+    m, scale = versine, 1.0 / (slip + tilt + spin + transition_squared)
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
     a, t, eta, lam = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, l0 + l1 * m
-    G = x + theta * y + scale * still
+    G = x + theta * y + scale * transition_squared
     over, out, none = 1.0 / (G * (G + eta * z) + lam * z * z), 1.0 / (1.0 + (zeta - 1.0) * z), 0.0 * x
     # N/d with N = z [x (α x + β z) + p (τ x + ν z)]
     ratio = z * (x * (a * x + b * z) + p * (t * x + n * z)) * over

@@ -55,8 +55,8 @@ class FormulaPotential:
     deepest: float = math.inf
 
     def __call__(self, indentation: Array) -> Slopes:
-        given = self.joint, indentation
-        return self.model.energy(*given), self.model.force(*given), self.model.stiffness(*given)
+        arguments = self.joint, indentation
+        return self.model.energy(*arguments), self.model.force(*arguments), self.model.stiffness(*arguments)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,12 +94,12 @@ def slopes_of_number(
         return math.nan, math.nan, math.nan
     along = (math.log(max(indentation, shallowest)) - first) * density
     number = min(max(int(along), 0), len(pieces) - 1)
-    place = 2.0 * (along - number) - 1.0
+    coordinate = 2.0 * (along - number) - 1.0
     value, slope, bend = 0.0, 0.0, 0.0
     for coefficient in pieces[number]:
-        bend = bend * place + slope
-        slope = slope * place + value
-        value = value * place + coefficient
+        bend = bend * coordinate + slope
+        slope = slope * coordinate + value
+        value = value * coordinate + coefficient
     power, curvature = 2.0 * density * slope, 8.0 * density * density * bend
     energy = math.exp(value)
     if indentation < shallowest:
@@ -109,7 +109,7 @@ def slopes_of_number(
     return energy, force, (force * (power - 1.0) + energy * over * curvature) * over
 
 
-_TINY = 1e-150
+_MIN_INDENTATION = 1e-150
 
 
 def slopes_of_array(
@@ -118,16 +118,16 @@ def slopes_of_array(
     """`slopes_of_number` of an array of any library."""
     xp = arrays.namespace(indentation)
     rows = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
-    d = where(indentation == indentation, clip(indentation, _TINY, deepest), deepest)
+    d = where(indentation == indentation, clip(indentation, _MIN_INDENTATION, deepest), deepest)
     along = (log(clip(d, shallowest, deepest)) - first) * density
     number = xp.astype(clip(xp.floor(arrays.stop_gradient(along)), 0.0, rows.shape[0] - 1.0), xp.int64)
-    place = 2.0 * (along - xp.astype(number, d.dtype)) - 1.0
+    coordinate = 2.0 * (along - xp.astype(number, d.dtype)) - 1.0
     flat = xp.reshape(number, (-1,))
-    value, slope, bend = 0.0 * place, 0.0 * place, 0.0 * place
+    value, slope, bend = 0.0 * coordinate, 0.0 * coordinate, 0.0 * coordinate
     for term in range(rows.shape[1]):
-        bend = bend * place + slope
-        slope = slope * place + value
-        value = value * place + xp.reshape(xp.take(rows[:, term], flat), tuple(d.shape))
+        bend = bend * coordinate + slope
+        slope = slope * coordinate + value
+        value = value * coordinate + xp.reshape(xp.take(rows[:, term], flat), tuple(d.shape))
     power, curvature = 2.0 * density * slope, 8.0 * density * density * bend
     below = d < shallowest
     energy = exp(value + where(below, power * log(where(below, d, shallowest) / shallowest), 0.0))
@@ -161,18 +161,20 @@ def _ends(law: ForceLaw, joint: Joint) -> tuple[float, float]:
 
 def energy_curve(law: ForceLaw, shallowest: float, deepest: float) -> CurveLaw:
     """ln U over ln d of a law, which is integrated."""
-    return curve_law(lambda depths: _work(law, depths, shallowest), shallowest, deepest)
+    return curve_law(lambda depths: _integrate_force(law, depths, shallowest), shallowest, deepest)
 
 
-def _work(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbers:
+def _integrate_force(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbers:
     """∫ F dd up to each of some indentations that grow: of a power below the shallowest, then by Gauss over ln d."""
     force, stiffness = law(shallowest)
-    begun = force * shallowest / (1.0 + stiffness * shallowest / force)
+    initial_work = force * shallowest / (1.0 + stiffness * shallowest / force)
     logs = numpy.log(numpy.concatenate([[shallowest], depths]))
-    nodes, weights = map(numpy.array, arrays.gauss_legendre(_NODES))
-    places = numpy.exp(logs[:-1, None] + numpy.diff(logs)[:, None] * nodes)
-    forces = numpy.array([law(float(place))[0] for place in places.ravel()]).reshape(places.shape)
-    return begun + numpy.cumsum(numpy.diff(logs) * ((forces * places) @ weights))
+    nodes, weights = map(numpy.array, arrays.gauss_legendre(_GAUSS_NODES))
+    depths_between = numpy.exp(logs[:-1, None] + numpy.diff(logs)[:, None] * nodes)
+    forces = numpy.array([law(float(coordinate))[0] for coordinate in depths_between.ravel()]).reshape(
+        depths_between.shape
+    )
+    return initial_work + numpy.cumsum(numpy.diff(logs) * ((forces * depths_between) @ weights))
 
 
-_NODES = 16
+_GAUSS_NODES = 16

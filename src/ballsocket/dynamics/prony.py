@@ -54,8 +54,8 @@ class Prony:
 
     def relaxed(self, time: Numbers) -> Numbers:
         """g(t) of times in s, 0 or more."""
-        aged = numpy.asarray(time, dtype=float)[..., None]
-        return self.rest + numpy.sum(self.shares * numpy.exp(-aged / self.times), axis=-1)
+        ages = numpy.asarray(time, dtype=float)[..., None]
+        return self.rest + numpy.sum(self.shares * numpy.exp(-ages / self.times), axis=-1)
 
     def mean(self, early: Numbers, late: Numbers) -> Numbers:
         """The mean of g between two times in s, the first below the second."""
@@ -77,5 +77,5 @@ class Prony:
         # strains of the dashpots r: τ r' = 1 + g·r - r, made symmetric by sqrt(g τ); J = 1 + g·r
         g, tau = self.shares, self.times
         root = numpy.sqrt(g / tau)
-        rates, ways = numpy.linalg.eigh(numpy.diag(1.0 / tau) - root[:, None] * root)
-        return rates, (ways.T @ root) ** 2 / rates
+        rates, modes = numpy.linalg.eigh(numpy.diag(1.0 / tau) - root[:, None] * root)
+        return rates, (modes.T @ root) ** 2 / rates

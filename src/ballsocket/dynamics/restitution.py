@@ -68,11 +68,11 @@ def restitution_of(damping: float) -> float:
         middle = (low + high) / 2
         if not low < middle < high:
             break
-        low, high = (middle, high) if _miss(damping, middle) > 0 else (low, middle)
+        low, high = (middle, high) if _exit_balance(damping, middle) > 0 else (low, middle)
     return low
 
 
-def _miss(h: float, e: float) -> float:
+def _exit_balance(h: float, e: float) -> float:
     """Above 0 where the ball leaves faster than e: what is left of ∫ x/(1 + x) dx from -h e to h."""
     return h + math.log1p(-h * e) + h * e - math.log1p(h) if h * e < 1.0 else -math.inf
 

@@ -34,8 +34,12 @@ class StickingPotential:
         return float(self.model.energy(self.joint, -self.stretch))
 
     def __call__(self, indentation: Array) -> Slopes:
-        given = self.joint, indentation - self.stretch
-        return self.model.energy(*given) - self._apart, self.model.force(*given), self.model.stiffness(*given)
+        arguments = self.joint, indentation - self.stretch
+        return (
+            self.model.energy(*arguments) - self._apart,
+            self.model.force(*arguments),
+            self.model.stiffness(*arguments),
+        )
 
 
 def sticking_potential(model: AdhesiveSocket, joint: Joint) -> StickingPotential:
@@ -47,10 +51,10 @@ def sticking_potential(model: AdhesiveSocket, joint: Joint) -> StickingPotential
         An adhesion number η = u_c/c of 1 or more: the whole hemisphere sticks, and never lets go spring by spring.
     """
     model.law(joint)  # refuses arrays and what is outside the domain
-    whole = joint.with_floats()
-    eta = float(model.adhesion_number(whole))
+    checked = joint.with_floats()
+    eta = float(model.adhesion_number(checked))
     require("the adhesion number", eta, eta < 1.0, "from 1 on the whole hemisphere sticks, and the rim decides")
-    return StickingPotential(model=model, joint=whole, deepest=whole.socket_radius)
+    return StickingPotential(model=model, joint=checked, deepest=checked.socket_radius)
 
 
 def undamped_pull(contact: Elastic) -> Elastic:

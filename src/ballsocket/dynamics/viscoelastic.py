@@ -79,13 +79,13 @@ class Viscoelastic:
 
     def product(self, time: Numbers, depth: Numbers) -> Numbers:
         """What is not to be done: the elastic force times the modulus of that time, g(t) F(d(t))."""
-        time, depth = _checked(time, depth)
+        time, depth = _check_history(time, depth)
         touched = numpy.argmax(depth > 0)
         return self.modulus.relaxed(numpy.maximum(time - time[touched], 0.0)) * self.at_once(depth)
 
     def grown(self, time: Numbers, depth: Numbers) -> Numbers:
         """The hereditary integral ∫ g(t - s) dF of the elastic force: right as long as the contact has only grown."""
-        time, depth = _checked(time, depth)
+        time, depth = _check_history(time, depth)
         rise = numpy.diff(self.at_once(depth))
         return numpy.append(0.0, numpy.sum(self._weights(time) * rise, axis=1))
 
@@ -104,23 +104,23 @@ class Viscoelastic:
         ValueError
             Times that do not grow; a depth that rises again: ask `springs`.
         """
-        time, depth = _checked(time, depth)
+        time, depth = _check_history(time, depth)
         top = int(numpy.argmax(depth))
         again = numpy.flatnonzero(numpy.diff(depth)[top:] > 0)
-        require("depth", depth, _until(len(depth), top, again), "it rises once and falls then; ask `springs`")
+        require("depth", depth, _mask_until(len(depth), top, again), "it rises once and falls then; ask `springs`")
         force = self.grown(time, depth)
         weights, bed = self._weights(time), numpy.maximum(depth, 0.0)
         for number in range(top + 1, len(time)):
-            force[number] = self._shrunk(weights[number - 1], bed, top, number)
+            force[number] = self._unloading_force(weights[number - 1], bed, top, number)
         return force
 
-    def _shrunk(self, weights: Numbers, depth: Numbers, top: int, number: int) -> float:
+    def _unloading_force(self, weights: Numbers, depth: Numbers, top: int, number: int) -> float:
         """Ting: the last instant t1 of the rise from which on the springs at the edge have been pushed and let go."""
         pushed = numpy.cumsum((weights[:number] * numpy.diff(depth)[:number])[::-1])[::-1]
-        begun = numpy.flatnonzero(pushed[: top + 1] <= 0)
-        if len(begun) and begun[0] == 0:
+        initial = numpy.flatnonzero(pushed[: top + 1] <= 0)
+        if len(initial) and initial[0] == 0:
             return 0.0
-        last = int(begun[0]) - 1 if len(begun) else top
+        last = int(initial[0]) - 1 if len(initial) else top
         after = pushed[last + 1] if last + 1 < number else 0.0
         share = pushed[last] / (pushed[last] - after)
         edge = depth[last] + share * (depth[last + 1] - depth[last])
@@ -153,18 +153,18 @@ class Viscoelastic:
             raise TypeError(
                 f"springs stand for a model of radial springs with linear kinematics, not {self.model.name}"
             )
-        time, depth = _checked(time, depth)
+        time, depth = _check_history(time, depth)
         joint = self.joint.with_floats()
         c, deepest = joint.clearance, max(float(depth.max()), 1e-300)
         width = deepest / (c + deepest) / rings
         m = width * (numpy.arange(rings) + 0.5)
         ball = numpy.maximum(depth, -c)[:, None] * (1.0 - m) - c * m  # d cos φ - c (1 - cos φ)
-        pressure = _chains(self.modulus, time, ball)
+        pressure = _maxwell_pressures(self.modulus, time, ball)
         factor = 2 * numpy.pi * joint.socket_radius**2 * float(self.model.modulus.of(joint)) * width
         return factor * (pressure @ (1.0 - m))
 
 
-def _chains(modulus: Prony, time: Numbers, ball: Numbers) -> Numbers:
+def _maxwell_pressures(modulus: Prony, time: Numbers, ball: Numbers) -> Numbers:
     """Pressure over the stiffness at once of springs (instants, springs), pushed by a ball's surface."""
     surface = numpy.zeros(ball.shape[1])
     held = numpy.zeros((len(modulus.terms), ball.shape[1]))
@@ -172,16 +172,16 @@ def _chains(modulus: Prony, time: Numbers, ball: Numbers) -> Numbers:
     g, tau, rest = modulus.shares[:, None], modulus.times[:, None], modulus.rest
     for number, step in enumerate(numpy.diff(time), start=1):
         fade, weight = numpy.exp(-step / tau), -numpy.expm1(-step / tau) * tau / step
-        kept = numpy.sum(g * (fade * held - weight * surface), axis=0)
+        memory = numpy.sum(g * (fade * held - weight * surface), axis=0)
         stiff = rest + float(numpy.sum(g * weight))
-        moved = numpy.maximum(ball[number], -kept / stiff)  # the ball's surface, or the one that recovers
+        moved = numpy.maximum(ball[number], -memory / stiff)  # the ball's surface, or the one that recovers
         held = fade * held + weight * (moved - surface)
         pressure[number] = numpy.where(moved == ball[number], rest * moved + numpy.sum(g * held, axis=0), 0.0)
         surface = moved
     return pressure
 
 
-def _checked(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
+def _check_history(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
     time, depth = numpy.asarray(time, dtype=float), numpy.asarray(depth, dtype=float)
     if time.ndim != 1 or time.shape != depth.shape or len(time) < 2:
         raise ValueError(f"time and depth are rows of one length, 2 or more, got {time.shape} and {depth.shape}")
@@ -192,7 +192,7 @@ def _checked(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
     return time, depth
 
 
-def _until(count: int, top: int, again: Numbers) -> Numbers:
+def _mask_until(count: int, top: int, again: Numbers) -> Numbers:
     """Where a depth does as it should: it does not after the instant from which it rises again."""
     good = numpy.ones(count, dtype=bool)
     if len(again):

@@ -18,7 +18,7 @@ _log = logging.getLogger("ballsocket.dynamics")
 
 
 @dataclass
-class Watch:
+class ValidityMonitor:
     """Looks out for the first indentation at which a model does not trust itself, and says so; then it is quiet.
 
     Contacts that are only too small, which every touch-down passes through, are not told.
@@ -34,13 +34,13 @@ class Watch:
     wall: float
     limit: float = 0.0
 
-    def look(self, indentation: Array) -> None:
+    def check_array(self, indentation: Array) -> None:
         """At an array."""
         depths = concrete_values(indentation) if self.limit < inf else None
         if depths is not None and depths.size:
-            self.at(float(numpy.max(depths, initial=0.0, where=depths <= self.wall)))
+            self.check(float(numpy.max(depths, initial=0.0, where=depths <= self.wall)))
 
-    def at(self, indentation: float) -> None:
+    def check(self, indentation: float) -> None:
         """At one indentation in mm; beyond the wall there is a status for it."""
         if not self.limit < indentation <= self.wall:
             return
