@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, Damping, Flores, Friction, ContactState
+from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction
 
 from ..extent import either
 from ..joints import HIP

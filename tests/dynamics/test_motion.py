@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, Damping, Flores, Friction, ContactState, of_restitution, relations, simulate
+from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction, of_restitution, relations, simulate
 from ballsocket.dynamics.restitution import restitution_of
 
 from ..extent import either

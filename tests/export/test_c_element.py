@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import ballsocket as bs
-from ballsocket.dynamics import Damping, ForceElement, Friction, ContactState
+from ballsocket.dynamics import ContactState, Damping, ForceElement, Friction
 from ballsocket.export import CElement
 
 from ..extent import either, some

@@ -7,9 +7,8 @@ from .element import ForceElement
 from .friction import Friction
 from .load import ContactState, Load
 from .motion import Motion, simulate
-from .prony import Prony
 from .rebound import DampingEstimate, from_bounces, from_restitution
-from .viscoelastic import Viscoelastic
+from .viscoelastic import Prony, Viscoelastic
 
 Identified = DampingEstimate
 Touch = ContactState

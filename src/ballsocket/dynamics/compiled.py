@@ -1,4 +1,4 @@
-"""The force element for compiled programs: the same formulas, in tens of nanoseconds, one state or many.
+"""Force element for compiled programs: the same formulas in tens of nanoseconds, for a state or for arrays.
 
 Needs numba (`pip install 'ballsocket[fast]'`).
 """
@@ -29,23 +29,24 @@ from .reaction import Constants
 
 @dataclass(frozen=True, eq=False)
 class CompiledElement:
-    """A force element for functions that numba compiles, and for large arrays of states.
+    """Force element for functions compiled by numba, and for large arrays of states.
 
     Parameters
     ----------
     element : ForceElement
-        Of any model; a closed form that is none of radial springs is followed by a curve, to 1e-9 of its force.
+        Element with any model. A closed form other than radial springs becomes a curve within 1e-9 of its force.
 
     Attributes
     ----------
     potential : CompiledLaw
-        From an indentation to energy, force and stiffness, inside of compiled functions.
+        Energy, force and stiffness of an indentation, for compiled functions.
     constants : Constants
+        Numbers of the element.
 
     Raises
     ------
     ValueError
-        An element with bristles, or one that sticks: they have a state.
+        An element with bristles or adhesion, which has an internal state.
 
     Examples
     --------
@@ -63,38 +64,42 @@ class CompiledElement:
 
     def __post_init__(self) -> None:
         if self.element.remembers:
-            raise ValueError(f"{self.element.remembers}; compiled elements have no state, use the element itself")
+            raise ValueError(
+                f"{self.element.remembers}; compiled elements support no internal state, use the ForceElement"
+            )
 
     def __call__(self, position: Any, velocity: Any = (0.0, 0.0, 0.0), spin: Any = (0.0, 0.0, 0.0)) -> Load:
-        """The load at a state as the element itself has it."""
+        """Compute the load at a state by the element itself, see `ForceElement`."""
         return self.element(position, velocity, spin)
 
     @property
     def constants(self) -> Constants:
+        """Numbers of the element."""
         return self.element.constants
 
     @cached_property
     def potential(self) -> CompiledLaw:
+        """Energy, force and stiffness of an indentation, for compiled functions."""
         return compiled_potential(self.element)
 
     @property
     def march(self) -> Any:
-        """The steps of `simulate`, compiled."""
+        """Compiled loop over the steps of `simulate`."""
         return _march()
 
     def loads(self, position: Numbers, velocity: Numbers, spin: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-        """Force and moment on the ball, energy, and tangent (xx, yy, zz, xy, yz, zx) of many states in one pass.
+        """Compute force and moment on the ball, energy, and tangent (xx, yy, zz, xy, yz, zx) of an array of states.
 
         Parameters
         ----------
         position, velocity, spin : array (states, 3)
-            Of NumPy, in float64.
+            NumPy arrays of float64.
 
         Returns
         -------
         arrays (states, 3), (states, 3), (states,), (states, 6)
         """
-        state = [numpy.ascontiguousarray(part, dtype=float) for part in (position, velocity, spin)]
+        state = [numpy.ascontiguousarray(values, dtype=float) for values in (position, velocity, spin)]
         count = len(position)
         outputs = numpy.empty((count, 3)), numpy.empty((count, 3)), numpy.empty(count), numpy.empty((count, 6))
         _batch()(self.potential, self.constants, *state, *outputs)
@@ -102,7 +107,7 @@ class CompiledElement:
 
 
 def compiled_potential(element: ForceElement) -> CompiledLaw:
-    """Energy, force and stiffness over the indentation as compiled functions take it."""
+    """Return energy, force and stiffness over the indentation for compiled functions."""
     energy_law = element.potential
     if isinstance(energy_law, SpringPotential):
         springs = energy_law.springs
@@ -138,35 +143,35 @@ def _compiled_slopes() -> Any:
 
 
 def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
-    """Force, moment, energy and tangent (xx, yy, zz, xy, yz, zx) of one state, for compiled functions."""
+    """Compute force, moment, energy and tangent (xx, yy, zz, xy, yz, zx) of one state in a compiled function."""
     centre = reaction.centre_of(position[0], position[1], position[2], constants.clearance)
     return load_from_contact(centre, reaction.elastic(potential, centre, constants), velocity, spin, constants)
 
 
 def load_from_contact(centre, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
-    """`answered` at a place whose contact is known."""
+    """Compute the results of `loads_at` from the elastic contact of the state."""
     fx, fy, fz, mx, my, mz = reaction.reaction(centre, contact, velocity, spin, constants)
     return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(centre, contact, constants)
 
 
-_BLOCK = 256
-"""States whose energies are found before their loads: a processor does the one faster without the other."""
+_BLOCK_SIZE = 256
+"""Number of states whose energies are computed before their loads; the separate loops are faster."""
 
 
 @cache
 def _batch() -> Any:
     @njit(error_model="numpy", fastmath={"contract"})
     def run(potential, constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
-        slopes = numpy.empty((_BLOCK, 3))
-        for first in range(0, len(energy), _BLOCK):
-            last = min(first + _BLOCK, len(energy))
+        block = numpy.empty((_BLOCK_SIZE, 3))
+        for first in range(0, len(energy), _BLOCK_SIZE):
+            last = min(first + _BLOCK_SIZE, len(energy))
             for i in range(first, last):
                 centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
                 U, F, k = potential(reaction.ramp(centre.indentation, constants.smoothing)[0])
-                slopes[i - first, 0], slopes[i - first, 1], slopes[i - first, 2] = U, F, k
+                block[i - first, 0], block[i - first, 1], block[i - first, 2] = U, F, k
             for i in range(first, last):
                 centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                slopes = slopes[i - first, 0], slopes[i - first, 1], slopes[i - first, 2]
+                slopes = block[i - first, 0], block[i - first, 1], block[i - first, 2]
                 rounded = reaction.ramp(centre.indentation, constants.smoothing)
                 contact = reaction.elastic_from_slopes(centre, rounded, slopes, constants)
                 v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
@@ -216,5 +221,5 @@ for _formula in (
 ):
     jit_formula(_formula)
 
-for _short in (reaction.elastic_from_slopes, load_from_contact):
-    inline_formula(_short)
+for _inlined in (reaction.elastic_from_slopes, load_from_contact):
+    inline_formula(_inlined)

@@ -17,6 +17,7 @@ from ..core.checks import check_number, check_vectors, require, shown
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
+from .adhesion import adhesion_potential, undamped_pull
 from .bristles import Bristles
 from .damping import Damping
 from .friction import Friction
@@ -24,8 +25,7 @@ from .load import Load, apply_bristles
 from .matrices import vector
 from .potential import Potential, potential_of, slopes_of_array
 from .reaction import APART, BallCentre, Constants, Three, centre_of, elastic, reaction
-from .sticking import sticking_potential, undamped_pull
-from .watch import ValidityMonitor
+from .validity_monitor import ValidityMonitor
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
 _ZERO_DEFLECTION = (0.0, 0.0, 0.0, 0.0)
@@ -44,7 +44,7 @@ class ForceElement:
     joint : Joint
         Joint of plain numbers.
     damping : Damping, optional
-        `Flores(restitution=..., impact_speed=...)` and the other relations, or `Damping(...)`; None, the default, has no losses.
+        `Damping(...)`, or a relation: `Flores(restitution=..., impact_speed=...)`. None, the default, has no losses.
     friction : Friction or Bristles, optional
         Bristles have a state, an argument of each call. None, the default, has no friction.
     cup : Cup, optional
@@ -84,14 +84,14 @@ class ForceElement:
     def __post_init__(self) -> None:
         check_joint(self.joint)
         for name, kind in (("model", Model), ("damping", Damping), ("friction", Friction | Bristles), ("cup", Cup)):
-            constants = getattr(self, name)
-            if not (isinstance(constants, kind) or (constants is None and name != "model")):
+            value = getattr(self, name)
+            if not (isinstance(value, kind) or (value is None and name != "model")):
                 raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(value)}")
         smoothing = check_number("smoothing", self.smoothing)
         potential = self._potential()
         clearance = float(self.joint.clearance)
-        good = 0.0 <= smoothing <= clearance
-        require("smoothing", smoothing, good, f"it must be between 0 and the clearance, {clearance:g} mm")
+        valid = 0.0 <= smoothing <= clearance
+        require("smoothing", smoothing, valid, f"it must be between 0 and the clearance, {clearance:g} mm")
         object.__setattr__(self, "potential", potential)
         object.__setattr__(self, "constants", self._constants(smoothing))
 
@@ -100,7 +100,7 @@ class ForceElement:
             return potential_of(self.model, self.joint)
         if self.friction or self.cup or self.smoothing:
             raise TypeError("friction, cup and smoothing are not supported with AdhesiveSocket")
-        return sticking_potential(self.model, self.joint)
+        return adhesion_potential(self.model, self.joint)
 
     @cached_property
     def stretch(self) -> float:
@@ -165,9 +165,7 @@ class ForceElement:
             A vector without three components.
         """
         if type(position) in _SEQUENCES:
-            load = self._of_numbers(
-                three_components(position), three_components(velocity), three_components(spin), attached
-            )
+            load = self._of_numbers(components(position), components(velocity), components(spin), attached)
         else:
             load = self._of_arrays(position, velocity, spin, attached)
         if not isinstance(self.friction, Bristles):
@@ -184,7 +182,7 @@ class ForceElement:
         if centre.indentation <= -constants.smoothing and centre.distance > 0.0:
             return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, APART, position, velocity, spin)
         if centre.indentation > self._monitor.limit:
-            self._monitor.at(centre.indentation)
+            self._monitor.check(centre.indentation)
         contact = elastic(self.potential, centre, constants)
         if sticks:
             contact = undamped_pull(contact)
@@ -195,25 +193,23 @@ class ForceElement:
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
         position = check_vectors("position", position, axes[0])
-        set_checked_number = map(
-            check_vectors, names, [_as_array_like(position, value) for value in (position, velocity, spin)], axes
-        )
-        r, v, w = (_components(value) for value in to_common_arrays(*set_checked_number))
+        states = [_as_array_like(position, value) for value in (position, velocity, spin)]
+        r, v, w = (_split(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
         with numpy.errstate(all="ignore"):  # states without a result have a status
             centre = self._attached_centre(centre_of(*r, self.constants.clearance), attached)
-            self._monitor.look(centre.indentation)
+            self._monitor.check_array(centre.indentation)
             contact = elastic(self.potential, centre, self.constants)
             contact = undamped_pull(contact) if self.stretch > 0.0 else contact
-            parts = reaction(centre, contact, v, w, self.constants)
-        force, moment = vector(object, *parts[:3]), vector(object, *parts[3:])
+            loads = reaction(centre, contact, v, w, self.constants)
+        force, moment = vector(object, *loads[:3]), vector(object, *loads[3:])
         return Load(force, moment, contact.energy, self, centre, contact, r, v, w)
 
     def _attached_centre(self, centre: BallCentre, attached: Any) -> BallCentre:
         """Return the centre of an adhesive ball: without contact before first touch, unless it is attached."""
         if self.stretch == 0.0:
             return centre
-        held = attached | (centre.indentation >= self.stretch)
-        return centre._replace(indentation=where(held, centre.indentation, 0.0 * centre.indentation - 1.0))
+        in_contact = attached | (centre.indentation >= self.stretch)
+        return centre._replace(indentation=where(in_contact, centre.indentation, 0.0 * centre.indentation - 1.0))
 
     @property
     def wall(self) -> float:
@@ -238,7 +234,7 @@ class ForceElement:
         return _read(self.curves[1], indentation)
 
 
-def three_components(value: Any, name: str = "a state") -> Three:
+def components(value: Any, name: str = "a state") -> Three:
     """Return the components of a vector as floats; raise ValueError without three real numbers."""
     try:
         x, y, z = value
@@ -257,11 +253,11 @@ def _as_array_like(position: Any, value: Any) -> Any:
     """Convert a list to an array like the position."""
     if type(value) not in _SEQUENCES:
         return value
-    centre = to_common_arrays(position)[0]
-    return arrays.namespace(centre).asarray(value, dtype=centre.dtype, device=arrays.device(centre))
+    like = to_common_arrays(position)[0]
+    return arrays.namespace(like).asarray(value, dtype=like.dtype, device=arrays.device(like))
 
 
-def _components(value: Any) -> Three:
+def _split(value: Any) -> Three:
     return value[..., 0], value[..., 1], value[..., 2]
 
 

@@ -36,7 +36,7 @@ class ContactState(IntEnum):
 
     @property
     def failed(self) -> bool:
-        """True without a result: the step that led here must be repeated with a smaller size."""
+        """True for a state without a result: the program must repeat the last step with a smaller size."""
         return self >= ContactState.THROUGH_WALL
 
 
@@ -71,13 +71,13 @@ def _without_warnings(formula: Callable[[Load], Any]) -> Callable[[Load], Any]:
     """Suppress NumPy's warnings in a property: states without a result have a status."""
 
     @wraps(formula)
-    def answer(load: Load) -> Any:
+    def evaluate(load: Load) -> Any:
         if type(load.force) is tuple:
             return formula(load)
         with numpy.errstate(all="ignore"):
             return formula(load)
 
-    return answer
+    return evaluate
 
 
 class Load(NamedTuple):
@@ -93,7 +93,7 @@ class Load(NamedTuple):
         Elastic energy of the contact in N mm.
     deflection_rate : (4,)
         Rate of the bristle deflections in mm/s.
-    rubbed : float or array
+    bristle_dissipation : float or array
         Power dissipated by the bristles in N mm/s.
     """
 
@@ -237,15 +237,15 @@ def status_of(centre: BallCentre, contact: Elastic, known: Array, constants: Con
 def describe_states(load: Load) -> tuple[str, ...]:
     """Describe each kind of reported state with the position of its first state."""
     codes = numpy.atleast_1d(arrays.to_numpy(load.status)).ravel()
-    return tuple(_describe_state(load, codes, touch) for touch in list(ContactState)[2:] if (codes == touch).any())
+    return tuple(_describe_state(load, codes, state) for state in list(ContactState)[2:] if (codes == state).any())
 
 
-def _describe_state(load: Load, codes: Numbers, touch: ContactState) -> str:
-    numbers = numpy.flatnonzero(codes == touch)
+def _describe_state(load: Load, codes: Numbers, state: ContactState) -> str:
+    numbers = numpy.flatnonzero(codes == state)
     x, y, z, d = (_number_at(part, codes, numbers[0]) for part in (*load.position, load.indentation))
     count_text = "" if codes.size == 1 else f"{len(numbers)} of {codes.size}: "
-    state = f"r = ({x:.6g}, {y:.6g}, {z:.6g}) mm, d = {d:.6g} mm"
-    return f"{count_text}{touch.sentence}; {state}, the limit is {load.element.wall:.6g} mm"
+    values = f"r = ({x:.6g}, {y:.6g}, {z:.6g}) mm, d = {d:.6g} mm"
+    return f"{count_text}{state.sentence}; {values}, the limit is {load.element.wall:.6g} mm"
 
 
 def _number_at(part: Array, codes: Numbers, number: int) -> float:
@@ -261,11 +261,11 @@ def apply_bristles(load: Load, bristles: Bristles, deflection: Any) -> Load:
     N, R1, n = slip.normal, constants.ball_radius, centre[1:4]
     rubbing = [-N * part for part in force[:3]]
     drill = -N * sqrt(slip.lever_squared) * force[3]
-    turned = _cross(n, rubbing)
+    lever_force = _cross(n, rubbing)
     kind = type(load.force)
     return load._replace(
         force=vector(kind, *(a + b for a, b in zip(_components(load.force), rubbing, strict=True))),
-        moment=vector(kind, *(R1 * a + drill * component for a, component in zip(turned, n, strict=True))),
+        moment=vector(kind, *(R1 * a + drill * component for a, component in zip(lever_force, n, strict=True))),
         deflection_rate=vector(kind, *rate),
         bristle_dissipation=N * dissipated,
     )

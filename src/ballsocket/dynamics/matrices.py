@@ -1,4 +1,4 @@
-"""Components put together: vectors, symmetric matrices, and the matrix of damping."""
+"""Vectors and matrices of components, and the damping matrix of a load."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .reaction import SMOOTHING_SHARE, BallCentre, Constants, Elastic, Sliding, 
 
 
 def vector(kind: type, *components: Array) -> Any:
-    """Components as a tuple, or along the last axis of an array."""
+    """Return components as a tuple, or as the last axis of an array."""
     if kind is tuple:
         return components
     return arrays.namespace(*components).stack(components, axis=-1)
 
 
 def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Three, spin: Three, constants: Constants) -> Any:
-    """∂/∂(v, ω) of what damping and friction take, friction at the normal force as it is: (..., 6, 6)."""
+    """Compute -∂(F, M)/∂(v, ω) of damping and friction at a constant normal force: (..., 6, 6)."""
     centre, contact = BallCentre(*_arrays(centre)), Elastic(*_arrays(contact))
     velocity, spin = _arrays(velocity), _arrays(spin)
     n, unit, zero = _vector(centre.x, centre.y, centre.z), *_one_and_zero(centre.distance)
@@ -34,25 +34,24 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Three, spin: 
     rotation = constants.ball_radius * matrix(((zero, z, -y), (-z, zero, x), (y, -x, zero)))
     lever = arrays.sqrt(slip.lever_squared)
     xp = arrays.namespace(n)
-    # rows: v across the load, R1 ω x n, and the lever's speed; columns: v and ω
+    # rows: v across the load, R1 ω x n, and the speed at the lever; columns: v and ω
     empty = 0.0 * level
-    translation, turning_rows = xp.concat([level, empty], axis=-1), xp.concat([empty, rotation], axis=-1)
-    drilling_row = xp.concat([0.0 * n, lever[..., None] * n], axis=-1)[..., None, :]
+    translation, turning = xp.concat([level, empty], axis=-1), xp.concat([empty, rotation], axis=-1)
+    drilling = xp.concat([0.0 * n, lever[..., None] * n], axis=-1)[..., None, :]
     v, b = _vector(slip.x, slip.y, slip.z), _vector(slip.bx, slip.by, slip.bz)
-    rate = slip.rate[..., None, None] * _potential_bend(
-        centre, slip, (translation, turning_rows, drilling_row), (v, b), constants
-    )
+    curvature = _potential_curvature(centre, slip, (translation, turning, drilling), (v, b), constants)
+    rate = slip.rate[..., None, None] * curvature
     projection = _project(translation, slip.push[..., None] * v + slip.mixed[..., None] * b)
-    projection = projection + _project(turning_rows, slip.mixed[..., None] * v + slip.rotation[..., None] * b)
-    projection = projection + _project(drilling_row, (slip.drill * lever * slip.spin)[..., None])
+    projection = projection + _project(turning, slip.mixed[..., None] * v + slip.rotation[..., None] * b)
+    projection = projection + _project(drilling, (slip.drill * lever * slip.spin)[..., None])
     fall = _friction_fall(slip, constants) / slip.speed
     rate = rate + fall[..., None, None] * (projection[..., :, None] * projection[..., None, :])
-    wide = xp.concat([push, 0.0 * push], axis=-1)
-    return rate + xp.concat([wide, 0.0 * wide], axis=-2)
+    rows = xp.concat([push, 0.0 * push], axis=-1)
+    return rate + xp.concat([rows, 0.0 * rows], axis=-2)
 
 
 def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Three, constants: Constants) -> tuple[Array, Array]:
-    """How fast the normal force rises with ḋ, and how a contact drags that travels along the socket."""
+    """Compute the derivative of the normal force over ḋ, and the drag of a contact that moves along the socket."""
     lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
     force = contact.normal + lossy * _normal_speed(centre, velocity)
     if constants.smoothing > 0.0:
@@ -63,33 +62,30 @@ def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Three, constan
     return lossy * slope, constants.time * contact.damped_force * centre.over
 
 
-def _potential_bend(
+def _potential_curvature(
     centre: BallCentre, slip: Sliding, directions: Three, rates: tuple[Array, Array], constants: Constants
 ) -> Array:
-    """Compute half of the second slopes of q² over velocity and spin: (..., 6, 6)."""
+    """Compute half of the second derivatives of q² over velocity and spin: (..., 6, 6)."""
     xp = arrays.namespace(rates[0])
-    (translation, turning_rows, drilling_row), (v, b), kappa = directions, rates, friction.tilt_share(versine(centre))
+    (translation, turning, drilling), (v, b), kappa = directions, rates, friction.tilt_share(versine(centre))
     share, drill = kappa * kappa, slip.lever_squared * slip.spin * slip.spin
     pole, tilt = v + b, v - b
     squares = xp.sum(pole * pole, axis=-1), xp.sum(tilt * tilt, axis=-1), xp.sum(pole * tilt, axis=-1)
     state = squares[0], share * squares[1], drill, kappa * squares[2]
-    bends = friction.effective_slip_bends(
-        *state, constants.transition_speed * constants.transition_speed, versine(centre)
-    )
-    plus, minus = translation + turning_rows, translation - turning_rows
+    transition_squared = constants.transition_speed * constants.transition_speed
+    bends = friction.effective_slip_bends(*state, transition_squared, versine(centre))
+    plus, minus = translation + turning, translation - turning
     halves = (
         _project(plus, pole),
         share[..., None] * _project(minus, tilt),
-        _project(drilling_row, (arrays.sqrt(slip.lever_squared) * slip.spin)[..., None]),
+        _project(drilling, (arrays.sqrt(slip.lever_squared) * slip.spin)[..., None]),
         0.5 * kappa[..., None] * (_project(plus, tilt) + _project(minus, pole)),
     )
-    total = slip.push[..., None, None] * _outer(translation, translation) + slip.rotation[..., None, None] * _outer(
-        turning_rows, turning_rows
-    )
-    total = total + slip.mixed[..., None, None] * (
-        _outer(translation, turning_rows) + _outer(turning_rows, translation)
-    )
-    total = total + slip.drill[..., None, None] * _outer(drilling_row, drilling_row)
+    total = slip.push[..., None, None] * _outer(translation, translation)
+    total = total + slip.rotation[..., None, None] * _outer(turning, turning)
+    coupling = _outer(translation, turning) + _outer(turning, translation)
+    total = total + slip.mixed[..., None, None] * coupling
+    total = total + slip.drill[..., None, None] * _outer(drilling, drilling)
     for (i, j), bend in bends.items():
         outer = halves[i][..., :, None] * halves[j][..., None, :]
         both = outer if i == j else outer + xp.matrix_transpose(outer)
@@ -97,9 +93,9 @@ def _potential_bend(
     return total
 
 
-def _outer(unit: Array, minus: Array) -> Array:
-    xp = arrays.namespace(unit)
-    return xp.matmul(xp.matrix_transpose(unit), minus)
+def _outer(first: Array, second: Array) -> Array:
+    xp = arrays.namespace(first)
+    return xp.matmul(xp.matrix_transpose(first), second)
 
 
 def _project(directions: Array, rates: Array) -> Array:
@@ -107,7 +103,7 @@ def _project(directions: Array, rates: Array) -> Array:
 
 
 def _friction_fall(slip: Sliding, constants: Constants) -> Array:
-    """Compute the slope of friction's rate over q."""
+    """Compute the derivative of the friction rate over q."""
     q = slip.speed
     mu = friction.coefficient_at(q, constants.sliding, constants.static, constants.stribeck_speed)
     mu_slope = -2.0 * (mu - constants.sliding) * q / (constants.stribeck_speed * constants.stribeck_speed)
@@ -127,10 +123,10 @@ def _vector(*components: Array) -> Any:
 
 
 def matrix(rows: Any) -> Any:
-    """Rows of components as the last two axes of an array."""
+    """Stack rows of components along the last two axes of an array."""
     stacked = [_vector(*row) for row in rows]
     return arrays.namespace(*stacked).stack(stacked, axis=-2)
 
 
 def _arrays(components: Any) -> Any:
-    return tuple(numpy.asarray(part) if type(part) is float else part for part in components)
+    return tuple(numpy.asarray(value) if type(value) is float else value for value in components)

@@ -13,10 +13,10 @@ from ..core.arrays import Numbers
 from ..core.checks import check_number, require, shown
 from ..core.sources import Source
 from . import stepping
-from .element import ForceElement, three_components
+from .element import ForceElement, components
 from .load import ContactState, Load
+from .stateful_motion import StatefulIntegrator, pull_of
 from .stepping import Ball
-from .with_contact_state import StatefulIntegrator, pull_of
 
 TONNE = 1e-3
 """Tonnes in a kilogram: N, mm, s and t form a consistent system."""
@@ -81,8 +81,8 @@ class Motion:
     def kinetic(self) -> Numbers:
         """Kinetic energy in N mm: (steps,)."""
         with numpy.errstate(over="ignore"):
-            turning = self.inertia * numpy.sum(self.spin**2, axis=1)
-            return TONNE / 2 * (self.mass * numpy.sum(self.velocity**2, axis=1) + turning)
+            rotation = self.inertia * numpy.sum(self.spin**2, axis=1)
+            return TONNE / 2 * (self.mass * numpy.sum(self.velocity**2, axis=1) + rotation)
 
     @cached_property
     def total(self) -> Numbers:
@@ -192,15 +192,14 @@ def simulate(
     if not isinstance(plain, ForceElement):
         raise TypeError(f"element must be a ForceElement, got {shown(element)}")
     checked_mass = _check_inertia("mass", mass)
-    turning = (
-        0.4 * checked_mass * element.constants.ball_radius**2 if inertia is None else _check_inertia("inertia", inertia)
-    )
+    solid_ball = 0.4 * checked_mass * element.constants.ball_radius**2
+    checked_inertia = solid_ball if inertia is None else _check_inertia("inertia", inertia)
     duration = _check_positive("duration", duration)
     steps = duration / _check_positive("step", step)
     require("the number of steps", steps, steps <= _MAX_STEPS, f"at most {_MAX_STEPS:g}")
     count = max(int(numpy.ceil(steps - 1e-9)), 1)
-    initial = Ball(*three_components(position), *three_components(velocity), *three_components(spin))
-    ball = _InitialValueProblem(element, plain, checked_mass, turning, initial, pull, duration / count, count)
+    initial = Ball(*components(position), *components(velocity), *components(spin))
+    ball = _InitialValueProblem(element, plain, checked_mass, checked_inertia, initial, pull, duration / count, count)
     if ContactState(plain(initial[:3], initial[3:6], initial[6:]).status).failed:
         return ball.failure()
     return ball.with_contact_state() if plain.remembers else ball.advance()
@@ -251,14 +250,14 @@ class _InitialValueProblem:
         ball = StatefulIntegrator(
             element=self.plain, mass=TONNE * self.mass, inertia=TONNE * self.inertia, pull=pull_of(self.pull)
         )
-        results = ball.moved(self.initial, self.step * numpy.arange(self.count + 1), self.step)
+        results = ball.integrate(self.initial, self.step * numpy.arange(self.count + 1), self.step)
         load = self.plain(results.states[:, :3], attached=results.attached)
         ended = ""
         if results.failure is not None:
             notes = "; ".join(results.failure.notes) or "the integration failed"
             ended = f"after {self.step * (len(results.states) - 1):g} s: {notes}"
         contact_state = {"deflection": results.deflection, "attached": results.attached, "ended": ended}
-        return self._motion(results.states, load, lost=results.lost, work=results.work, **contact_state)
+        return self._motion(results.states, load, lost=results.dissipated, work=results.work, **contact_state)
 
     def _motion(self, states: Numbers, load: Load, **results: Any) -> Motion:
         return Motion(
@@ -277,8 +276,8 @@ class _InitialValueProblem:
 def _pulls(pull: Any, time: Numbers) -> Numbers:
     """Return the pull at times: (times, 3)."""
     if callable(pull):
-        return numpy.array([three_components(pull(instant), "a pull") for instant in time.tolist()])
-    return numpy.tile(numpy.array(three_components(pull, "a pull")), (len(time), 1))
+        return numpy.array([components(pull(instant), "a pull") for instant in time.tolist()])
+    return numpy.tile(numpy.array(components(pull, "a pull")), (len(time), 1))
 
 
 def _failure_note(element: ForceElement, state: Numbers, time: float = 0.0, step: float = 0.0) -> str:

@@ -1,4 +1,4 @@
-"""The energy of a joint over the indentation, with its two slopes: what a force element is made of."""
+"""Elastic energy of a joint over the indentation, with its first and second derivative."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from ..models.foundation import FoundationLaw
 from ..problem import Joint
 
 Slopes = tuple[Array, Array, Array]
-"""U in N mm, F = dU/dd in N, k = dF/dd in N/mm."""
+"""Energy U in N mm, force F = dU/dd in N, and stiffness k = dF/dd in N/mm."""
 
 
 class Potential(Protocol):
-    """The energy of one joint and its slopes, of a Python number or an array of indentations (mm), 0 or more.
+    """Energy of a joint and its derivatives at indentations in mm, 0 or more, in a number or an array.
 
-    `deepest` is the last indentation that has an answer, in mm.
+    `deepest` is the largest indentation in mm with a result.
     """
 
     @property
@@ -35,7 +35,7 @@ class Potential(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class SpringPotential:
-    """The energy of radial springs, by their formulas."""
+    """Energy of radial springs, by their formulas."""
 
     springs: FoundationLaw
     deepest: float = math.inf
@@ -48,7 +48,7 @@ class SpringPotential:
 
 @dataclass(frozen=True, kw_only=True)
 class FormulaPotential:
-    """The energy of a closed form, by its formulas."""
+    """Energy of a closed form, by its formulas."""
 
     model: ClosedForm
     joint: Joint
@@ -61,9 +61,9 @@ class FormulaPotential:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurvePotential:
-    """The energy as polynomials of ln d, piece by piece: ln U is kept, so that F and k are its exact slopes.
+    """Energy by piecewise polynomials of ln U over ln d, whose exact derivatives give F and k.
 
-    Below the curve's `shallowest` indentation U is a power of d, beyond its `deepest` there is none.
+    Below the curve's `shallowest` indentation U is a power of d. Beyond its `deepest` indentation U is NaN.
     """
 
     curve: CurveLaw
@@ -87,7 +87,7 @@ class CurvePotential:
 def slopes_of_number(
     indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float, float]:
-    """A `CurvePotential` as a function of its numbers: U, F and k of one indentation."""
+    """Compute U, F and k at a single indentation from the numbers of a `CurvePotential`."""
     if indentation <= 0.0:
         return 0.0, 0.0, 0.0
     if not indentation <= deepest:
@@ -110,12 +110,13 @@ def slopes_of_number(
 
 
 _MIN_INDENTATION = 1e-150
+"""Smallest indentation in mm whose energy does not underflow in an intermediate result."""
 
 
 def slopes_of_array(
     indentation: Array, shallowest: float, deepest: float, first: float, density: float, pieces: Numbers
 ) -> Slopes:
-    """`slopes_of_number` of an array of any library."""
+    """Compute U, F and k at an array of indentations of any library, as `slopes_of_number`."""
     xp = arrays.namespace(indentation)
     rows = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
     d = where(indentation == indentation, clip(indentation, _MIN_INDENTATION, deepest), deepest)
@@ -138,12 +139,12 @@ def slopes_of_array(
 
 
 def potential_of(model: Model, joint: Joint) -> Potential:
-    """The energy of any model that has a law.
+    """Return the energy of a joint by a model with a force law.
 
     Raises
     ------
     TypeError, ValueError
-        As `model.law(joint)`.
+        The errors of `model.law(joint)`.
     """
     law = model.law(joint)
     if isinstance(law, FoundationLaw):
@@ -160,21 +161,20 @@ def _ends(law: ForceLaw, joint: Joint) -> tuple[float, float]:
 
 
 def energy_curve(law: ForceLaw, shallowest: float, deepest: float) -> CurveLaw:
-    """ln U over ln d of a law, which is integrated."""
+    """Integrate a force law, and fit ln U over ln d by a curve."""
     return curve_law(lambda depths: _integrate_force(law, depths, shallowest), shallowest, deepest)
 
 
 def _integrate_force(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbers:
-    """∫ F dd up to each of some indentations that grow: of a power below the shallowest, then by Gauss over ln d."""
+    """Integrate the force up to increasing indentations: a power law up to the first, then Gauss points over ln d."""
     force, stiffness = law(shallowest)
     initial_work = force * shallowest / (1.0 + stiffness * shallowest / force)
     logs = numpy.log(numpy.concatenate([[shallowest], depths]))
     nodes, weights = map(numpy.array, arrays.gauss_legendre(_GAUSS_NODES))
-    depths_between = numpy.exp(logs[:-1, None] + numpy.diff(logs)[:, None] * nodes)
-    forces = numpy.array([law(float(coordinate))[0] for coordinate in depths_between.ravel()]).reshape(
-        depths_between.shape
-    )
-    return initial_work + numpy.cumsum(numpy.diff(logs) * ((forces * depths_between) @ weights))
+    points = numpy.exp(logs[:-1, None] + numpy.diff(logs)[:, None] * nodes)
+    forces = numpy.array([law(float(depth))[0] for depth in points.ravel()]).reshape(points.shape)
+    return initial_work + numpy.cumsum(numpy.diff(logs) * ((forces * points) @ weights))
 
 
 _GAUSS_NODES = 16
+"""Number of Gauss points between two indentations."""

@@ -1,7 +1,8 @@
-"""The formulas of the force element, on components: numbers or arrays alike, and what a compiler or C is taught.
+"""Formulas of the force element on components, for numbers and arrays, compiled functions and exported programs.
 
-The ball's centre sits at r = (x, y, z) from the socket's, in axes fixed to the socket; e = |r|, n = r/e, d = e - c.
-All forces act on the ball, moments about its centre; the socket is met by the same with the other sign, see `Load`.
+r = (x, y, z) is the position of the ball centre relative to the socket centre, in axes fixed to the socket. From it
+follow e = |r|, n = r/e and d = e - c. All forces act on the ball, and all moments about its centre. `Load` gives force
+and moment on the socket.
 """
 
 from __future__ import annotations
@@ -13,12 +14,13 @@ from ..core.arrays import Array, atan2, clip, safe_divisor, sqrt, where
 from . import friction
 
 Three = tuple[Array, Array, Array]
+"""Components of a vector."""
 
 
 class Constants(NamedTuple):
-    """The numbers of a force element besides those of its potential: lengths in mm, speeds in mm/s, times in s.
+    """Numbers of a force element except those of its potential: lengths in mm, speeds in mm/s, times in s.
 
-    `rim` is the polar angle of the cup's rim in rad, 0 where there is none; `dome` points to the pole of its bore.
+    `rim` is the polar angle of the cup rim in rad, 0 without a rim. `dome` is the unit vector to the pole of the bore.
     """
 
     ball_radius: float
@@ -40,9 +42,9 @@ class Constants(NamedTuple):
 
 
 class BallCentre(NamedTuple):
-    """Where the ball is: distance of the centres, the way from socket to ball, indentation, 1 over the distance.
+    """Position of the ball centre: distance, direction, indentation, and inverse distance.
 
-    The way is a unit vector, but at the very centre, where it is none.
+    The distance and the direction are those from the socket centre to the ball centre. The direction is a unit vector, or zero where the centres coincide.
     """
 
     distance: Array
@@ -54,12 +56,12 @@ class BallCentre(NamedTuple):
 
 
 class Elastic(NamedTuple):
-    """The elastic contact there.
+    """Elastic contact at a position of the ball.
 
-    `energy` U; `normal`, the force back to the socket's centre, dU/de; `stiffness`, d²U/de²; force and stiffness that
-    the damping is measured by, those without the rim's own part. `covered` is the distance of the rim over the half
-    angle, at least 1 away from it. Along (`px`, `py`, `pz`), where the rim is nearest: the force `polar`, and the
-    parts `mixed`, `along` and `around` of the tangent.
+    `energy` is U, `normal` the force dU/de to the socket centre, and `stiffness` is d²U/de². Damping is proportional to
+    `damped_force` and `damped_stiffness`, which lack the gradient of the rim. `covered` is the angle to the rim over
+    the half angle, 1 or more away from the rim. (`px`, `py`, `pz`) is the direction to the nearest rim. `polar` is the
+    force along it, and `mixed`, `along` and `around` are components of the tangent.
     """
 
     energy: Array
@@ -78,24 +80,24 @@ class Elastic(NamedTuple):
 
 
 APART = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-"""Where nothing touches."""
+"""Elastic contact of a ball that does not touch the socket."""
 
 
 def centre_of(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
-    """The place of the ball's centre."""
+    """Compute distance, direction and indentation of the ball centre."""
     distance = sqrt(x * x + y * y + z * z)
     over = 1.0 / safe_divisor(distance)
     return BallCentre(distance, x * over, y * over, z * over, distance - clearance, over)
 
 
 def elastic(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
-    """The elastic contact at a place; its touch-down is rounded off over ± `smoothing`."""
+    """Compute the elastic contact at a position, with first touch rounded off over ± `smoothing`."""
     rounded = ramp(centre.indentation, constants.smoothing)
     return elastic_from_slopes(centre, rounded, potential(rounded[0]), constants)
 
 
 def elastic_from_slopes(centre: BallCentre, rounded: Three, slopes: Three, constants: Constants) -> Elastic:
-    """The elastic contact at a place whose indentation was rounded off, with energy, force and stiffness there."""
+    """Compute the elastic contact from energy, force and stiffness at the rounded indentation."""
     d = centre.indentation
     depth, slope, bend = rounded
     energy, force, stiffness = slopes
@@ -111,7 +113,7 @@ def elastic_from_slopes(centre: BallCentre, rounded: Three, slopes: Three, const
 def elastic_at_rim(
     centre: BallCentre, depth: Array, slope: Array, bend: Array, U: Array, F: Array, k: Array, constants: Constants
 ) -> Elastic:
-    """The contact in a cup: its energy is U W(s), s = (rim - γ)/ε, with cos ε = c/(c + d): what overlaps."""
+    """Compute the elastic contact in a cup, with the energy U W(s) for s = (rim - γ)/ε and cos ε = c/(c + d)."""
     lean, across, ax, ay, az = dome_angle(centre, constants)
     gamma = atan2(across, lean)
     touching = depth > 0.0
@@ -124,7 +126,7 @@ def elastic_at_rim(
     W, W1, W2 = rim_share(s)
     U, F, k = where(s > -1.0, U, 0.0), where(s > -1.0, F, 0.0), where(s > -1.0, k, 0.0)
     s1, s2 = -s * first / epsilon, s * (2.0 * first * first / epsilon - second) / epsilon
-    # slopes of U W(s) over the depth and γ, over which s falls by 1/ε
+    # derivatives of U W(s) over the depth and γ; s decreases by 1/ε per γ
     by_depth = F * W + U * W1 * s1
     by_both = (U * W1 * first / epsilon - F * W1 - U * W2 * s1) / epsilon
     by_angle = -U * W1 / epsilon
@@ -147,7 +149,7 @@ def elastic_at_rim(
 
 
 def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, Array, Array, Array]:
-    """cos γ and sin γ of the angle between the ball's way and the dome's axis, and where γ grows, times sin γ."""
+    """Compute cos γ, sin γ and sin γ times the direction of increasing γ, the angle from the dome axis to the ball."""
     lean = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
     ax, ay, az = (
         lean * centre.x - constants.dome_x,
@@ -158,26 +160,26 @@ def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, 
 
 
 def pressed(elastic: Elastic, speed: Array, constants: Constants) -> Array:
-    """The normal force on the ball, towards the socket's centre: F + (χ F + τ k) ḋ, never below 0."""
+    """Compute the normal force towards the socket centre, F + (χ F + τ k) ḋ, which damping never makes negative."""
     lossy = constants.hysteresis * elastic.damped_force + constants.time * elastic.damped_stiffness
     force = elastic.normal + lossy * speed
     if constants.smoothing > 0.0:
         return positive(force, SMOOTHING_SHARE * elastic.damped_force)
-    least = where(elastic.normal < 0.0, elastic.normal, 0.0)  # below 0 where a ball sticks
-    return where(force < least, least, force)  # no number stays none
+    least = where(elastic.normal < 0.0, elastic.normal, 0.0)  # negative for an adhesive ball
+    return where(force < least, least, force)  # keeps NaN
 
 
 SMOOTHING_SHARE = 0.1
-"""Of the force: over what share of it, on both sides of 0, a smooth element rounds off a contact that lets go."""
+"""Share of the force, on both sides of 0, over which a smooth element rounds off the separation of the contact."""
 
 
 class Sliding(NamedTuple):
     """Slip of a ball and its friction.
 
     (`x`, `y`, `z`) is the velocity v across the load and (`bx`, `by`, `bz`) is b = R1 ω x n, both in mm/s. `spin` is
-    the one about the load in rad/s, `lever_squared` is in mm². `normal` is N, `speed` the effective slip speed q, and
-    `rate` is N μ(q)/q plus viscous friction. The force of friction is -rate (push v + mixed b). Its moment is
-    -rate R1 n x (mixed v + turn b) across the load and -rate drill lever² spin about it.
+    the angular velocity about the load in rad/s, and `lever_squared` is in mm². `normal` is N, and `speed` the effective
+    slip speed q. `rate` is N μ(q)/q plus viscous friction. The friction force is -rate (push v + mixed b). Its moment is
+    -rate R1 n x (mixed v + rotation b) across the load and -rate drill lever² spin about it.
     """
 
     x: Array
@@ -198,7 +200,7 @@ class Sliding(NamedTuple):
 
 
 def sliding(centre: BallCentre, force: Array, velocity: Three, spin: Three, constants: Constants) -> Sliding:
-    """Compute the slip of the ball on the patch and friction's rate, from velocities across n and about it."""
+    """Compute the slip of the ball on the patch and the rate of friction, from velocity and spin."""
     (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
     speed, turning = vx * nx + vy * ny + vz * nz, wx * nx + wy * ny + wz * nz
@@ -222,14 +224,14 @@ def sliding(centre: BallCentre, force: Array, velocity: Three, spin: Three, cons
 
 
 def versine(centre: BallCentre) -> Array:
-    """1 - cos ε of what overlaps, d/e."""
+    """Compute the versine 1 - cos ε = d/e of the overlap of ball and socket."""
     return where(centre.indentation > 0.0, centre.indentation * centre.over, 0.0)
 
 
 def reaction(
     centre: BallCentre, contact: Elastic, velocity: Three, spin: Three, constants: Constants
 ) -> tuple[Array, ...]:
-    """Force (N) and moment (N mm) on the ball about its centre, six components."""
+    """Compute force (N) and moment (N mm) on the ball about its centre: six components."""
     (vx, vy, vz), nx, ny, nz = velocity, centre.x, centre.y, centre.z
     speed = vx * nx + vy * ny + vz * nz
     normal = pressed(contact, speed, constants)
@@ -258,7 +260,7 @@ def reaction(
 
 
 def dissipation(centre: BallCentre, contact: Elastic, velocity: Three, spin: Three, constants: Constants) -> Array:
-    """What damping, liner and friction take, in N mm/s."""
+    """Compute the power dissipated by damping, liner and friction in N mm/s."""
     vx, vy, vz = velocity
     speed = vx * centre.x + vy * centre.y + vz * centre.z
     normal = pressed(contact, speed, constants)
@@ -267,15 +269,15 @@ def dissipation(centre: BallCentre, contact: Elastic, velocity: Three, spin: Thr
     aa = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z
     cross = slip.x * slip.bx + slip.y * slip.by + slip.z * slip.bz
     bb = slip.bx * slip.bx + slip.by * slip.by + slip.bz * slip.bz
-    bristle_dissipation = slip.push * aa + 2.0 * slip.mixed * cross + slip.rotation * bb
-    bristle_dissipation = bristle_dissipation + slip.drill * slip.lever_squared * slip.spin * slip.spin
-    return (normal - contact.normal) * speed + drag * aa + slip.rate * bristle_dissipation
+    friction_power = slip.push * aa + 2.0 * slip.mixed * cross + slip.rotation * bb
+    friction_power = friction_power + slip.drill * slip.lever_squared * slip.spin * slip.spin
+    return (normal - contact.normal) * speed + drag * aa + slip.rate * friction_power
 
 
 def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple[Array, ...]:
-    """∂²U/∂r² in N/mm: xx, yy, zz, xy, yz, zx."""
+    """Compute the tangent stiffness ∂²U/∂r² in N/mm: xx, yy, zz, xy, yz, zx."""
     nx, ny, nz, px, py, pz = centre.x, centre.y, centre.z, contact.px, contact.py, contact.pz
-    # at the very centre of a socket without clearance all directions are alike
+    # where the centres coincide, without clearance, the stiffness is isotropic
     across = where(centre.distance > 0.0, contact.normal * centre.over, contact.stiffness)
     radial = contact.stiffness - across
     xx, yy, zz = across + radial * nx * nx, across + radial * ny * ny, across + radial * nz * nz
@@ -293,7 +295,7 @@ def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple
 
 
 def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
-    """Return max(y, 0) and its two derivatives, rounded off between -width and width by a polynomial."""
+    """Compute max(y, 0) and its two derivatives, rounded off between -width and width by a polynomial."""
     if width == 0.0:
         zero = 0.0 * y
         return where(y > 0.0, y, zero), where(y >= 0.0, zero + 1.0, zero), zero
@@ -303,7 +305,7 @@ def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
 
 
 def positive(y: Array, width: Array) -> Array:
-    """Return the value of `ramp` for a width that may be an array, 0 included."""
+    """Compute the value of `ramp` for a width that may be an array, 0 included."""
     span = where(width > 0.0, width, 1.0)
     t = clip((y + width) / (2.0 * span), 0.0, 1.0)
     return where(y >= width, y, 2.0 * width * _rounded(t))
@@ -315,10 +317,10 @@ def _rounded(t: Array) -> Array:
 
 
 def rim_share(centre: Array) -> tuple[Array, Array, Array]:
-    """Return the energy share W(s) of a contact that a straight rim cuts, with its first and second derivative.
+    """Compute the energy share W(s) of a contact cut by a straight rim, with its first and second derivative.
 
-    s is the distance of the rim from the patch centre over the half angle: W is 1 from s = 1 and 0 up to s = -1. The
-    energy of radial springs under a small patch is the marginal of (1 - x² - y²)² over a disc.
+    s is the distance of the rim from the patch centre over the half angle. W is 1 for s >= 1, and 0 for s <= -1. It is
+    the marginal of (1 - x² - y²)² over a disc, the energy density of radial springs under a small patch.
     """
     s = clip(centre, -1.0, 1.0)
     square = clip(1.0 - s * s, 0.0, 1.0)

@@ -28,7 +28,7 @@ class DampingEstimate:
     error : float
         Standard error of χ in s/mm; NaN for a single measurement without uncertainty.
     noise : float
-        Standard deviation of a measured coefficient of restitution: the stated uncertainty, or the scatter about the fit.
+        Standard deviation of a measured coefficient of restitution: as stated, or the scatter about the fit.
     speed, restitution : array
         Measured speeds in mm/s and coefficients of restitution.
     """

@@ -1,9 +1,9 @@
-"""One time step of a ball in its socket: second order, with energy and angular momentum conserved to rounding.
+"""Time steps of a ball in its socket: of second order, with energy and angular momentum conserved to rounding.
 
 The elastic force is the discrete gradient of Gonzalez in the invariants of the contact: the distance e = |r| of the
-centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly the fall of the energy. It
-has no moment about the socket's centre, in a cup none about the dome axis. Damping, friction and spin are those at the
-middle of the step; what they dissipate is never negative.
+centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly the decrease of the energy.
+It has no moment about the socket centre, or in a cup about the dome axis. Damping, friction and spin are evaluated at
+the midpoint of the step, and their dissipation is never negative.
 """
 
 from __future__ import annotations
@@ -27,10 +27,11 @@ from .reaction import (
 )
 
 MAX_ITERATIONS = 60
+"""Largest number of iterations of a step."""
 
 
 class Ball(NamedTuple):
-    """The ball as it moves: its centre (mm), velocity (mm/s) and spin (rad/s), seen from a socket at rest."""
+    """State of a ball: centre (mm), velocity (mm/s) and spin (rad/s) relative to a socket at rest."""
 
     x: float
     y: float
@@ -44,7 +45,7 @@ class Ball(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What a step led to: the ball, what was lost (N mm), and whether the iteration converged and the cup holds it."""
+    """Result of a step: the ball, the dissipated energy (N mm), and True for a converged step that ends in the cup."""
 
     ball: Ball
     dissipated: float
@@ -54,14 +55,14 @@ class Step(NamedTuple):
 def advance(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: Ball, mass: float, inertia: float, pull: Three, h: float
 ) -> Step:
-    """The ball after h seconds.
+    """Advance a ball by a step of h seconds.
 
-    `mass` in t (N s²/mm), `inertia` in t mm², `pull` a constant force in N. The unknowns are velocity and spin at the
-    middle of the step; each round solves for them as if stiffness and friction's rate were constant.
+    `mass` is in t (N s²/mm), `inertia` in t mm², and `pull` is a constant force in N. The unknowns are velocity and
+    spin at the midpoint of the step. Each iteration solves for them with constant stiffness and rate of friction.
     """
     mass_rate, inertia_rate = 2.0 * mass / h, 2.0 * inertia / h
     initial = centre_of(ball.x, ball.y, ball.z, constants.clearance)
-    middle = MidpointVelocity(
+    midpoint = Midpoint(
         ball.vx + pull[0] / mass_rate,
         ball.vy + pull[1] / mass_rate,
         ball.vz + pull[2] / mass_rate,
@@ -69,47 +70,49 @@ def advance(  # type: ignore[no-untyped-def]
         ball.wy,
         ball.wz,
     )
-    if initial.indentation + h * (abs(middle.x) + abs(middle.y) + abs(middle.z)) < -constants.smoothing:
-        return Step(end_state(ball, middle, h), 0.0, True)
+    if initial.indentation + h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z)) < -constants.smoothing:
+        return Step(end_state(ball, midpoint, h), 0.0, True)
     start = elastic(potential, initial, constants)
     push = start.normal / mass_rate
-    ax, ay, az, bx, by, bz = middle
-    middle = MidpointVelocity(ax - push * initial.x, ay - push * initial.y, az - push * initial.z, bx, by, bz)
+    ax, ay, az, bx, by, bz = midpoint
+    midpoint = Midpoint(ax - push * initial.x, ay - push * initial.y, az - push * initial.z, bx, by, bz)
     size, best, change = 1e-300, 1e300, 1e300
     for _ in range(MAX_ITERATIONS):
         residual = residual_of(
-            potential, constants, ball, middle, initial.distance, start.energy, mass_rate, inertia_rate, pull, h
+            potential, constants, ball, midpoint, initial.distance, start.energy, mass_rate, inertia_rate, pull, h
         )
-        after, change = newton_correction(residual, middle, constants, mass_rate, inertia_rate, h)
+        after, change = newton_correction(residual, midpoint, constants, mass_rate, inertia_rate, h)
         if not isfinite(change):
             break
-        middle = after
-        size = max(size, surface_speed(middle, constants) + residual.force / mass_rate)
+        midpoint = after
+        size = max(size, surface_speed(midpoint, constants) + residual.force / mass_rate)
         if change <= _RELATIVE_TOLERANCE * size or (change <= _ROUNDING_TOLERANCE * size and change >= 0.5 * best):
             break
         best = min(best, change)
-    ax, ay, az, bx, by, bz = middle
+    ax, ay, az, bx, by, bz = midpoint
     dissipated = h * dissipation(residual.centre, residual.contact, (ax, ay, az), (bx, by, bz), constants)
-    return Step(end_state(ball, middle, h), dissipated, residual.in_cup and change <= _ROUNDING_TOLERANCE * size)
+    return Step(end_state(ball, midpoint, h), dissipated, residual.in_cup and change <= _ROUNDING_TOLERANCE * size)
 
 
 _RELATIVE_TOLERANCE = 1e-15
-"""Change of the last round, as a share of the speeds in a step. A larger share leaves errors of one sign: 1e-13 adds
-5e-15 of the energy in each bounce of two steps.
+"""Largest change of the speeds in a converged iteration, relative to the speeds of the step.
+
+A larger tolerance leaves errors of one sign: 1e-13 adds 5e-15 of the energy in each bounce of two steps.
 """
 
 _ROUNDING_TOLERANCE = 1e-10
-"""Of the speeds in a step: rounds that move them by less, and do not get better, have met rounding."""
+"""Relative change of the speeds below which an iteration that no longer improves is limited by rounding."""
 
 
 _MIN_PATH_RATIO = 1e-14
 """Smallest ratio of the cubed path to the cubed indentation at which the difference quotient of the energy is used.
 
-For a shorter path the mean gradient is exact to rounding."""
+For a shorter path the mean gradient is exact to rounding.
+"""
 
 
-class MidpointVelocity(NamedTuple):
-    """Velocity and spin at the middle of a step."""
+class Midpoint(NamedTuple):
+    """Velocity and spin at the midpoint of a step."""
 
     x: float
     y: float
@@ -122,9 +125,9 @@ class MidpointVelocity(NamedTuple):
 class MeanContact(NamedTuple):
     """Elastic contact at the mean of the invariants of both ends of a step.
 
-    `place` has the direction of the middle of the step and the mean distance; `end` is the place after the step.
-    `shortening` is the distance of the middle over the mean distance. The rim's force acts along (`qx`, `qy`, `qz`);
-    (`ux`, `uy`, `uz`) is the unit vector across the middle's direction in its plane with the dome axis.
+    `centre` has the direction of the midpoint of the step and the mean distance. `end` is the position after the step.
+    `shortening` is the distance at the midpoint over the mean distance. The force of the rim acts along (`qx`, `qy`,
+    `qz`). (`ux`, `uy`, `uz`) is the unit vector across the direction of the midpoint, in its plane with the dome axis.
     """
 
     centre: BallCentre
@@ -140,7 +143,7 @@ class MeanContact(NamedTuple):
 
 
 class StepResidual(NamedTuple):
-    """Residual of the balance of a step: of force (N) and moment (N mm); the contact that it was evaluated at."""
+    """Residuals of force (N) and moment (N mm) in the balance of a step, with the contact at its midpoint."""
 
     x: float
     y: float
@@ -154,9 +157,9 @@ class StepResidual(NamedTuple):
     in_cup: bool
 
 
-def end_state(ball: Ball, middle: MidpointVelocity, h: float) -> Ball:
-    """The ball after a step whose middle is known."""
-    ax, ay, az, bx, by, bz = middle
+def end_state(ball: Ball, midpoint: Midpoint, h: float) -> Ball:
+    """Compute the ball after a step from velocity and spin at its midpoint."""
+    ax, ay, az, bx, by, bz = midpoint
     return Ball(
         ball.x + h * ax, ball.y + h * ay, ball.z + h * az,
         2.0 * ax - ball.vx, 2.0 * ay - ball.vy, 2.0 * az - ball.vz,
@@ -164,21 +167,21 @@ def end_state(ball: Ball, middle: MidpointVelocity, h: float) -> Ball:
     )  # fmt: skip
 
 
-def surface_speed(middle: MidpointVelocity, constants: Constants) -> float:
-    """How fast the ball moves and its surface turns, in mm/s."""
-    turning = abs(middle.wx) + abs(middle.wy) + abs(middle.wz)
-    return abs(middle.x) + abs(middle.y) + abs(middle.z) + constants.ball_radius * turning
+def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
+    """Compute the speed of the ball plus that of its turning surface, in mm/s."""
+    turning = abs(midpoint.wx) + abs(midpoint.wy) + abs(midpoint.wz)
+    return abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z) + constants.ball_radius * turning
 
 
 def mean_contact(  # type: ignore[no-untyped-def]
-    potential, constants: Constants, ball: Ball, middle: MidpointVelocity, distance: float, h: float
+    potential, constants: Constants, ball: Ball, midpoint: Midpoint, distance: float, h: float
 ) -> MeanContact:
-    """Evaluate the elastic contact at the mean of both ends of a step, which begins at a distance of the centres.
+    """Compute the elastic contact at the mean of both ends of a step, for the distance of the centres at its start.
 
-    The mean is that of e and of r·dome. There the difference of the energy is the gradient times the differences of
-    the invariants to third order, also for a step that hardly changes them.
+    The mean is that of e and of r·dome. To third order the difference of the energy is the gradient at the mean times
+    the differences of the invariants, also for a step that hardly changes them.
     """
-    ax, ay, az = middle.x, middle.y, middle.z
+    ax, ay, az = midpoint.x, midpoint.y, midpoint.z
     half = centre_of(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, constants.clearance)
     end = centre_of(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, constants.clearance)
     mean = 0.5 * (distance + end.distance)
@@ -208,7 +211,7 @@ def residual_of(  # type: ignore[no-untyped-def]
     potential,
     constants: Constants,
     ball: Ball,
-    middle: MidpointVelocity,
+    midpoint: Midpoint,
     distance: float,
     before: float,
     mass_rate: float,
@@ -216,9 +219,9 @@ def residual_of(  # type: ignore[no-untyped-def]
     pull: Three,
     h: float,
 ) -> StepResidual:
-    """Compute the residual at a middle: inertia less the discrete gradient, damping, friction and pull."""
-    ax, ay, az, bx, by, bz = middle
-    mean = mean_contact(potential, constants, ball, middle, distance, h)
+    """Compute the residual at a midpoint: inertia minus the discrete gradient, damping, friction and pull."""
+    ax, ay, az, bx, by, bz = midpoint
+    mean = mean_contact(potential, constants, ball, midpoint, distance, h)
     centre, end, contact = mean.centre, mean.end, mean.contact
     fx, fy, fz, mx, my, mz = reaction(centre, contact, (ax, ay, az), (bx, by, bz), constants)
     after = elastic(potential, end, constants)
@@ -233,7 +236,7 @@ def residual_of(  # type: ignore[no-untyped-def]
     path, depth = h * sqrt(square), abs(centre.indentation)
     certainty = path * path * path / safe_divisor(path * path * path + _MIN_PATH_RATIO * depth * depth * depth)
     along = certainty * ((after.energy - before) / h - fall) / safe_divisor(square)
-    inward = normal - contact.normal + along * speed  # beyond the normal force that the reaction has
+    inward = normal - contact.normal + along * speed  # in addition to the normal force of the reaction
     fx, fy, fz = fx - inward * nx, fy - inward * ny, fz - inward * nz
     if constants.rim > 0.0:
         aside = along * drift
@@ -256,19 +259,19 @@ def residual_of(  # type: ignore[no-untyped-def]
 
 def newton_correction(
     residual: StepResidual,
-    middle: MidpointVelocity,
+    midpoint: Midpoint,
     constants: Constants,
     mass_rate: float,
     inertia_rate: float,
     h: float,
-) -> tuple[MidpointVelocity, float]:
-    """The middle that misses nothing if stiffness and friction's rate stay, and how far it moved in mm/s."""
+) -> tuple[Midpoint, float]:
+    """Solve for the midpoint with constant stiffness and rate of friction; return it with its change in mm/s."""
     centre, contact, R1 = residual.centre, residual.contact, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
     push, mixed, rotation, drill = 0.0, 0.0, 0.0, 0.0
     if constants.static + constants.viscous > 0.0:
-        speed = middle.x * nx + middle.y * ny + middle.z * nz
-        velocity, spin = (middle.x, middle.y, middle.z), (middle.wx, middle.wy, middle.wz)
+        speed = midpoint.x * nx + midpoint.y * ny + midpoint.z * nz
+        velocity, spin = (midpoint.x, midpoint.y, midpoint.z), (midpoint.wx, midpoint.wy, midpoint.wz)
         slip = sliding(centre, pressed(contact, speed, constants), velocity, spin, constants)
         push, mixed, rotation = slip.rate * slip.push, slip.rate * slip.mixed, slip.rate * slip.rotation
         drill = slip.rate * slip.drill * slip.lever_squared
@@ -278,7 +281,7 @@ def newton_correction(
     turning = residual.wx * nx + residual.wy * ny + residual.wz * nz
     dn = -outward / (mass_rate + lossy + 0.5 * h * abs(contact.stiffness))
     dw = -turning / (inertia_rate + drill)
-    # across the load friction couples the velocity with u = ω x n
+    # friction couples the velocity across the load with u = ω x n
     A, B, C = mass_rate + push + across, inertia_rate + rotation * R1 * R1, mixed * R1
     over = 1.0 / (A * B - C * C)
     tx, ty, tz = residual.x - outward * nx, residual.y - outward * ny, residual.z - outward * nz
@@ -288,13 +291,13 @@ def newton_correction(
     dx, dy, dz = (C * ux - B * tx) * over, (C * uy - B * ty) * over, (C * uz - B * tz) * over
     ex, ey, ez = (C * tx - A * ux) * over, (C * ty - A * uy) * over, (C * tz - A * uz) * over
     change = abs(dx) + abs(dy) + abs(dz) + abs(dn) + R1 * (abs(ex) + abs(ey) + abs(ez) + abs(dw))
-    after = MidpointVelocity(
-        middle.x + dx + dn * nx,
-        middle.y + dy + dn * ny,
-        middle.z + dz + dn * nz,
-        middle.wx + ny * ez - nz * ey + dw * nx,
-        middle.wy + nz * ex - nx * ez + dw * ny,
-        middle.wz + nx * ey - ny * ex + dw * nz,
+    after = Midpoint(
+        midpoint.x + dx + dn * nx,
+        midpoint.y + dy + dn * ny,
+        midpoint.z + dz + dn * nz,
+        midpoint.wx + ny * ez - nz * ey + dw * nx,
+        midpoint.wy + nz * ex - nx * ez + dw * ny,
+        midpoint.wz + nx * ey - ny * ex + dw * nz,
     )
     return after, change
 
@@ -302,9 +305,9 @@ def newton_correction(
 def march(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: Ball, mass: float, inertia: float, pulls, h: float, states, dissipated
 ) -> int:
-    """Steps into `states` (steps + 1, 9) and `lost` (steps + 1,), pulled by `pulls` (steps, 3); how many were good.
+    """Advance a ball, write `states` (steps + 1, 9) and `dissipated` (steps + 1,), and return the converged steps.
 
-    In Python `pulls` is a list: numbers of NumPy would be slower.
+    `pulls` (steps, 3) is the pull in each step. In Python it is a list, which is faster than an array.
     """
     states[0, :] = ball
     for number in range(len(dissipated) - 1):

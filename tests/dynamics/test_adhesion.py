@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.dynamics import Damping, Friction, ContactState, simulate
+from ballsocket.dynamics import ContactState, Damping, Friction, simulate
 
 from ..joints import HIP
 

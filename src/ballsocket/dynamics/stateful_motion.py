@@ -1,4 +1,4 @@
-"""A ball whose contact has a state of its own, bristles or what sticks: integrated with it, from event to event."""
+"""Simulation of a ball whose contact has an internal state: the deflection of bristles, or adhesion."""
 
 from __future__ import annotations
 
@@ -10,16 +10,19 @@ from typing import Any, NamedTuple
 import numpy
 
 from ..core.arrays import Numbers
-from .element import ForceElement, three_components
+from .element import ForceElement, components
 from .load import Load
 from .reaction import Three
 
 _TOLERANCE = 1e-10
-_STATE_SIZE = 15  # position, velocity, spin, four deflections, what was lost, and the work of the pull
+"""Relative and absolute tolerance of the integration."""
+
+_STATE_SIZE = 15
+"""Number of unknowns: position, velocity, spin, four deflections, dissipated energy, and the work of the pull."""
 
 
 class StatefulTrajectory(NamedTuple):
-    """What became of a ball at the times it got to; `stopped` is the state that has no load, if one was met."""
+    """States of a ball at the computed times. `failure` is the load without a result that ended the motion, or None."""
 
     states: Numbers
     deflection: Numbers
@@ -29,7 +32,9 @@ class StatefulTrajectory(NamedTuple):
     failure: Load | None
 
 
-class _NoLoad(ArithmeticError):  # noqa: N818 - a way out of the integrator
+class _NoLoad(ArithmeticError):  # noqa: N818 - it ends the integration, and no caller sees it
+    """State without a result."""
+
     def __init__(self, load: Load) -> None:
         super().__init__("; ".join(load.notes))
         self.load = load
@@ -37,7 +42,7 @@ class _NoLoad(ArithmeticError):  # noqa: N818 - a way out of the integrator
 
 @dataclass(frozen=True, kw_only=True)
 class StatefulIntegrator:
-    """A ball and what pulls it: `mass` in t, `inertia` in t mm², a force in N of the time in s."""
+    """Integrator of a ball under a pull: `mass` in t, `inertia` in t mm², `pull` in N as a function of time in s."""
 
     element: ForceElement
     mass: float
@@ -45,23 +50,23 @@ class StatefulIntegrator:
     pull: Callable[[float], Three]
 
     def integrate(self, initial: Any, times: Numbers, step: float) -> StatefulTrajectory:
-        """The ball at times that grow, the first of which is its beginning; no step is longer than `step`."""
+        """Integrate from the initial state at the first of the increasing times, with steps no longer than `step`."""
         state = numpy.zeros(_STATE_SIZE)
         state[:9] = initial
         states, attachments, failure = [state], [self._is_touching(state)], None
         try:
-            for part, attached in self._segments(state, times, step):
-                states.append(part)
+            for reached, attached in self._segments(state, times, step):
+                states.append(reached)
                 attachments.append(attached)
-        except _NoLoad as failure:
-            failure = failure.load
+        except _NoLoad as error:
+            failure = error.load
         rows = numpy.array(states)
         return StatefulTrajectory(
             rows[:, :9], rows[:, 9:13], numpy.array(attachments), rows[:, 13], rows[:, 14], failure
         )
 
     def _segments(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
-        """The state at each time after the first, in stretches between snapping in and letting go."""
+        """Yield the state at each time after the first, and restart the solver where the ball attaches or separates."""
         from scipy.integrate import LSODA
 
         time, attached, change = float(times[0]), self._is_touching(state), 0.0
@@ -80,7 +85,7 @@ class StatefulIntegrator:
                 if change < inf:
                     time, state, attached = change, path(change), not attached
                     break
-            if attached and change < inf:  # what the energy falls by is lost
+            if attached and change < inf:  # the jump of the energy is dissipated
                 state[13] -= self._load(state, attached).energy
 
     def _rates(self, attached: bool) -> Callable[[float, Numbers], list[float]]:
@@ -113,31 +118,31 @@ class StatefulIntegrator:
         return float(numpy.linalg.norm(state[:3])) - float(self.element.joint.clearance)
 
     def _switch_time(self, path: Any, attached: bool) -> float:
-        """When a ball that sticks snaps in, or lets go, along a piece of its way; infinite where it does not."""
+        """Return the time in a step at which an adhesive ball attaches or separates; infinity without such a time."""
         from scipy.optimize import brentq
 
         stretch = self.element.stretch
         if stretch == 0.0:
             return inf
 
-        def beyond(time: float) -> float:
+        def distance(time: float) -> float:
             return self._depth(path(time)) + (stretch if attached else 0.0)
 
-        before, after = beyond(path.t_old), beyond(path.t)
+        before, after = distance(path.t_old), distance(path.t)
         changes = before > 0.0 >= after if attached else before < 0.0 <= after
-        return float(brentq(beyond, path.t_old, path.t, xtol=1e-15)) if changes else inf
+        return float(brentq(distance, path.t_old, path.t, xtol=1e-15)) if changes else inf
 
 
 def pull_of(pull: Any) -> Callable[[float], Three]:
-    """A force, or a function of the time, as such a function."""
+    """Return the pull as a function of the time."""
     if callable(pull):
-        return lambda time: three_components(pull(time), "a pull")
-    always = three_components(pull, "a pull")
-    return lambda time: always
+        return lambda time: components(pull(time), "a pull")
+    constant = components(pull, "a pull")
+    return lambda time: constant
 
 
 def _dissipated_power(load: Load) -> float:
-    """The power of all that is not elastic, in N mm/s; bristles give a part of theirs back."""
+    """Compute the power in N mm/s of all loads that are not elastic, with that stored in bristles."""
     contact, centre = load.contact, load.centre
     speed = _dot(load.velocity, (centre.x, centre.y, centre.z))
     polar_speed = _dot(load.velocity, (contact.px, contact.py, contact.pz))

@@ -1,4 +1,4 @@
-"""A ball that sticks: it snaps in where it touches, and holds on until its last spring lets go."""
+"""Elastic energy of an adhesive ball, which attaches at first touch and separates when its last spring detaches."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from .reaction import Elastic
 
 
 @dataclass(frozen=True, kw_only=True)
-class StickingPotential:
-    """The energy of an adhesive socket over d + u_c: from where the last spring lets go, u_c before first touch, on.
+class AdhesionPotential:
+    """Energy of an adhesive socket over d + u_c, where the last spring detaches at the distance u_c before first touch.
 
-    Beyond, nothing is stored; at first touch a ball that comes from afar has already fallen to below 0.
+    The energy is zero at separation, and negative at first touch.
     """
 
     model: AdhesiveSocket
@@ -26,38 +26,43 @@ class StickingPotential:
 
     @cached_property
     def stretch(self) -> float:
-        """u_c in mm."""
+        """Largest stretch u_c of a spring in mm."""
         return float(self.model.critical_stretch(self.joint))
 
     @cached_property
-    def _apart(self) -> float:
+    def _separation_energy(self) -> float:
         return float(self.model.energy(self.joint, -self.stretch))
 
     def __call__(self, indentation: Array) -> Slopes:
         arguments = self.joint, indentation - self.stretch
         return (
-            self.model.energy(*arguments) - self._apart,
+            self.model.energy(*arguments) - self._separation_energy,
             self.model.force(*arguments),
             self.model.stiffness(*arguments),
         )
 
 
-def sticking_potential(model: AdhesiveSocket, joint: Joint) -> StickingPotential:
-    """The potential of a joint, if the ball can let go of it at all.
+def adhesion_potential(model: AdhesiveSocket, joint: Joint) -> AdhesionPotential:
+    """Return the energy of an adhesive joint whose ball can separate.
 
     Raises
     ------
     ValueError
-        An adhesion number η = u_c/c of 1 or more: the whole hemisphere sticks, and never lets go spring by spring.
+        An adhesion number η = u_c/c of 1 or more: the hemisphere sticks as a unit and never separates gradually.
     """
-    model.law(joint)  # refuses arrays and what is outside the domain
+    model.law(joint)  # raises for arrays and for joints outside the domain
     checked = joint.with_floats()
     eta = float(model.adhesion_number(checked))
-    require("the adhesion number", eta, eta < 1.0, "from 1 on the whole hemisphere sticks, and the rim decides")
-    return StickingPotential(model=model, joint=checked, deepest=checked.socket_radius)
+    require(
+        "the adhesion number",
+        eta,
+        eta < 1.0,
+        "it must be below 1; otherwise the entire hemisphere sticks, and the rim determines the separation",
+    )
+    return AdhesionPotential(model=model, joint=checked, deepest=checked.socket_radius)
 
 
 def undamped_pull(contact: Elastic) -> Elastic:
-    """Damping acts on what presses alone: a pull that grew with the speed would make energy."""
+    """Remove damping from a contact in tension, where it would generate energy."""
     pressing = clip(contact.damped_force, 0.0, float("inf"))
     return contact._replace(damped_force=pressing, damped_stiffness=clip(contact.damped_stiffness, 0.0, float("inf")))
