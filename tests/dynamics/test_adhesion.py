@@ -1,4 +1,4 @@
-"""A ball that sticks: it snaps in, holds on, lets go at the force of the theory, and loses the area in between."""
+"""Adhesive ball: attachment, separation, pull-off force, and dissipation of a cycle."""
 
 import numpy as np
 import pytest
@@ -19,41 +19,41 @@ def at(depth, attached):
     return ELEMENT(np.stack([zero, zero, C + depth], axis=-1), attached=attached)
 
 
-def test_it_snaps_in_at_first_touch_and_lets_go_a_stretch_before():
+def test_ball_attaches_at_first_touch_and_separates_at_the_critical_stretch():
     assert pytest.approx(STICKY.critical_stretch(HIP)) == STRETCH
-    coming, leaving = (at(np.array([-0.5 * STRETCH, -1e-9, 0.0, 0.01]), attached) for attached in (False, True))
-    assert (coming.force[:2] == 0).all()
+    approaching, leaving = (at(np.array([-0.5 * STRETCH, -1e-9, 0.0, 0.01]), attached) for attached in (False, True))
+    assert (approaching.force[:2] == 0).all()
     pull = -STICKY.force(HIP, 0.0)
-    assert coming.force[2, 2] == pytest.approx(pull)  # towards the wall
+    assert approaching.force[2, 2] == pytest.approx(pull)  # towards the wall
     assert pull > 0
-    np.testing.assert_array_equal(leaving.force[2:], coming.force[2:])
+    np.testing.assert_array_equal(leaving.force[2:], approaching.force[2:])
     assert leaving.force[0, 2] > 0
     assert leaving.attached.all()
-    assert coming.attached.tolist() == [False, False, True, True]
+    assert approaching.attached.tolist() == [False, False, True, True]
     free = at(np.array([-1.001 * STRETCH]), True)
     assert free.force[0, 2] == 0
     assert free.status[0] == ContactState.FREE
     assert abs(at(np.array([-0.99999 * STRETCH]), True).force[0, 2]) < 1e-3 * pull
 
 
-def test_the_largest_pull_is_that_of_the_theory():
+def test_largest_pull_equals_the_pull_off_force():
     depth = np.linspace(-STRETCH, 0.05, 200_001)
     assert at(depth, True).force[:, 2].max() == pytest.approx(STICKY.pull_off(HIP), rel=1e-8)
 
 
-def test_what_a_cycle_loses_is_what_it_fell_by_when_it_snapped_in():
+def test_dissipation_of_a_cycle_equals_the_energy_jump_at_attachment():
     depth = np.linspace(-1.5 * STRETCH, 0.02, 100_001)
-    coming, leaving = at(depth, False), at(depth, True)
-    lost = np.trapezoid(leaving.force[:, 2] - coming.force[:, 2], depth)
-    fallen = at(np.array([-1e-12]), False).energy - at(np.array([1e-12]), False).energy
-    assert lost == pytest.approx(float(fallen[0]), rel=1e-3)
-    # and that has a closed form: springs less surfaces, between -u_c and 0
+    approaching, leaving = at(depth, False), at(depth, True)
+    dissipated = np.trapezoid(leaving.force[:, 2] - approaching.force[:, 2], depth)
+    jump = at(np.array([-1e-12]), False).energy - at(np.array([1e-12]), False).energy
+    assert dissipated == pytest.approx(float(jump[0]), rel=1e-3)
+    # closed form: the energy of springs minus that of surfaces, between -u_c and 0
     energy = STICKY.energy(HIP, np.array([0.0, -STRETCH]))
-    assert float(fallen[0]) == pytest.approx(energy[1] - energy[0], rel=1e-6)
-    assert lost > 0
+    assert float(jump[0]) == pytest.approx(energy[1] - energy[0], rel=1e-6)
+    assert dissipated > 0
 
 
-def test_the_energy_is_that_of_the_force_on_the_branch_that_holds():
+def test_force_of_an_attached_ball_is_the_derivative_of_the_energy():
     depth, step = np.linspace(-0.95 * STRETCH, 0.05, 60), 1e-6
     slope = (at(depth + step, True).energy - at(depth - step, True).energy) / (2 * step)
     force = at(depth, True).force[:, 2]
@@ -63,28 +63,30 @@ def test_the_energy_is_that_of_the_force_on_the_branch_that_holds():
     assert single.indentation == pytest.approx(-0.5 * STRETCH)
 
 
-def test_damping_makes_no_energy_where_it_pulls():
+def test_damping_does_not_generate_energy_in_tension():
     element = bs.ForceElement(STICKY, HIP, damping=Damping(hysteresis=0.05, time=1e-3))
     random = np.random.default_rng(1)
-    way = random.normal(size=(5000, 3))
-    position = way / np.linalg.norm(way, axis=1)[:, None] * (C + random.uniform(-STRETCH, 0.02, 5000))[:, None]
+    direction = random.normal(size=(5000, 3))
+    position = (
+        direction / np.linalg.norm(direction, axis=1)[:, None] * (C + random.uniform(-STRETCH, 0.02, 5000))[:, None]
+    )
     load = element(position, 100 * random.normal(size=(5000, 3)), attached=True)
     assert (load.dissipation >= 0).all()
 
 
-def test_what_nobody_knows_of_it_is_refused():
-    with pytest.raises(TypeError, match="an adhesive socket takes a damping"):
+def test_unsupported_options_are_rejected():
+    with pytest.raises(TypeError, match="not supported with AdhesiveSocket"):
         bs.ForceElement(STICKY, HIP, friction=Friction(coefficient=0.1))
-    with pytest.raises(ValueError, match="the adhesion number = .* is not allowed: from 1 on"):
+    with pytest.raises(ValueError, match="the adhesion number = .* is not allowed: it must be below 1"):
         bs.ForceElement(bs.AdhesiveSocket(work_of_adhesion=10.0), HIP)
 
 
-def test_a_ball_that_bounces_loses_the_same_each_time_until_it_is_caught():
-    fall = float((at(np.array([-1e-12]), False).energy - at(np.array([1e-12]), False).energy)[0])
+def test_bouncing_ball_loses_the_energy_jump_until_it_stays_attached():
+    energy_jump = float((at(np.array([-1e-12]), False).energy - at(np.array([1e-12]), False).energy)[0])
     thrown = {"mass": 1.0, "position": (0.0, 0.0, 0.0), "step": 1e-4}
     fast = simulate(ELEMENT, velocity=(0.0, 0.0, 30.0), duration=0.06, **thrown)
     assert fast.drift < 1e-6
-    assert fast.bounces == 450.0e-3 // fall  # kinetic energy in N mm, of which each bounce takes as much
-    assert fast.lost[-1] == pytest.approx((fast.bounces + 1) * fall, rel=1e-5)
+    assert fast.bounces == 450.0e-3 // energy_jump  # kinetic energy in N mm over the loss of a bounce
+    assert fast.lost[-1] == pytest.approx((fast.bounces + 1) * energy_jump, rel=1e-5)
     assert fast.attached[-1]
     assert fast.depth[-1] > -STRETCH

@@ -60,7 +60,7 @@ def test_the_module_in_python_answers_as_the_element_and_needs_no_package(tools,
         assert_allclose(moment, 1e-3 * np.array(wanted.moment), rtol=1e-12, atol=1e-12)
         assert_allclose(energy, 1e-3 * wanted.energy, rtol=1e-12)
         assert_allclose(joint.contact(STATE[0]), (wanted.half_angle, 1e6 * wanted.max_pressure), rtol=1e-12)
-        with pytest.raises(joint.NoForce, match="the ball is deeper than the wall"):
+        with pytest.raises(joint.NoForce, match="the indentation exceeds the wall thickness"):
             joint.load((0.0, 0.0, 0.1))
         joint.parameters[0] = -1.0
         with pytest.raises(ValueError, match="hysteresis must be finite and 0 or more"):

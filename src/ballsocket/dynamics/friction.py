@@ -146,8 +146,8 @@ def effective_slip(
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Compute q² and its slopes over X = |S|², Y = κ²|D|², Z = (ρ ω_n)² and P = κ S·D, all in (mm/s)².
 
-    S = v + b is the slip at the pole and D = v - b, where b = R1 ω x n. `transition_squared` is the square of the transition
-    speed v0. With G = X + θ Y + v0²::
+    S = v + b is the slip at the pole and D = v - b, where b = R1 ω x n. `transition_squared` is the
+    square of the transition speed v0. With G = X + θ Y + v0²::
 
         q² = v0² + (1 - κ²) X + Y + Z - Z [X (α X + β Z) + P (τ X + ν Z)]/(G² + η G Z + λ Z²)
              - γ Y Z/(X + Y + ζ Z + v0²).

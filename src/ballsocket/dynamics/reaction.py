@@ -44,7 +44,8 @@ class Constants(NamedTuple):
 class BallCentre(NamedTuple):
     """Position of the ball centre: distance, direction, indentation, and inverse distance.
 
-    The distance and the direction are those from the socket centre to the ball centre. The direction is a unit vector, or zero where the centres coincide.
+    The distance and the direction are those from the socket centre to the ball centre. The direction is a unit
+    vector, or zero where the centres coincide.
     """
 
     distance: Array
@@ -177,9 +178,9 @@ class Sliding(NamedTuple):
     """Slip of a ball and its friction.
 
     (`x`, `y`, `z`) is the velocity v across the load and (`bx`, `by`, `bz`) is b = R1 ω x n, both in mm/s. `spin` is
-    the angular velocity about the load in rad/s, and `lever_squared` is in mm². `normal` is N, and `speed` the effective
-    slip speed q. `rate` is N μ(q)/q plus viscous friction. The friction force is -rate (push v + mixed b). Its moment is
-    -rate R1 n x (mixed v + rotation b) across the load and -rate drill lever² spin about it.
+    the angular velocity about the load in rad/s, and `lever_squared` is in mm². `normal` is N, and `speed` the
+    effective slip speed q. `rate` is N μ(q)/q plus viscous friction. The friction force is -rate (push v + mixed b).
+    Its moment is -rate R1 n x (mixed v + rotation b) across the load and -rate drill lever² spin about it.
     """
 
     x: Array
