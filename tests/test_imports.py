@@ -17,9 +17,9 @@ MAX_SINGLE_IMPORTERS, MAX_FLOORS = 0.12, 12
 """Goals: share of a room's modules that only one module imports; floors of a room, and of the package."""
 
 NOT_YET = {
-    "circles": ("dynamics", "elasticity/exact", "elasticity/off_axis"),
+    "circles": ("elasticity/exact", "elasticity/off_axis"),
     "single importers": (
-        *("app", "cli", "compiled", "dynamics", "elasticity/exact", "elasticity/finite_elements"),
+        *("app", "cli", "compiled", "elasticity/exact", "elasticity/finite_elements"),
         *("elasticity/off_axis", "evidence", "export", "hip", "output", "paper", "studies"),
     ),
     "floors": ("elasticity/exact", "elasticity/off_axis", "hip"),

@@ -239,3 +239,9 @@ def test_bristles_hold_a_ball_below_the_limit_of_friction():
     assert "after 0 s: the state is not finite" in ended.ended
     fast = simulate(element, velocity=(0.0, 0.0, 1e7), **thrown)
     assert "exceeds the wall thickness" in fast.ended
+
+
+def test_old_name_of_the_dissipation_of_bristles_warns():
+    load = HELD(DEEP, velocity=(1.0, 0.0, 0.0), deflection=(1e-3, 0.0, 0.0, 0.0))
+    with pytest.warns(DeprecationWarning, match="use bristle_dissipation"):
+        assert load.rubbed == load.bristle_dissipation

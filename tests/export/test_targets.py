@@ -256,7 +256,7 @@ def test_what_is_not_allowed_is_one_sentence(words, said, tmp_path):
     ("element", "said"),
     [
         (ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05)), "bristles have a state; "),
-        (ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP), "a ball that sticks has a state; "),
+        (ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP), "an adhesive ball has a state; "),
     ],
 )
 def test_a_state_is_something_that_nothing_exported_or_compiled_has(element, said):

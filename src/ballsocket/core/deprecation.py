@@ -99,7 +99,7 @@ MOVED = {
     "ballsocket.dynamics.carried": "ballsocket.dynamics.stateful_motion",
     "ballsocket.dynamics.drop_test": "ballsocket.dynamics.rebound",
     "ballsocket.dynamics.prony": "ballsocket.dynamics.viscoelastic",
-    "ballsocket.dynamics.sticking": "ballsocket.dynamics.adhesion",
+    "ballsocket.dynamics.sticking": "ballsocket.dynamics.potential",
     "ballsocket.dynamics.watch": "ballsocket.dynamics.validity_monitor",
     "ballsocket.dynamics.side_curves": "ballsocket.dynamics.element",
     "ballsocket.export.recording": "ballsocket.export.c_element",

@@ -6,8 +6,9 @@ from .damping import Damping, Flores, Gonthier, HuntCrossley, LankaraniNikravesh
 from .element import ForceElement
 from .friction import Friction
 from .load import ContactState, Load
-from .motion import Motion, simulate
+from .motion import Motion
 from .rebound import DampingEstimate, from_bounces, from_restitution
+from .simulation import simulate
 from .viscoelastic import Prony, Viscoelastic
 
 Identified = DampingEstimate

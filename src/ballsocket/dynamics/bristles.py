@@ -10,7 +10,7 @@ from ..core.sources import Source
 from .friction import Coulomb, coefficient_at, effective_slip, set_checked_number, tilt_share
 from .reaction import BallCentre, Sliding, versine
 
-Four = tuple[Array, Array, Array, Array]
+Deflections = tuple[Array, Array, Array, Array]
 """Deflections of the bristles in mm: x, y and z across the load, and the arc at the lever ρ about the load."""
 
 
@@ -76,7 +76,9 @@ class Bristles(Coulomb):
         self.check_static()
 
 
-def bristle_forces(centre: BallCentre, slip: Sliding, deflection: Four, bristles: Bristles) -> tuple[Four, Four, Array]:
+def bristle_forces(
+    centre: BallCentre, slip: Sliding, deflection: Deflections, bristles: Bristles
+) -> tuple[Deflections, Deflections, Array]:
     """Compute friction per normal force, the rate of the deflections, and the dissipated power per normal force.
 
     The friction has three components across the load and one about it, a moment divided by the lever ρ.
@@ -108,7 +110,7 @@ _TRANSITION_SPEED_SQUARED = 1e-30
 """Square of the transition speed in (mm/s)²; too small to change the slip."""
 
 
-def _patch(slip: Four, centre: BallCentre) -> tuple[Array, Four, Array]:
+def _patch(slip: Deflections, centre: BallCentre) -> tuple[Array, Deflections, Array]:
     """Compute the effective slip speed, its slopes over half the squares of the slip, and the smallest slope."""
     gx, gy, gz, gr = slip
     m = versine(centre)
@@ -121,5 +123,5 @@ def _patch(slip: Four, centre: BallCentre) -> tuple[Array, Four, Array]:
     return sqrt(square), (push, push, push, by_spin), where(push < by_spin, push, by_spin)
 
 
-def _dot(first: Four, second: Four) -> Array:
+def _dot(first: Deflections, second: Deflections) -> Array:
     return sum((a * b for a, b in zip(first[1:], second[1:], strict=True)), first[0] * second[0])

@@ -17,14 +17,13 @@ from ..core.checks import check_number, check_vectors, require, shown
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
-from .adhesion import adhesion_potential, undamped_pull
 from .bristles import Bristles
 from .damping import Damping
 from .friction import Friction
 from .load import Load, apply_bristles
 from .matrices import vector
-from .potential import Potential, potential_of, slopes_of_array
-from .reaction import APART, BallCentre, Constants, Three, centre_of, elastic, reaction
+from .potential import Potential, adhesion_potential, potential_of, slopes_of_array
+from .reaction import APART, BallCentre, Constants, Vector, centre_of, elastic, reaction, undamped_pull
 from .validity_monitor import ValidityMonitor
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
@@ -173,7 +172,7 @@ class ForceElement:
         with numpy.errstate(all="ignore"):
             return apply_bristles(load, self.friction, deflection)
 
-    def _of_numbers(self, position: Three, velocity: Three, spin: Three, attached: bool) -> Load:
+    def _of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
         constants = self.constants
         centre = centre_of(*position, constants.clearance)
         sticks = self.stretch > 0.0
@@ -234,7 +233,7 @@ class ForceElement:
         return _read(self.curves[1], indentation)
 
 
-def components(value: Any, name: str = "a state") -> Three:
+def components(value: Any, name: str = "a state") -> Vector:
     """Return the components of a vector as floats; raise ValueError without three real numbers."""
     try:
         x, y, z = value
@@ -257,7 +256,7 @@ def _as_array_like(position: Any, value: Any) -> Any:
     return arrays.namespace(like).asarray(value, dtype=like.dtype, device=arrays.device(like))
 
 
-def _split(value: Any) -> Three:
+def _split(value: Any) -> Vector:
     return value[..., 0], value[..., 1], value[..., 2]
 
 

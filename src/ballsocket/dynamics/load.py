@@ -13,10 +13,11 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array, Numbers, sqrt, to_list, where
 from ..core.checks import shown
+from ..core.deprecation import RenamedAttribute
 from . import reaction as formulas
-from .bristles import Bristles, Four, bristle_forces
+from .bristles import Bristles, Deflections, bristle_forces
 from .matrices import damping_matrix, matrix, vector
-from .reaction import BallCentre, Constants, Elastic, Three, pressed, sliding
+from .reaction import BallCentre, Constants, Elastic, Vector, pressed, sliding
 
 
 class ContactState(IntEnum):
@@ -103,9 +104,9 @@ class Load(NamedTuple):
     element: LoadedElement
     centre: BallCentre
     contact: Elastic
-    position: Three
-    velocity: Three
-    spin: Three
+    position: Vector
+    velocity: Vector
+    spin: Vector
     deflection_rate: Any = (0.0, 0.0, 0.0, 0.0)
     bristle_dissipation: Array = 0.0
 
@@ -205,9 +206,16 @@ class Load(NamedTuple):
         return partial(vector, type(self.force))
 
     @staticmethod
-    def _split(packed: Any) -> Three:
+    def _split(packed: Any) -> Vector:
         x, y, z = packed if type(packed) is tuple else (packed[..., axis] for axis in range(3))
         return x, y, z
+
+
+_OLD_DISSIPATION = RenamedAttribute("bristle_dissipation")
+"""Old name of a field of `Load`. A named tuple does not accept it in the body of the class."""
+
+_OLD_DISSIPATION.__set_name__(Load, "rubbed")
+setattr(Load, "rubbed", _OLD_DISSIPATION)  # noqa: B010 (mypy refuses to assign to a class)
 
 
 def _plain(value: Any) -> Any:
@@ -271,7 +279,7 @@ def apply_bristles(load: Load, bristles: Bristles, deflection: Any) -> Load:
     )
 
 
-def _four_deflections(load: Load, deflection: Any) -> Four:
+def _four_deflections(load: Load, deflection: Any) -> Deflections:
     if type(load.force) is not tuple and type(deflection) in (tuple, list):
         deflection = numpy.asarray(deflection, dtype=float)
         deflection = arrays.namespace(load.force).asarray(deflection, dtype=load.force.dtype)

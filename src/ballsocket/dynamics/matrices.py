@@ -9,7 +9,7 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array, where
 from . import friction
-from .reaction import SMOOTHING_SHARE, BallCentre, Constants, Elastic, Sliding, Three, pressed, ramp, sliding, versine
+from .reaction import SMOOTHING_SHARE, BallCentre, Constants, Elastic, Sliding, Vector, pressed, ramp, sliding, versine
 
 
 def vector(kind: type, *components: Array) -> Any:
@@ -19,7 +19,7 @@ def vector(kind: type, *components: Array) -> Any:
     return arrays.namespace(*components).stack(components, axis=-1)
 
 
-def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Three, spin: Three, constants: Constants) -> Any:
+def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Any:
     """Compute -∂(F, M)/∂(v, ω) of damping and friction at a constant normal force: (..., 6, 6)."""
     centre, contact = BallCentre(*_arrays(centre)), Elastic(*_arrays(contact))
     velocity, spin = _arrays(velocity), _arrays(spin)
@@ -50,7 +50,7 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Three, spin: 
     return rate + xp.concat([rows, 0.0 * rows], axis=-2)
 
 
-def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Three, constants: Constants) -> tuple[Array, Array]:
+def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Vector, constants: Constants) -> tuple[Array, Array]:
     """Compute the derivative of the normal force over ḋ, and the drag of a contact that moves along the socket."""
     lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
     force = contact.normal + lossy * _normal_speed(centre, velocity)
@@ -63,7 +63,7 @@ def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Three, constan
 
 
 def _potential_curvature(
-    centre: BallCentre, slip: Sliding, directions: Three, rates: tuple[Array, Array], constants: Constants
+    centre: BallCentre, slip: Sliding, directions: Vector, rates: tuple[Array, Array], constants: Constants
 ) -> Array:
     """Compute half of the second derivatives of q² over velocity and spin: (..., 6, 6)."""
     xp = arrays.namespace(rates[0])
@@ -110,7 +110,7 @@ def _friction_fall(slip: Sliding, constants: Constants) -> Array:
     return slip.normal * (mu_slope - mu / q) / q
 
 
-def _normal_speed(centre: BallCentre, velocity: Three) -> Array:
+def _normal_speed(centre: BallCentre, velocity: Vector) -> Array:
     return velocity[0] * centre.x + velocity[1] * centre.y + velocity[2] * centre.z
 
 

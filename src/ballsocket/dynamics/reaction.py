@@ -13,7 +13,7 @@ from typing import NamedTuple
 from ..core.arrays import Array, atan2, clip, safe_divisor, sqrt, where
 from . import friction
 
-Three = tuple[Array, Array, Array]
+Vector = tuple[Array, Array, Array]
 """Components of a vector."""
 
 
@@ -97,7 +97,7 @@ def elastic(potential, centre: BallCentre, constants: Constants) -> Elastic:  # 
     return elastic_from_slopes(centre, rounded, potential(rounded[0]), constants)
 
 
-def elastic_from_slopes(centre: BallCentre, rounded: Three, slopes: Three, constants: Constants) -> Elastic:
+def elastic_from_slopes(centre: BallCentre, rounded: Vector, slopes: Vector, constants: Constants) -> Elastic:
     """Compute the elastic contact from energy, force and stiffness at the rounded indentation."""
     d = centre.indentation
     depth, slope, bend = rounded
@@ -170,6 +170,12 @@ def pressed(elastic: Elastic, speed: Array, constants: Constants) -> Array:
     return where(force < least, least, force)  # keeps NaN
 
 
+def undamped_pull(contact: Elastic) -> Elastic:
+    """Remove damping from a contact in tension, where it would generate energy."""
+    pressing = clip(contact.damped_force, 0.0, float("inf"))
+    return contact._replace(damped_force=pressing, damped_stiffness=clip(contact.damped_stiffness, 0.0, float("inf")))
+
+
 SMOOTHING_SHARE = 0.1
 """Share of the force, on both sides of 0, over which a smooth element rounds off the separation of the contact."""
 
@@ -200,7 +206,7 @@ class Sliding(NamedTuple):
     drill: Array
 
 
-def sliding(centre: BallCentre, force: Array, velocity: Three, spin: Three, constants: Constants) -> Sliding:
+def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, constants: Constants) -> Sliding:
     """Compute the slip of the ball on the patch and the rate of friction, from velocity and spin."""
     (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
@@ -230,7 +236,7 @@ def versine(centre: BallCentre) -> Array:
 
 
 def reaction(
-    centre: BallCentre, contact: Elastic, velocity: Three, spin: Three, constants: Constants
+    centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants
 ) -> tuple[Array, ...]:
     """Compute force (N) and moment (N mm) on the ball about its centre: six components."""
     (vx, vy, vz), nx, ny, nz = velocity, centre.x, centre.y, centre.z
@@ -260,7 +266,7 @@ def reaction(
     return fx + tx, fy + ty, fz + tz, mx, my, mz
 
 
-def dissipation(centre: BallCentre, contact: Elastic, velocity: Three, spin: Three, constants: Constants) -> Array:
+def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Array:
     """Compute the power dissipated by damping, liner and friction in N mm/s."""
     vx, vy, vz = velocity
     speed = vx * centre.x + vy * centre.y + vz * centre.z

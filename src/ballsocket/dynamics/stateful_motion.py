@@ -12,7 +12,7 @@ import numpy
 from ..core.arrays import Numbers
 from .element import ForceElement, components
 from .load import Load
-from .reaction import Three
+from .reaction import Vector
 
 _TOLERANCE = 1e-10
 """Relative and absolute tolerance of the integration."""
@@ -47,7 +47,7 @@ class StatefulIntegrator:
     element: ForceElement
     mass: float
     inertia: float
-    pull: Callable[[float], Three]
+    pull: Callable[[float], Vector]
 
     def integrate(self, initial: Any, times: Numbers, step: float) -> StatefulTrajectory:
         """Integrate from the initial state at the first of the increasing times, with steps no longer than `step`."""
@@ -133,7 +133,7 @@ class StatefulIntegrator:
         return float(brentq(distance, path.t_old, path.t, xtol=1e-15)) if changes else inf
 
 
-def pull_of(pull: Any) -> Callable[[float], Three]:
+def pull_of(pull: Any) -> Callable[[float], Vector]:
     """Return the pull as a function of the time."""
     if callable(pull):
         return lambda time: components(pull(time), "a pull")

@@ -16,7 +16,7 @@ from .reaction import (
     BallCentre,
     Constants,
     Elastic,
-    Three,
+    Vector,
     centre_of,
     dissipation,
     dome_angle,
@@ -30,7 +30,7 @@ MAX_ITERATIONS = 60
 """Largest number of iterations of a step."""
 
 
-class Ball(NamedTuple):
+class BallState(NamedTuple):
     """State of a ball: centre (mm), velocity (mm/s) and spin (rad/s) relative to a socket at rest."""
 
     x: float
@@ -44,17 +44,17 @@ class Ball(NamedTuple):
     wz: float
 
 
-class Step(NamedTuple):
+class StepResult(NamedTuple):
     """Result of a step: the ball, the dissipated energy (N mm), and True for a converged step that ends in the cup."""
 
-    ball: Ball
+    ball: BallState
     dissipated: float
     converged: bool
 
 
 def advance(  # type: ignore[no-untyped-def]
-    potential, constants: Constants, ball: Ball, mass: float, inertia: float, pull: Three, h: float
-) -> Step:
+    potential, constants: Constants, ball: BallState, mass: float, inertia: float, pull: Vector, h: float
+) -> StepResult:
     """Advance a ball by a step of h seconds.
 
     `mass` is in t (N s²/mm), `inertia` in t mm², and `pull` is a constant force in N. The unknowns are velocity and
@@ -71,7 +71,7 @@ def advance(  # type: ignore[no-untyped-def]
         ball.wz,
     )
     if initial.indentation + h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z)) < -constants.smoothing:
-        return Step(end_state(ball, midpoint, h), 0.0, True)
+        return StepResult(end_state(ball, midpoint, h), 0.0, True)
     start = elastic(potential, initial, constants)
     push = start.normal / mass_rate
     ax, ay, az, bx, by, bz = midpoint
@@ -91,7 +91,9 @@ def advance(  # type: ignore[no-untyped-def]
         best = min(best, change)
     ax, ay, az, bx, by, bz = midpoint
     dissipated = h * dissipation(residual.centre, residual.contact, (ax, ay, az), (bx, by, bz), constants)
-    return Step(end_state(ball, midpoint, h), dissipated, residual.in_cup and change <= _ROUNDING_TOLERANCE * size)
+    return StepResult(
+        end_state(ball, midpoint, h), dissipated, residual.in_cup and change <= _ROUNDING_TOLERANCE * size
+    )
 
 
 _RELATIVE_TOLERANCE = 1e-15
@@ -157,10 +159,10 @@ class StepResidual(NamedTuple):
     in_cup: bool
 
 
-def end_state(ball: Ball, midpoint: Midpoint, h: float) -> Ball:
+def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
     """Compute the ball after a step from velocity and spin at its midpoint."""
     ax, ay, az, bx, by, bz = midpoint
-    return Ball(
+    return BallState(
         ball.x + h * ax, ball.y + h * ay, ball.z + h * az,
         2.0 * ax - ball.vx, 2.0 * ay - ball.vy, 2.0 * az - ball.vz,
         2.0 * bx - ball.wx, 2.0 * by - ball.wy, 2.0 * bz - ball.wz,
@@ -174,7 +176,7 @@ def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
 
 
 def mean_contact(  # type: ignore[no-untyped-def]
-    potential, constants: Constants, ball: Ball, midpoint: Midpoint, distance: float, h: float
+    potential, constants: Constants, ball: BallState, midpoint: Midpoint, distance: float, h: float
 ) -> MeanContact:
     """Compute the elastic contact at the mean of both ends of a step, for the distance of the centres at its start.
 
@@ -210,13 +212,13 @@ def mean_contact(  # type: ignore[no-untyped-def]
 def residual_of(  # type: ignore[no-untyped-def]
     potential,
     constants: Constants,
-    ball: Ball,
+    ball: BallState,
     midpoint: Midpoint,
     distance: float,
     before: float,
     mass_rate: float,
     inertia_rate: float,
-    pull: Three,
+    pull: Vector,
     h: float,
 ) -> StepResidual:
     """Compute the residual at a midpoint: inertia minus the discrete gradient, damping, friction and pull."""
@@ -303,7 +305,7 @@ def newton_correction(
 
 
 def march(  # type: ignore[no-untyped-def]
-    potential, constants: Constants, ball: Ball, mass: float, inertia: float, pulls, h: float, states, dissipated
+    potential, constants: Constants, ball: BallState, mass: float, inertia: float, pulls, h: float, states, dissipated
 ) -> int:
     """Advance a ball, write `states` (steps + 1, 9) and `dissipated` (steps + 1,), and return the converged steps.
 

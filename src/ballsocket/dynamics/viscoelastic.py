@@ -3,7 +3,7 @@
 While the contact grows, the force is the hereditary integral of the elastic law (correspondence principle, Lee &
 Radok). While it shrinks, Ting's solution applies. Force and edge at a time t are those of a history that stopped at an
 earlier time t1, with ∫ g(t - s) ḋ ds = 0 from t1 to t. For radial springs it is exact, because ḋ compresses all springs
-in proportion. `springs` integrates the springs numerically for any history.
+in proportion. `spring_force` integrates the springs numerically for any history.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..core.deprecation import RenamedAttribute
 from ..core.sources import Source
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import linear_kinematics
@@ -52,6 +53,10 @@ class Prony:
         require("the sum of the shares", total, total < 1.0, "it must be below 1, or no modulus remains at long times")
         object.__setattr__(self, "terms", terms)
 
+    rest = RenamedAttribute("long_term_share")
+    relaxed = RenamedAttribute("relaxation")
+    crept = RenamedAttribute("creep_compliance")
+
     @property
     def shares(self) -> Numbers:
         """Shares g_i of the terms."""
@@ -63,29 +68,31 @@ class Prony:
         return numpy.array([time for _, time in self.terms])
 
     @property
-    def rest(self) -> float:
+    def long_term_share(self) -> float:
         """Share g∞ of the modulus at long times."""
         return 1.0 - sum(share for share, _ in self.terms)
 
-    def relaxed(self, time: Numbers) -> Numbers:
+    def relaxation(self, time: Numbers) -> Numbers:
         """Compute the relative modulus g(t) at times in s, 0 or more."""
         ages = numpy.asarray(time, dtype=float)[..., None]
-        return self.rest + numpy.sum(self.shares * numpy.exp(-ages / self.times), axis=-1)
+        return self.long_term_share + numpy.sum(self.shares * numpy.exp(-ages / self.times), axis=-1)
 
     def mean(self, early: Numbers, late: Numbers) -> Numbers:
         """Compute the mean of g between an early and a late time in s."""
         first, span = early[..., None] / self.times, (late - early)[..., None] / self.times
-        return self.rest + numpy.sum(self.shares * numpy.exp(-first) * -numpy.expm1(-span) / span, axis=-1)
+        return self.long_term_share + numpy.sum(self.shares * numpy.exp(-first) * -numpy.expm1(-span) / span, axis=-1)
 
     def complex_modulus(self, frequency: Numbers) -> Numbers:
         """Compute the complex modulus g∞ + Σ g_i iωτ/(1 + iωτ) at frequencies in Hz; its imaginary part is the loss."""
         phase = 2j * numpy.pi * numpy.asarray(frequency, dtype=float)[..., None] * self.times
-        return self.rest + numpy.sum(self.shares * phase / (1 + phase), axis=-1)
+        return self.long_term_share + numpy.sum(self.shares * phase / (1 + phase), axis=-1)
 
-    def crept(self, time: Numbers) -> Numbers:
+    def creep_compliance(self, time: Numbers) -> Numbers:
         """Compute the creep compliance J(t), the strain under a unit stress: 1 at first, and 1/g∞ at long times."""
         rates, weights = self._retardation
-        return 1.0 / self.rest - numpy.sum(weights * numpy.exp(-numpy.asarray(time)[..., None] * rates), axis=-1)
+        return 1.0 / self.long_term_share - numpy.sum(
+            weights * numpy.exp(-numpy.asarray(time)[..., None] * rates), axis=-1
+        )
 
     @cached_property
     def _retardation(self) -> tuple[Numbers, Numbers]:
@@ -117,7 +124,7 @@ class Viscoelastic:
     >>> liner = Viscoelastic(bs.HessForsbach(), bs.joints["hip-28"], Prony(terms=((0.3, 0.1), (0.2, 10.0))))
     >>> time = numpy.linspace(0.0, 1.0, 401)
     >>> depth = 0.05 * numpy.sin(numpy.pi * time)
-    >>> force = liner.pressed(time, depth)
+    >>> force = liner.cycle_force(time, depth)
     >>> bool(force[100] > force[300] > 0)  # smaller force on unloading
     True
     """
@@ -128,40 +135,48 @@ class Viscoelastic:
     joint: Joint
     modulus: Prony
 
+    at_once = RenamedAttribute("instantaneous_force")
+    relaxing = RenamedAttribute("relaxation_force")
+    creeping = RenamedAttribute("creep_indentation")
+    product = RenamedAttribute("separable_force")
+    grown = RenamedAttribute("hereditary_force")
+    pressed = RenamedAttribute("cycle_force")
+    springs = RenamedAttribute("spring_force")
+
     @cached_property
     def potential(self) -> Potential:
         """Instantaneous elastic energy over the indentation."""
         return potential_of(self.model, self.joint)
 
-    def at_once(self, depth: Numbers) -> Numbers:
+    def instantaneous_force(self, depth: Numbers) -> Numbers:
         """Compute the instantaneous force in N at an indentation in mm; 0 without contact."""
         return self.potential(numpy.maximum(numpy.asarray(depth, dtype=float), 0.0))[1]
 
-    def relaxing(self, depth: float, time: Numbers) -> Numbers:
+    def relaxation_force(self, depth: float, time: Numbers) -> Numbers:
         """Compute the force in N at times in s after a sudden, then constant indentation in mm."""
-        return self.at_once(numpy.array(depth)) * self.modulus.relaxed(time)
+        return self.instantaneous_force(numpy.array(depth)) * self.modulus.relaxation(time)
 
-    def creeping(self, force: float, time: Numbers) -> Numbers:
+    def creep_indentation(self, force: float, time: Numbers) -> Numbers:
         """Compute the indentation in mm at times in s after a sudden, then constant force in N."""
-        return self.model.press(self.joint.with_floats(), force=force * self.modulus.crept(time)).indentation
+        return self.model.press(self.joint.with_floats(), force=force * self.modulus.creep_compliance(time)).indentation
 
     def dynamic_stiffness(self, depth: float, frequency: Numbers) -> Numbers:
         """Compute the complex stiffness in N/mm of small vibrations at frequencies in Hz about an indentation in mm."""
         return self.potential(numpy.array(depth))[2] * self.modulus.complex_modulus(frequency)
 
-    def product(self, time: Numbers, depth: Numbers) -> Numbers:
+    def separable_force(self, time: Numbers, depth: Numbers) -> Numbers:
         """Compute the product g(t) F(d(t)), a common but wrong approximation, for comparison."""
         time, depth = _check_history(time, depth)
         touched = numpy.argmax(depth > 0)
-        return self.modulus.relaxed(numpy.maximum(time - time[touched], 0.0)) * self.at_once(depth)
+        return self.modulus.relaxation(numpy.maximum(time - time[touched], 0.0)) * self.instantaneous_force(depth)
 
-    def grown(self, time: Numbers, depth: Numbers) -> Numbers:
+    def hereditary_force(self, time: Numbers, depth: Numbers) -> Numbers:
         """Compute the hereditary integral ∫ g(t - s) dF of the elastic force, which holds while the contact grows."""
         time, depth = _check_history(time, depth)
-        rise = numpy.diff(self.at_once(depth))
+        rise = numpy.diff(self.instantaneous_force(depth))
         return numpy.append(0.0, numpy.sum(self._weights(time) * rise, axis=1))
 
-    def pressed(self, time: Numbers, depth: Numbers) -> Numbers:
+    def cycle_force(self, time: Numbers, depth: Numbers) -> Numbers:
         """Compute the force in N of a single loading and unloading.
 
         Parameters
@@ -174,13 +189,15 @@ class Viscoelastic:
         Raises
         ------
         ValueError
-            Times that do not increase; a depth that rises again, for which `springs` is valid.
+            Times that do not increase; a depth that rises again, for which `spring_force` is valid.
         """
         time, depth = _check_history(time, depth)
         top = int(numpy.argmax(depth))
         again = numpy.flatnonzero(numpy.diff(depth)[top:] > 0)
-        require("depth", depth, _mask_until(len(depth), top, again), "it must rise once and then fall; use `springs`")
-        force = self.grown(time, depth)
+        require(
+            "depth", depth, _mask_until(len(depth), top, again), "it must rise once and then fall; use `spring_force`"
+        )
+        force = self.hereditary_force(time, depth)
         weights, bed = self._weights(time), numpy.maximum(depth, 0.0)
         for number in range(top + 1, len(time)):
             force[number] = self._unloading_force(weights[number - 1], bed, top, number)
@@ -196,7 +213,7 @@ class Viscoelastic:
         after = strain[last + 1] if last + 1 < number else 0.0
         share = strain[last] / (strain[last] - after)
         edge = depth[last] + share * (depth[last + 1] - depth[last])
-        forces = self.at_once(numpy.append(depth[: last + 1], edge))
+        forces = self.instantaneous_force(numpy.append(depth[: last + 1], edge))
         return float(numpy.sum(weights[: last + 1] * numpy.diff(forces)))
 
     def _weights(self, time: Numbers) -> Numbers:
@@ -204,7 +221,7 @@ class Viscoelastic:
         late, early = time[1:, None] - time[None, :-1], time[1:, None] - time[None, 1:]
         return numpy.where(early >= 0, self.modulus.mean(numpy.maximum(early, 0.0), numpy.maximum(late, 1e-300)), 0.0)
 
-    def springs(self, time: Numbers, depth: Numbers, rings: int = 400) -> Numbers:
+    def spring_force(self, time: Numbers, depth: Numbers, rings: int = 400) -> Numbers:
         """Compute the force in N of any history, by radial springs that are Maxwell chains.
 
         A spring whose pressure would become negative detaches and recovers, until the ball touches it again.
@@ -222,7 +239,7 @@ class Viscoelastic:
             A model other than radial springs with linear kinematics.
         """
         if not isinstance(self.model, RadialFoundation) or self.model.kinematics is not linear_kinematics:
-            raise TypeError(f"springs needs a model of radial springs with linear kinematics, got {self.model.name}")
+            raise TypeError(f"the model must be radial springs with linear kinematics, got {self.model.name}")
         time, depth = _check_history(time, depth)
         joint = self.joint.with_floats()
         c, deepest = joint.clearance, max(float(depth.max()), 1e-300)
@@ -239,15 +256,15 @@ def _maxwell_pressures(modulus: Prony, time: Numbers, ball: Numbers) -> Numbers:
     surface = numpy.zeros(ball.shape[1])
     stresses = numpy.zeros((len(modulus.terms), ball.shape[1]))
     pressure = numpy.zeros(ball.shape)
-    g, tau, rest = modulus.shares[:, None], modulus.times[:, None], modulus.rest
+    g, tau, g_inf = modulus.shares[:, None], modulus.times[:, None], modulus.long_term_share
     for number, step in enumerate(numpy.diff(time), start=1):
         fade, weight = numpy.exp(-step / tau), -numpy.expm1(-step / tau) * tau / step
         memory = numpy.sum(g * (fade * stresses - weight * surface), axis=0)
-        stiff = rest + float(numpy.sum(g * weight))
+        stiff = g_inf + float(numpy.sum(g * weight))
         displaced = numpy.maximum(ball[number], -memory / stiff)  # the ball surface, or the recovering liner surface
         stresses = fade * stresses + weight * (displaced - surface)
         pressure[number] = numpy.where(
-            displaced == ball[number], rest * displaced + numpy.sum(g * stresses, axis=0), 0.0
+            displaced == ball[number], g_inf * displaced + numpy.sum(g * stresses, axis=0), 0.0
         )
         surface = displaced
     return pressure

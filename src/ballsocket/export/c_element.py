@@ -17,7 +17,7 @@ from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement, reaction
 from ..dynamics.load import status_of
 from ..dynamics.potential import CurvePotential, energy_curve
-from ..dynamics.reaction import BallCentre, Constants, Elastic, Three
+from ..dynamics.reaction import BallCentre, Constants, Elastic, Vector
 from ..version import __version__
 from .c_text import c_number, c_statements
 from .recorder import Part, Recorded, Tape, directional_derivatives
@@ -43,7 +43,7 @@ class Recording:
     tape: Tape = field(default_factory=Tape)
 
     @cached_property
-    def state(self) -> tuple[Three, Three, Three]:
+    def state(self) -> tuple[Vector, Vector, Vector]:
         """Position, velocity and spin."""
         x, v, w = (tuple(self.tape.input(f"{name}[{axis}]") for axis in range(3)) for name in STATE)
         return x, v, w  # type: ignore[return-value]
