@@ -124,20 +124,28 @@ def _relaxing(results: Results) -> None:
     """Add liners that relax."""
     prony = motion.Prony(terms=((0.3, 0.1), (0.2, 10.0)))
     times = numpy.array([0.0, 0.05, 1.0, 30.0])
-    results.add("prony", [prony.relaxed(times), prony.crept(times), prony.rest + 0 * times])
+    results.add("prony", [prony.relaxation(times), prony.creep_compliance(times), prony.long_term_share + 0 * times])
     results.add("prony/complex", prony.complex_modulus(times))
     time = numpy.linspace(0.0, 1.0, 61)
     depth = 0.05 * numpy.sin(numpy.pi * time)
     for model in (bs.HessForsbach(), bs.Tabulated()):
         liner = motion.Viscoelastic(model, HIP, prony)
         with results.attempt(f"viscoelastic/{model.name}/springs twice"):
-            results.add(f"viscoelastic/{model.name}/springs twice", liner.springs(time, 0.04 * numpy.sin(12.0 * time)))
-        for name in ("springs", "pressed", "grown", "product"):
+            results.add(
+                f"viscoelastic/{model.name}/springs twice", liner.spring_force(time, 0.04 * numpy.sin(12.0 * time))
+            )
+        forces = {
+            "springs": liner.spring_force,
+            "pressed": liner.cycle_force,
+            "grown": liner.hereditary_force,
+            "product": liner.separable_force,
+        }
+        for name, force in forces.items():
             with results.attempt(f"viscoelastic/{model.name}/{name}"):
-                results.add(f"viscoelastic/{model.name}/{name}", getattr(liner, name)(time, depth))
-        results.add(f"viscoelastic/{model.name}/at once", liner.at_once(depth[:20]))
-        results.add(f"viscoelastic/{model.name}/relaxing", liner.relaxing(0.04, times))
-        results.add(f"viscoelastic/{model.name}/creeping", liner.creeping(2000.0, times))
+                results.add(f"viscoelastic/{model.name}/{name}", force(time, depth))
+        results.add(f"viscoelastic/{model.name}/at once", liner.instantaneous_force(depth[:20]))
+        results.add(f"viscoelastic/{model.name}/relaxing", liner.relaxation_force(0.04, times))
+        results.add(f"viscoelastic/{model.name}/creeping", liner.creep_indentation(2000.0, times))
         results.add(f"viscoelastic/{model.name}/stiffness", liner.dynamic_stiffness(0.04, times))
 
 

@@ -14,10 +14,10 @@ from typing import Any
 from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
 from ..core.storage.atomic_files import write_text
-from ..dynamics import ForceElement, Touch, reaction
+from ..dynamics import ContactState, ForceElement, reaction
 from ..dynamics.load import status_of
 from ..dynamics.potential import CurvePotential, energy_curve
-from ..dynamics.reaction import Constants, Elastic, Place, Three
+from ..dynamics.reaction import BallCentre, Constants, Elastic, Vector
 from ..version import __version__
 from .c_text import c_number, c_statements
 from .recorder import Part, Recorded, Tape, directional_derivatives
@@ -43,7 +43,7 @@ class Recording:
     tape: Tape = field(default_factory=Tape)
 
     @cached_property
-    def state(self) -> tuple[Three, Three, Three]:
+    def state(self) -> tuple[Vector, Vector, Vector]:
         """Position, velocity and spin."""
         x, v, w = (tuple(self.tape.input(f"{name}[{axis}]") for axis in range(3)) for name in STATE)
         return x, v, w  # type: ignore[return-value]
@@ -71,12 +71,12 @@ class Recording:
         return curves
 
     @cached_property
-    def place(self) -> Place:
-        return reaction.place_of(*self.state[0], self.constants.clearance)
+    def centre(self) -> BallCentre:
+        return reaction.centre_of(*self.state[0], self.constants.clearance)
 
     @cached_property
     def contact(self) -> Elastic:
-        return reaction.elastic(self._potential, self.place, self.constants)
+        return reaction.elastic(self._potential, self.centre, self.constants)
 
     def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
         if ENERGY in self.curves:
@@ -87,25 +87,25 @@ class Recording:
     @cached_property
     def load(self) -> Outputs:
         """Force, moment and energy."""
-        parts = reaction.reaction(self.place, self.contact, *self.state[1:], self.constants)
+        parts = reaction.reaction(self.centre, self.contact, *self.state[1:], self.constants)
         return {**_numbered("force", parts[:3]), **_numbered("moment", parts[3:]), "*energy": self.contact.energy}
 
     @cached_property
     def pressed(self) -> Outputs:
         """Half angle and largest pressure."""
-        depth = self.place.indentation
+        depth = self.centre.indentation
         angle, pressure = (self.tape.curve(name, depth, 1)[0] for name in (HALF_ANGLE, MAX_PRESSURE))
         return {"*half_angle": angle, "*max_pressure": pressure}
 
     @cached_property
     def status(self) -> Outputs:
         """Code of the `ContactState`."""
-        return {"status": status_of(self.place, self.contact, isfinite(self.place.distance), self.constants)}
+        return {"status": status_of(self.centre, self.contact, isfinite(self.centre.distance), self.constants)}
 
     @cached_property
     def tangent(self) -> Outputs:
         """Nine components of the tangent stiffness ∂²U/∂r²."""
-        xx, yy, zz, xy, yz, zx = reaction.tangent(self.place, self.contact, self.constants)
+        xx, yy, zz, xy, yz, zx = reaction.tangent(self.centre, self.contact, self.constants)
         return _numbered("tangent", (xx, xy, zx, xy, yy, yz, zx, yz, zz))
 
     @cached_property
@@ -174,7 +174,7 @@ class CElement:
         fields = "\n".join(
             f"    double {parameter.name}; /* {parameter.unit}: {parameter.meaning} */" for parameter in TUNABLES
         )
-        codes = "\n".join(f"    {self.name.upper()}_{touch.name} = {touch.value}," for touch in Touch)
+        codes = "\n".join(f"    {self.name.upper()}_{touch.name} = {touch.value}," for touch in ContactState)
         names = {"name": self.name, "NAME": self.name.upper()}
         return fill_template("element.h", fields=fields, codes=codes, **names, **self.about)
 
@@ -195,7 +195,7 @@ class CElement:
             pressed=c_statements({**recording.status, **recording.pressed}),
             tangent=c_statements({**recording.status, **recording.tangent}),
             slope=c_statements({**recording.status, **recording.slope}),
-            sentences="\n".join(f'    case {touch.value}: return "{touch.sentence}";' for touch in Touch),
+            sentences="\n".join(f'    case {touch.value}: return "{touch.sentence}";' for touch in ContactState),
             **self.about,
         )
 
