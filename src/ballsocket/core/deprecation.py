@@ -102,7 +102,7 @@ MOVED = {
     "ballsocket.hip.resampled": "ballsocket.hip.waveforms",
     "ballsocket.hip.sliding": "ballsocket.hip.kinematics",
     **{f"ballsocket.hip.{name}": "ballsocket.hip.rim" for name in ("edge", "separation")},
-    "ballsocket.hip.chebyshev": "ballsocket.hip.runge_kutta_chebyshev",
+    "ballsocket.hip.chebyshev": "ballsocket.core.runge_kutta_chebyshev",
     "ballsocket.identify.answers": "ballsocket.identify.forward_model",
     "ballsocket.identify.oscillation": "ballsocket.identify.observables",
     "ballsocket.identify.parameters": "ballsocket.identify.identification",

@@ -12,10 +12,10 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.runge_kutta_chebyshev import ChebyshevStep, integrate_step, max_step_length, stage_count
 from .ball_wear import select_active_cells
 from .creep_law import CreepLaw
 from .hip_setup import HipSetup
-from .runge_kutta_chebyshev import ChebyshevStep, integrate_step, max_step_length, stage_count
 from .socket_foundation import CycleEquilibrium
 from .wear_law import CycleExposure, max_wear_sensitivity
 

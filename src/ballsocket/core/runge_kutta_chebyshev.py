@@ -14,7 +14,7 @@ from math import sqrt
 
 import numpy
 
-from ..core.arrays import Numbers
+from .arrays import Numbers
 
 Rate = Callable[[Numbers], Numbers]
 """Function from values to their rate of change per unit of length."""
