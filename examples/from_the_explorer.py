@@ -11,7 +11,7 @@ from dataclasses import replace
 from math import degrees, radians
 
 import ballsocket as bs
-from ballsocket.app.screen import START, Axis, link_of
+from ballsocket.app.screen import START, MapAxis, link_of
 from ballsocket.io.joint_file import JointFile
 from ballsocket.io.joint_toml import toml_of
 from ballsocket.output.save import save
@@ -25,7 +25,7 @@ PAGE = "http://127.0.0.1:5006/?"
 # as the thinnest liner that we would mill. Faded is what breaks one of them.
 
 limits = (limit_of("outer_radius<=26 mm"), limit_of("liner_thickness>=6 mm"))
-across, up = Axis(name="ball_radius", low=11.0, high=23.0), Axis(name="liner_thickness", low=3.0, high=15.0)
+across, up = MapAxis(name="ball_radius", low=11.0, high=23.0), MapAxis(name="liner_thickness", low=3.0, high=15.0)
 seen = replace(START, view="map", across=across, up=up, limits=limits)
 print(PAGE + link_of(seen))
 

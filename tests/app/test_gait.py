@@ -19,7 +19,7 @@ from ballsocket.app.gaiting import MERIDIANS, RINGS, gaited
 from ballsocket.app.in_use import WHOLE
 from ballsocket.app.jobs import Job
 from ballsocket.app.page import Page
-from ballsocket.app.running import Done, Refused
+from ballsocket.app.running import Done, RunRefused
 
 LINK = "view=gait&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
 CUP = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
@@ -34,7 +34,7 @@ def at_once(monkeypatch):
         try:
             self._heard(key, Done(work(lambda news: self._heard(key, news))))
         except ValueError as error:
-            self._heard(key, Refused(why=str(error)))
+            self._heard(key, RunRefused(why=str(error)))
 
     monkeypatch.setattr(Job, "ask", ask)
 

@@ -13,7 +13,7 @@ pytest.importorskip("skfem")
 pytest.importorskip("bokeh")
 from ballsocket.app import running
 from ballsocket.app.judging import judged
-from ballsocket.app.running import Done, Reached, Refused, Run
+from ballsocket.app.running import Done, Reached, Run, RunRefused
 
 HIP = JointFile(bs.joints["hip-28"], {"force": 3000.0})
 
@@ -28,7 +28,7 @@ def until_the_end(run, seconds=600.0):
         news = run.news()
         if news is not None:
             heard.append(news)
-        if isinstance(news, Done | Refused):
+        if isinstance(news, Done | RunRefused):
             return heard
         time.sleep(0.02)
     pytest.fail("the run said nothing for ten minutes")
@@ -75,7 +75,7 @@ def test_a_run_that_is_stopped_gives_its_place_back():
 
 @pytest.mark.long
 def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
-    monkeypatch.setattr(running, "LINE", running.Line(1))
+    monkeypatch.setattr(running, "LINE", running.RunQueue(1))
     first, second, third = (judging(HIP) for _ in range(3))
     first.news()
     for run in (second, third):
@@ -90,13 +90,13 @@ def test_a_process_that_cannot_be_started_is_said(monkeypatch):
         raise OSError(11, "Resource temporarily unavailable")
 
     monkeypatch.setattr(Run, "_begin", begin)
-    assert judging(HIP).news() == Refused(why="no process could be started: Resource temporarily unavailable")
+    assert judging(HIP).news() == RunRefused(why="no process could be started: Resource temporarily unavailable")
 
 
 def test_what_cannot_be_meshed_is_said():
     cup = Cup(arc_of_cover=0.75, chamfer=9.0)
     refused = until_the_end(judging(JointFile(HIP.joint, HIP.load, cup)))[-1]
-    assert isinstance(refused, Refused)
+    assert isinstance(refused, RunRefused)
     assert "chamfer" in refused.why
 
 

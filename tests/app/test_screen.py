@@ -17,7 +17,7 @@ from ballsocket.problem.presets import materials
 
 pytest.importorskip("tomli_w")
 pytest.importorskip("xarray")
-from ballsocket.app.screen import ANGLES, MAP_MODELS, SIZES, START, THEMES, VIEWS, Axis, Screen, link_of, read_link
+from ballsocket.app.screen import ANGLES, MAP_MODELS, SIZES, START, THEMES, VIEWS, MapAxis, Screen, link_of, read_link
 
 REST = "joint.clearance=1&joint.liner_thickness=2&liner.material=pom"
 lengths = st.floats(1e-3, 1e3)
@@ -69,7 +69,7 @@ ANGLES_OF_CUP = ("arc_of_cover", "inclination", "anteversion")
 @st.composite
 def screens(draw):
     ends = st.tuples(lengths, lengths).filter(lambda pair: pair[0] < pair[1])
-    across, up = (Axis(**dict(zip(("low", "high"), draw(ends), strict=True)), name=name) for name in draw(axes))
+    across, up = (MapAxis(**dict(zip(("low", "high"), draw(ends), strict=True)), name=name) for name in draw(axes))
     return Screen(
         view=draw(st.sampled_from(VIEWS)),
         file=draw(made_files),

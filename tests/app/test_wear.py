@@ -19,7 +19,7 @@ from ballsocket.app.in_use import WHOLE
 from ballsocket.app.jobs import Job
 from ballsocket.app.page import Page
 from ballsocket.app.reading import Reading
-from ballsocket.app.running import Done, Refused
+from ballsocket.app.running import Done, RunRefused
 from ballsocket.app.views import wear
 from ballsocket.app.wear_charts import depth_maps, penetration_chart, wear_numbers
 from ballsocket.output.unit_systems import Units
@@ -44,7 +44,7 @@ def at_once(monkeypatch):
         try:
             self._heard(key, Done(work(lambda news: heard.append(news) or self._heard(key, news))))
         except ValueError as error:
-            self._heard(key, Refused(why=str(error)))
+            self._heard(key, RunRefused(why=str(error)))
 
     monkeypatch.setattr(Job, "ask", ask)
     return heard
@@ -93,7 +93,7 @@ def test_a_life_is_that_of_python(at_once):
 def made(scale):
     cycles = np.array([0.0, 1.0, 2.0])
     grown = scale * cycles
-    grid = bs.sphere.grid.grid(radians(90.0), radians(10.0))
+    grid = bs.sphere.grid.graded_grid(radians(90.0), radians(10.0))
     unworn, worn = {"utilisation": 1.5 - scale}, {"utilisation": None}
     summary = {
         "history": [{"edge_distance": 1.0, "penetration_of_creep": 0.0, "max_pressure": 5.0, "contact": [worn]}],

@@ -15,6 +15,7 @@ from ballsocket.hip import (
     FrictionEnergyWear,
     KelvinVoigtChain,
     LogarithmicCreep,
+    flexion,
 )
 from ballsocket.hip.creep_law import confinement_note
 from ballsocket.hip.creep_laws import CREEP_LAWS, read_creep_law
@@ -211,3 +212,32 @@ def test_old_names_of_laws_warn_and_work():
     from ballsocket.hip.coefficients import wear_factor as moved
 
     assert moved is wear_factor
+
+
+def test_old_names_of_simulations_warn_and_work():
+    from ballsocket.hip.history import NumericalError
+
+    with pytest.warns(DeprecationWarning, match="First is deprecated"):
+        from ballsocket.hip.first import First
+    with pytest.warns(DeprecationWarning, match="Error is deprecated: use NumericalError"):
+        from ballsocket.hip.history import Error
+    from ballsocket.hip.set_up import HipSetup
+    from ballsocket.hip.use import HipSimulation
+
+    from .test_wear import hip
+
+    assert issubclass(HipSimulation, HipSetup)
+    assert Error is NumericalError
+    use, seen = hip(ring_width=0.15, cycle=flexion(8)), []
+    assert isinstance(use.first, First)
+    renamed = {"rest": "solve_equilibrium", "bed": "foundation", "halved": "discretization_error"}
+    for old, new in {**renamed, "tether": "lateral_stiffness"}.items():
+        with pytest.warns(DeprecationWarning, match=f"{old} is deprecated: use {new}"):
+            value = getattr(use, old)
+        assert np.array_equal(value, getattr(use, new))
+    with pytest.warns(DeprecationWarning, match="argument 'listen' of after.* is deprecated: use 'progress'"):
+        report = use.after(1e4, listen=seen.append).last
+    assert seen[-1] == 1e4
+    for old, new in {"worn_in": "wear_displacement", "crept_in": "creep_displacement", "settled": "converged"}.items():
+        with pytest.warns(DeprecationWarning, match=f"{old} is deprecated: use {new}"):
+            assert np.array_equal(getattr(report, old), getattr(report, new))

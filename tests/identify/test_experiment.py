@@ -155,8 +155,8 @@ def test_synthetic_data_scatter_about_the_results_with_the_widened_uncertainty()
     wide = replace(result, misfit=replace(result.misfit, widening=3.0))
     (plain,), (widened,) = (drawn(case, np.random.default_rng(5)) for case in (result, wide))
     noise = np.random.default_rng(5).standard_normal(4)
-    np.testing.assert_allclose(plain.values, result.answers[0] + 2e-4 * noise, rtol=1e-12)
-    np.testing.assert_allclose(widened.values, result.answers[0] + 6e-4 * noise, rtol=1e-12)
+    np.testing.assert_allclose(plain.values, result.results[0] + 2e-4 * noise, rtol=1e-12)
+    np.testing.assert_allclose(widened.values, result.results[0] + 6e-4 * noise, rtol=1e-12)
 
 
 def test_synthetic_data_are_saturated_and_not_negative():

@@ -106,6 +106,12 @@ def test_an_indentation_below_the_zero_of_the_machine_has_no_force():
     assert forward(data).at(VALUES[:1]).tolist() == [[0.0]]
 
 
+def test_a_value_of_zero_is_read_at_the_corrected_indentation():
+    machine = Machine(offset=0.002, compliance=1e-6)
+    data = Measured(quantity="area", values=[0.0], uncertainty=1.0, indentation=[0.001], machine=machine)
+    assert forward(data).at(VALUES[:1]).tolist() == [[0.0]]
+
+
 def test_a_point_without_a_joint_or_a_result_is_nan():
     data = (measured("indentation"), Measured(quantity="clearance", values=0.1, uncertainty=0.1))
     rows = forward(*data, names=("outer_radius",)).at(np.array([[15.0], [22.1]]))

@@ -303,3 +303,30 @@ def test_a_custom_observable_is_read_from_contacts():
     assert result.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
     assert drawn(result, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
     assert fit_figure(result).axes[0].get_ylabel() == "frequency of oscillation f [Hz]"
+
+
+def test_the_uncertainty_of_a_load_is_divided_by_the_stiffness():
+    """Data without error: the slope at the best point is that of the true joint, and a load of 0 adds nothing."""
+    force = np.array([0.0, 500.0, 1500.0, 3000.0])
+    contact = MODEL.press(RIGID, force=force)
+    sigma = np.array([40.0, 40.0, 60.0, 80.0])
+    data = Measured(
+        quantity="indentation", values=contact.indentation, uncertainty=1e-4, force=force, load_uncertainty=sigma
+    )
+    free_play = Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.01)
+    result = identified(data, free_play, free={"clearance": (0.02, 0.3)})
+    expected = np.hypot(1e-4, np.append(0.0, sigma[1:] / contact.stiffness[1:]))
+    np.testing.assert_allclose(result.misfit.uncertainty, [*expected, 0.01], rtol=1e-4)
+    plain = identified(measured("indentation"), free={"clearance": (0.02, 0.3)})
+    np.testing.assert_array_equal(plain.misfit.uncertainty, plain.data[0].uncertainty)
+
+
+def test_as_many_values_as_unknowns_suffice():
+    data = Measured(quantity="indentation", values=TRUTH.indentation[[3, 18]], uncertainty=1e-4, force=FORCE[[3, 18]])
+    assert identified(data).point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-4)
+
+
+def test_the_seed_of_the_search_does_not_move_the_best_point():
+    data = [measured("indentation"), measured("area")]
+    points = [identified(*data, seed=seed).point for seed in (0, 5)]
+    assert points[0] == pytest.approx(points[1], rel=1e-6)

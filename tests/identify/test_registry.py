@@ -1,11 +1,14 @@
 """Registry of unknowns: numbers of a model, errors of a machine, and the cost of a new one."""
 
+import copy
 import json
 import os
+import pickle
 import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -113,6 +116,8 @@ def test_a_machine_has_every_registered_error():
     assert Machine(offset=0.1) == Machine(offset=0.1)
     assert Machine(offset=0.1) != Machine(drift=0.1)
     assert repr(Machine(offset=0.1)) == "Machine(compliance=0.0, offset=0.1, drift=0.0, name='machine')"
+    assert pickle.loads(pickle.dumps(machine)) == copy.deepcopy(machine) == machine
+    assert replace(machine, offset=0.3).known()["press.offset"] == 0.3
     with pytest.raises(TypeError, match="'offsett' is not an error of a machine; did you mean 'offset'"):
         Machine(offsett=0.1)
     with pytest.raises(AttributeError, match="no attribute 'offsett'"):

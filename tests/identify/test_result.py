@@ -54,7 +54,7 @@ def test_residuals_are_values_less_results_in_stated_uncertainties():
     total = np.sum(result.residuals[0] ** 2) + np.sum(result.residuals[1] ** 2)
     assert result.spread == pytest.approx(np.sqrt(total / 11))
     assert result.freedom == 11
-    assert [len(row) for row in result.answers] == [6, 6]
+    assert [len(row) for row in result.results] == [6, 6]
 
 
 def test_the_residual_of_a_lower_bound_is_its_shortfall():
@@ -201,6 +201,15 @@ def test_the_shift_ratio_is_the_shift_over_half_the_band():
         ratio = 2 * abs(error.shifts["clearance"]) / (estimate.high - estimate.low)
         assert result.shift_ratio(error, "clearance") == pytest.approx(ratio)
     assert [error.size for error in result.sensitivity] == [1e-3, 1e-6, 1e-4]
+
+
+def test_an_unidentifiable_unknown_has_no_shift():
+    free = {"clearance": (0.05, 0.2), "liner.young": (500.0, 2000.0)}
+    area = measured("area", uncertainty=4.0)
+    result = identified(area, measured(uncertainty=0.1), free=free)
+    error = result.sensitivity[0]
+    assert np.isnan(error.shifts["clearance"])
+    assert result.shift_ratio(error, "clearance") == 0.0
 
 
 def test_each_machine_has_its_own_sensitivities():

@@ -12,7 +12,7 @@ from ballsocket.compare import force_curves
 from ballsocket.output import style
 from ballsocket.output.paper_plots import draw
 from ballsocket.output.press_plot import press_figure
-from ballsocket.output.style import INK, Line, line_of
+from ballsocket.output.style import INK, LineStyle, line_of
 from ballsocket.paper.curves import figure_3_or_4
 from ballsocket.paper.plan import ELEMENTS, quick_plan
 
@@ -26,7 +26,7 @@ PAPERS = [*quick_plan().parts["figure_3"], judge.name]
 def as_drawn(curve):
     """Colour, and dashes in widths of the line, of a curve of Matplotlib."""
     dashes = curve._unscaled_dash_pattern[1]
-    return Line(INK if curve.get_color() == INK else to_hex(curve.get_color()).upper(), tuple(dashes or ()))
+    return LineStyle(INK if curve.get_color() == INK else to_hex(curve.get_color()).upper(), tuple(dashes or ()))
 
 
 def lightness(line):
@@ -53,7 +53,7 @@ def test_lines_of_one_dash_differ_in_grey():
 
 
 def test_a_model_of_ones_own_keeps_a_line_that_no_other_has():
-    assert line_of("our liner") == Line("#009E73", (4.0, 4.0))
+    assert line_of("our liner") == LineStyle("#009E73", (4.0, 4.0))
     given = {line_of(name) for name in MODELS if name in style._MODELS}
     assert given.isdisjoint(line_of(f"own {number}") for number in range(200))
 

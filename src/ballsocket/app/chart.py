@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy
 
-from ..output.style import INK, THICK, THIN, Line
+from ..output.style import INK, THICK, THIN, LineStyle
 from . import svg
 
 _WIDE, _HIGH = 440.0, 300.0
@@ -28,17 +28,17 @@ class Curve:
     x: numpy.ndarray
     y: numpy.ndarray
     trusted: numpy.ndarray
-    line: Line
+    line: LineStyle
     mark: tuple[float, float] | None = None
     band: tuple[numpy.ndarray, numpy.ndarray] | None = None
 
 
-def colour_of(line: Line) -> str:
+def colour_of(line: LineStyle) -> str:
     """The colour of a line on the page, whose ink may be light."""
     return "var(--text)" if line.colour == INK else line.colour
 
 
-def dash_of(line: Line, width: float = THICK) -> str:
+def dash_of(line: LineStyle, width: float = THICK) -> str:
     """Width and dashes of a line, as attributes; no dashes for one drawn through."""
     lengths = " ".join(f"{THICK * length:g}" for length in line.dash)
     return f'stroke-width="{width:g}"' + (f' stroke-dasharray="{lengths}"' if lengths else "")
@@ -99,7 +99,7 @@ def _drawn(name: str, curve: Curve, across: float, up: float) -> Iterator[str]:
         yield f'<circle {place} r="4" fill="{colour_of(curve.line)}"/>'
 
 
-def swatch(line: Line) -> str:
+def swatch(line: LineStyle) -> str:
     """A short piece of a line."""
     return (
         f"<svg class='swatch' viewBox='0 0 32 8' aria-hidden='true'><path d='M0 4H32' stroke='{colour_of(line)}' "
@@ -107,6 +107,6 @@ def swatch(line: Line) -> str:
     )
 
 
-def legend(lines: Mapping[str, Line]) -> str:
+def legend(lines: Mapping[str, LineStyle]) -> str:
     """The names of curves beside a piece of each, as HTML."""
     return "".join(f"<span class='key'>{swatch(line)}{escape(name)}</span>" for name, line in lines.items())

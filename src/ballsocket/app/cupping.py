@@ -17,7 +17,7 @@ from ..io.joint_file import JointFile
 from ..output.html import drawn
 from ..output.orientation_plot import orientation_figure
 from ..problem.cup import Cup, Side
-from .jobs import Kept
+from .jobs import CachedRun
 from .running import Reached, Told
 
 INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))
@@ -27,7 +27,7 @@ ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))
 LEWINNEK = (30.0, 50.0, 5.0, 25.0)
 """Inclinations and anteversions in degrees between which Lewinnek (1978) saw the fewest dislocations."""
 
-SOLVED: Kept = Kept(most=64)
+SOLVED: CachedRun = CachedRun(most=64)
 """Bores whose rings have been set up: a press in them takes a moment."""
 
 

@@ -23,7 +23,7 @@ Outline = tuple[numpy.ndarray, numpy.ndarray]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Frame:
+class DrawingFrame:
     """Where the socket's centre lies in a picture, and pixels for a mm; angles go from the cup's pole to the right."""
 
     x: float
@@ -43,24 +43,24 @@ class Frame:
 
 def section(file: JointFile, contact: Contact | None, extent: float, highest: float) -> str:
     """A joint as SVG, the load from above, drawn to `extent` (mm), the pressure's colours to `highest` (MPa)."""
-    frame = Frame(x=_SIZE / 2, y=_SIZE / 2, scale=_SIZE / 2 / extent / 1.04)
+    frame = DrawingFrame(x=_SIZE / 2, y=_SIZE / 2, scale=_SIZE / 2 / extent / 1.04)
     parts = [*layers(file, frame), ball(file, contact, frame, 0.0), *painted(file, contact, frame, highest, 0.0)]
     return svg.picture((_SIZE, _SIZE), "the joint in section, to scale", parts)
 
 
-def layers(file: JointFile, frame: Frame) -> list[str]:
+def layers(file: JointFile, frame: DrawingFrame) -> list[str]:
     """Liner and what is behind it, as far as the cup reaches."""
     ends = list(pairwise(radii_of(file.joint)))
     kinds = ["liner", *(f"backing layer{number % 3}" for number in range(len(ends) - 1))]
     return [_part(_sector(*each, file.cup.rim), frame, kind) for each, kind in zip(ends, kinds, strict=True)]
 
 
-def ball(file: JointFile, contact: Contact | None, frame: Frame, tilt: float) -> str:
+def ball(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> str:
     """The ball where the load has brought it; its clearance is drawn as many times as `gap_factor` says."""
     return _part(_ball(file, contact, tilt), frame, "ball")
 
 
-def painted(file: JointFile, contact: Contact | None, frame: Frame, highest: float, tilt: float) -> list[str]:
+def painted(file: JointFile, contact: Contact | None, frame: DrawingFrame, highest: float, tilt: float) -> list[str]:
     """The pressure, inside the cup's arc."""
     if contact is None:
         return []
@@ -71,7 +71,7 @@ def painted(file: JointFile, contact: Contact | None, frame: Frame, highest: flo
     ]
 
 
-def _part(outline: Outline, frame: Frame, kind: str) -> str:
+def _part(outline: Outline, frame: DrawingFrame, kind: str) -> str:
     return f'<path class="part {kind}" d="{frame.path(outline)}"/>'
 
 

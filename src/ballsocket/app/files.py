@@ -19,7 +19,7 @@ from .view import Document
 
 
 @dataclass(frozen=True, kw_only=True)
-class Seen:
+class ScreenContent:
     """What is on the screen: the view's title, the joint, the words of its address, the view as a document, units."""
 
     title: str
@@ -29,7 +29,7 @@ class Seen:
     units: Units = Units.SI
 
 
-def made(seen: Seen, kind: str) -> tuple[str, bytes]:
+def made(seen: ScreenContent, kind: str) -> tuple[str, bytes]:
     """A file of that kind, one of `KINDS`: its name, and what is in it.
 
     Raises
@@ -42,19 +42,19 @@ def made(seen: Seen, kind: str) -> tuple[str, bytes]:
     return name, make(seen)
 
 
-def _picture(seen: Seen, form: str) -> bytes:
+def _picture(seen: ScreenContent, form: str) -> bytes:
     if seen.document.picture is None:
         raise ValueError("there is nothing to draw: no model has an answer")
     return seen.document.picture(form)
 
 
-def _numbers(seen: Seen) -> bytes:
+def _numbers(seen: ScreenContent) -> bytes:
     stream = StringIO()
     csv.writer(stream, lineterminator="\n").writerows(_safe(row) for row in seen.document.rows())
     return stream.getvalue().encode("utf-8")
 
 
-def _report(seen: Seen) -> bytes:
+def _report(seen: ScreenContent) -> bytes:
     """One page: the joint and its inputs, the figure, the numbers, and the words of the address that lead back."""
     document, joint = seen.document, seen.file.joint
     title = f"{seen.title}: {joint.name or 'a joint'}"
@@ -69,7 +69,7 @@ def _safe(row: Sequence[Any]) -> list[Any]:
     return [f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@") else cell for cell in row]
 
 
-_KINDS: dict[str, tuple[str, Callable[[Seen], bytes]]] = {
+_KINDS: dict[str, tuple[str, Callable[[ScreenContent], bytes]]] = {
     "PNG": ("ballsocket.png", lambda seen: _picture(seen, "png")),
     "SVG": ("ballsocket.svg", lambda seen: _picture(seen, "svg")),
     "CSV": ("ballsocket.csv", _numbers),

@@ -12,7 +12,7 @@ from ..core.quantities import Quantity
 from ..io.joint_file import JointFile
 from ..output.section_scale import gap_factor, radii_of
 from . import svg
-from .drawing import Frame, ball, heat, layers, painted
+from .drawing import DrawingFrame, ball, heat, layers, painted
 from .fields import Field
 
 Said = Callable[[float], str]
@@ -47,9 +47,9 @@ def first_view(file: JointFile, contact: Contact | None, fields: dict[str, Field
     return svg.group_picture((_WIDE, _HIGH), "the joint in section, to scale", parts, size + arrow)
 
 
-def frame_of(file: JointFile) -> Frame:
+def frame_of(file: JointFile) -> DrawingFrame:
     """Where the joint lies in the picture."""
-    return Frame(x=_MIDDLE[0], y=_MIDDLE[1], scale=_REACH / radii_of(file.joint)[-1])
+    return DrawingFrame(x=_MIDDLE[0], y=_MIDDLE[1], scale=_REACH / radii_of(file.joint)[-1])
 
 
 def _arrow(x1: float, y1: float, x2: float, y2: float, kind: str, size: float = 7.0) -> str:
@@ -70,7 +70,7 @@ def _said(lines: tuple[str, str], x: float, y: float, anchor: str) -> str:
     return svg.text(x, y, lines[0], "quiet", anchor) + svg.text(x, y + 17, lines[1], "value", anchor)
 
 
-def _dimensions(file: JointFile, frame: Frame, unit: Unit) -> Iterator[str]:
+def _dimensions(file: JointFile, frame: DrawingFrame, unit: Unit) -> Iterator[str]:
     def said(value: float) -> str:
         return f"{value * unit.factor:.4g} {unit.text}"
 
@@ -82,14 +82,14 @@ def _dimensions(file: JointFile, frame: Frame, unit: Unit) -> Iterator[str]:
         yield from _shell(frame, f"⌀ {said(2 * radii_of(file.joint)[-1])}")
 
 
-def _head(file: JointFile, frame: Frame, said: Said) -> Iterator[str]:
+def _head(file: JointFile, frame: DrawingFrame, said: Said) -> Iterator[str]:
     radius, turn = float(file.joint.ball_radius), radians(118.0)
     near, far = frame.at(0.985 * radius, turn), frame.at(0.985 * radius, turn + pi)
     yield _both_ways(*near, *far)
     yield _said(("head", f"⌀ {said(2 * radius)}"), frame.x - 62, frame.y + 12, "middle")
 
 
-def _bore_and_gap(file: JointFile, frame: Frame, said: Said) -> Iterator[str]:
+def _bore_and_gap(file: JointFile, frame: DrawingFrame, said: Said) -> Iterator[str]:
     radius, rim, times = float(file.joint.socket_radius), file.cup.rim, gap_factor(file.joint)
     bore = frame.at(radius, min(rim, radians(86.0)))
     yield _leader(*bore, 486.0, bore[1] - 62)
@@ -102,7 +102,7 @@ def _bore_and_gap(file: JointFile, frame: Frame, said: Said) -> Iterator[str]:
     yield _said(("clearance", drawn), 496.0, gap[1] + 8, "start")
 
 
-def _liner(file: JointFile, frame: Frame, said: Said) -> Iterator[str]:
+def _liner(file: JointFile, frame: DrawingFrame, said: Said) -> Iterator[str]:
     radii, thickness = radii_of(file.joint), float(file.joint.liner_thickness)
     turn = -min(file.cup.rim, radians(62.0))
     inner, outer = frame.at(radii[0], turn), frame.at(radii[1], turn)
@@ -117,7 +117,7 @@ def _leader(x1: float, y1: float, x2: float, y2: float) -> str:
     return _arrow(x2, y2, x1, y1, "dim", 6.0)
 
 
-def _shell(frame: Frame, said: str) -> Iterator[str]:
+def _shell(frame: DrawingFrame, said: str) -> Iterator[str]:
     """The outer diameter below the cup."""
     left, right, low = frame.x - _REACH, frame.x + _REACH, frame.y + _REACH + 34
     for x in (left, right):
@@ -126,7 +126,7 @@ def _shell(frame: Frame, said: str) -> Iterator[str]:
     yield _said(("shell", said), frame.x, low + 20, "middle")
 
 
-def _names(file: JointFile, frame: Frame) -> Iterator[str]:
+def _names(file: JointFile, frame: DrawingFrame) -> Iterator[str]:
     """Ball and layers by their materials."""
     joint = file.joint
     yield svg.text(frame.x, frame.y - 44, "rigid ball" if joint.ball is None else joint.ball.name or "ball", "name")
@@ -141,7 +141,7 @@ def _names(file: JointFile, frame: Frame) -> Iterator[str]:
             )
 
 
-def _contact_edge(file: JointFile, contact: Contact | None, frame: Frame, tilt: float) -> Iterator[str]:
+def _contact_edge(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> Iterator[str]:
     """The contact's half angle."""
     if contact is None or not float(contact.half_angle) > 0:
         return
@@ -150,13 +150,13 @@ def _contact_edge(file: JointFile, contact: Contact | None, frame: Frame, tilt: 
         yield svg.line(frame.x, frame.y, x, y, "edge")
 
 
-def _start(file: JointFile, contact: Contact | None, frame: Frame) -> float:
+def _start(file: JointFile, contact: Contact | None, frame: DrawingFrame) -> float:
     """Where the arrow ends, in pixels from the centre: just above the ball as it is drawn."""
     gap = 2 * float(file.joint.clearance) + (0.0 if contact is None else float(contact.indentation))
     return frame.scale * (float(file.joint.socket_radius) - gap_factor(file.joint) * gap) + _OFF
 
 
-def _load(start: float, frame: Frame, fields: dict[str, Field], tilt: float) -> Iterator[str]:
+def _load(start: float, frame: DrawingFrame, fields: dict[str, Field], tilt: float) -> Iterator[str]:
     """The load's arrow, from outside to the ball; its tail turns it."""
     load, turn = fields["load"], fields["tilt"]
     share = min(1.0, max(0.0, load["value"] / load["high"]))
@@ -172,7 +172,7 @@ def _load(start: float, frame: Frame, fields: dict[str, Field], tilt: float) -> 
     yield svg.text(x + (4 if tilt else 14), y + 5, said, "value", "start")
 
 
-def _borders(file: JointFile, frame: Frame, fields: dict[str, Field]) -> Iterator[str]:
+def _borders(file: JointFile, frame: DrawingFrame, fields: dict[str, Field]) -> Iterator[str]:
     """The outer border of each layer that has one, to be dragged."""
     radii = radii_of(file.joint)
     names = ["liner_thickness", *(f"layer{number}" for number in range(len(file.joint.backing)))]
@@ -183,7 +183,7 @@ def _borders(file: JointFile, frame: Frame, fields: dict[str, Field]) -> Iterato
             yield f'<path {_handle(name, "border", fields[name])} {numbers} class="border" d="{arc}"/>'
 
 
-def _arc(frame: Frame, radius: float, half: float) -> str:
+def _arc(frame: DrawingFrame, radius: float, half: float) -> str:
     """Part of a circle (mm) to both sides of the pole."""
     (x1, y1), (x2, y2) = frame.at(radius, -half), frame.at(radius, half)
     away = frame.scale * radius

@@ -87,7 +87,7 @@ class Use:
     body_weight: float = 800.0
     instant: int | None = None
     contact: str = "springs"
-    law: str = "archard"
+    law: str = LAWS[0]
     coefficient: float = 1e-6
     millions: float = 5.0
     creep: str = "no"

@@ -9,7 +9,7 @@ from typing import Any
 import panel as pn
 
 from .channel import Channel
-from .running import Done, Reached, Refused, Run, Work, looked_at
+from .running import Done, Reached, Run, RunRefused, Work, looked_at
 from .words import alert, progress
 
 LONGEST = 60.0  # s, of work that nobody gave longer
@@ -54,7 +54,7 @@ class Job:
             self.stop()
             return
         news, key = self._run.news(), self._key
-        if isinstance(news, Done | Refused):
+        if isinstance(news, Done | RunRefused):
             self.stop()
         if news is not None:
             self._heard(key, news)
@@ -94,7 +94,7 @@ class ViewJob(Job):
         """News, which the page is told of its own accord."""
         if isinstance(news, Reached):
             self.put("progress", progress(news.words, news.share, stop=f"{self._view}.stop"))
-        elif isinstance(news, Refused):
+        elif isinstance(news, RunRefused):
             self.put("progress", "")
             self.put("trouble", alert(news.why))
         elif isinstance(news, Done):
@@ -103,7 +103,7 @@ class ViewJob(Job):
         self._channel.send()
 
 
-class Kept:
+class CachedRun:
     """The latest outcomes by what they are of, for every page."""
 
     def __init__(self, most: int) -> None:

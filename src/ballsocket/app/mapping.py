@@ -23,7 +23,7 @@ from ..studies.limits import Limit, allowed, margin_over
 from ..studies.parameters import LOADS, PARAMETERS, pressable
 from ..studies.run import study
 from ..studies.usual import joints_of, usual
-from .screen import MAP_MODELS, MAPPED, QUICK, START, Axis, Screen
+from .screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
 
 _POINTS = 61
 _FEW = 17
@@ -31,7 +31,7 @@ _FEW = 17
 
 
 @lru_cache(maxsize=16)
-def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: Axis, up: Axis, model: str) -> Any:
+def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: MapAxis, up: MapAxis, model: str) -> Any:
     asked = _asked(joint, {axis.name: [axis.low, axis.high] for axis in (across, up)}, model)
     count = _FEW if asked.name not in QUICK else _POINTS
     axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, count) for axis in (across, up)}
@@ -64,7 +64,7 @@ def _knows(name: str, joint: Joint) -> bool:
         return False
 
 
-def mapped(file: JointFile, across: Axis, up: Axis, model: str) -> Any:
+def mapped(file: JointFile, across: MapAxis, up: MapAxis, model: str) -> Any:
     """The study behind a map."""
     return _mapped(file.joint, tuple(file.load.items()), across, up, model)
 
@@ -139,12 +139,12 @@ def now(file: JointFile, name: str) -> float:
     return float("nan") if value is None else float(value)
 
 
-def around(name: str, middle: float) -> Axis:
+def around(name: str, middle: float) -> MapAxis:
     """A range for a parameter: half to twice what it is now, where that is a number."""
     if PARAMETERS[name].kind is Kind.NUMBER:
-        return Axis(name=name, low=0.3, high=0.48)
+        return MapAxis(name=name, low=0.3, high=0.48)
     middle = middle if 0 < middle < 1e9 else {"force": 3000.0, "indentation": 0.05, "clearance": 0.1}.get(name, 10.0)
-    return Axis(name=name, low=float(f"{middle / 2:.2g}"), high=float(f"{2 * middle:.2g}"))
+    return MapAxis(name=name, low=float(f"{middle / 2:.2g}"), high=float(f"{2 * middle:.2g}"))
 
 
 def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:

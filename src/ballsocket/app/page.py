@@ -20,7 +20,7 @@ from .beside import beside
 from .channel import Channel
 from .controls import behind, edited, fields_of
 from .fields import Field, segments
-from .files import Seen, made
+from .files import ScreenContent, made
 from .layers import layer_fields, layers_edited
 from .pressing import pressed
 from .screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, link_of, read_link
@@ -191,9 +191,9 @@ class Page:
                 self.main.append(self._views[name].panel)
         return self._views[name]
 
-    def seen(self) -> Seen:
+    def seen(self) -> ScreenContent:
         """What is on the screen, for files."""
-        return Seen(
+        return ScreenContent(
             title=self.view.title,
             file=self.screen.file,
             link=f"?{link_of(self.screen)}",

@@ -13,7 +13,7 @@ import numpy
 
 from ..core.kinds import Unit
 from ..core.quantities import CONTACT, DERIVED, Quantity
-from ..output.style import INK, Line
+from ..output.style import INK, LineStyle
 from .bowl import bowl
 from .chart import Curve, chart
 from .gaiting import MERIDIANS, Gaited
@@ -21,7 +21,7 @@ from .pressing import rounded_up
 from .reading import Reading
 
 _PHASE = "phase of the cycle [%]"
-_LINE = Line(INK)
+_LINE = LineStyle(INK)
 
 
 _NM = Unit("nm")

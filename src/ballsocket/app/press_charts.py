@@ -11,13 +11,13 @@ from ..contact import Contact
 from ..contact.describe import Column
 from ..core.quantities import FIELD
 from ..output.press_plot import force_axes
-from ..output.style import Line
+from ..output.style import LineStyle
 from .chart import Curve, chart, legend
 from .pressing import curve, profile, rounded_up
 from .reading import Reading
 
 
-def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, Line], reading: Reading) -> str:
+def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
     """Two charts and their key as HTML: contacts that have an answer, each with the curve of its own model."""
     if not contacts:
         return "<p class='quiet'>No curve to draw.</p>"
@@ -27,7 +27,7 @@ def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, Line], rea
     return f"<div class='pair'>{figures}</div><p class='legend'>{key}</p>"
 
 
-def _pressures(contacts: Mapping[str, Contact], lines: Mapping[str, Line], reading: Reading) -> str:
+def _pressures(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
     angle, pressure = reading.unit(FIELD["angle"]), reading.unit(FIELD["pressure"])
     widest = min(max(float(contact.half_angle) for contact in contacts.values()), pi / 2)
     highest = max(float(contact.max_pressure) for contact in contacts.values())
@@ -40,7 +40,7 @@ def _pressures(contacts: Mapping[str, Contact], lines: Mapping[str, Line], readi
     )
 
 
-def _forces(contacts: Mapping[str, Contact], lines: Mapping[str, Line], reading: Reading) -> str:
+def _forces(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
     axes = depth, force = force_axes(reading.units)
     top = rounded_up(1.2 * max(float(force.of(contact)) for contact in contacts.values()))
     largest = top / force.factor
@@ -54,13 +54,13 @@ def _forces(contacts: Mapping[str, Contact], lines: Mapping[str, Line], reading:
     )
 
 
-def _profile(contact: Contact, turns: tuple[float, float], line: Line) -> Curve:
+def _profile(contact: Contact, turns: tuple[float, float], line: LineStyle) -> Curve:
     angle, pressure = profile(contact)
     trusted = numpy.full(angle.shape, bool(contact.valid))
     return Curve(angle * turns[0], pressure * turns[1], trusted, line)
 
 
-def _curve(contact: Contact, largest: float, axes: tuple[Column, Column], line: Line) -> Curve:
+def _curve(contact: Contact, largest: float, axes: tuple[Column, Column], line: LineStyle) -> Curve:
     depth, force = axes
     mark = (float(depth.of(contact)), float(force.of(contact)))
     press = curve(contact, largest)

@@ -25,7 +25,7 @@ Work = Callable[[Told], Any]
 """What is done; the process must be able to receive it, and the page what it returns and tells."""
 
 
-class Line:
+class RunQueue:
     """Runs in the order in which they came; so many of the first are at work."""
 
     def __init__(self, places: int) -> None:
@@ -47,7 +47,7 @@ class Line:
             self._runs.remove(run)
 
 
-LINE = Line(max(1, available_cores()))
+LINE = RunQueue(max(1, available_cores()))
 """As many runs at once as there are cores, whoever asks."""
 
 
@@ -60,7 +60,7 @@ class Reached:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Refused:
+class RunRefused:
     """Why there is no answer, in one sentence."""
 
     why: str
@@ -99,19 +99,19 @@ class Run:
                 self._begin()
             except OSError as error:
                 self.stop()
-                return Refused(why=f"no process could be started: {error.strerror or error}")
+                return RunRefused(why=f"no process could be started: {error.strerror or error}")
         assert self._pipe is not None
         if self._pipe.poll():
             try:
                 found = self._pipe.recv()
             except EOFError:
-                found = Refused(why="its process died; it may have had too little memory")
-            if isinstance(found, Done | Refused):
+                found = RunRefused(why="its process died; it may have had too little memory")
+            if isinstance(found, Done | RunRefused):
                 self.stop()
             return found
         if time.monotonic() - self._start > self.longest:
             self.stop()
-            return Refused(why=f"stopped after {self.longest:g} s, the longest that a run may take here")
+            return RunRefused(why=f"stopped after {self.longest:g} s, the longest that a run may take here")
         return None
 
     def _begin(self) -> None:
@@ -149,9 +149,9 @@ def _run(pipe: Connection, work: Work) -> None:
     try:
         pipe.send(Done(work(pipe.send)))
     except (ValueError, OutsideDomainError, ImportError) as error:
-        pipe.send(Refused(why=str(error)))
+        pipe.send(RunRefused(why=str(error)))
     except MemoryError:
-        pipe.send(Refused(why=f"this takes more than {MEMORY / 1e9:g} GB, the most that a run may have here"))
+        pipe.send(RunRefused(why=f"this takes more than {MEMORY / 1e9:g} GB, the most that a run may have here"))
 
 
 def limit_memory() -> None:

@@ -60,7 +60,7 @@ _PREFIXES = tuple(f"beside{number}" for number in range(1, BESIDE + 1))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Axis:
+class MapAxis:
     """An axis of the map: a parameter of a study from `low` to `high`, in mm, N, MPa, rad."""
 
     name: str
@@ -121,8 +121,8 @@ class Screen:
     beside: tuple[JointFile, ...] = ()
     answered_by: str = reference.name
     shown: tuple[str, ...] = (reference.name, "hess-forsbach", "bartel", "hertz")
-    across: Axis = Axis(name="head_diameter", low=22.0, high=46.0)
-    up: Axis = Axis(name="liner_thickness", low=3.0, high=15.0)
+    across: MapAxis = MapAxis(name="head_diameter", low=22.0, high=46.0)
+    up: MapAxis = MapAxis(name="liner_thickness", low=3.0, high=15.0)
     map_model: str = "tabulated"
     quantity: str = "max_pressure"
     limits: tuple[Limit, ...] = ()
@@ -247,9 +247,9 @@ def _part(pairs: Mapping[str, Sequence[str]], prefix: str) -> dict[str, str]:
     return {name[len(prefix) + 1 :]: values[0] for name, values in pairs.items() if name.startswith(f"{prefix}.")}
 
 
-def _axis(phrase: str) -> Axis:
+def _axis(phrase: str) -> MapAxis:
     name, low, high = range_of(phrase)
-    return Axis(name=name, low=low, high=high)
+    return MapAxis(name=name, low=low, high=high)
 
 
 def _joint(flat: Mapping[str, str]) -> JointFile:

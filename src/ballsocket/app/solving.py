@@ -16,7 +16,7 @@ from ..core.validity import OutsideDomainError
 from ..io.joint_file import JointFile
 from ..problem import Joint
 from ..problem.cup import Cup
-from .running import Done, Refused, Run, Told, looked_at
+from .running import Done, Run, RunRefused, Told, looked_at
 from .written import WrittenContact, written
 
 LONGEST = 20.0
@@ -119,7 +119,7 @@ class Errand:
             _keep(file, *news)
             self._for = file, _unfinished(file, names)
             self._changed()
-        elif isinstance(news, Refused):
+        elif isinstance(news, RunRefused):
             for name in names:
                 _keep(file, name, solved(file, name) or f"{name} has no answer here: {news.why}", True)
             self.leave()

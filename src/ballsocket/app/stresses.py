@@ -11,7 +11,7 @@ import numpy
 from ..contact import Contact
 from ..io.joint_file import JointFile
 from . import svg
-from .drawing import Frame, heat
+from .drawing import DrawingFrame, heat
 
 _ACROSS, _DEEP = 40, 10
 _DEEPEST = 1.5  # contact radii that are drawn of what has no end
@@ -47,7 +47,7 @@ def stresses(contact: Contact) -> Stresses | None:
     return Stresses(angles, depths, values)
 
 
-def painted_stresses(file: JointFile, found: Stresses, frame: Frame, tilt: float) -> str:
+def painted_stresses(file: JointFile, found: Stresses, frame: DrawingFrame, tilt: float) -> str:
     """Each piece of the liner in the colour of its stress, inside the cup's arc."""
     wide, deep = found.angles[1] - found.angles[0], found.depths[1] - found.depths[0]
     bore, rim, top = float(file.joint.socket_radius), file.cup.rim, found.largest

@@ -11,7 +11,7 @@ import numpy
 from ..compare import relative_deviation
 from ..core.quantities import CONTACT, DERIVED
 from ..output.html import table
-from ..output.style import BLUE, VERMILLION, Line
+from ..output.style import BLUE, VERMILLION, LineStyle
 from .bore_map import SHOWN, BoreField, cells_of, worn_bore
 from .chart import Curve, chart, legend
 from .pressing import rounded_up
@@ -22,7 +22,7 @@ from .words import doubt, notes_list, number_text, percent
 _DEPTH, _PRESSURE = CONTACT["indentation"], CONTACT["max_pressure"]
 """As what depths and pressures are read."""
 
-_LINES = (Line(BLUE), Line(VERMILLION, (6.0, 2.0)))
+_LINES = (LineStyle(BLUE), LineStyle(VERMILLION, (6.0, 2.0)))
 
 
 def wear_numbers(found: Mapping[str, Worn], reading: Reading = SHOWN) -> str:

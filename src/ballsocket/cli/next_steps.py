@@ -21,7 +21,7 @@ Words = Sequence[str]
 
 
 @dataclass(frozen=True)
-class Step:
+class NextStep:
     """A command, and why."""
 
     words: tuple[str, ...]
@@ -32,7 +32,7 @@ class Step:
         return {"command": shlex.join(["ballsocket", *self.words]), "why": self.why}
 
 
-def next_steps(answer: Answer, words: Words) -> list[Step]:
+def next_steps(answer: Answer, words: Words) -> list[NextStep]:
     """What may follow an answer in JSON.
 
     Parameters
@@ -53,11 +53,11 @@ def asked_of(results: Sequence[Answer], words: Words) -> list[Answer]:
     return [each for each in results if each["model"] in words] or list(results[:1])
 
 
-def _nothing(answer: Answer, words: Words) -> Iterator[Step]:
+def _nothing(answer: Answer, words: Words) -> Iterator[NextStep]:
     return iter(())
 
 
-def _after_press(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_press(answer: Answer, words: Words) -> Iterator[NextStep]:
     """Whom else to ask: those that can be trusted where those asked cannot, and then the judge."""
     results = {each["model"]: each["valid"] for each in answer["results"]}
     asked = [each["model"] for each in asked_of(answer["results"], words)]
@@ -66,17 +66,17 @@ def _after_press(answer: Answer, words: Words) -> Iterator[Step]:
     doubted = [name for name in asked if name not in trusted]
     if trusted and doubted:
         why = f"{doubted[0]} is not to be trusted here, {trusted[0]} is: see the notes"
-        yield Step((*bare, "--model", trusted[0]), why)
+        yield NextStep((*bare, "--model", trusted[0]), why)
     if not trusted:
         others = [name for name in (reference.name, off_axis.name, judge.name) if name not in results]
-        yield from (Step((*bare, "--model", name), "none of these is to be trusted here") for name in others)
+        yield from (NextStep((*bare, "--model", name), "none of these is to be trusted here") for name in others)
     elif not {judge.name, off_axis.name} & set(results):
         if any(map(_differs_on_hemisphere, answer["results"])):
             why = "a hemisphere with a free rim differs from the closed sphere of this result: see the notes"
-            yield from (Step((*bare, "--model", name), why) for name in (judge.name, off_axis.name))
+            yield from (NextStep((*bare, "--model", name), why) for name in (judge.name, off_axis.name))
         else:
-            yield Step((*bare, "--model", judge.name), "finite elements judge it, with error bars of their own")
-    yield from (Step(("cite", name), "what it is made of") for name in trusted[:1] if name in asked)
+            yield NextStep((*bare, "--model", judge.name), "finite elements judge it, with error bars of their own")
+    yield from (NextStep(("cite", name), "what it is made of") for name in trusted[:1] if name in asked)
 
 
 def _differs_on_hemisphere(result: Answer) -> bool:
@@ -89,21 +89,21 @@ _SHOWN = ("--units", "--figure", "--section", "--view", "--vtk", "--report", "--
 """How an answer is shown, which the next one need not be."""
 
 
-def _after_curve(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_curve(answer: Answer, words: Words) -> Iterator[NextStep]:
     if answer["valid"] is not True and answer["model"] != reference.name:
         why = f"{answer['model']} is not to be trusted all the way"
-        yield Step((*_without(words, "--model"), "--model", reference.name), why)
-    yield Step(("cite", answer["model"]), "what it is made of")
+        yield NextStep((*_without(words, "--model"), "--model", reference.name), why)
+    yield NextStep(("cite", answer["model"]), "what it is made of")
 
 
-def _after_best(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_best(answer: Answer, words: Words) -> Iterator[NextStep]:
     """The joint that was found, by every model."""
     place = answer["point"] if "point" in answer else _least(answer)
     chosen = [each for part, name in answer.get("materials", {}).items() for each in (f"--{part}", name)]
     numbers = [each for name, value in place.items() for each in _option(name, value)]
     loads = [] if any(name in place for name in ("force", "indentation")) else _kept(words, "--force", "--indentation")
     left = _without(words, *(option for option in _OF_JOINT if _fixes(option) & set(map(_fixed_by, place))))
-    yield Step(("press", *_joint(left), *chosen, *numbers, *loads, "--all"), "that joint by every model")
+    yield NextStep(("press", *_joint(left), *chosen, *numbers, *loads, "--all"), "that joint by every model")
 
 
 def _fixed_by(name: str) -> str:
@@ -134,55 +134,57 @@ def _option(name: str, value: float) -> Iterator[str]:
 _OF_LINER = ("liner_young", "liner_poisson")
 
 
-def _after_scatter(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_scatter(answer: Answer, words: Words) -> Iterator[NextStep]:
     load = _kept(words, "--force", "--indentation")
-    yield Step(("press", *_joint(words), *load, "--all"), "the joint in the middle, by every model")
+    yield NextStep(("press", *_joint(words), *load, "--all"), "the joint in the middle, by every model")
 
 
-def _after_study(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_study(answer: Answer, words: Words) -> Iterator[NextStep]:
     if not _kept(words, "--out"):
-        yield Step((*words, "--out", "study.csv"), "all numbers, a row a point")
+        yield NextStep((*words, "--out", "study.csv"), "all numbers, a row a point")
 
 
-def _after_orient(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_orient(answer: Answer, words: Words) -> Iterator[NextStep]:
     tilts = zip(chain(*answer["edge_distance"]), chain(*answer["tilt_deg"]), strict=True)
     known = [(distance, tilt) for distance, tilt in tilts if distance is not None]
     if known:
         load = _kept(words, "--force", "--indentation", "--half-angle")
         step = ("press", *_joint(words), *load, "--tilt", f"{max(known)[1]:.4g} deg")
-        yield Step(step, "the orientation that is farthest from the rim")
+        yield NextStep(step, "the orientation that is farthest from the rim")
 
 
-def _after_identify(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_identify(answer: Answer, words: Words) -> Iterator[NextStep]:
     if not answer["valid"]:
         why = answer["notes"][0] if answer["notes"] else "not every number is identifiable"
-        yield Step((*words, "--experiment", "next.png"), why)
+        yield NextStep((*words, "--experiment", "next.png"), why)
     elif answer["posterior"] is None:
-        yield Step((*words, "--samples", "4000"), "samples of the posterior within the ranges")
+        yield NextStep((*words, "--samples", "4000"), "samples of the posterior within the ranges")
 
 
-def _after_hip(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_hip(answer: Answer, words: Words) -> Iterator[NextStep]:
     if not _kept(words, "--report", "--patients"):
-        yield Step((*words, "--report", "hip.html"), "a page with figures of load, contact and wear")
+        yield NextStep((*words, "--report", "hip.html"), "a page with figures of load, contact and wear")
 
 
-def _after_evidence(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_evidence(answer: Answer, words: Words) -> Iterator[NextStep]:
     if _kept(words, "--check"):
         return
     folder = (_kept(words, "--out") or ["--out", "evidence"])[1]
-    yield Step(("evidence", "--check", folder), "computes all of it again and names what differs")
+    yield NextStep(("evidence", "--check", folder), "computes all of it again and names what differs")
 
 
-def _after_calibrate(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_calibrate(answer: Answer, words: Words) -> Iterator[NextStep]:
     yield from (
-        Step(("press", name, "--force", "3 kN", "--all"), "every model on that joint") for name in _named(words)
+        NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint") for name in _named(words)
     )
 
 
-def _after_list(answer: Answer, words: Words) -> Iterator[Step]:
+def _after_list(answer: Answer, words: Words) -> Iterator[NextStep]:
     names = [*answer.get("joints", {})]
-    yield from (Step(("press", name, "--force", "3 kN", "--all"), "every model on that joint") for name in names[:1])
-    yield from (Step(("cite", each["name"]), "BibTeX") for each in answer.get("models", [])[:1])
+    yield from (
+        NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint") for name in names[:1]
+    )
+    yield from (NextStep(("cite", each["name"]), "BibTeX") for each in answer.get("models", [])[:1])
 
 
 def _joint(words: Words) -> tuple[str, ...]:
@@ -227,7 +229,7 @@ def _kept(words: Words, *options: str) -> list[str]:
     return found
 
 
-_AFTER: Mapping[str, Callable[[Answer, Words], Iterator[Step]]] = MappingProxyType(
+_AFTER: Mapping[str, Callable[[Answer, Words], Iterator[NextStep]]] = MappingProxyType(
     {
         "press": _after_press,
         "curve": _after_curve,

@@ -28,7 +28,7 @@ SHOWN = ("max_pressure", "half_angle", "area", "indentation", "force")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Method:
+class CalculationMethod:
     """What one method answers.
 
     Attributes
@@ -65,7 +65,7 @@ class Method:
         }
 
 
-def beside(question: Question, case: Case) -> list[Method]:
+def beside(question: Question, case: Case) -> list[CalculationMethod]:
     """A case by every method that can answer it along the axis; off the axis by the solver on finer rings too."""
     joint, load, _ = pressable(question.file.joint, case)
     aim = {name: value for name, value in load.items() if name in AIMS}
@@ -76,7 +76,7 @@ def beside(question: Question, case: Case) -> list[Method]:
     return methods
 
 
-def _off_axis(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iterator[Method]:
+def _off_axis(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iterator[CalculationMethod]:
     model = question.model
     assert isinstance(model, Sphere)
     half = replace(model, ring_width=model.ring_width / 2)
@@ -84,7 +84,7 @@ def _off_axis(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iter
         yield replace(_method(name, one, joint, load), aligned=False)
 
 
-def _along(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iterator[Method]:
+def _along(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iterator[CalculationMethod]:
     """By name what can answer; off the axis these are the same joint and load along the axis."""
     cup = question.file.cup
     turned = ALONG if question.model.off_axis else ""
@@ -102,7 +102,7 @@ def _along(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iterato
             continue
 
 
-def rival(question: Question, case: Case) -> list[Method]:
+def rival(question: Question, case: Case) -> list[CalculationMethod]:
     """A case along the axis by another program's elements; none where that is not installed, or not asked for."""
     if not (question.finite_elements and shutil.which("ccx") and find_spec("skfem")):
         return []
@@ -112,10 +112,10 @@ def rival(question: Question, case: Case) -> list[Method]:
     return [_calculix(f"CalculiX{turned}", FiniteElement(cup=question.file.cup, meshes=1), joint, plain)]
 
 
-def _method(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> Method:
+def _method(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
     contact = model.press(joint, **load)
     errors = {each: float(value) for each, value in known_errors(contact).items() if each in SHOWN}
-    return Method(
+    return CalculationMethod(
         name=name,
         numbers={each: float(getattr(contact, each)) for each in SHOWN},
         errors=errors,
@@ -124,23 +124,25 @@ def _method(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> M
     )
 
 
-def _calculix(name: str, model: FiniteElement, joint: Joint, load: Mapping[str, Any]) -> Method:
+def _calculix(name: str, model: FiniteElement, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
     """Another program's elements, run here on our deck."""
     from ..elasticity.finite_elements.decks.calculix import run
     from ..elasticity.finite_elements.decks.deck import deck_of
 
     contact: Contact = model.press(joint, **load)
     if contact.status.failed:
-        return Method(name=name, numbers={}, errors={}, valid=False, notes=tuple(contact.notes))
+        return CalculationMethod(name=name, numbers={}, errors={}, valid=False, notes=tuple(contact.notes))
     with tempfile.TemporaryDirectory() as folder:
         deck_of(contact, steps=4).write(Path(folder))  # type: ignore[arg-type]
         try:
             found = run(Path(folder))
         except RuntimeError as error:
-            return Method(name=name, numbers={}, errors={}, valid=False, notes=(str(error),))
+            return CalculationMethod(name=name, numbers={}, errors={}, valid=False, notes=(str(error),))
     numbers = {"indentation": found.indentation, "force": found.force, "half_angle": found.half_angle}
     numbers["max_pressure"] = found.pole_pressure
-    return Method(name=name, numbers={each: float(value[-1]) for each, value in numbers.items()}, errors={}, valid=True)
+    return CalculationMethod(
+        name=name, numbers={each: float(value[-1]) for each, value in numbers.items()}, errors={}, valid=True
+    )
 
 
 def largest_deviation(methods: Sequence[Mapping[str, Any]]) -> dict[str, float]:

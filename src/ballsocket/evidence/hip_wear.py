@@ -177,7 +177,7 @@ def _of(k: float) -> LogNormal:
 
 
 def _table(use: HipSimulation, distributions: dict[str, Distribution], counts: list[float], count: int) -> Numbers:
-    return population(PatientVariability(use=use, distributions=distributions), counts, patients=count)[1].lived.table
+    return population(PatientVariability(use=use, distributions=distributions), counts, patients=count)[1].cohort.table
 
 
 def _band(name: str, values: Numbers) -> Predicted:

@@ -169,7 +169,7 @@ def worst(found: Sequence[Row]) -> dict[str, Row]:
 
 
 @dataclass(frozen=True)
-class Kept:
+class StoredMatrix:
     """How a limit is kept over the matrix.
 
     Attributes
@@ -214,13 +214,13 @@ class Kept:
         }
 
 
-def kept(limit: Limit, found: Sequence[Row], accuracy: float) -> Kept:
+def kept(limit: Limit, found: Sequence[Row], accuracy: float) -> StoredMatrix:
     """How a limit is kept, where numbers may be off by a share of themselves."""
     values = numpy.array([_limited(limit, row) for row in found], dtype=float)
     margin = numpy.minimum(values - limit.low, limit.high - values)
     known = numpy.isfinite(values)
     order = numpy.where(known, margin, numpy.inf)
-    return Kept(
+    return StoredMatrix(
         limit=limit,
         beyond=int((known & (margin < 0)).sum()),
         unknown=int((~known).sum()),

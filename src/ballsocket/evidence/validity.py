@@ -30,7 +30,7 @@ Numbers = numpy.ndarray
 
 
 @dataclass(frozen=True, kw_only=True)
-class Measured:
+class MeasuredValidity:
     """How a model keeps its promise.
 
     Attributes
@@ -101,7 +101,7 @@ def promising(models: Iterable[Model] = tuple(catalogue.values())) -> Iterator[M
     return (model for model in models if model.promise is not None and model.name != TRUTH.name)
 
 
-def measure(model: Model, size: int = 20_000, seed: int = 1) -> Measured:
+def measure(model: Model, size: int = 20_000, seed: int = 1) -> MeasuredValidity:
     """How a model keeps its promise, at the forces of the elastic answer.
 
     Parameters
@@ -132,7 +132,7 @@ def measure(model: Model, size: int = 20_000, seed: int = 1) -> Measured:
     }
     largest = numpy.max(list(errors.values()), axis=0)
     place = numpy.flatnonzero(valid)[int(largest.argmax())]
-    return Measured(
+    return MeasuredValidity(
         model=model.name,
         promise=promise,
         asked=int(answered.size),

@@ -150,6 +150,7 @@ def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
 
 
 def _versine(polar: float, reach: float) -> float:
+    """Compute the solid angle between two polar angles over 2π."""
     return float(numpy.cos(polar) - numpy.cos(reach))
 
 
@@ -226,4 +227,5 @@ def list_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator
 
 
 def _severity(check: ContactCheck) -> tuple[float, float]:
+    """Return the key that sorts checks from the largest utilisation and pressure to the smallest."""
     return -(check.utilisation or 0.0), -check.max_pressure

@@ -33,6 +33,7 @@ class CupFrame:
     turns = RenamedAttribute("rotation_increments")
 
     def _check_dislocation(self) -> None:
+        """Refuse a load that pushes the ball over the rim, unless a spring holds the ball."""
         outside = self._beyond_rim
         if self.separation is not None:
             outside = outside[numpy.isnan(self.separation.displacement[:, 0])]
@@ -152,7 +153,7 @@ class CupFrame:
         sizes = self.cycle.force_magnitudes[:, None]
         directions = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
         rotations = _in_cup(self.placed, self.moved.rotation_increments)
-        return sliding_distance(float(self.joint.ball_radius), rotations, _last_loaded(directions, self.loaded))
+        return sliding_distance(float(self.joint.ball_radius), rotations, _fill_unloaded(directions, self.loaded))
 
     @property
     def _frame_notes(self) -> tuple[str, ...]:
@@ -182,7 +183,7 @@ def _in_cup(cup: Cup, vectors: Numbers) -> Numbers:
     return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
 
 
-def _last_loaded(directions: Numbers, loaded: Numbers) -> Numbers:
+def _fill_unloaded(directions: Numbers, loaded: Numbers) -> Numbers:
     """Replace the directions of unloaded instants by those of the last loaded instant before them."""
     if not len(loaded):
         return directions

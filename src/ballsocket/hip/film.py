@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from typing import Any
+from typing import Any, Protocol
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..problem import Joint, Material
-from .cup_frame import CupFrame
+from .cycle import Cycle
 from .kinematics import SurfaceSliding
+from .mix import Mix
 from .socket_foundation import CycleEquilibrium, SocketFoundation
 
 CONFORMITY_NOTE = (
@@ -83,6 +84,7 @@ def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float
 
 
 def _plane_strain_compliance(material: Material) -> float:
+    """Compute (1 - ν²)/E in 1/MPa."""
     return float((1 - material.poisson**2) / material.young)
 
 
@@ -144,8 +146,36 @@ class Film:
         return {**numbers, "moment_on_cup_Nmm": largest_moment, "regime": self.regime, "note": CONFORMITY_NOTE}
 
 
+class LoadedCycle(Protocol):
+    """Joint and cycle of a film, in the cup's frame: a `CupFrame`."""
+
+    @property
+    def joint(self) -> Joint:
+        """Joint of single numbers."""
+        ...
+
+    @property
+    def cycle(self) -> Cycle | Mix:
+        """Loads and rotations."""
+        ...
+
+    @property
+    def loaded(self) -> Numbers:
+        """Indices of the loaded instants: (loaded,)."""
+        ...
+
+    @property
+    def rotation_increments(self) -> Numbers:
+        """Rotation vectors of the ball in the loaded instants in rad: (loaded, 3)."""
+        ...
+
+    def socket_forces(self, displacement: Numbers) -> Numbers:
+        """Compute the forces on the socket in N for displacements of the ball in mm: (loaded, 3)."""
+        ...
+
+
 def film(
-    cup_frame: CupFrame,
+    cup_frame: LoadedCycle,
     foundation: SocketFoundation,
     sliding: SurfaceSliding,
     equilibrium: CycleEquilibrium,

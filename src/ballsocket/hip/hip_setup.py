@@ -129,6 +129,7 @@ class HipSetup(CupFrame):
 
     @property
     def _creep_notes(self) -> tuple[str, ...]:
+        """Notes on the creep law and its confinement."""
         if self.creep is None:
             return ()
         confinement = confinement_note(self.creep, float(self.joint.liner.poisson))

@@ -286,6 +286,7 @@ _NOT_CONVERGED = "a contact did not balance its load: the results of this run ar
 
 
 def _edge_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
+    """Return the instant nearest to the rim as data for JSON; None without contact."""
     return None if worst is None else worst.summary()
 
 

@@ -109,6 +109,7 @@ def _factor_in_metres(name: str, value: Any, number: float, unit: str, allowed: 
 
 
 def _unit_factor(name: str, value: Any, unit: str, target: str, meaning: str) -> float:
+    """Compute the factor from a unit to a target unit, or refuse a unit of another dimension."""
     try:
         return convert(1.0, parse_units(unit), parse_units(target))
     except ValueError as error:
@@ -158,6 +159,7 @@ def list_unit(text: str, suffix: str) -> LawUnit:
     """Return the unit of a list of plain numbers."""
 
     def read(name: str, value: Any) -> tuple[float, ...]:
+        """Read a list of plain numbers from a file."""
         if not isinstance(value, list) or not value:
             raise ValueError(f"{name} = {shown(value)} must be a list of numbers, in {text}")
         return tuple(parse(name, number, Kind.NUMBER) for number in value)
@@ -255,7 +257,7 @@ def law_field(
     high: float = inf,
     low_included: bool = True,
 ) -> Any:
-    """Define a field of a law, a dataclass.
+    """Define a field of a law with its unit, meaning and limits, as `dataclasses.field` does.
 
     Parameters
     ----------
@@ -287,6 +289,7 @@ class Law(ABC):
     """True if the text of the law identifies it, so that a run can be stored."""
 
     def __post_init__(self) -> None:
+        """Check all numbers against their limits."""
         for part in self.law_fields():
             part.check(getattr(self, part.name))
 
@@ -318,6 +321,7 @@ class Law(ABC):
 
 
 def _as_json(value: Any, part: LawField) -> Any:
+    """Convert the value of a field to a number or a list of numbers."""
     return list(map(float, value)) if part.listed else float(value)
 
 
@@ -364,7 +368,7 @@ def read_law(
     known = {keys.get(part.key, part.key): part for part in law.law_fields()}
     for key in law_keys(laws):
         if key in table and key not in {*known, *keys}:
-            raise ValueError(f"{key} belongs to {_owners(key, laws)}, and the law is {law.name!r}")
+            raise ValueError(f"{key} belongs to {_describe_laws_with(key, laws)}, and the law is {law.name!r}")
     for key, part in known.items():
         if part.required and key not in table:
             raise ValueError(
@@ -374,22 +378,24 @@ def read_law(
     return law(**numbers, **values)
 
 
-def _owners(key: str, laws: Mapping[str, type[AnyLaw]]) -> str:
+def _describe_laws_with(key: str, laws: Mapping[str, type[AnyLaw]]) -> str:
+    """Describe the laws that have a key, for messages."""
     names = [repr(name) for name, law in laws.items() if any(part.key == key for part in law.law_fields())]
     return f"the law {names[0]}" if len(names) == 1 else f"the laws {', '.join(names)}"
 
 
-def chosen_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:
-    """Return the law that a table names; else the first law with a key in the table that no other law has.
+def select_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:
+    """Select the law that a table names, else the first law of the registry with a key in the table.
 
     Without such a key the first law of the registry is the default.
     """
     if "law" in table:
         return laws[known_name(noun, table["law"], laws)]
-    return next(_laws_by_key(table, laws), next(iter(laws.values())))
+    return next(_laws_with_keys(table, laws), next(iter(laws.values())))
 
 
-def _laws_by_key(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]]) -> Iterator[type[AnyLaw]]:
+def _laws_with_keys(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]]) -> Iterator[type[AnyLaw]]:
+    """List the laws that have a key of a table."""
     for law in laws.values():
         if any(part.key in table for part in law.law_fields()):
             yield law

@@ -12,8 +12,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.deprecation import renamed_fields, renamed_names
 from ..elasticity.off_axis.grid import Grid
-from .cycle import Cycle, Spring
-from .mix import Mix
+from .cycle import Spring
 
 __getattr__ = renamed_names(
     __name__, {"Edge": "RimDistance", "Worst": "ClosestApproach", "Separation": "Microseparation"}
@@ -24,11 +23,22 @@ _BALANCE_TOLERANCE = 1e-6
 """Tolerance of the ball's displacement on its spring, as a share of the mismatch."""
 
 
+class StepSequence(Protocol):
+    """Steps of a cycle or a mix of activities."""
+
+    @property
+    def n_steps(self) -> int:
+        """Number of steps."""
+
+    def describe_step(self, step: int) -> str:
+        """Describe the phase of a step in words."""
+
+
 class CupLoading(Protocol):
     """Loads of a cycle in a cup."""
 
     @property
-    def cycle(self) -> Cycle | Mix:
+    def cycle(self) -> StepSequence:
         """Cycle of load and motion."""
 
     @property
@@ -196,13 +206,13 @@ class Microseparation:
         longest = int(distances.argmax())
         return int(self.steps[(longest + 1) % len(distances)]), int(self.steps[longest])
 
-    def summary(self, cycle: Cycle | Mix) -> dict[str, Any]:
+    def summary(self, cycle: StepSequence) -> dict[str, Any]:
         """Return the values for JSON."""
         first, last = (cycle.describe_step(step) for step in self._interval(cycle.n_steps))
         azimuth = self.azimuth[int(numpy.linalg.norm(self.displacement, axis=1).argmax())]
         return {"from": first, "to": last, "largest_mm": self.largest, "place_deg": degrees(azimuth)}
 
-    def describe(self, cycle: Cycle | Mix) -> str:
+    def describe(self, cycle: StepSequence) -> str:
         """Describe the microseparation in a sentence for reports."""
         values = self.summary(cycle)
         return (

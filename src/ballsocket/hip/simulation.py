@@ -189,6 +189,7 @@ def run_to_report_points(
             )
 
         def store_block(cycles: float) -> None:
+            """Store the state after a block, and report the progress."""
             if stored is not None and cycles < count:  # noqa: B023 (called before the next)
                 stored.write(integrator.state, reports)  # noqa: B023
             progress(cycles)

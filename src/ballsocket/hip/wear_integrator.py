@@ -221,6 +221,7 @@ class WearIntegrator:
             self._update_active_cells()
 
     def _store_values(self, values: Numbers) -> None:
+        """Write the integrated state back to the depths and the work."""
         active, count = self._active, len(self._active.cells)
         self.depth, self.ball, self.work = self.depth.copy(), self.ball.copy(), float(values[-1])
         self.depth[active.cells], self.ball[active.ball_cells] = values[:count], values[count:-1]

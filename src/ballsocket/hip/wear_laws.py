@@ -18,9 +18,9 @@ from .law_fields import (
     WEAR_PER_ENERGY,
     WEAR_PER_SLIDE,
     Law,
-    chosen_law,
     law_field,
     read_law,
+    select_law,
 )
 from .wear_law import COEFFICIENT, METRE, CycleExposure, WearLaw, plausibility_notes
 
@@ -201,7 +201,7 @@ def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
     ValueError
         An unknown law, a missing key, a key of another law, or a value that is not allowed.
     """
-    return read_law(table, WEAR_LAWS, chosen_law(table, WEAR_LAWS, "law"))
+    return read_law(table, WEAR_LAWS, select_law(table, WEAR_LAWS, "law"))
 
 
 def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
@@ -212,7 +212,7 @@ def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
     ValueError
         A law that does not wear balls, or as `read_wear_law`.
     """
-    law = chosen_law(table, WEAR_LAWS, "law")
+    law = select_law(table, WEAR_LAWS, "law")
     if BALL_COEFFICIENT not in table:
         return None
     if not law.wears_balls:

@@ -11,7 +11,7 @@ from ..core.arrays import Numbers
 from ..core.deprecation import renamed_names
 from .information import QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
 from .misfit import FitResult, Misfit
-from .search import minimised
+from .search import minimise
 from .unknowns import Unknown
 
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
@@ -54,7 +54,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
     factor = scatter_ratio(misfit, best)
     if factor > 1:
         misfit = replace(misfit, widening=factor)
-        best = replace(minimised(misfit, best.theta), rivals=best.rivals)
+        best = replace(minimise(misfit, best.theta), rivals=best.rivals)
     quantile = _quantile(factor, misfit.freedom)
     rises = (quantile**2, (quantile * QUANTILE_99 / QUANTILE_95) ** 2)
     for _ in range(_MAX_RESTARTS):
@@ -62,7 +62,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
         profiles = profile_ends(misfit, [best.theta, *rivals], best.cost, rises)
         if profiles.cost > best.cost - _MIN_DECREASE:
             break
-        best = replace(minimised(misfit, profiles.lowest), rivals=best.rivals)
+        best = replace(minimise(misfit, profiles.lowest), rivals=best.rivals)
     rows = enumerate(zip(misfit.transform.unknowns, *profiles.ends, strict=True))
     intervals = tuple(_interval(index, *row) for index, row in rows)
     matrix = misfit.information(best.theta)

@@ -187,7 +187,7 @@ def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
 def _forces(fitted: FittedModel) -> list[float]:
     """Return equally spaced forces up to one and a half times the largest of the data."""
     rows = [measured.loads for measured in fitted.data if measured.load == "force"]
-    rows += [row for measured, row in zip(fitted.data, fitted.answers, strict=True) if measured.quantity == "force"]
+    rows += [row for measured, row in zip(fitted.data, fitted.results, strict=True) if measured.quantity == "force"]
     largest = float(numpy.max(numpy.concatenate(rows), initial=0.0)) if rows else 0.0
     return numpy.linspace(0.0, _LOAD_FACTOR * (largest or _DEFAULT_FORCE), _N_LOADS + 1)[1:].tolist()
 

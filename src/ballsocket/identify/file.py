@@ -94,6 +94,7 @@ def read_identify(path: str | Path) -> IdentifyFile:
 
 
 def _file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
+    """Convert the tables of a file to model, joint, data and unknowns."""
     check_keys(content, "", "at the top", FILE_KEYS)
     joint_file = joint_in(content, folder)
     machines = {name: _machine(name, table) for name, table in table_of(content, "machine").items()}
@@ -210,10 +211,12 @@ def _observable(name: str, table: Mapping[str, Any]) -> CustomObservable | None:
 
 
 def _saturation(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Read the saturation as an argument of `Measured`, if it is stated."""
     return {"saturation": parse("saturation", table["saturation"], Kind.MODULUS)} if "saturation" in table else {}
 
 
 def _load_uncertainty(table: Mapping[str, Any], load: str) -> float:
+    """Read the uncertainty of the loads; 0 by default."""
     return (
         parse("load_uncertainty", table["load_uncertainty"], LOADS[load].kind) if "load_uncertainty" in table else 0.0
     )

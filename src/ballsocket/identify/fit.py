@@ -39,6 +39,7 @@ class FittedModel:
     misfit: Misfit
     best: FitResult
     information: Information
+    answers = RenamedAttribute("results")
     scales = RenamedAttribute("transform")
 
     @property
@@ -87,7 +88,7 @@ class FittedModel:
         return self.estimates[key if key in self.estimates else name]
 
     @cached_property
-    def answers(self) -> tuple[Numbers, ...]:
+    def results(self) -> tuple[Numbers, ...]:
         """Results of the model at the best point, a row for each set of data."""
         results = self.misfit.forward.at(self.transform.values(self.best.theta[None]))[0]
         return self._by_set(results)
@@ -122,7 +123,7 @@ class FittedModel:
     @property
     def residuals(self) -> tuple[Numbers, ...]:
         """Values less results in stated uncertainties, a row for each set; for a saturated value its shortfall."""
-        z = self.misfit.widening * self.misfit.standard(numpy.concatenate(self.answers))
+        z = self.misfit.widening * self.misfit.standard(numpy.concatenate(self.results))
         return self._by_set(numpy.where(self.misfit.saturated, numpy.maximum(-z, 0.0), -z))
 
     def _by_set(self, row: Numbers) -> tuple[Numbers, ...]:

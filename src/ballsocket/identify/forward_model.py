@@ -33,7 +33,7 @@ def split_numbers(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[s
 def insert_numbers(model: Model, values: Mapping[str, Array]) -> Model:
     """Return the model with other values of its numbers, by name."""
     for name, value in values.items():
-        model = MODEL_NUMBERS[name].inserted(model, value)
+        model = MODEL_NUMBERS[name].insert_into(model, value)
     return model
 
 
@@ -165,10 +165,12 @@ class _PressedPoints:
 
 
 def _is_load_read_by_machine(measured: Measured) -> bool:
+    """Check if the loads of a data set are indentations with errors of a machine."""
     return measured.load == "indentation" and bool(measured.machine.name)
 
 
 def _not_negative(indentation: Array) -> Array:
+    """Replace negative indentations by 0."""
     return arrays.clip(indentation, 0.0, inf)
 
 
@@ -184,6 +186,7 @@ def _quantity(contact: Contact, count: int, measured: Measured, span: slice) -> 
 
 
 def _as_rows(values: Array) -> Array:
+    """Add an axis of points to values that are equal for all points."""
     return values[None, :] if len(values.shape) == 1 else values
 
 

@@ -122,6 +122,7 @@ def _relative_load_uncertainty(measured: Measured) -> Numbers:
 
 
 def _concatenated(rows: Iterable[Numbers]) -> Numbers:
+    """Join the rows of all data sets to one array (data,)."""
     return numpy.concatenate(list(rows))
 
 

@@ -131,6 +131,7 @@ class Measured:
         return f"{self.name}: {quantity}" if self.name else quantity
 
     def _reading_order(self, values: Numbers) -> Numbers:
+        """Return the numbers of the readings; 0, 1, 2, ... by default."""
         if self.order is None:
             return numpy.arange(float(values.size))
         order = self._broadcast("order", self.order, values)
@@ -138,6 +139,7 @@ class Measured:
         return order
 
     def _check_values(self, values: Numbers) -> None:
+        """Raise ValueError for a missing value, or one that is not allowed."""
         gaps = numpy.flatnonzero(numpy.isnan(values))
         if len(gaps):
             rows = ", ".join(str(gap + 1) for gap in gaps[:8])
@@ -160,6 +162,7 @@ class Measured:
         return numpy.broadcast_to(row, values.shape)
 
     def _set_load(self, values: Numbers) -> None:
+        """Check and store the load with its uncertainty."""
         kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
         if kind == self.quantity:
             raise ValueError(f"{self._label(kind)} is both the measured quantity and the load; choose another load")

@@ -43,12 +43,12 @@ class ModelNumber:
         inner = _wrapped(model)
         return isinstance(model, self.models) if inner is None else self.belongs_to(inner)
 
-    def inserted(self, model: Model, value: Array) -> Model:
+    def insert_into(self, model: Model, value: Array) -> Model:
         """Return the model with another value of this number."""
         inner = _wrapped(model)
         if inner is not None:
             wrapper: Any = model
-            wrapped: Model = replace(wrapper, model=self.inserted(inner, value))
+            wrapped: Model = replace(wrapper, model=self.insert_into(inner, value))
             return wrapped
         if self.insert is not None:
             return self.insert(model, value)

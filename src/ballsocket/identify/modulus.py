@@ -183,6 +183,7 @@ def calibrate(
 
 
 def _values(x: Array) -> numpy.ndarray:
+    """Convert numbers of any array library to a NumPy array."""
     return numpy.asarray(arrays.to_numpy(x), dtype=float)
 
 

@@ -164,14 +164,17 @@ def _band_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _title(quantity: str) -> str:
+    """Return the name of a quantity in a note."""
     return "free play" if quantity == "diametral_clearance" else MEASURED[quantity].title
 
 
 def _or(names: Sequence[str]) -> str:
+    """Join names by commas and "or"."""
     return " or ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 
 
 def _and(names: Sequence[str]) -> str:
+    """Join names by commas and "and"."""
     return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 
 

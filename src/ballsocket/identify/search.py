@@ -23,7 +23,7 @@ def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
     ValueError
         The model has no result for all data at any point within the ranges.
     """
-    ends = [minimised(misfit, start) for start in _starts(misfit, seed)]
+    ends = [minimise(misfit, start) for start in _starts(misfit, seed)]
     best = _most_central(misfit, ends)
     distant = [end for end in ends if numpy.max(abs(end.theta - best.theta)) > _SAME_POINT]
     rivals = tuple(end.theta for end in distant if end.cost < best.cost + _RIVAL_COST)
@@ -59,7 +59,7 @@ def _starts(misfit: Misfit, seed: int) -> list[Numbers]:
     return [points[first], points[second]] if numpy.isfinite(costs[second]) and distant[second] else [points[first]]
 
 
-def minimised(misfit: Misfit, start: Numbers) -> FitResult:
+def minimise(misfit: Misfit, start: Numbers) -> FitResult:
     """Minimise the misfit from a start by least squares with derivatives."""
     from scipy.optimize import least_squares
 

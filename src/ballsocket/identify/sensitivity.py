@@ -89,6 +89,7 @@ def _cases(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]:
 
 
 def _reads_indentation(measured: Measured) -> bool:
+    """Check if a data set has indentations as values or loads."""
     return "indentation" in (measured.quantity, measured.load)
 
 

@@ -100,7 +100,7 @@ def drawn(fitted: FittedModel, random: numpy.random.Generator) -> tuple[Measured
     scatter = fitted.misfit.scatter
     return tuple(
         replace(measured, values=_readings(measured, results, uncertainty * scatter.draw(len(measured), random)))
-        for measured, results, uncertainty in zip(fitted.data, fitted.answers, uncertainties, strict=True)
+        for measured, results, uncertainty in zip(fitted.data, fitted.results, uncertainties, strict=True)
     )
 
 

@@ -130,6 +130,7 @@ def _check_model(number: ModelNumber, model: Model) -> None:
 
 
 def _unknown_errors(machines: Iterable[Machine]) -> list[Unknown]:
+    """Collect the unknown errors of machines; raise ValueError for different machines with the same name."""
     by_name: dict[str, Machine] = {}
     for machine in machines:
         if by_name.setdefault(machine.name, machine) != machine:
@@ -143,6 +144,7 @@ def _unknown_errors(machines: Iterable[Machine]) -> list[Unknown]:
 
 
 def _unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = False) -> Unknown:
+    """Make an unknown with its search range and scale; raise ValueError for ends that are not allowed."""
     prior = _prior(name, stated)
     low, high = _ends(prior, quantity)
     for end in (low, high):
@@ -160,6 +162,7 @@ def _unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = Fa
 
 
 def _prior(name: str, stated: Prior) -> Distribution:
+    """Convert two ends to a distribution."""
     if isinstance(stated, Distribution):
         return stated
     try:

@@ -70,7 +70,7 @@ def _line(found: IdentificationResult, place: int, x: Numbers, factor: float) ->
     each = found.data[place]
     if each.angle is not None:
         order = numpy.argsort(x)
-        return x[order], factor * found.answers[place][order]
+        return x[order], factor * found.results[place][order]
     loads, answers = found.curve(place)
     return LOADS[each.load].shown.factor * loads, factor * answers
 

@@ -12,7 +12,7 @@ from ..contact.describe import Column
 from ..core import arrays
 from ..core.kinds import Unit
 from ..core.quantities import CONTACT, FIELD
-from .style import LEGEND, THICK, THIN, Line, finish, in_matplotlib, line_of
+from .style import LEGEND, THICK, THIN, LineStyle, finish, in_matplotlib, line_of
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def press_figure(
     contacts: Mapping[str, Contact],
     curves: Mapping[str, Contact],
     title: str = "",
-    lines: Mapping[str, Line] | None = None,
+    lines: Mapping[str, LineStyle] | None = None,
     note: str = "",
     units: Units = Units.SI,
 ) -> Figure:

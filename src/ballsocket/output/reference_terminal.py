@@ -13,7 +13,7 @@ from ..contact.describe import number_text
 from ..core.quantities import CONTACT
 from ..identify.modulus import Calibration
 from ..paper.table_3 import RATIOS
-from ..paper.table_3 import Column as TableColumn
+from ..paper.table_3 import TableColumn as TableColumn
 from .terminal import console, print_folded
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ class End(NamedTuple):
 
 
 @dataclass
-class Seen:
+class StudyReport:
     """What is told of a study, gathered part by part: it may be larger than the memory."""
 
     ends: dict[str, tuple[End, End]]
@@ -35,7 +35,7 @@ class Seen:
     valid: int = 0
 
     @classmethod
-    def of(cls, study: xarray.Dataset) -> Seen:
+    def of(cls, study: xarray.Dataset) -> StudyReport:
         names = answers(study)
         nothing = (End(float("nan"), 0), End(float("nan"), 0))
         seen = cls(
@@ -70,7 +70,7 @@ _LISTED = 5000  # points up to which all values are told
 
 def study_summary(study: xarray.Dataset) -> dict[str, Any]:
     """Least, median and largest value of each answer with their places, and all values where these are few."""
-    seen, size = Seen.of(study), int(study.status.size)
+    seen, size = StudyReport.of(study), int(study.status.size)
     quantities = {name: _ends_of(study, name, seen) for name in seen.ends}
     return {
         "model": study.attrs["model"],
@@ -93,7 +93,7 @@ def _plain(values: numpy.ndarray) -> Any:
     return values.tolist() if values.dtype.kind in "OUS" else to_list(values)
 
 
-def _ends_of(study: xarray.Dataset, name: str, seen: Seen) -> dict[str, Any]:
+def _ends_of(study: xarray.Dataset, name: str, seen: StudyReport) -> dict[str, Any]:
     low, high = seen.ends[name]
     if numpy.isnan(low.value):
         return {"least": None, "median": None, "largest": None}

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from ..core.quantities import QUANTITIES
 from ..studies.limits import Limit, allowed
-from .study_summary import Seen, answers, coordinates, map_summary, varying
+from .study_summary import StudyReport, answers, coordinates, map_summary, varying
 
 if TYPE_CHECKING:
     import xarray
@@ -24,7 +24,7 @@ def print_study(study: xarray.Dataset) -> None:
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
     Console().print(f"{study.attrs['model']}, {shape or 'one point'}", highlight=False)
     table = _table("quantity", "unit", "least", "median", "largest", "least at", "largest at")
-    seen = Seen.of(study)
+    seen = StudyReport.of(study)
     for name, (low, high) in seen.ends.items():
         if numpy.isnan(low.value):
             table.add_row(name, _unit(name), *["no answer"] * 3, "", "")

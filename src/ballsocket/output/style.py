@@ -37,7 +37,7 @@ THICK, THIN = 2.0, 1.0
 
 
 @dataclass(frozen=True)
-class Line:
+class LineStyle:
     """How a curve is drawn: its colour, and lengths of ink and gap in widths of the line; none is drawn through."""
 
     colour: str
@@ -45,40 +45,40 @@ class Line:
 
 
 _MODELS = {  # relatives share a colour, and differ by their dashes
-    "exact": Line(INK),
-    "tabulated": Line(GREY, _SHORT),
-    "fem": Line(PINK, _EVEN),
-    "sphere": Line(BLUE, _LONG),
-    "refined": Line(ORANGE, _DOTS),
-    "hess-forsbach": Line(VERMILLION, _LONG),
-    "adhesive": Line(VERMILLION, _DOTS),
-    "vessel": Line(BLUE, _DOT),
-    "bartel": Line(BLUE, _SHORT),
-    "bonded-layer": Line(GREEN, _DOT),
-    "bonded-layer-exact": Line(GREEN, _SHORT),
-    "hertz": Line(SKY, _TWO_DOTS),
-    "steuermann": Line(SKY, _LONG),
-    "plane-layer": Line(GREEN, _TWO_DOTS),
-    "cosine-limit": Line(PINK, _DOTS),
-    "liu-reconstruction": Line(GREY, _TWO_DOTS),
+    "exact": LineStyle(INK),
+    "tabulated": LineStyle(GREY, _SHORT),
+    "fem": LineStyle(PINK, _EVEN),
+    "sphere": LineStyle(BLUE, _LONG),
+    "refined": LineStyle(ORANGE, _DOTS),
+    "hess-forsbach": LineStyle(VERMILLION, _LONG),
+    "adhesive": LineStyle(VERMILLION, _DOTS),
+    "vessel": LineStyle(BLUE, _DOT),
+    "bartel": LineStyle(BLUE, _SHORT),
+    "bonded-layer": LineStyle(GREEN, _DOT),
+    "bonded-layer-exact": LineStyle(GREEN, _SHORT),
+    "hertz": LineStyle(SKY, _TWO_DOTS),
+    "steuermann": LineStyle(SKY, _LONG),
+    "plane-layer": LineStyle(GREEN, _TWO_DOTS),
+    "cosine-limit": LineStyle(PINK, _DOTS),
+    "liu-reconstruction": LineStyle(GREY, _TWO_DOTS),
 }
 
 # of the dashes that the catalogue leaves to the exact answer and the finite elements
-_SPARE = [Line(*pair) for pair in product(_COLOURS, (_THROUGH, _EVEN))]
+_SPARE = [LineStyle(*pair) for pair in product(_COLOURS, (_THROUGH, _EVEN))]
 _FREE = [line for line in _SPARE if line not in _MODELS.values()]
 
 
-def line_of(model: str) -> Line:
+def line_of(model: str) -> LineStyle:
     """The line of a model, by its name: one that is not of the catalogue keeps a line of its own in every figure."""
     return _MODELS[model] if model in _MODELS else _FREE[crc32(model.encode()) % len(_FREE)]
 
 
-def numbered(index: int) -> Line:
+def numbered(index: int) -> LineStyle:
     """The line of one of several cases that are no models."""
-    return Line(_COLOURS[index % len(_COLOURS)], _DASHES[(index + index // len(_COLOURS)) % len(_DASHES)])
+    return LineStyle(_COLOURS[index % len(_COLOURS)], _DASHES[(index + index // len(_COLOURS)) % len(_DASHES)])
 
 
-def in_matplotlib(line: Line, width: float = THICK) -> dict[str, Any]:
+def in_matplotlib(line: LineStyle, width: float = THICK) -> dict[str, Any]:
     """A line as Matplotlib takes it; one without gaps lies below those through which it can be seen."""
     dash, below = ((0, line.dash), 0.0) if line.dash else ("-", 0.1)
     return {"color": line.colour, "linestyle": dash, "linewidth": width, "zorder": 2.0 - below}

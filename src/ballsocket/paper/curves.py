@@ -14,7 +14,7 @@ from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT
 from ..models.foundation import HessForsbach
 from ..problem import Joint
 from . import cases
-from .figure import Figure, Line, Map, Panel
+from .figure import Figure, FigureLine, Map, Panel
 
 Models = Mapping[str, Model]
 """By the name under which they are drawn."""
@@ -23,8 +23,8 @@ FIT = "Eq. (18), Table 3"
 """The paper's closed form, where its modulus is what is shown."""
 
 
-def _line(model: str, case: str, x: Any, y: Any) -> Line:
-    return Line(model=model, case=case, x=to_numpy(x).ravel().tolist(), y=to_numpy(y).ravel().tolist())
+def _line(model: str, case: str, x: Any, y: Any) -> FigureLine:
+    return FigureLine(model=model, case=case, x=to_numpy(x).ravel().tolist(), y=to_numpy(y).ravel().tolist())
 
 
 _FORCES = numpy.array([100.0, 200.0, 350.0, 500.0, 750.0, 1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0])
@@ -58,7 +58,7 @@ def figure_2_models(poisson: float, models: Models) -> Figure:
     )
 
 
-def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str, str], list[Line]]:
+def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str, str], list[FigureLine]]:
     """Title and axis of each panel, and its lines."""
     hip = cases.hip(poisson)
     wide = cases.joint(head_radius=18.0 - _CLEARANCES, clearance=_CLEARANCES, liner_thickness=6.75, poisson=poisson)
@@ -173,7 +173,7 @@ def _pressure_panel(title: str, case: str, joint: Joint, models: Models, place: 
 
 def figure_6(name: str, model: Model, points: int = 25) -> Figure:
     """Peak pressure and contact area over head radius and liner thickness at 3 kN, about the outer radii of Table 1."""
-    grid = _Grid(points)
+    grid = _CurveGrid(points)
     contact = model.press(grid.joint, force=cases.LOAD)
     return Figure(
         title=f"Figure 6, {name}",
@@ -193,7 +193,7 @@ def figure_6_pressures(name: str, model: Model, reference: Model, points: int = 
         title="Figure 6, pressures of every model",
         caption="How far the peak pressure of each model lies from the exact one, in %; white is within 1 %.",
         columns=3,
-        maps=[_deviation(name, "p0", _Grid(points), (model, reference), lambda contact: contact.max_pressure)],
+        maps=[_deviation(name, "p0", _CurveGrid(points), (model, reference), lambda contact: contact.max_pressure)],
     )
 
 
@@ -203,18 +203,18 @@ def figure_6_areas(name: str, model: Model, reference: Model, points: int = 25) 
         title="Figure 6, areas of every model",
         caption="How far the contact area of each model lies from the exact one, in %; white is within 1 %.",
         columns=3,
-        maps=[_deviation(name, "area", _Grid(points), (model, reference), lambda contact: contact.area)],
+        maps=[_deviation(name, "area", _CurveGrid(points), (model, reference), lambda contact: contact.area)],
     )
 
 
 def _deviation(
-    name: str, symbol: str, grid: _Grid, pair: tuple[Model, Model], quantity: Callable[[Contact], Numbers]
+    name: str, symbol: str, grid: _CurveGrid, pair: tuple[Model, Model], quantity: Callable[[Contact], Numbers]
 ) -> Map:
     value, truth = (quantity(each.press(grid.joint, force=cases.LOAD)) for each in pair)
     return replace(grid.map(f"{name}: {symbol} over exact [%]", 100 * (value / truth - 1)), about_zero=True)
 
 
-class _Grid:
+class _CurveGrid:
     """Head radii and liner thicknesses, `points` of each, a little beyond the outer radii of Table 1."""
 
     def __init__(self, points: int) -> None:

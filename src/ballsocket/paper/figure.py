@@ -9,7 +9,7 @@ from typing import Any
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
+class FigureLine:
     """One curve: `model` says who, `case` what is varied; numbers with the units of the panel's axes."""
 
     model: str
@@ -25,7 +25,7 @@ class Panel:
     title: str
     x: str
     y: str
-    lines: list[Line]
+    lines: list[FigureLine]
     highest: float | None = None
 
 
@@ -62,7 +62,9 @@ class Figure:
     @classmethod
     def of(cls, summary: Mapping[str, Any]) -> Figure:
         """From its dictionary."""
-        panels = [Panel(**{**panel, "lines": [Line(**line) for line in panel["lines"]]}) for panel in summary["panels"]]
+        panels = [
+            Panel(**{**panel, "lines": [FigureLine(**line) for line in panel["lines"]]}) for panel in summary["panels"]
+        ]
         return cls(**{**summary, "panels": panels, "maps": [Map(**each) for each in summary["maps"]]})
 
     @classmethod

@@ -33,7 +33,7 @@ def paper_joint(poisson: Array, ratios: Array = RATIOS) -> Joint:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Column:
+class TableColumn:
     """One column of Table 3: the paper's constants and ours.
 
     `difference` is how far the paper's K lies from the reference at each of `RATIOS`, relative; `paper_error` the worst
@@ -62,12 +62,12 @@ class Column:
         }
 
 
-def refit_table_3(reference: Model | None = None) -> tuple[Column, ...]:
+def refit_table_3(reference: Model | None = None) -> tuple[TableColumn, ...]:
     """Table 3 fitted again, to `Exact()` unless told otherwise."""
     return tuple(refit_column(poisson, reference) for poisson in table_3()["poisson"])
 
 
-def refit_column(poisson: float, reference: Model | None = None) -> Column:
+def refit_column(poisson: float, reference: Model | None = None) -> TableColumn:
     """One column of Table 3, for one of its Poisson's ratios.
 
     Raises
@@ -83,7 +83,7 @@ def refit_column(poisson: float, reference: Model | None = None) -> Column:
     joint = paper_joint(poisson)
     fit = calibrate(joint, form=as_polynomial, reference=reference)
     theirs = replace(fit, modulus=polynomial(*paper))
-    return Column(
+    return TableColumn(
         poisson=poisson,
         paper=paper,
         ours=_three(fit.modulus.constants),

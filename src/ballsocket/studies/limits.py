@@ -104,7 +104,7 @@ def dimension(study: xarray.Dataset, name: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Lengths(Dimensions):
+class _LengthDimensions(Dimensions):
     """Dimensions of the joints of a study, each a number or labelled along axes."""
 
     ball_radius: Any
@@ -117,11 +117,13 @@ class _Lengths(Dimensions):
         return self.behind
 
 
-def _lengths(study: xarray.Dataset, joint: Mapping[str, Any]) -> _Lengths:
+def _lengths(study: xarray.Dataset, joint: Mapping[str, Any]) -> _LengthDimensions:
     given = {str(name): study[name] for name in study.coords if name in JOINT}
     thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
     shell = thickness if thickness < inf else 0.0
-    return _Lengths(**derive_lengths(given, {name: float(joint[name]) for name in STORED_LENGTHS}, shell), behind=shell)
+    return _LengthDimensions(
+        **derive_lengths(given, {name: float(joint[name]) for name in STORED_LENGTHS}, shell), behind=shell
+    )
 
 
 def margin_over(study: xarray.Dataset, limit: Limit, across: str, up: str) -> numpy.ndarray:

@@ -8,7 +8,7 @@ from numpy.polynomial import polynomial
 
 import ballsocket as bs
 from ballsocket.elasticity.exact.kernel import Kernel
-from ballsocket.elasticity.exact.modes import Ball, Shell, Socket
+from ballsocket.elasticity.exact.modes import ElasticBall, Shell, Socket
 
 from ...joints import HIP
 from ...places import DATA
@@ -288,7 +288,7 @@ def test_kernel_is_the_sum_of_its_modes():
     from ballsocket.elasticity.exact import closed_forms
 
     socket = Socket(radius=18.0, shells=(Shell(thickness=6.75, young=1000.0, poisson=0.4),))
-    k = Kernel(socket=socket, ball=Ball(radius=17.9, young=3000.0, poisson=0.2))
+    k = Kernel(socket=socket, ball=ElasticBall(radius=17.9, young=3000.0, poisson=0.2))
     n = np.arange(200_000)
     smooth = (1 - (n / len(n)) ** 2) ** 2
     for x in (0.3, 1.0, 2.9):

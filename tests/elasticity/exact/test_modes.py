@@ -10,7 +10,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket import Support
-from ballsocket.elasticity.exact.modes import Ball, Shell, Socket, ball_of, socket_of
+from ballsocket.elasticity.exact.modes import ElasticBall, Shell, Socket, ball_of, socket_of
 
 POISSON = [-0.5, 0.0, 0.3, 0.4, 0.49, 0.4999]
 RATIOS = [0.05, 0.5, 18 / 6.75, 10.0, 50.0]
@@ -226,7 +226,7 @@ def test_incompressible_layers():
     assert nearly[0].compliance(0) == pytest.approx(0.0, abs=1e-15)
 
 
-@pytest.mark.parametrize("body", [massive(LINER), LINED, Ball(radius=18.0, young=1000.0, poisson=0.4)], ids=repr)
+@pytest.mark.parametrize("body", [massive(LINER), LINED, ElasticBall(radius=18.0, young=1000.0, poisson=0.4)], ids=repr)
 def test_expansion(body):
     """What is left of a series of order m falls like q^-(m + 1)."""
     n = np.array([100, 200]) if body is LINED else np.array([40, 80])
@@ -335,7 +335,7 @@ def test_fields_of_high_degrees_stay_at_the_bore():
 
 @pytest.mark.parametrize("poisson", [*POISSON, 0.5])
 def test_ball(poisson):
-    ball = Ball(radius=17.9, young=1000.0, poisson=poisson)
+    ball = ElasticBall(radius=17.9, young=1000.0, poisson=poisson)
     c = ball.compliance(np.arange(20_001))
     assert c[0] == pytest.approx((1 - 2 * poisson) * 17.9 / 1000.0, rel=1e-14)
     assert c[1] == 0.0
@@ -354,7 +354,7 @@ def test_ball(poisson):
 
 def test_a_ball_is_a_cavity_turned_inside_out():
     """n -> -(n + 1) swaps the powers that grow for those that decay."""
-    a, b = Ball(radius=1.0, young=1.0, poisson=0.3), massive(Shell(thickness=1.0, young=1.0, poisson=0.3))
+    a, b = ElasticBall(radius=1.0, young=1.0, poisson=0.3), massive(Shell(thickness=1.0, young=1.0, poisson=0.3))
     np.testing.assert_allclose(a.expansion(8)[::2], -b.expansion(8)[::2])
     np.testing.assert_allclose(a.expansion(8)[1::2], b.expansion(8)[1::2])
 
@@ -363,7 +363,7 @@ def test_first_coefficient():
     """a_1 = ±(1 - 2ν)²/(2(1 - ν)): two bodies of the same material have none together."""
     expected = 0.2**2 / 1.2
     assert LINED.expansion(1) == pytest.approx(-expected)
-    assert Ball(radius=17.9, young=1.0, poisson=0.4).expansion(1) == pytest.approx(expected)
+    assert ElasticBall(radius=17.9, young=1.0, poisson=0.4).expansion(1) == pytest.approx(expected)
 
 
 # of a joint
@@ -395,7 +395,7 @@ def test_a_backing_of_the_liners_own_material_is_a_thicker_liner(support):
 
 
 def test_the_ball_of_a_joint():
-    assert ball_of(LINED_HIP) == Ball(radius=17.9, young=230000.0, poisson=0.3)
+    assert ball_of(LINED_HIP) == ElasticBall(radius=17.9, young=230000.0, poisson=0.3)
     assert ball_of(replace(LINED_HIP, ball=None)) is None
 
 
@@ -413,8 +413,8 @@ def test_bodies_are_made_of_plain_floats():
     [
         (lambda: Shell(thickness=0.0, young=1.0, poisson=0.3), "thickness = 0 is not allowed"),
         (lambda: Shell(thickness=1.0, young=inf, poisson=0.3), "young = inf is not allowed"),
-        (lambda: Ball(radius=1.0, young=1.0, poisson=0.51), "poisson = 0.51 is not allowed"),
-        (lambda: Ball(radius=0.0, young=1.0, poisson=0.3), "radius = 0 is not allowed"),
+        (lambda: ElasticBall(radius=1.0, young=1.0, poisson=0.51), "poisson = 0.51 is not allowed"),
+        (lambda: ElasticBall(radius=0.0, young=1.0, poisson=0.3), "radius = 0 is not allowed"),
         (lambda: Socket(radius=18.0, shells=()), "at least one layer"),
         (lambda: Socket(radius=18.0, shells=(BONE, LINER)), "only the outermost layer may be infinite"),
         (lambda: LINED.compliance([2, -1]), r"degrees\[1\] = -1 is not allowed"),

@@ -342,8 +342,8 @@ def test_contact_pressures_are_told_from_other_results(tmp_path):
 def test_the_edge_is_where_the_gap_closes():
     angle = np.radians(np.arange(0.0, 60.0, 1.3))
     gap = np.where(angle < 0.7, -1e-4, 3.0 * np.clip(angle - 0.7, 0.0, None) ** 1.5)
-    assert ccx.edge(angle, gap) == pytest.approx(0.7, abs=1e-9)
-    assert ccx.edge(angle, np.full_like(angle, -1e-4)) == angle[-1]
+    assert ccx.edge_angle(angle, gap) == pytest.approx(0.7, abs=1e-9)
+    assert ccx.edge_angle(angle, np.full_like(angle, -1e-4)) == angle[-1]
 
 
 def test_the_pole_is_read_past_its_neighbours():
@@ -351,7 +351,7 @@ def test_the_pole_is_read_past_its_neighbours():
     pressures = 10.0 - 4.0 * angle**2 + angle**4
     pressures[:6] = (0.0, 0.0, 24.0, 15.0, 9.0, 11.0)
     pressures[angle > 0.8] = 77.0
-    assert ccx.pole(angle, pressures, 1.0) == pytest.approx(10.0, rel=1e-6)
+    assert ccx.pressure_at_pole(angle, pressures, 1.0) == pytest.approx(10.0, rel=1e-6)
 
 
 def test_without_calculix(tmp_path, monkeypatch):

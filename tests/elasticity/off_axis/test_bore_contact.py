@@ -55,8 +55,8 @@ def test_forces_are_in_equilibrium_with_the_loads():
     assert again.converged.all()
 
 
-@pytest.mark.parametrize("grid", [FINE, COARSE], ids=["with coarse start", "without"])
-def test_search_needs_few_iterations(grid, monkeypatch):
+@pytest.mark.parametrize(("grid", "trials"), [(FINE, 15), (COARSE, 12)], ids=["with coarse start", "without"])
+def test_search_needs_few_iterations(grid, trials, monkeypatch):
     """Each iteration evaluates all balls once; tangents are solved only where a step gained little."""
     counts = {"trials": 0, "tangents": 0}
     solve, tangent = equilibrium.solve_pressure, BoreContact.pressure_sensitivity
@@ -73,8 +73,8 @@ def test_search_needs_few_iterations(grid, monkeypatch):
     monkeypatch.setattr(BoreContact, "pressure_sensitivity", count_tangents)
     solution = solve_force(bore_of(grid), LOADS, START, HELD)
     assert solution.converged.all()
-    assert counts["trials"] <= 14
-    assert counts["tangents"] <= 6
+    assert counts["trials"] <= trials
+    assert counts["tangents"] <= 7
 
 
 def test_blocks_of_balls_do_not_change_the_solution(monkeypatch):

@@ -69,3 +69,79 @@ def test_command_writes_a_tilted_deck(tmp_path):
     text = (tmp_path / "ballsocket.inp").read_text("ascii")
     assert max(map(len, text.splitlines())) <= 132
     assert "*ELEMENT, TYPE=C3D15" in text
+
+
+DECK = TiltedDeck(joint=JOINT, cup=bs.Cup(), indentation=0.04, tilt=0.5, element_size=radians(15.0))
+
+
+def section(keyword, text):
+    """Return the numbers in the lines below a keyword of a deck."""
+    lines = text[text.index(keyword) :].splitlines()[1:]
+    end = next(i for i, line in enumerate(lines) if line.startswith("*"))
+    return [[float(number) for number in line.split(",") if number.strip()] for line in lines[:end]]
+
+
+def test_deck_has_the_geometry_of_cup_and_ball():
+    nodes = np.array(section("*NODE, NSET=ALL", DECK.text()))
+    count = DECK.socket.last_number
+    assert nodes[:, 0].tolist() == list(range(1, DECK.ball.last_number + 1))
+    radius = np.linalg.norm(nodes[:count, 1:], axis=1)
+    assert radius.min() == pytest.approx(JOINT.socket_radius)
+    assert radius.max() == pytest.approx(JOINT.socket_radius + JOINT.liner_thickness)
+    assert nodes[:, 2].min() > -1e-9  # half of the bodies
+    assert nodes[:count, 3].min() == pytest.approx(0.0, abs=1e-9)
+    first_touch = 1e-3 * JOINT.clearance * np.array([np.sin(0.5), 0.0, np.cos(0.5)])
+    skin = np.linalg.norm(nodes[count:, 1:] - first_touch, axis=1)
+    ball = JOINT.socket_radius - 1e-3 * JOINT.clearance
+    assert skin.max() == pytest.approx(ball)
+    assert skin.min() == pytest.approx(0.9 * ball)
+
+
+def test_deck_scales_the_displacement_and_the_contact_stiffness():
+    text = DECK.text()
+    x, z = (float(line.rsplit(",", 1)[1]) for line in text.splitlines() if line.startswith("PUSHED, ") and "." in line)
+    assert (x, z) == pytest.approx((4e-5 * np.sin(0.5), 4e-5 * np.cos(0.5)))
+    stiffness = section("*SURFACE BEHAVIOR", text)[0][0]
+    assert stiffness == pytest.approx(500 * DECK.expected["max_pressure"] / 0.04, rel=1e-5)
+    assert section("*ELASTIC", text) == [[pytest.approx(1000.0), pytest.approx(0.4)]]
+    assert "1000000, 0.3" in text  # the skin
+
+
+def test_deck_loads_the_inner_face_and_fixes_the_outer_one():
+    text, socket = DECK.text(), DECK.socket
+    inner = [number for number, _, (_, _, k), _ in socket.elements() if k == 0]
+    lined = text[text.index("NAME=LINED") :].splitlines()[1 : len(inner) + 1]
+    assert lined == [f"{number}, S1" for number in inner]
+    fixed = {int(node) for row in section("NSET=OUTSIDE", text) for node in row}
+    assert fixed == set(socket.number[:, :, -1].ravel().tolist()) - {0}
+    mirrored = {int(node) for row in section("NSET=MIRROR", text) for node in row}
+    nodes = np.array(section("*NODE, NSET=ALL", text))
+    flat = {int(node) for node in nodes[: socket.last_number][abs(nodes[: socket.last_number, 2]) < 1e-9, 0]}
+    assert mirrored == flat
+
+
+def test_elements_fill_the_half_shell():
+    """Volumes of hexahedra from the corners approach that of the shell; wedges at the pole included."""
+    socket = DECK.socket
+    elements = list(socket.elements())
+    assert [number for number, *_ in elements] == list(range(1, len(elements) + 1))
+    assert len(elements) == (len(socket.polar) - 1) * (len(socket.azimuth) - 1) * (len(socket.radius) - 1)
+    assert {kind for _, kind, (i, _, _), _ in elements if i == 0} == {"C3D15"}
+    assert {kind for _, kind, (i, _, _), _ in elements if i} == {"C3D20R"}
+    used = {node for *_, nodes in elements for node in nodes}
+    assert used == set(socket.number.ravel().tolist()) - {0}
+    first_of_ball = next(DECK.ball.elements())[0]
+    assert first_of_ball == len(elements) + 1
+
+
+def test_layers_of_the_backing_are_sets_of_elements():
+    backed = JOINT.replace(backing=(bs.Layer(thickness=4.0, material=bs.TITANIUM),))
+    deck = TiltedDeck(joint=backed, cup=bs.Cup(), indentation=0.04, tilt=0.5, element_size=radians(15.0))
+    text = deck.text()
+    assert {"LAYER0", "LAYER1", "SKIN"} == {
+        line.split("ELSET=")[1] for line in text.splitlines() if "*ELEMENT," in line
+    }
+    radii = deck.socket.radius
+    assert backed.socket_radius + backed.liner_thickness == pytest.approx(radii[abs(radii - 24.75).argmin()])
+    assert radii[-1] == pytest.approx(24.75 + 4.0)
+    assert f"{bs.TITANIUM.young:.12g}, {bs.TITANIUM.poisson:.12g}" in text

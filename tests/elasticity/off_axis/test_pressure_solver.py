@@ -27,8 +27,8 @@ def overlap_of(displacement, grid=GRID):
     return gap.overlap(np.atleast_2d(displacement))
 
 
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-4, 1e-9])
-def test_pressures_close_the_gap_or_vanish(tolerance):
+@pytest.mark.parametrize(("tolerance", "iterations"), [(1e-4, 4), (1e-6, 6), (1e-9, 14)])
+def test_pressures_close_the_gap_or_vanish(tolerance, iterations):
     overlap = overlap_of(DISPLACEMENTS)
     solution = solve_pressure(SHELL, overlap, tolerance=tolerance)
     gap = SHELL.displacement(solution.pressure) - overlap
@@ -38,7 +38,7 @@ def test_pressures_close_the_gap_or_vanish(tolerance):
     assert (np.where(solution.pressure > 0, abs(gap), 0.0) <= tolerance * scale).all()
     assert (gap >= -tolerance * scale).all()
     assert not solution.pressure[2].any()  # within the clearance
-    assert solution.iterations < 40
+    assert solution.iterations <= iterations
 
 
 def test_pressures_agree_with_non_negative_least_squares():

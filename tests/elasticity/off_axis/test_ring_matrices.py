@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.exact.modes import Ball, socket_of
+from ballsocket.elasticity.exact.modes import ElasticBall, socket_of
 from ballsocket.elasticity.finite_elements.harmonics import socket_harmonics
 from ballsocket.elasticity.finite_elements.shapes import socket_shape
 from ballsocket.elasticity.off_axis.compliance import AxisymmetricOperator
@@ -77,7 +77,7 @@ def test_elements_and_modes_of_a_closed_shell_agree_in_low_harmonics():
 def test_cosine_pressure_does_not_deform_a_ball():
     """Mode n = 1 is the translation of a ball, which is excluded from its compliance."""
     sphere = graded_grid(pi, radians(4.0))
-    rings = sphere_rings(Ball(radius=18.0, young=1000.0, poisson=0.3).compliance, sphere)
+    rings = sphere_rings(ElasticBall(radius=18.0, young=1000.0, poisson=0.3).compliance, sphere)
     cosine = np.broadcast_to(np.cos(sphere.polar)[:, None], (1, sphere.rings, sphere.meridians))
     moved = AxisymmetricOperator(matrices=sphere.average_over_cells(rings))(cosine)
     assert abs(moved).max() < 1e-2 * 18.0 / 1000.0

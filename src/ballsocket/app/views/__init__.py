@@ -1,7 +1,7 @@
 """Views: one question each."""
 
 from .compare import Compare
-from .cup import Cup
+from .cup import CupView
 from .design_map import DesignMap
 from .evidence import Evidence
 from .gait import Gait
@@ -10,12 +10,19 @@ from .press import Press
 from .wear import Wear
 
 Kind = (
-    type[Press] | type[Cup] | type[Gait] | type[Wear] | type[DesignMap] | type[Compare] | type[Judge] | type[Evidence]
+    type[Press]
+    | type[CupView]
+    | type[Gait]
+    | type[Wear]
+    | type[DesignMap]
+    | type[Compare]
+    | type[Judge]
+    | type[Evidence]
 )
 
 KINDS: dict[str, Kind] = {
     "press": Press,
-    "cup": Cup,
+    "cup": CupView,
     "gait": Gait,
     "wear": Wear,
     "map": DesignMap,

@@ -16,7 +16,7 @@ from ...core.quantities import JOINT
 from ...io.joint_file import JointFile
 from ...output.html import drawn, table
 from ...output.press_plot import press_figure
-from ...output.style import Line, numbered
+from ...output.style import LineStyle, numbered
 from ...problem.presets import joints
 from ..drawing import extent_of, section
 from ..press_charts import press_charts
@@ -153,7 +153,7 @@ def _drawings(files: Mapping[str, JointFile], contacts: Mapping[str, Contact]) -
     return f"<div class='pair'>{figures}</div>"
 
 
-def _lines(files: Mapping[str, JointFile]) -> dict[str, Line]:
+def _lines(files: Mapping[str, JointFile]) -> dict[str, LineStyle]:
     """A joint's line is that of its place."""
     return {name: numbered(place) for place, name in enumerate(files)}
 

@@ -24,13 +24,13 @@ from ..bowl import pressed_bowl
 from ..cup_fields import cup_edited, cup_fields
 from ..cupping import SOLVED, Stood, bore_of, pressed_in_cup, set_up, stand_of, stood
 from ..fields import segments
-from ..jobs import Kept, ViewJob
+from ..jobs import CachedRun, ViewJob
 from ..reading import Reading
 from ..screen import STANDINGS, Screen
 from ..view import Document, Host
 from ..words import alert, column_of, number_cell, progress, told, trust, unit_of_files
 
-_STOOD: Kept = Kept(most=32)
+_STOOD: CachedRun = CachedRun(most=32)
 _FIELDS = (
     *("inclination", "anteversion", "tilt", "inwards", "forwards"),
     *("arc_of_cover", "chamfer", "aim", "side"),
@@ -38,7 +38,7 @@ _FIELDS = (
 _USUAL = {"inclination": 45.0, "anteversion": 15.0}
 
 
-class Cup:
+class CupView:
     """The press at once, in a bore that has been set up; the map of orientations when nothing else is to be done."""
 
     title = "Cup"

@@ -26,7 +26,7 @@ from ..look import PALETTES
 from ..map_chart import MapChart
 from ..mapping import around, best, joint_at, limits_of, mapped, models_of, now, told
 from ..reading import Reading
-from ..screen import AXES, MAP_MODELS, MAPPED, Axis, Screen, phrases_of
+from ..screen import AXES, MAP_MODELS, MAPPED, MapAxis, Screen, phrases_of
 from ..style import html, inputs
 from ..view import Document, Host
 from ..words import alert, column_of, unit_of_files
@@ -131,7 +131,7 @@ class DesignMap:
         name = getattr(self._screen, which).name
         try:
             _, low, high = range_of(_with_unit(f"{name}={event.new}", name, self._screen.reading))
-            axis = Axis(name=name, low=low, high=high)
+            axis = MapAxis(name=name, low=low, high=high)
         except ValueError as error:
             self._refuse(error)
             return

@@ -18,12 +18,12 @@ from ...output.evidence_words import case_text, listed, value_text
 from ..asked import Asked
 from ..evidencing import LONGEST, Packed, cases_of, packed
 from ..fields import Field, segments, words
-from ..jobs import Kept, ViewJob
+from ..jobs import CachedRun, ViewJob
 from ..screen import Screen
 from ..view import Document, Host
 from ..words import alert, progress
 
-_FOUND: Kept = Kept(most=8)
+_FOUND: CachedRun = CachedRun(most=8)
 _LEVELS, _YES = (("low", "low"), ("medium", "medium"), ("high", "high")), (("no", "no"), ("yes", "yes"))
 _NAMES = tuple(each.name for each in fields(Asked))
 

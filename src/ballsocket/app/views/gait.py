@@ -19,7 +19,7 @@ from ...output.gait_plot import course_figure
 from ..fields import typed
 from ..gaiting import Gaited, gait_of, gaited
 from ..in_use import Own, Use
-from ..jobs import Kept, ViewJob
+from ..jobs import CachedRun, ViewJob
 from ..player import COURSES, player
 from ..reading import Reading
 from ..screen import Screen
@@ -27,7 +27,7 @@ from ..use_fields import cycle_fields
 from ..view import Document, Host
 from ..words import doubt, notes_list, number_cell, progress, told
 
-_FOUND: Kept = Kept(most=24)
+_FOUND: CachedRun = CachedRun(most=24)
 _LARGEST = 100_000  # characters of a table
 
 

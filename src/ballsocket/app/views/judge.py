@@ -18,7 +18,7 @@ from ...output.html import picture, table
 from ...problem.cup import Interface
 from ..judging import Judged, judged
 from ..reading import number_text
-from ..running import LONGEST, Done, Reached, Refused, Run, looked_at
+from ..running import LONGEST, Done, Reached, Run, RunRefused, looked_at
 from ..screen import Screen
 from ..style import html, inputs
 from ..view import Document, Host
@@ -124,7 +124,7 @@ class Judge:
         if isinstance(news, Reached):
             self._bar.value = int(100 * news.share)
             self._say(news.words)
-        elif isinstance(news, Refused):
+        elif isinstance(news, RunRefused):
             self._ended()
             self._say("")
             self._refuse(news.why)

@@ -16,7 +16,7 @@ from ...output import html as page
 from ...problem.presets import joints
 from ..fields import Field, choice, number, segments, typed
 from ..in_use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS, Use
-from ..jobs import Kept, ViewJob
+from ..jobs import CachedRun, ViewJob
 from ..screen import Screen
 from ..use_fields import cycle_fields
 from ..view import Document, Host
@@ -24,7 +24,7 @@ from ..wear_charts import depth_maps, penetration_chart, wear_numbers
 from ..wearing import LONGEST, Worn, life_of, worn
 from ..words import progress, unit_of_files
 
-_FOUND: Kept = Kept(most=24)
+_FOUND: CachedRun = CachedRun(most=24)
 _ALONE, _NOW, _OTHER = "", "as it is now", "as it was put beside"
 _SHOWN = (
     *("cycle", "body_weight", "contact", "law", "coefficient", *WEAR_INPUTS, "spread", "millions", "creep"),

@@ -22,7 +22,7 @@ from .abel import AbelState
 from .free_face import MODES, POLAR_TERMS, free_face_of
 from .kernel import Kernel
 from .load_curve import LoadCurve, window_of
-from .modes import Ball, Socket
+from .modes import ElasticBall, Socket
 
 _ITERATIONS = 3
 """Fixed-point iterations before the extrapolation."""
@@ -57,7 +57,7 @@ class HemisphereGap(LinearGap):
         return total
 
 
-def response(socket: Socket, ball: Ball | None) -> Numbers:
+def response(socket: Socket, ball: ElasticBall | None) -> Numbers:
     """Compute the modes of the additional displacement of both surfaces per mode of pressure: (MODES, MODES).
 
     A socket with a free outer surface stands on its rim, which stays plane. It is half of a sphere that is pressed from

@@ -21,7 +21,7 @@ import numpy
 from ...core.arrays import Numbers
 from .closed_forms import ORDER
 from .intervals import CachedIntervals, Intervals, Operators
-from .modes import Ball, Socket
+from .modes import ElasticBall, Socket
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +29,7 @@ class Kernel:
     """Kernel k(x) of a socket and a ball (None is rigid), to an absolute error of `tolerance`."""
 
     socket: Socket
-    ball: Ball | None = None
+    ball: ElasticBall | None = None
     tolerance: float = 1e-14
 
     @cached_property

@@ -195,7 +195,7 @@ class Socket:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ball:
+class ElasticBall:
     """A solid elastic ball.
 
     The mode n = 1 has a net force. Any balancing load of the mode n = 1, such as a uniform body force, moves the
@@ -266,11 +266,13 @@ def socket_of(joint: Joint) -> Socket:
     return Socket(radius=float(joint.socket_radius), shells=(liner, *backing), support=joint.support)
 
 
-def ball_of(joint: Joint) -> Ball | None:
+def ball_of(joint: Joint) -> ElasticBall | None:
     """Make the ball of a joint of plain numbers; None if it is rigid."""
     if joint.ball is None:
         return None
-    return Ball(radius=float(joint.ball_radius), young=float(joint.ball.young), poisson=float(joint.ball.poisson))
+    return ElasticBall(
+        radius=float(joint.ball_radius), young=float(joint.ball.young), poisson=float(joint.ball.poisson)
+    )
 
 
 def _shell(thickness: Array, material: Material) -> Shell:

@@ -86,6 +86,7 @@ class Compliance:
 
     @cached_property
     def _single_softness(self) -> AxisymmetricOperator | UniformOperator:
+        """Operator from pressures to displacements in single precision."""
         return self.softness.in_single_precision()
 
     def pressure(self, displacement: Numbers) -> Numbers:

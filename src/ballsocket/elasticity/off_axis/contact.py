@@ -109,6 +109,7 @@ class OffAxisContact(SolvedContact):
 
     @property
     def _patch(self) -> ContactPatch:
+        """Patch of a single contact."""
         state: ContactStates = self.single_state
         return state.patches[0]
 

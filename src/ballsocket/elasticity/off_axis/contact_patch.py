@@ -54,12 +54,14 @@ class ContactPatch:
 
     @cached_property
     def _pressure_interpolator(self) -> RegularGridInterpolator:
+        """Interpolator of the pressure, extrapolated linearly to the rim where the last ring is loaded."""
         p, (last, before) = self.pressure, self.grid.polar[[-1, -2]]
         ratio = (self.grid.reach - last) / (last - before)
         return self._interpolator(p, numpy.maximum(p[-1] + ratio * (p[-1] - p[-2]), 0.0) * (p[-1] > 0))
 
     @cached_property
     def _level_interpolator(self) -> RegularGridInterpolator:
+        """Interpolator of the level, constant between the last ring and the rim."""
         return self._interpolator(self.level, self.level[-1])
 
     def _interpolator(self, values: Numbers, at_rim: Numbers) -> RegularGridInterpolator:
@@ -112,6 +114,7 @@ class ContactPatch:
 
     @property
     def _ray_azimuths(self) -> Numbers:
+        """Azimuths of the rays about the centre of the contact in rad."""
         return numpy.arange(_RAYS) * (2 * pi / _RAYS)
 
     @cached_property
@@ -227,6 +230,7 @@ def _tangents_at(axis: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def _quadratic_terms(s: Numbers, t: Numbers) -> Numbers:
+    """Compute the terms 1, s, t, s², s t, t² of a quadratic: (..., 6)."""
     return numpy.stack([numpy.ones_like(s), s, t, s * s, s * t, t * t], axis=-1)
 
 

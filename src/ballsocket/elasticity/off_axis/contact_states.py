@@ -119,9 +119,11 @@ class ContactStates:
 
     @property
     def _preloaded(self) -> bool:
+        """True for a joint with an interference."""
         return self.bore.gap.clearance < 0
 
     def _along_axes(self, vectors: Numbers) -> Numbers:
+        """Project vectors (3, contacts) onto the axes of the loads."""
         return numpy.einsum("kn,nk->n", vectors, self.axes)
 
     @cached_property

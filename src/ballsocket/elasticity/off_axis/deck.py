@@ -102,6 +102,7 @@ class SphericalBlock:
 
 
 def _edge_middles(corners: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Return the middles of the edges between corners, in their order."""
     return [((a + c) // 2, (b + d) // 2) for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1], strict=True)]
 
 
@@ -161,6 +162,7 @@ class TiltedDeck:
 
     @cached_property
     def _shape(self) -> SocketShape:
+        """Meridian section of the cup, in units of its bore's radius."""
         return socket_shape(self.joint, self.cup)
 
     @cached_property
@@ -177,6 +179,7 @@ class TiltedDeck:
 
     @property
     def _bore_radius(self) -> float:
+        """Radius of the bore in mm."""
         return float(self.joint.socket_radius)
 
     @cached_property
@@ -208,6 +211,7 @@ class TiltedDeck:
 
     @property
     def _direction(self) -> Numbers:
+        """Unit vector of the displacement in the cup's frame."""
         return numpy.array([sin(self.tilt), 0.0, cos(self.tilt)])
 
     def text(self) -> str:
@@ -234,6 +238,7 @@ class TiltedDeck:
         }
 
     def _title(self) -> Iterator[str]:
+        """Yield the comments at the head of the deck."""
         joint = str(self.joint).encode("ascii", "replace").decode()
         yield f"** {joint}"[:200]
         yield f"** Rigid ball displaced at {degrees(self.tilt):g} degrees from the cup's axis z; half, y > 0."
@@ -241,6 +246,7 @@ class TiltedDeck:
         yield "** the forces are those of the whole cup. Units N, mm, MPa."
 
     def _mesh(self) -> Iterator[str]:
+        """Yield the nodes and elements of cup and ball."""
         yield "*NODE, NSET=ALL"
         for body in (self.socket, self.ball):
             yield from body.node_lines()
@@ -249,6 +255,7 @@ class TiltedDeck:
         yield from _element_lines(self.ball, lambda k: "SKIN")
 
     def _materials(self) -> Iterator[str]:
+        """Yield the materials and sections of all layers and of the skin."""
         liner = float(self.joint.liner.young)
         materials = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._shape.layers)}
         for name, (young, nu) in (materials | {"SKIN": (1e3 * liner, 0.3)}).items():
@@ -256,6 +263,7 @@ class TiltedDeck:
             yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
 
     def _contact(self) -> Iterator[str]:
+        """Yield the contact pair, the symmetry plane and the fixed nodes."""
         slope = _CONTACT_STIFFNESS_FACTOR * self.expected["max_pressure"] / self.indentation
         for name, body, face in (("LINED", self.socket, _INNER_FACE), ("PRESSED", self.ball, _OUTER_FACE)):
             yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
@@ -274,6 +282,7 @@ class TiltedDeck:
         yield from ("*BOUNDARY", "MIRROR, 2, 2", "OUTSIDE, 1, 3", "PUSHED, 1, 3")
 
     def _step(self) -> Iterator[str]:
+        """Yield the load step that displaces the ball."""
         x, _, z = self.scale * self.indentation * self._direction
         yield from ("*STEP, INC=100", "*STATIC", "1., 1.", "*BOUNDARY")
         yield from (f"PUSHED, 1, 1, {x:.13g}", f"PUSHED, 3, 3, {z:.13g}")
@@ -295,6 +304,7 @@ def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iter
 
 
 def _node_set(name: str, nodes: Numbers) -> Iterator[str]:
+    """Yield the lines of a named set of nodes, without 0."""
     yield f"*NSET, NSET={name}"
     numbers = sorted({int(node) for node in nodes if node})
     for start in range(0, len(numbers), _NODES_PER_LINE):

@@ -260,6 +260,7 @@ class _NewtonSearch:
         self.tolerance = numpy.clip(_PRESSURE_TOLERANCE_FACTOR * self.residual, tightest, _MAX_PRESSURE_TOLERANCE)
 
     def _newton_step(self) -> Numbers:
+        """Solve the damped tangent for the residual force: (batch, 3) in mm."""
         trace = numpy.trace(self.tangent, axis1=1, axis2=2)
         diagonal = numpy.where(trace > 0, (_REGULARISATION + self.damping) * trace, 1.0)
         matrices = self.tangent + diagonal[:, None, None] * numpy.eye(3)

@@ -173,6 +173,7 @@ def rim_grid(reach: float, width: float) -> Grid:
 
 
 def _graded(reach: float, width: float, fractions: Numbers) -> Grid:
+    """Make equal rings and divide the last one into fractions."""
     rings = max(ceil(reach / width - 1e-9), 2)
     edges = numpy.linspace(0.0, reach, rings + 1)
     last = edges[-2] + numpy.append(0.0, numpy.cumsum(fractions)) * (reach - edges[-2])
@@ -190,4 +191,5 @@ def even_grid(reach: float, width: float) -> Grid:
 
 
 def _meridians(width: float) -> int:
+    """Return the even number of cells in a ring, at least 8."""
     return 2 * max(round(pi / width), 4)

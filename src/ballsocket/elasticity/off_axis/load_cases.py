@@ -223,6 +223,7 @@ def _solve_touching(
 
 
 def _patch_margins(states: ContactStates) -> Numbers:
+    """Collect the margins of all patches in rad: (contacts,)."""
     return numpy.array([patch.edge_margin for patch in states.patches])
 
 

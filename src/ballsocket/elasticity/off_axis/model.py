@@ -114,6 +114,7 @@ class Sphere(Model):
 
     @property
     def domain(self) -> tuple[Range, ...]:
+        """Ranges of the joint in which the model has a solution."""
         incompressible = Range(
             quantity=largest_poisson,
             symbol="ν",
@@ -126,6 +127,7 @@ class Sphere(Model):
 
     @property
     def validity(self) -> tuple[Range, ...]:
+        """Ranges of the contact in which the model is accurate."""
         narrow = Range(
             quantity=lambda contact: contact.half_angle / self.ring_width,
             symbol="ε over a ring's width",
@@ -136,13 +138,16 @@ class Sphere(Model):
 
     @property
     def parameters(self) -> tuple[Array, ...]:
+        """Components of the direction, which broadcast against joint and load."""
         components = (self.direction[..., axis] for axis in range(3))
         return tuple(float(component) if component.ndim == 0 else component for component in components)
 
     def _law(self, joint: Joint) -> ForceLaw:
+        """Raise TypeError: a contact off the axis has no closed force law."""
         raise TypeError("sphere has no force law: its rings are too coarse near first touch; use exact")
 
     def in_cup(self, cup: Cup) -> Sphere:
+        """Return this model with another cup."""
         return replace(self, cup=cup)
 
     def press(
@@ -216,6 +221,7 @@ class Sphere(Model):
         return replace(self, direction=direction)._press_along(joint, indentation=indentation)
 
     def _press_along(self, joint: Joint, **load: Array | None) -> Contact:
+        """Press along the direction of this model."""
         return super().press(joint, **load)
 
     def along(self, direction: Array | None = None, tilt: Array | None = None, azimuth: Array | None = None) -> Sphere:
@@ -241,6 +247,7 @@ class Sphere(Model):
         return self.cup.rim - self.cup.chamfer / joint.socket_radius
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve the contacts of all joints and loads, and mark those that failed."""
         needs("fem", "skfem", "scipy")
         in_cup = self.direction @ numpy.array(self.cup.frame).T
         in_cup = in_cup / numpy.linalg.norm(in_cup, axis=-1, keepdims=True)

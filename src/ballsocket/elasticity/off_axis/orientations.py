@@ -55,6 +55,7 @@ class Orientations:
     seconds: float
 
     def _field(self, quantity: Callable[[OffAxisContact], Array]) -> Numbers:
+        """Stack a quantity of all contacts: (inclinations, anteversions)."""
         return numpy.stack([arrays.to_numpy(quantity(contact)) for contact in self.contacts])
 
     @cached_property

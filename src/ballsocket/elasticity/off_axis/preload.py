@@ -139,4 +139,5 @@ class Preload:
 
 
 def _touches_everywhere(contact: OffAxisContact) -> bool:
+    """Return True if every cell of a single contact is loaded."""
     return bool((contact.pressure_map[2] > 0).all())

@@ -145,6 +145,7 @@ class _ConjugateGradients:
         self._step(length[:, None, None], response)
 
     def _step(self, length: Numbers, response: Numbers) -> None:
+        """Move along the direction by a length, and cut negative pressures off."""
         pressure = self.pressure + length * self.direction
         self.displacement = self.displacement + length * response
         pulling = (pressure < 0).any(axis=(1, 2))

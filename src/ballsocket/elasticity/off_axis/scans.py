@@ -86,6 +86,7 @@ class Scan(InterpolatedDeviation):
 
     @cached_property
     def _tree(self) -> Any:
+        """Search tree of the directions."""
         from scipy.spatial import cKDTree  # slow to import
 
         return cKDTree(self.directions.T)

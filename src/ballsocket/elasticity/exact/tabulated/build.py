@@ -24,7 +24,7 @@ from ..abel import AbelState
 from ..grid import cached_grid
 from ..intervals import Intervals
 from ..kernel import Kernel
-from ..modes import Ball, Shell, Socket
+from ..modes import ElasticBall, Shell, Socket
 from . import chebyshev
 from . import model as table
 
@@ -149,7 +149,7 @@ def _solve_state(
     poisson, ratio = liner
     socket = Socket(radius=1.0, shells=(Shell(thickness=1 / ratio, young=1.0, poisson=poisson),))
     young = (1 - ball_poisson**2) / (1 - poisson**2) * (1 - ball_share) / ball_share if ball_share else 1.0
-    ball = Ball(radius=1.0, young=young, poisson=ball_poisson) if ball_share else None
+    ball = ElasticBall(radius=1.0, young=young, poisson=ball_poisson) if ball_share else None
     kernel = Kernel(socket=socket, ball=ball, tolerance=1e-13)
     gap = LinearGap(clearance=1.0, socket_radius=1.0)
     return AbelState(kernel=kernel, gap=gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points)))

@@ -1,0 +1,82 @@
+"""Delegation of a wrapped model, and old names of the modules of contact."""
+
+from dataclasses import dataclass
+from importlib import import_module
+
+import pytest
+
+import ballsocket as bs
+from ballsocket.contact import Covered, Model, ModelInfo, ModelWrapper, Pressed, RimLimited, Wrapped
+
+from ..joints import HIP
+
+ATTRIBUTES = (
+    *("name", "title", "sources", "fits", "domain", "validity", "promise", "remarks", "reach", "parameters"),
+    *("planar", "differentiable", "smooth_step", "seconds_a_press", "contact_type", "accepts_floats"),
+)
+OLD_NAMES = {
+    "catalogue.theories": "listed_models",
+    "contact.contact.Pressed": "ballsocket.contact.model_info.ModelInfo",
+    "contact.law.Law": "ForceLaw",
+    "contact.model.Covered": "RimLimited",
+    "contact.model.Wrapped": "ModelWrapper",
+    "contact.model_info.Theory": "ModelInfo",
+    "contact.strength.ELASTIC": "MAX_ELASTIC_UTILISATION",
+    "contact.strength.share": "von_mises_ratio",
+    "contact.verdict.shares": "strength_uses",
+    "contact.verdict.verdict": "assess_strength",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Renamed(ModelWrapper):
+    """Wrapper that overrides one attribute."""
+
+    @property
+    def name(self) -> str:
+        """Name of this wrapper."""
+        return "renamed"
+
+
+@pytest.mark.parametrize("model", [bs.Exact(), bs.Hertz(), bs.LiuReconstruction(), bs.FiniteElement()], ids=type)
+def test_a_wrapper_delegates_every_attribute_that_it_does_not_override(model):
+    wrapper = Renamed(model=model)
+    for name in ATTRIBUTES[1:]:
+        assert getattr(wrapper, name) == getattr(model, name), name
+    assert wrapper.name == "renamed"
+    assert isinstance(wrapper, Model)
+
+
+def test_all_declared_attributes_are_delegated():
+    declared = {name for cls in (Model, ModelInfo) for name in cls.__annotations__}
+    properties = {
+        name for cls in (Model, ModelInfo) for name, value in vars(cls).items() if isinstance(value, property)
+    }
+    assert declared | properties == {*ATTRIBUTES, "off_axis"}
+
+
+def test_a_wrapper_presses_as_the_wrapped_model():
+    wrapped, model = Renamed(model=bs.HessForsbach()), bs.HessForsbach()
+    for force in (3000.0, 1e-9):
+        assert wrapped.press(HIP, force=force).indentation == model.press(HIP, force=force).indentation
+    assert wrapped.law(HIP)(0.05) == model.law(HIP)(0.05)
+    assert wrapped.press(HIP, force=1.0).model is wrapped
+
+
+def test_a_model_info_without_a_contact_has_no_laws():
+    with pytest.raises(NotImplementedError, match="pin-in-hole has no laws of a contact"):
+        bs.PinInHole().numpy_laws(HIP, 0.1)
+
+
+@pytest.mark.parametrize(("old", "new"), OLD_NAMES.items())
+def test_old_names_of_modules_warn(old, new):
+    path, _, name = f"ballsocket.{old}".rpartition(".")
+    module = import_module(path)
+    with pytest.warns(DeprecationWarning, match=f"{name} is deprecated: use {new}"):
+        value = getattr(module, name)
+    new_path, _, new_name = new.rpartition(".")
+    assert value is getattr(import_module(new_path or path), new_name)
+
+
+def test_old_names_of_the_door_are_the_same_classes():
+    assert (Covered, Pressed, Wrapped) == (RimLimited, ModelInfo, ModelWrapper)
