@@ -1,4 +1,4 @@
-"""Table [uncertainty] of a file about a hip in use: quantities that differ between patients."""
+"""Table [uncertainty] of a hip file: quantities that differ between patients."""
 
 from __future__ import annotations
 
