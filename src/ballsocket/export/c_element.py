@@ -187,9 +187,9 @@ class CElement:
             name=self.name,
             NAME=self.name.upper(),
             along=_template("curve.c"),
-            curves="\n".join(_curve(name, curve) for name, curve in sorted(recording.curves.items())),
+            curves="\n".join(_curve_function(name, curve) for name, curve in sorted(recording.curves.items())),
             defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
-            checks="\n".join(_check(parameter.name, parameter.above) for parameter in TUNABLES),
+            checks="\n".join(_range_check(parameter.name, parameter.above) for parameter in TUNABLES),
             first_touch=c_number(constants.clearance - constants.smoothing),
             load=c_statements({**recording.status, **recording.load}),
             pressed=c_statements({**recording.status, **recording.pressed}),
@@ -218,15 +218,15 @@ class CElement:
         return {"version": __version__, "model": self.element.model.name, "joint": joint}
 
 
-def _check(name: str, above: bool) -> str:
+def _range_check(name: str, above: bool) -> str:
     """Write the C statement that rejects a parameter outside its range."""
     operator, allowed = (">", "above 0") if above else (">=", "0 or more")
     condition = f"p->{name} {operator} 0.0 && p->{name} < INFINITY"
     return f'    if (!({condition})) return "{name} must be finite and {allowed}";'
 
 
-def _curve(name: str, curve: CurveLaw) -> str:
-    """Write the coefficients of a curve as C arrays with their evaluation function."""
+def _curve_function(name: str, curve: CurveLaw) -> str:
+    """Write a tabulated curve in C: its coefficients and the function that evaluates it."""
     pieces: Numbers = curve.pieces
     rows = ",\n".join("    " + ", ".join(map(c_number, row)) for row in pieces.tolist())
     ends = ", ".join(map(c_number, (curve.shallowest, curve.deepest, curve.first, curve.density)))
