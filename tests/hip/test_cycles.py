@@ -442,6 +442,8 @@ def test_periodic_interpolation_distributes_the_difference_of_the_ends():
 
 def test_angles_of_the_iso_cycle_can_be_replaced():
     key_points = iso_14242_1_key_points(16)
-    assert iso_14242_1(16, angles=key_points.angles).rotation_increments == pytest.approx(key_points.rotation_increments)
-    with pytest.warns(DeprecationWarning, match=r"^argument 'key_points' of iso_14242_1\(\) is deprecated: use 'angles'"):
+    assert iso_14242_1(16, angles=key_points.angles).rotation_increments == pytest.approx(
+        key_points.rotation_increments
+    )
+    with pytest.warns(DeprecationWarning, match="^argument 'key_points' of iso_14242_1"):
         iso_14242_1(16, key_points=key_points.angles)
