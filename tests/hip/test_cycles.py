@@ -438,3 +438,12 @@ def test_periodic_interpolation_distributes_the_difference_of_the_ends():
     phase = np.linspace(0.0, 1.0, 11)
     function = monotone_periodic(phase, 3.0 * phase)
     assert function(phase) == pytest.approx(1.5, abs=1e-12)
+
+
+def test_angles_of_the_iso_cycle_can_be_replaced():
+    key_points = iso_14242_1_key_points(16)
+    assert iso_14242_1(16, angles=key_points.angles).rotation_increments == pytest.approx(
+        key_points.rotation_increments
+    )
+    with pytest.warns(DeprecationWarning, match="^argument 'key_points' of iso_14242_1"):
+        iso_14242_1(16, key_points=key_points.angles)

@@ -1,5 +1,8 @@
 """Sets of measurements: what they hold, and what is refused."""
 
+import sys
+from importlib import import_module
+
 import numpy as np
 import pytest
 
@@ -127,3 +130,9 @@ def test_earlier_names_warn():
         data = measured(quantity="frequency", own=observable)
     with pytest.warns(DeprecationWarning, match=r"Measured.own is deprecated: use observable"):
         assert data.own is observable
+
+
+def test_old_path_of_oscillation_keeps_the_function():
+    module = import_module("ballsocket.identify.oscillation")
+    assert module.oscillation is oscillation
+    assert sys.modules["ballsocket.identify"].oscillation is oscillation

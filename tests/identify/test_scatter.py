@@ -79,3 +79,11 @@ def test_the_heavy_tail_holds_five_percent_beyond_2_8_uncertainties():
 def test_degrees_of_freedom_must_be_positive_and_finite(degrees):
     with pytest.raises(ValueError, match="degrees of freedom are above 0 and finite"):
         HeavyTailed(degrees=degrees)
+
+
+@pytest.mark.parametrize("scatter", [NormalScatter(), HeavyTailed()])
+def test_old_names_of_scatter_warn_and_work(scatter):
+    with pytest.warns(DeprecationWarning, match="use information"):
+        assert scatter.told == scatter.information
+    with pytest.warns(DeprecationWarning, match="use censored"):
+        assert scatter.beyond(1.0) == scatter.censored(1.0)

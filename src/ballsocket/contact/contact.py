@@ -14,7 +14,7 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array
 from ..core.checks import check_numeric, check_vectors, degrees_hint, require
-from ..core.deprecation import RenamedAttribute, renamed_names
+from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..core.kinds import Unit
 from ..core.plotting import load_plot
 from ..core.quantities import QUANTITIES
@@ -120,6 +120,7 @@ class Contact(Outcome):
         has_limit = any(material is not None and material.yield_stress is not None for material in materials)
         return self._compute_utilisation(self.von_mises if has_limit else self.max_pressure)
 
+    @renamed_arguments(asked="mask")
     def utilisation_at(self, mask: Array) -> Array:
         """Compute the utilisation at the points of a mask; slow models leave NaN at the other points."""
         return self.utilisation

@@ -14,6 +14,7 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array
+from ..core.deprecation import renamed_arguments
 from ..problem import Joint
 from . import strength
 from .contact import Contact
@@ -244,6 +245,7 @@ class SolvedContact(Contact):
     def _compute_von_mises(self) -> Array:
         return self.laws.located(self._joint_von_mises)
 
+    @renamed_arguments(asked="mask")
     def utilisation_at(self, mask: Array) -> Array:
         """Compute the utilisation at the points of a mask; NaN at the other points."""
         flat_mask = numpy.broadcast_to(arrays.to_numpy(mask), self.laws.shape).ravel()

@@ -12,6 +12,7 @@ import numpy
 
 from ..contact import Contact
 from ..core.arrays import Numbers, to_numpy
+from ..core.deprecation import renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES, Quantity
 from ..core.validity import Status
@@ -169,7 +170,7 @@ def worst(found: Sequence[Row]) -> dict[str, Row]:
 
 
 @dataclass(frozen=True)
-class StoredMatrix:
+class LimitCheck:
     """How a limit is kept over the matrix.
 
     Attributes
@@ -214,13 +215,13 @@ class StoredMatrix:
         }
 
 
-def kept(limit: Limit, found: Sequence[Row], accuracy: float) -> StoredMatrix:
+def kept(limit: Limit, found: Sequence[Row], accuracy: float) -> LimitCheck:
     """How a limit is kept, where numbers may be off by a share of themselves."""
     values = numpy.array([_limited(limit, row) for row in found], dtype=float)
     margin = numpy.minimum(values - limit.low, limit.high - values)
     known = numpy.isfinite(values)
     order = numpy.where(known, margin, numpy.inf)
-    return StoredMatrix(
+    return LimitCheck(
         limit=limit,
         beyond=int((known & (margin < 0)).sum()),
         unknown=int((~known).sum()),
@@ -231,3 +232,6 @@ def kept(limit: Limit, found: Sequence[Row], accuracy: float) -> StoredMatrix:
 
 def _limited(limit: Limit, row: Row) -> float:
     return float(row.numbers.get(limit.name, row.case.get(limit.name, numpy.nan)))
+
+
+__getattr__ = renamed_names(__name__, {"Kept": "LimitCheck"})

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from ..core.deprecation import RenamedAttribute
 from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement
 from ..dynamics.reaction import Constants
@@ -53,6 +54,8 @@ class ExportJob:
             "tunables": ", ".join(parameter.name for parameter in TUNABLES),
             "failed": str(ContactState.THROUGH_WALL.value),
         }
+
+    words = RenamedAttribute("template_context")
 
     def program_texts(self) -> dict[str, str]:
         return {f"{self.name}.h": self.program.header, f"{self.name}.c": self.program.source}

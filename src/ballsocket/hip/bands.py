@@ -10,7 +10,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import RenamedAttribute
+from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..elasticity.off_axis.surfaces import Springs
 from .cohort_results import RESULT_UNITS, CohortResult
 from .contact_checks import list_notes
@@ -111,6 +111,7 @@ class Bands:
         low, high = self._tails
         return {"low": low, "median": 0.5, "high": high}
 
+    @renamed_arguments(share="fraction")
     def quantile(self, name: str, fraction: float) -> Numbers:
         """Compute the quantile of a result over the patients at each report; NaN if no patient has a result.
 
@@ -217,6 +218,7 @@ class Bands:
         """Largest utilisation of each patient from the first cycle to each report: (patients, reports)."""
         return self.cohort.peak_utilisation
 
+    @renamed_arguments(look="report")
     def valid_fraction(self, report: int) -> float:
         """Compute the fraction of patients with valid contacts from the first cycle to a report."""
         valid = self.cohort.valid[self.cohort.refused == "", report]
@@ -228,11 +230,13 @@ class Bands:
         valid = self.cohort.valid[self.cohort.refused == ""]
         return bool(valid.size and (valid == 1).all())
 
+    @renamed_arguments(share="fraction")
     def utilisation_quantile(self, fraction: float) -> Numbers:
         """Compute the quantile of the largest utilisation so far at each report; NaN if unknown."""
         known = self.peak_utilisation[~numpy.isnan(self.peak_utilisation).any(axis=1)]
         return numpy.quantile(known, fraction, axis=0) if len(known) else numpy.full(len(self.counts), numpy.nan)
 
+    @renamed_arguments(look="report")
     def edge_loading(self, report: int) -> float:
         """Compute the fraction of patients with edge loading in some instant of the cycle at a report."""
         column = list(RESULT_UNITS).index("edge_distance")

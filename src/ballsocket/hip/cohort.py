@@ -12,7 +12,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import renamed_names
+from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.array_files import read_arrays, write_arrays
 from ..core.storage.atomic_files import write_text
@@ -210,6 +210,7 @@ class CohortStore(PieceStore):
         return result if len(result.table) == expected else None
 
 
+@renamed_arguments(scatter="variability")
 def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence[float], seed: int) -> CohortStore:
     """Return the store of a sampled cohort in a folder.
 

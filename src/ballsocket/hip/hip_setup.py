@@ -12,7 +12,7 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers, is_plain
 from ..core.checks import require, shown
-from ..core.deprecation import RenamedAttribute
+from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..core.validity import check_domain
 from ..elasticity.finite_elements.shapes import socket_shape
 from ..elasticity.off_axis.grid import Grid, even_grid, graded_grid
@@ -182,6 +182,7 @@ class HipSetup(CupFrame):
             directions=self.foundation.directions,
         )
 
+    @renamed_arguments(rest="equilibrium")
     def edge(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> RimDistance:
         """Find the edge of each contact nearest to the end of the bore, on a bore worn by a depth in mm."""
         field = self.foundation.edge_field(equilibrium, self._depth_field(depth))
@@ -189,6 +190,7 @@ class HipSetup(CupFrame):
             self.grid, self.foundation.socket_radius, field, equilibrium.pressure, self.foundation.edge_inset
         )
 
+    @renamed_arguments(rest="equilibrium")
     def edge_distance(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
         """Compute the shortest arc in mm from the edge of each contact to the end of the bore: (loaded,).
 
@@ -230,6 +232,7 @@ class HipSetup(CupFrame):
         }
         return tuple((self.cycle.activity_slices[number][0], loads) for number, loads in indices.items() if len(loads))
 
+    @renamed_arguments(rest="equilibrium")
     def worst_contacts(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
         """Compute the contact with the largest pressure in each activity with contact: (activities, `COLUMNS`)."""
         largest = equilibrium.pressure.max(axis=1, initial=0.0)
@@ -272,6 +275,7 @@ class HipSetup(CupFrame):
         """Checks of the contact model in the first cycle."""
         return self.contact_checks(self.unworn_worst)
 
+    @renamed_arguments(rest="equilibrium")
     def exposure(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> CycleExposure:
         """Collect pressures and slides of the socket's points for these contacts, on a bore worn by a depth in mm."""
         contact_shares = partial(self.foundation.contact_shares, equilibrium, self._depth_field(depth))

@@ -11,7 +11,7 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import renamed_arguments
 from ..core.kinds import Kind
-from .cycle import DEFAULT_STEPS, Cycle, CycleDefinition, CycleParameter, Spring
+from .cycle import DEFAULT_STEPS, Cycle, CycleDefinition, CycleParameter, PhaseFunction, Spring
 from .kinematics import parse_rotation_order
 from .waveforms import half_cosines
 
@@ -49,8 +49,8 @@ def _iso_key_points(phases: Numbers) -> Numbers:
     return numpy.stack([half_cosines(phases, *key_points) for key_points in _ISO_ANGLES])
 
 
-@renamed_arguments(instants="n_steps")
-def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
+@renamed_arguments(instants="n_steps", key_points="angles")
+def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseFunction | None = None) -> Cycle:
     """Create the walking cycle of hip simulators (ISO 14242-1): 300 to 3000 N along a line fixed to the socket, 1 Hz.
 
     Each angle is one cosine.
@@ -61,11 +61,13 @@ def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
         Number of time steps.
     order : str
         Order of the rotations, which the standard does not state; see `Cycle`.
+    angles : function, optional
+        Rotations that replace the cosines; see `Cycle`.
     """
     return Cycle(
         name="iso-14242-1",
         force=_iso_force,
-        angles=_iso_angles,
+        angles=angles or _iso_angles,
         n_steps=n_steps,
         order=order,
         cup_tilt=_ISO_TILT,
@@ -76,7 +78,7 @@ def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
 @renamed_arguments(instants="n_steps")
 def iso_14242_1_key_points(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """Create the cycle of ISO 14242-1 with half cosines between the key points of each angle; see `iso_14242_1`."""
-    return replace(iso_14242_1(n_steps, order), name="iso-14242-1-key-points", angles=_iso_key_points)
+    return replace(iso_14242_1(n_steps, order, _iso_key_points), name="iso-14242-1-key-points")
 
 
 @renamed_arguments(instants="n_steps")

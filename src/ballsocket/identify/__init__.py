@@ -3,6 +3,9 @@
 `ballsocket.identify` itself is the function that fits measurements; this package has its data and results.
 """
 
+import sys
+
+from . import observables
 from .estimates import Estimate, Product
 from .identification import identify
 from .information import Information
@@ -18,6 +21,9 @@ from .scatter import HeavyTailed, NormalScatter
 
 Identified = IdentificationResult
 Own = CustomObservable
+
+# old path of the module; importing by it later would otherwise replace the function `oscillation`
+sys.modules[f"{__name__}.oscillation"] = observables
 
 __all__ = [
     "MACHINE_ERRORS",

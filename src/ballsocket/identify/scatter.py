@@ -10,7 +10,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import renamed_names
+from ..core.deprecation import RenamedAttribute, renamed_names
 
 
 class ScatterModel(Protocol):
@@ -70,6 +70,9 @@ class NormalScatter:
         """Draw normal readings."""
         return random.standard_normal(count)
 
+    beyond = RenamedAttribute("censored")
+    told = RenamedAttribute("information")
+
 
 @dataclass(frozen=True, kw_only=True)
 class HeavyTailed:
@@ -128,6 +131,9 @@ class HeavyTailed:
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
         """Draw readings of Student's t."""
         return random.standard_t(self.degrees, count)
+
+    beyond = RenamedAttribute("censored")
+    told = RenamedAttribute("information")
 
 
 def _censored(logarithm: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:

@@ -7,6 +7,8 @@ from dataclasses import asdict, dataclass, field, replace
 from itertools import groupby
 from typing import Any
 
+from ..core.deprecation import renamed_names
+
 
 @dataclass(frozen=True, kw_only=True)
 class FigureLine:
@@ -84,3 +86,6 @@ def _merged(panels: Iterable[Panel]) -> Iterator[Panel]:
     for _, group in groupby(sorted(kept, key=lambda panel: order[panel.title]), key=lambda panel: panel.title):
         same = list(group)
         yield replace(same[0], lines=[line for panel in same for line in panel.lines])
+
+
+__getattr__ = renamed_names(__name__, {"Line": "FigureLine"})

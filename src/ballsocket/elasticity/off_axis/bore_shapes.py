@@ -13,7 +13,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import check_number, degrees_hint, require, shown
-from ...core.deprecation import renamed_names
+from ...core.deprecation import RenamedAttribute, renamed_names
 from .directions import polar_angle
 
 if TYPE_CHECKING:
@@ -124,6 +124,8 @@ class InterpolatedDeviation:
     @abstractmethod
     def interpolate(self, directions: Numbers) -> Numbers:
         """Interpolate the depth in mm at unit vectors (3, ...)."""
+
+    between = RenamedAttribute("interpolate")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
