@@ -175,7 +175,7 @@ def _dataset(results: Results, name: str, dataset: Any) -> None:
         results.add(f"{name}/{kind}", {str(key): variable.values for key, variable in getattr(dataset, kind).items()})
 
 
-_COMMENT = re.compile(r'/\*.*?\*/|<!--.*?-->|"""[^"]*"""|"[^"\n]*"|^\s*(?://|#)[^\n]*', re.DOTALL | re.MULTILINE)
+_COMMENT = re.compile(r'/\*.*?\*/|<!--.*?-->|"""[^"]*"""|"[^"\n]*"|^\s*(?://|#|\*\*)[^\n]*', re.DOTALL | re.MULTILINE)
 _NUMBER = re.compile(r"(?<![\w.])-?\d+\.\d*(?:[eE][-+]?\d+)?|(?<![\w.])-?\d+[eE][-+]?\d+")
 
 

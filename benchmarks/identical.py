@@ -290,13 +290,13 @@ def compare(old: Mapping[str, Numbers], new: Mapping[str, Numbers], *, numbers_o
     of_numbers = sum(change.kind is Kind.NUMBER for change in changes)
     for kind, size, differ in (("numbers", sizes[0], of_numbers), ("texts", sizes[1], len(changes) - of_numbers)):
         print(f"{size} {kind} in both: {size - differ} identical to the last bit, {differ} differ")
+    if numbers_only:
+        changes = [change for change in changes if change.kind is not Kind.SENTENCE]
+        missing = [name for name in missing if _kind(old[name]) is not Kind.SENTENCE]
     _show(changes)
     for title, names in (("missing", missing), ("new", added)):
         if names:
             print(f"{len(names)} {title}:\n  " + "\n  ".join(names[:_MAX_ROWS]))
-    if numbers_only:
-        changes = [change for change in changes if change.kind is not Kind.SENTENCE]
-        missing = [name for name in missing if _kind(old[name]) is not Kind.SENTENCE]
     print("identical" if not changes and not missing else f"{len(changes)} differ, {len(missing)} missing")
     return 1 if changes or missing else 0
 
