@@ -46,7 +46,7 @@ BENCHMARKS = {
     "in-motion": ("in_motion", "a ball joint in MuJoCo, Exudyn, OpenSim and FMI, beside what these have themselves"),
     "gpu": ("gpu", "presses a second on a GPU through PyTorch, against its memory's bandwidth; skipped without one"),
     "app": ("app", "the explorer in a browser: first view, a slider that moves, fifty sessions at once"),
-    "identical": ("identical", "results of every public entry, recorded twice and compared bit for bit: 10 minutes"),
+    "identical": ("identical", "results of every public entry, recorded twice and compared bit for bit"),
     "import": ("start", "how long a fresh interpreter takes to import the package and to answer a joint file"),
 }
 """Name: the module with a `measure()`, and one line on it."""

@@ -330,7 +330,7 @@ def off_axis(results: Results, folder: Path) -> None:
             "tilt": {"force": 3000.0, "tilt": radians(62.0), "azimuth": 0.5},
             "indentation": {"indentation": 0.05, "tilt": radians(30.0)},
             "half angle": {"half_angle": 0.5, "tilt": 0.2},
-            "displacement": {"displacement": numpy.array([[0.1, 0.0, 0.1], [0.3, 0.1, -0.2], [0.05, 0.0, 0.14]])},
+            "displacement": {"displacement": numpy.array([[0.1, 0.0, 0.1], [0.3, 0.1, -0.2], [0.02, 0.0, 0.01]])},
             "tilts": {"force": 2000.0, "tilt": numpy.radians([0.0, 35.0, 70.0, 100.0])},
         }
         for title, aim in aims.items():
@@ -392,6 +392,7 @@ def _tilted(results: Results, name: str, pressed: Any) -> None:
     if pressed is not None:
         results.add_attributes(f"{name}/cup", pressed, f"{vectors} edge_loaded edge_margin edge_distance rim_distance")
         results.add_attributes(f"{name}/cup", pressed, "tilt error")
+        results.add(f"{name}/summary", pressed.summary())
         if numpy.ndim(pressed.indentation) == 0 and not pressed.status.failed:
             polar, azimuth, pressure = pressed.pressure_map
             results.add(f"{name}/cup/map", pressure[:: max(1, len(polar) // 8), :: max(1, len(azimuth) // 8)])

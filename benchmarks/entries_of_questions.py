@@ -49,18 +49,24 @@ def identify(results: Results, folder: Path) -> None:
     depths, areas, angles = measured("indentation", 0.005), measured("area", 0.02), measured("half_angle", 0.03)
     read = measured("indentation", 0.005, machine=machine)
     film = measured("max_pressure", 0.03, saturation=9.0)
-    swing = Measured(
-        quantity="frequency",
-        values=oscillation(mass=2.0).read(pressed)[:3],
-        uncertainty=4.0,
-        force=force[:3],
-        observable=oscillation(mass=2.0),
+    own: dict[str, Any] = {"own": oscillation(mass=2.0)}  # by the earliest name of the parameter
+    frequency = (1e3 * pressed.stiffness[:3] / 2.0) ** 0.5 / (2 * numpy.pi)
+    swing = Measured(quantity="frequency", values=frequency, uncertainty=4.0, force=force[:3], **own)
+    by_depth = Measured(
+        quantity="force",
+        values=pressed.force,
+        uncertainty=0.01 * pressed.force,
+        indentation=pressed.indentation,
+        load_uncertainty=2e-4,
+        machine=Machine(compliance=(0.0, 1e-5), drift=1e-5, name="frame"),
     )
     free: dict[str, Any] = {"clearance": (0.02, 0.3), "liner.young": (400.0, 2000.0)}
     poisson = design.Normal(mean=0.4, deviation=0.02)
     cases: dict[str, tuple[Any, Any, dict[str, Any]]] = {
         "indentations": (depths, free, {}),
         "areas": (areas, free, {}),
+        "loads": (measured("indentation", 0.005, load_uncertainty=0.02 * force), free, {}),
+        "forces": (by_depth, free, {}),
         "machine": ([read, areas], free, {}),
         "heavy-tailed": ([depths, film], free, {"scatter": HeavyTailed()}),
         "known before": ([depths, angles], {**free, "liner.poisson": poisson}, {}),
@@ -72,11 +78,16 @@ def identify(results: Results, folder: Path) -> None:
             results.add(name, {**fit.summary(), "point": fit.point, "next": fit.next.summary()})
             results.add(f"{name}/curve", fit.curve(0, 8))
     with results.attempt("springs"):
-        springs = bs.identify(bs.HessForsbach(), truth, depths, free)
+        springs = bs.identify(bs.HessForsbach(), truth, [depths, areas], {**free, "liner.poisson": poisson})
         results.add("springs", {**springs.summary(), "point": springs.point})
         drawn = springs.posterior(100, seed=1)
         results.add("posterior/summary", drawn.summary())
         results.add("posterior/samples", drawn.samples[::10])
+    table = "force_N,force_uncertainty_N,indentation_um,indentation_uncertainty_um,area_mm2,area_uncertainty_mm2\n"
+    rows = "500,10,16,0.5,200,5\n1500,20,28,0.6,,\n3000,30,44,0.7,480,9\n"
+    (folder / "press.csv").write_text(table + rows, encoding="utf-8")
+    (folder / "press.toml").write_text(_MEASURED, encoding="utf-8")
+    add_command(results, "file", "identify", str(folder / "press.toml"))
     family = replace(truth, liner_thickness=numpy.array([4.0, 6.0, 8.0, 10.0]))
     forms = {"constant": bs.as_constant, "polynomial": bs.as_polynomial, "vessel": bs.as_corrected_vessel}
     for name, form in forms.items():
@@ -85,6 +96,31 @@ def identify(results: Results, folder: Path) -> None:
             results.add(f"calibrate/{name}", {**calibration.summary(), "residual": calibration.residual})
     with results.attempt("calibrate/reference"):
         results.add("calibrate/reference", bs.calibrate(truth, reference=bs.Refined()).summary())
+
+
+_MEASURED = """
+model = "hess-forsbach"
+joint = "hip-36"
+scatter = "heavy-tailed"
+[free]
+clearance = "0.05..0.2 mm"
+liner.young = { median = "900 MPa", factor = 1.3 }
+[machine.frame]
+offset = "-10..10 um"
+drift = "0.1 um"
+[[data]]
+file = "press.csv"
+quantities = ["indentation", "area"]
+gaps = "leave-out"
+machine = "frame"
+[[data]]
+quantity = "frequency"
+values = ["1.1 kHz", "1.3 kHz"]
+uncertainty = "2 %"
+force = ["1 kN", "3 kN"]
+load_uncertainty = "10 N"
+mass = "2 kg"
+"""
 
 
 def studies(results: Results, folder: Path) -> None:

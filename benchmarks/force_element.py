@@ -16,7 +16,7 @@ import numpy
 
 import ballsocket as bs
 from ballsocket.dynamics import Flores, Friction
-from ballsocket.dynamics.compiled import CompiledElement, answered
+from ballsocket.dynamics.compiled import CompiledElement, loads_at
 
 from . import opensim_rival
 from .report import Report, Rows
@@ -90,7 +90,7 @@ def _summed() -> Any:
         for call in range(count):
             s = states[call % 2]
             r, v, w = (s[0, 0], s[0, 1], s[0, 2]), (s[1, 0], s[1, 1], s[1, 2]), (s[2, 0], s[2, 1], s[2, 2])
-            force, moment, energy, tangent = answered(potential, constants, r, v, w)
+            force, moment, energy, tangent = loads_at(potential, constants, r, v, w)
             total += force[0] + moment[1] + energy + tangent[2]
         return total
 

@@ -8,7 +8,8 @@
 status: 0 all results are identical; 1 a result differs or is missing, or a room has nearly no results. Every room runs
 in a process of its own, on one thread, with an empty cache. Texts (notes, messages, comments in exported programs) are
 results too. With `--numbers` sentences may differ, for a change that rewords them. Both records must come from one
-machine with the same libraries.
+machine with the same libraries. The entries are called by their earliest names, so that old code can be recorded too:
+copy `identical.py` and `entries_*.py` into its `benchmarks/`.
 """
 
 from __future__ import annotations
@@ -51,6 +52,7 @@ ROOMS = {
     **dict.fromkeys(("contact", "models", "exact", "finite_elements", "off_axis"), "entries_of_contact"),
     **dict.fromkeys(("dynamics", "hip", "patients", "export"), "entries_in_use"),
     **dict.fromkeys(("identify", "studies", "evidence", "command"), "entries_of_questions"),
+    "refusals": "entries_of_refusals",
 }
 """Rooms by name, and the module with a function of that name that records it."""
 

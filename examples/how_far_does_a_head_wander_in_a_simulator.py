@@ -74,7 +74,7 @@ for inclination, colour in ((30.0, "#0072B2"), (70.0, "#D55E00")):
     loads = element(done.y[:3].T, done.y[3:6].T, [course(time)[1] for time in done.t])
     stored = loads.energy + HOLDER / 2 * np.sum(done.y[3:6] ** 2, axis=0)
     off = np.ptp(stored + done.y[6] - done.y[7]) / done.y[7, -1]
-    cut = np.mean(loads.status == bs.dynamics.Touch.AT_RIM)
+    cut = np.mean(loads.status == bs.dynamics.ContactState.AT_RIM)
     aside = np.hypot(done.y[0], done.y[1])
     print(
         f"{inclination:g}°: up to {1e3 * aside.max():.0f} µm aside, at the rim for {100 * cut:.0f} % of the cycle, "

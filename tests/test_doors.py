@@ -80,7 +80,7 @@ def test_files_that_users_name_are_opened_by_one_module():
     "reader",
     [
         "io/toml.py",
-        "hip/tables.py",
+        "hip/cycle_tables.py",
         "studies/columns.py",
         "elasticity/off_axis/scans.py",
         "core/storage/array_files.py",

@@ -63,7 +63,7 @@ def test_a_matrix_is_no_position():
     ],
 )
 def test_three_components_are_real_numbers(position):
-    with pytest.raises(ValueError, match="a state has three components, x, y and z, all real numbers"):
+    with pytest.raises(ValueError, match="a state must have three components, x, y and z, all real numbers"):
         ELEMENT(position)
 
 

@@ -58,7 +58,7 @@ def test_valid_models_agree_on_random_joints_of_the_papers_range():
 def test_a_reconstruction_is_never_valid():
     contact = bs.LiuReconstruction().press(HIP, force=np.array([1.0, 3000.0]))
     assert not np.any(contact.valid)
-    assert contact.notes[0].startswith("2 of 2: never valid: a reconstruction")
+    assert contact.notes[0].startswith("2 of 2: never valid: unvalidated reconstruction")
 
 
 SPRINGS = (bs.HessForsbach(), bs.Vessel(), bs.BondedLayerExact())

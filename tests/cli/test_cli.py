@@ -330,7 +330,7 @@ def test_figure(tmp_path, ending):
             ["press", EXAMPLE, "--ball-radius", "9", "--head-diameter", "18"],
             "ball_radius and head_diameter are one too",
         ),
-        (["press", "hip-36", "--outer-diameter", "30"], "outer_diameter = '30' is not allowed: it leaves no liner"),
+        (["press", "hip-36", "--outer-diameter", "30"], "outer_diameter = '30' is not allowed: it must leave a liner"),
         (["press", EXAMPLE, "--colour"], "No such option: --colour"),
         (["press", ".", "--force", "1"], "is a folder; a joint file is needed"),
         (["press", *NUMBERS[:4], *NUMBERS[6:]], "liner_thickness is missing"),
@@ -583,7 +583,7 @@ def test_press_by_finite_elements_with_a_cup_of_its_own(tmp_path):
         (("--model", "fem", "--element", "triangle"), "element 'triangle' is not known"),
         (
             ("--model", "fem", "--element-size", "9 mm"),
-            "liner_thickness = 6.75 is not allowed: elements of 9 mm need two",
+            "liner_thickness = 6.75 is not allowed: a layer must have at least two elements of 9 mm",
         ),
         (("--model", "fem", "--element-size", "0.0005 mm"), "GiB of memory"),
         (("--model", "fem", "--vtk", "a.txt"), "'a.txt' must end in .vtu, .vtk"),

@@ -1,4 +1,4 @@
-"""The compiled element says what the element says."""
+"""Compiled element: the same loads and steps as the element."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ pytest.importorskip("numba")
 
 @pytest.mark.long
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
-def test_many_states_in_one_pass(model):
+def test_compiled_loads_equal_those_of_the_element(model):
     from ballsocket.dynamics.compiled import CompiledElement
 
     for cup in (None, bs.Cup()):
@@ -29,7 +29,7 @@ def test_many_states_in_one_pass(model):
 
 
 @pytest.mark.long
-def test_the_same_steps():
+def test_compiled_steps_equal_those_of_the_element():
     from ballsocket.dynamics.compiled import CompiledElement
 
     element = bs.ForceElement(bs.HessForsbach(), HIP, **LOSSY)

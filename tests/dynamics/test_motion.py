@@ -1,4 +1,4 @@
-"""A ball that moves in its socket: its energy is kept, and it bounces as each law of damping says."""
+"""Motion of a ball in its socket: conserved energy and angular momentum, order of the steps, and restitution."""
 
 from dataclasses import replace
 from math import log1p, nan
@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, Damping, Flores, Friction, Touch, of_restitution, relations, simulate
+from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction, of_restitution, relations, simulate
 from ballsocket.dynamics.restitution import restitution_of
 
 from ..extent import either
@@ -20,15 +20,15 @@ LOSSY = replace(FREE, damping=Damping(hysteresis=1e-3, time=1e-5), friction=Fric
 
 
 @pytest.mark.parametrize("smoothing", [0.0, 0.02])
-def test_without_losses_energy_is_kept_through_every_bounce(smoothing):
+def test_energy_is_conserved_over_bounces_without_losses(smoothing):
     motion = simulate(replace(FREE, smoothing=smoothing), duration=0.02, **THROW)
     assert motion.bounces > 10
     assert motion.drift < 1e-12
 
 
 @pytest.mark.long
-def test_ten_thousand_bounces_drift_by_less_than_a_ten_millionth():
-    """The discrete gradient with steps of 20 µs, compiled; a contact lasts some 22 of them."""
+def test_energy_drift_of_ten_thousand_bounces_is_small():
+    """Steps of 20 µs, compiled; a contact lasts about 22 steps."""
     from ballsocket.dynamics.compiled import CompiledElement
 
     motion = simulate(CompiledElement(FREE), duration=24.0, **THROW)
@@ -41,7 +41,7 @@ ORBIT = {"mass": 0.35, "position": (0.1, 0.0, 0.0), "velocity": (20.0, 60.0, 15.
 
 @pytest.mark.parametrize("step", [1e-5, 1e-4])
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
-def test_a_frictionless_orbit_conserves_its_angular_momentum_at_any_step(model, step):
+def test_frictionless_orbit_conserves_angular_momentum_at_any_step(model, step):
     element = bs.ForceElement(model, HIP, damping=Damping(hysteresis=1e-4))
     for pull in ((0.0, 0.0, 0.0), (1.0, 2.0, 3.0), lambda t: (0.0, 5.0 * np.sin(1e3 * t), 0.0)):
         motion = simulate(element, pull=pull, duration=400 * step, step=step, **ORBIT)
@@ -51,8 +51,8 @@ def test_a_frictionless_orbit_conserves_its_angular_momentum_at_any_step(model, 
     assert motion.summary()["angular_drift"] == motion.angular_drift
 
 
-def test_the_energy_of_many_bounces_at_coarse_steps_has_no_trend():
-    """Each contact lasts some two steps, where the rounds of a step converge slowest."""
+def test_energy_at_coarse_steps_has_no_trend():
+    """Each contact lasts about two steps, for which the iteration converges slowest."""
     liner = bs.Material(young=1450.0, poisson=0.33)
     joint = bs.Joint(ball_radius=11.1, clearance=0.047, liner_thickness=3.9, liner=liner)
     thrown = {"mass": 0.21, "position": (0.03, 0.02, -0.04), "velocity": (35.0, -50.0, 22.0)}
@@ -61,21 +61,21 @@ def test_the_energy_of_many_bounces_at_coarse_steps_has_no_trend():
     assert motion.drift < 1e-13
 
 
-def test_an_orbit_in_a_cup_conserves_the_angular_momentum_about_the_dome_axis():
+def test_orbit_in_a_cup_conserves_angular_momentum_about_the_dome_axis():
     cup = bs.Cup(inclination=0.6, arc_of_cover=np.radians(160.0))
     dome = np.array(cup.dome)
-    aside = np.cross(dome, (0.0, 1.0, 0.0)) / np.linalg.norm(np.cross(dome, (0.0, 1.0, 0.0)))
-    position = 0.1 * (np.cos(1.3) * dome + np.sin(1.3) * aside)
-    velocity = 60.0 * np.cross(dome, aside) + 3.0 * aside + 10.0 * dome
+    tangent = np.cross(dome, (0.0, 1.0, 0.0)) / np.linalg.norm(np.cross(dome, (0.0, 1.0, 0.0)))
+    position = 0.1 * (np.cos(1.3) * dome + np.sin(1.3) * tangent)
+    velocity = 60.0 * np.cross(dome, tangent) + 3.0 * tangent + 10.0 * dome
     thrown = {"mass": 0.35, "position": tuple(position), "velocity": tuple(velocity), "pull": tuple(30.0 * dome)}
     motion = simulate(replace(FREE, cup=cup), duration=either(0.006, 0.02), step=2e-5, **thrown)
     assert motion.ended == ""
-    assert (np.asarray(motion.load.status) == Touch.AT_RIM).sum() > 50
+    assert (np.asarray(motion.load.status) == ContactState.AT_RIM).sum() > 50
     assert motion.drift < 1e-12
     assert motion.angular_drift < 1e-13
 
 
-def test_the_drift_of_the_angular_momentum_is_none_where_it_is_not_conserved():
+def test_angular_drift_is_none_with_friction():
     assert simulate(LOSSY, duration=1e-3, **THROW).angular_drift is None
     bristles = replace(FREE, friction=Bristles(coefficient=0.1))
     assert simulate(bristles, duration=1e-4, **THROW).angular_drift is None
@@ -84,7 +84,7 @@ def test_the_drift_of_the_angular_momentum_is_none_where_it_is_not_conserved():
 @pytest.mark.long
 @pytest.mark.parametrize("step", [1e-5, 5e-5, 1e-4])
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)
-def test_a_hundred_thousand_steps_conserve_energy_and_angular_momentum(model, step):
+def test_many_steps_conserve_energy_and_angular_momentum(model, step):
     from ballsocket.dynamics.compiled import CompiledElement
 
     for pull in ((0.0, 0.0, 0.0), (0.0, 0.0, 3.4)):
@@ -96,14 +96,14 @@ def test_a_hundred_thousand_steps_conserve_energy_and_angular_momentum(model, st
         assert motion.angular_drift < 1e-12
 
 
-def test_what_is_lost_is_what_damping_and_friction_took():
+def test_dissipated_energy_grows_and_balances():
     motion = simulate(LOSSY, duration=0.02, spin=(0.0, 3.0, 5.0), **THROW)
     assert motion.drift < 1e-12
     assert (np.diff(motion.lost) >= 0).all()
     assert motion.lost[-1] > 0.1 * motion.kinetic[0]
 
 
-def test_a_weight_falls_by_what_it_gains():
+def test_energy_balances_the_work_of_the_pull():
     motion = simulate(FREE, duration=0.02, pull=(0.0, 0.0, 500.0), **THROW)
     assert motion.drift < 1e-12
     assert motion.work[-1] == pytest.approx(500.0 * (motion.position[-1, 2] - motion.position[0, 2]))
@@ -111,8 +111,8 @@ def test_a_weight_falls_by_what_it_gains():
     assert shaken.drift < 1e-11
 
 
-def test_a_nearly_circular_orbit_conserves_both_invariants():
-    """The distance hardly changes there, so that the quotient of the differences is 0/0 but for rounding."""
+def test_nearly_circular_orbit_conserves_energy_and_angular_momentum():
+    """The distance is nearly constant, so that the difference quotient of the energy is nearly 0/0."""
     distance = HIP.clearance + 0.03
     speed = np.sqrt(1e3 * -FREE((0.0, 0.0, distance)).force[2] * distance)
     for faster in (1.0, 1.0 + 1e-9, 1.0001):
@@ -124,9 +124,9 @@ def test_a_nearly_circular_orbit_conserves_both_invariants():
         assert np.ptp(motion.depth) < 2e-4 * distance
 
 
-def test_the_way_is_that_of_a_rival_integrator_and_the_error_falls_with_the_square_of_the_step():
+def test_motion_converges_with_second_order_to_another_integrator():
     def rates(_, state):
-        return [*state[3:], *(1e3 * part for part in FREE(tuple(state[:3].tolist())).force)]
+        return [*state[3:], *(1e3 * component for component in FREE(tuple(state[:3].tolist())).force)]
 
     start = [*THROW["position"], *THROW["velocity"]]
     end = solve_ivp(rates, (0.0, 2e-3), start, method="DOP853", rtol=1e-11, atol=1e-12).y[:3, -1]
@@ -139,8 +139,8 @@ def test_the_way_is_that_of_a_rival_integrator_and_the_error_falls_with_the_squa
     assert orders == pytest.approx([2.0, 2.0], abs=0.1)
 
 
-def kept(damping, speed, model):
-    """The share of its speed that 1 kg keeps, by a high-order integrator that stops where the force ends."""
+def simulated_restitution(damping, speed, model):
+    """Integrate the impact of 1 kg by a high-order method, and return its coefficient of restitution."""
     element = bs.ForceElement(model, HIP, damping=damping)
 
     def rates(_, state):
@@ -151,21 +151,21 @@ def kept(damping, speed, model):
         return state[0]
 
     leaves.terminal, leaves.direction = True, -1
-    done = solve_ivp(rates, (0.0, 1.0), [1e-12, speed], method="DOP853", rtol=1e-10, atol=1e-13, events=leaves)
-    return -done.y_events[0][0][1] / speed
+    solution = solve_ivp(rates, (0.0, 1.0), [1e-12, speed], method="DOP853", rtol=1e-10, atol=1e-13, events=leaves)
+    return -solution.y_events[0][0][1] / speed
 
 
 @pytest.mark.parametrize("relation", relations.relations, ids=lambda relation: relation.name)
-def test_a_ball_keeps_what_the_exact_relation_says_of_the_published_one(relation):
-    for wanted, model in ((0.9, bs.HessForsbach()), (0.5, bs.Hertz())):
-        damping = of_restitution(relation, wanted, 100.0)
+def test_simulated_restitution_equals_the_exact_relation(relation):
+    for restitution, model in ((0.9, bs.HessForsbach()), (0.5, bs.Hertz())):
+        damping = of_restitution(relation, restitution, 100.0)
         h = 100.0 * damping.hysteresis
-        assert kept(damping, 100.0, model) == pytest.approx(restitution_of(h), rel=1e-7)
+        assert simulated_restitution(damping, 100.0, model) == pytest.approx(restitution_of(h), rel=1e-7)
         assert damping.restitution(100.0) == restitution_of(h)
 
 
-def test_published_relations_are_right_where_they_say_so():
-    """Near e = 1 all of them, over all of it the exact one alone; Flores and Gonthier are near there."""
+def test_published_relations_are_accurate_in_their_ranges():
+    """All relations hold near e = 1; those of Flores and Gonthier approximate any e."""
     for relation in relations.relations:
         assert restitution_of(relation.damping(0.99)) == pytest.approx(0.99, abs=4e-3), relation
     for e in np.linspace(0.05, 1.0, 20):
@@ -176,7 +176,7 @@ def test_published_relations_are_right_where_they_say_so():
     assert restitution_of(relations.lankarani_nikravesh.damping(0.3)) > 0.65
 
 
-def test_the_exact_relation_is_an_identity_of_h_and_e():
+def test_exact_relation_satisfies_its_equation():
     for h in (1e-6, 0.99e-4, 1.01e-4, 1e-2, 1.0, 3.0):
         e = restitution_of(h)
         assert h * (1 + e) == pytest.approx(log1p(h) - log1p(-h * e), rel=1e-12)
@@ -184,10 +184,10 @@ def test_the_exact_relation_is_an_identity_of_h_and_e():
 
 @pytest.mark.parametrize("step", [2e-5, 2e-6, 2e-7])
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)
-def test_a_ball_that_lies_under_its_load_moves_in_steps_as_short_as_one_likes(model, step):
-    """The less it moves the less of the energy's fall is more than rounding, which a short way would divide."""
-    rest = HIP.clearance + model.press(HIP, force=500.0).indentation
-    lying = {"mass": 3.0, "position": (0.0, 0.0, rest), "duration": 200 * step, "step": step}
+def test_resting_ball_conserves_energy_at_short_steps(model, step):
+    """Over short paths the difference of the energy is dominated by rounding."""
+    equilibrium = HIP.clearance + model.press(HIP, force=500.0).indentation
+    lying = {"mass": 3.0, "position": (0.0, 0.0, equilibrium), "duration": 200 * step, "step": step}
     for damping in (None, Damping(hysteresis=0.01)):
         element = bs.ForceElement(model, HIP, damping=damping)
         motion = simulate(element, pull=lambda t: (0.0, 0.0, 500.0 + 400.0 * np.sin(150.0 * t)), **lying)
@@ -195,41 +195,41 @@ def test_a_ball_that_lies_under_its_load_moves_in_steps_as_short_as_one_likes(mo
         assert motion.drift < 1e-11
 
 
-def test_a_step_through_the_wall_ends_the_motion_and_names_the_state():
+def test_motion_ends_with_a_note_at_a_state_without_a_result():
     motion = simulate(FREE, mass=1.0, position=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 1e7), duration=1e-3, step=1e-5)
     assert len(motion.time) == 1
-    assert "deeper than the wall" in motion.ended
-    lost = simulate(FREE, mass=1.0, position=(nan, 0.0, 0.0), duration=1e-3, step=1e-5)
-    assert "no finite number" in lost.ended
+    assert "exceeds the wall thickness" in motion.ended
+    nan_motion = simulate(FREE, mass=1.0, position=(nan, 0.0, 0.0), duration=1e-3, step=1e-5)
+    assert "not finite" in nan_motion.ended
     assert "r = (0, 0, 20) mm" in simulate(FREE, **{**THROW, "position": (0.0, 0.0, 20.0)}, duration=1e-3).ended
 
 
 @pytest.mark.parametrize(
-    ("words", "sentence"),
+    ("arguments", "message"),
     [
         ({"mass": -1.0}, "mass = -1 is not allowed"),
-        ({"mass": 1e-200}, "mass = 1e-200 is not allowed: mass must lie between 1e-100 and 1e.100"),
-        ({"inertia": float("nan")}, "inertia = nan is not allowed: inertia must lie between"),
+        ({"mass": 1e-200}, "mass = 1e-200 is not allowed: mass must be between 1e-100 and 1e.100"),
+        ({"inertia": float("nan")}, "inertia = nan is not allowed: inertia must be between"),
         ({"duration": 1e300}, "the number of steps = 5e.304 is not allowed"),
-        ({"pull": (0.0, 1.0)}, "a pull has three components"),
-        ({"position": (0.0, 1.0)}, "a state has three components"),
+        ({"pull": (0.0, 1.0)}, "a pull must have three components"),
+        ({"position": (0.0, 1.0)}, "a state must have three components"),
     ],
 )
-def test_what_cannot_be_simulated_is_refused(words, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        simulate(FREE, **{**THROW, "duration": 1e-3, **words})
+def test_invalid_arguments_are_rejected(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        simulate(FREE, **{**THROW, "duration": 1e-3, **arguments})
     with pytest.raises(TypeError, match="element must be a ForceElement, got 3"):
         simulate(3, duration=1e-3, **THROW)
 
 
 @pytest.mark.parametrize("friction", [Friction(coefficient=0.1), Bristles(coefficient=0.1)])
-def test_a_ball_that_leaves_its_cup_ends_the_motion_there(friction):
+def test_motion_ends_where_the_ball_leaves_the_cup(friction):
     element = replace(FREE, cup=bs.Cup(), friction=friction)
     motion = simulate(element, duration=0.01, **{**THROW, "velocity": (0.0, 0.0, -300.0)})
     assert "has left the cup over its rim" in motion.ended
     assert len(motion.time) == pytest.approx(HIP.clearance / 300.0 / 2e-5, abs=2)
 
 
-def test_damping_at_another_speed_keeps_another_share():
+def test_restitution_decreases_with_the_impact_speed():
     damping = Flores(restitution=0.8, impact_speed=100.0)
     assert damping.restitution(50.0) > damping.restitution(100.0) > damping.restitution(200.0)

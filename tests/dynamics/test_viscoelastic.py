@@ -1,4 +1,4 @@
-"""A liner that relaxes: between two elastic limits, and as the springs have it that are followed one by one."""
+"""Viscoelastic liner: elastic limits, relaxation, creep, vibration, and agreement with integrated springs."""
 
 import numpy as np
 import pytest
@@ -14,86 +14,88 @@ TIME = np.linspace(0.0, 1.0, 401)
 PUSH = 0.05 * np.sin(np.pi * TIME)
 
 
-def lost(force, depth):
+def dissipated(force, depth):
     return np.trapezoid(force, depth)
 
 
-def test_a_push_and_its_way_back_are_those_of_the_springs():
-    springs = LINER.springs(TIME, PUSH)
-    np.testing.assert_allclose(LINER.pressed(TIME, PUSH), springs, atol=1e-5 * springs.max())
-    assert lost(LINER.pressed(TIME, PUSH), PUSH) == pytest.approx(lost(springs, PUSH), rel=1e-4)
-    ended = np.flatnonzero(springs == 0)  # it lets go before the ball is where it touched
+def test_loading_and_unloading_agree_with_integrated_springs():
+    springs = LINER.spring_force(TIME, PUSH)
+    np.testing.assert_allclose(LINER.cycle_force(TIME, PUSH), springs, atol=1e-5 * springs.max())
+    assert dissipated(LINER.cycle_force(TIME, PUSH), PUSH) == pytest.approx(dissipated(springs, PUSH), rel=1e-4)
+    ended = np.flatnonzero(springs == 0)  # the contact separates above the point of first touch
     assert PUSH[ended[ended > 200][0]] > 0.1 * PUSH.max()
 
 
-def test_the_simple_product_is_wrong_by_a_tenth_in_the_force_and_by_most_of_the_loss():
-    springs = LINER.springs(TIME, PUSH)
-    product, grown = LINER.product(TIME, PUSH), LINER.grown(TIME, PUSH)
+def test_product_and_hereditary_integral_err_on_unloading():
+    springs = LINER.spring_force(TIME, PUSH)
+    product, grown = LINER.separable_force(TIME, PUSH), LINER.hereditary_force(TIME, PUSH)
     up = TIME <= 0.5
     np.testing.assert_allclose(grown[up], springs[up], atol=1e-5 * springs.max())  # the contact grows
     assert np.abs(product - springs).max() == pytest.approx(0.098 * springs.max(), rel=0.02)
     assert np.abs(grown - springs).max() == pytest.approx(0.089 * springs.max(), rel=0.02)
-    assert lost(product, PUSH) < 0.2 * lost(springs, PUSH)
-    assert lost(grown, PUSH) > 1.2 * lost(springs, PUSH)
-    assert grown[-2] < 0  # and it would pull
+    assert dissipated(product, PUSH) < 0.2 * dissipated(springs, PUSH)
+    assert dissipated(grown, PUSH) > 1.2 * dissipated(springs, PUSH)
+    assert grown[-2] < 0  # a spurious tension
 
 
-@pytest.mark.parametrize(("seconds", "share"), [(1e-6, 1.0), (1e6, PE.rest)])
-def test_very_fast_and_very_slow_it_is_elastic(seconds, share):
+@pytest.mark.parametrize(("seconds", "share"), [(1e-6, 1.0), (1e6, PE.long_term_share)])
+def test_fast_and_slow_limits_are_elastic(seconds, share):
     for model in (bs.HessForsbach(), bs.Refined()):
         liner = Viscoelastic(model, HIP, PE)
-        elastic = share * liner.at_once(PUSH)
-        np.testing.assert_allclose(liner.pressed(seconds * TIME, PUSH), elastic, atol=5e-5 * elastic.max())
-    springs = LINER.springs(seconds * TIME, PUSH)
-    np.testing.assert_allclose(springs, share * LINER.at_once(PUSH), atol=5e-5 * springs.max())
+        elastic = share * liner.instantaneous_force(PUSH)
+        np.testing.assert_allclose(liner.cycle_force(seconds * TIME, PUSH), elastic, atol=5e-5 * elastic.max())
+    springs = LINER.spring_force(seconds * TIME, PUSH)
+    np.testing.assert_allclose(springs, share * LINER.instantaneous_force(PUSH), atol=5e-5 * springs.max())
 
 
-def test_a_faster_push_is_stiffer():
-    peaks = [LINER.pressed(seconds * TIME, PUSH).max() for seconds in (100.0, 1.0, 0.01)]
+def test_force_increases_with_the_loading_speed():
+    peaks = [LINER.cycle_force(seconds * TIME, PUSH).max() for seconds in (100.0, 1.0, 0.01)]
     assert peaks == sorted(peaks)
     assert peaks[2] > 1.4 * peaks[0]
 
 
-def test_it_creeps_under_a_force_that_stays_and_relaxes_at_a_depth_that_stays():
+def test_creep_and_relaxation_agree_with_integrated_springs():
     time = np.append(0.0, np.geomspace(1e-6, 100.0, 400))
-    depth = np.append(0.0, LINER.creeping(3000.0, time[1:]))
-    np.testing.assert_allclose(LINER.springs(time, depth)[1:], 3000.0, rtol=3e-5)
+    depth = np.append(0.0, LINER.creep_indentation(3000.0, time[1:]))
+    np.testing.assert_allclose(LINER.spring_force(time, depth)[1:], 3000.0, rtol=3e-5)
     assert depth[-1] > 1.4 * depth[1]
-    held = np.append(0.0, np.full(400, 0.05))
-    np.testing.assert_allclose(LINER.springs(time, held)[1:], LINER.relaxing(0.05, time[1:]), rtol=1e-4)
+    constant = np.append(0.0, np.full(400, 0.05))
+    np.testing.assert_allclose(
+        LINER.spring_force(time, constant)[1:], LINER.relaxation_force(0.05, time[1:]), rtol=1e-4
+    )
 
 
 def test_creep_is_the_inverse_of_relaxation():
     time = np.linspace(0.0, 30.0, 3001)
-    rise = np.append(1.0, np.diff(PE.crept(time)))  # a step, then what it creeps
-    stress = np.array([np.sum(rise[: n + 1] * PE.relaxed(time[n] - time[: n + 1])) for n in (0, 100, 1000, 3000)])
+    rise = np.append(1.0, np.diff(PE.creep_compliance(time)))  # a step, then creep
+    stress = np.array([np.sum(rise[: n + 1] * PE.relaxation(time[n] - time[: n + 1])) for n in (0, 100, 1000, 3000)])
     np.testing.assert_allclose(stress, 1.0, rtol=2e-3)
-    assert PE.crept(np.array([0.0, 1e9])) == pytest.approx([1.0, 1 / PE.rest])
+    assert PE.creep_compliance(np.array([0.0, 1e9])) == pytest.approx([1.0, 1 / PE.long_term_share])
 
 
-def test_a_small_vibration_loses_what_the_complex_stiffness_says():
+def test_loss_of_a_small_vibration_follows_the_complex_stiffness():
     depth, size, frequency = 0.04, 1e-5, 2.0
-    rest = np.linspace(0.0, 60.0, 600)[:-1]
+    hold = np.linspace(0.0, 60.0, 600)[:-1]
     shake = np.linspace(0.0, 2 / frequency, 801)
-    time = np.append(rest, 60.0 + shake)
-    way = np.append(np.minimum(rest / 0.5, 1.0) * depth, depth + size * np.sin(2 * np.pi * frequency * shake))
-    last = slice(len(rest) + 400, None)
-    found = lost(LINER.springs(time, way, rings=2000)[last], way[last])
-    assert found == pytest.approx(np.pi * size**2 * LINER.dynamic_stiffness(depth, frequency).imag, rel=1e-3)
+    time = np.append(hold, 60.0 + shake)
+    path = np.append(np.minimum(hold / 0.5, 1.0) * depth, depth + size * np.sin(2 * np.pi * frequency * shake))
+    last = slice(len(hold) + 400, None)
+    loss = dissipated(LINER.spring_force(time, path, rings=2000)[last], path[last])
+    assert loss == pytest.approx(np.pi * size**2 * LINER.dynamic_stiffness(depth, frequency).imag, rel=1e-3)
 
 
-def test_the_springs_follow_a_ball_that_comes_again():
+def test_springs_follow_repeated_loading():
     time = np.linspace(0.0, 2.0, 801)
     again = 0.05 * np.abs(np.sin(np.pi * time))
-    springs = LINER.springs(time, again)
+    springs = LINER.spring_force(time, again)
     assert springs[600] < springs[200]  # the liner has not recovered
     assert (springs >= 0).all()
-    with pytest.raises(ValueError, match="it rises once and falls then; ask `springs`"):
-        LINER.pressed(time, again)
+    with pytest.raises(ValueError, match="it must rise once and then fall; use `spring_force`"):
+        LINER.cycle_force(time, again)
 
 
 @pytest.mark.parametrize(
-    ("terms", "sentence"),
+    ("terms", "message"),
     [
         ((), "the number of terms = 0 is not allowed"),
         (((-0.1, 1.0),), "a share = -0.1 is not allowed"),
@@ -101,17 +103,24 @@ def test_the_springs_follow_a_ball_that_comes_again():
         (((0.5, 1.0), (0.6, 2.0)), "the sum of the shares = 1.1 is not allowed"),
     ],
 )
-def test_what_is_no_modulus_is_refused(terms, sentence):
-    with pytest.raises(ValueError, match=sentence):
+def test_invalid_terms_are_rejected(terms, message):
+    with pytest.raises(ValueError, match=message):
         Prony(terms=terms)
 
 
-def test_a_history_that_is_none_is_refused():
-    with pytest.raises(ValueError, match="each is later than the one before"):
-        LINER.pressed([0.0, 1.0, 1.0], [0.0, 0.1, 0.0])
-    with pytest.raises(ValueError, match="rows of one length"):
-        LINER.pressed([0.0, 1.0], [0.0])
-    with pytest.raises(ValueError, match="begins before the touch"):
-        LINER.pressed([0.0, 1.0], [0.1, 0.0])
-    with pytest.raises(TypeError, match="springs stand for a model of radial springs"):
-        Viscoelastic(bs.Hertz(), HIP, PE).springs(TIME, PUSH)
+def test_invalid_histories_are_rejected():
+    with pytest.raises(ValueError, match="times must increase"):
+        LINER.cycle_force([0.0, 1.0, 1.0], [0.0, 0.1, 0.0])
+    with pytest.raises(ValueError, match="rows of equal length"):
+        LINER.cycle_force([0.0, 1.0], [0.0])
+    with pytest.raises(ValueError, match="must begin without contact"):
+        LINER.cycle_force([0.0, 1.0], [0.1, 0.0])
+    with pytest.raises(TypeError, match="the model must be radial springs"):
+        Viscoelastic(bs.Hertz(), HIP, PE).spring_force(TIME, PUSH)
+
+
+def test_old_names_of_forces_and_moduli_warn():
+    with pytest.warns(DeprecationWarning, match="use instantaneous_force"):
+        np.testing.assert_array_equal(LINER.at_once(PUSH), LINER.instantaneous_force(PUSH))
+    with pytest.warns(DeprecationWarning, match="use long_term_share"):
+        assert PE.rest == PE.long_term_share

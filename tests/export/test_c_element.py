@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import ballsocket as bs
-from ballsocket.dynamics import Damping, ForceElement, Friction, Touch
+from ballsocket.dynamics import ContactState, Damping, ForceElement, Friction
 from ballsocket.export import CElement
 
 from ..extent import either, some
@@ -58,7 +58,7 @@ def test_random_states_have_the_load_contact_and_tangent_of_the_python_element(e
         wanted = element(*(tuple(map(float, part)) for part in state))
         status, force, moment, energy = library.load(*state)
         assert status == wanted.status
-        touched += status != Touch.FREE
+        touched += status != ContactState.FREE
         size = np.linalg.norm(wanted.force)
         close(force, wanted.force, size)
         close(moment, wanted.moment, np.linalg.norm(wanted.moment))
@@ -73,7 +73,7 @@ def test_random_states_have_the_load_contact_and_tangent_of_the_python_element(e
 def test_slopes_are_those_of_differences(library):
     draw = np.random.default_rng(2)
     for state in zip(*states(30, seed=3), strict=True):
-        if library.load(*state)[0] not in (Touch.CONTACT, Touch.AT_RIM):
+        if library.load(*state)[0] not in (ContactState.CONTACT, ContactState.AT_RIM):
             continue
         way = draw.normal(size=9) * [1, 1, 1, 100, 100, 100, 10, 10, 10]
         step = 1e-6 * abs(np.linalg.norm(state[0]) - HIP.clearance)
@@ -95,21 +95,21 @@ def test_a_state_that_is_no_number_is_a_status(library, place):
     state = np.full(9, 0.08)
     state[place] = np.nan
     status, force, moment, energy = library.load(*state.reshape(3, 3))
-    assert status == Touch.NO_NUMBER
+    assert status == ContactState.NO_NUMBER
     assert np.isnan([*force, *moment, *energy]).all()
 
 
 def test_a_state_too_large_to_square_is_a_status(library):
     far = (0.0, 0.0, 1e200), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for turned in (0, 1, 2):
-        assert library.load(*far[-turned:], *far[:-turned])[0] == Touch.NO_NUMBER
-    assert library.contact(far[0])[0] == library.tangent(far[0])[0] == Touch.NO_NUMBER
+        assert library.load(*far[-turned:], *far[:-turned])[0] == ContactState.NO_NUMBER
+    assert library.contact(far[0])[0] == library.tangent(far[0])[0] == ContactState.NO_NUMBER
 
 
 def test_a_ball_through_the_wall_is_a_status(library, plain):
     for each in (library, plain):
         status, force, *_ = each.load((0.0, 0.0, HIP.liner_thickness + 1.0), (0, 0, 0), (0, 0, 0))
-        assert status == Touch.THROUGH_WALL
+        assert status == ContactState.THROUGH_WALL
         assert np.isnan(force).all()
 
 

@@ -227,7 +227,7 @@ def test_a_state_that_is_no_number_is_a_status_and_one_message(host):
         assert np.isnan(force)
         host.set(position=(np.nan, 0.0, 0.1))
     assert len(host.said) == 1
-    assert "the state is no finite number, or too large a one; position (nan, 0, 0) mm" in host.said[0][1]
+    assert "the state is not finite, or too large; position (nan, 0, 0) mm" in host.said[0][1]
     host.set(**PRESSED)
     assert host.get("force[3]")[0] == GOOD  # the host goes on, if it likes to
 

@@ -60,7 +60,7 @@ def test_the_module_in_python_answers_as_the_element_and_needs_no_package(tools,
         assert_allclose(moment, 1e-3 * np.array(wanted.moment), rtol=1e-12, atol=1e-12)
         assert_allclose(energy, 1e-3 * wanted.energy, rtol=1e-12)
         assert_allclose(joint.contact(STATE[0]), (wanted.half_angle, 1e6 * wanted.max_pressure), rtol=1e-12)
-        with pytest.raises(joint.NoForce, match="the ball is deeper than the wall"):
+        with pytest.raises(joint.NoForce, match="the indentation exceeds the wall thickness"):
             joint.load((0.0, 0.0, 0.1))
         joint.parameters[0] = -1.0
         with pytest.raises(ValueError, match="hysteresis must be finite and 0 or more"):
@@ -256,7 +256,7 @@ def test_what_is_not_allowed_is_one_sentence(words, said, tmp_path):
     ("element", "said"),
     [
         (ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05)), "bristles have a state; "),
-        (ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP), "a ball that sticks has a state; "),
+        (ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP), "an adhesive ball has a state; "),
     ],
 )
 def test_a_state_is_something_that_nothing_exported_or_compiled_has(element, said):

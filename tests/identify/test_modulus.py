@@ -71,7 +71,7 @@ def test_impossible_calibrations_are_refused():
         bs.calibrate(HIP, force=[0.0, 1000.0])
     with pytest.raises(ValueError, match="exact has no result for some joints or loads: .* does not reach this load"):
         bs.calibrate(HIP, force=1e9)
-    with pytest.raises(ValueError, match="the factor on K_B is above 0"):
+    with pytest.raises(ValueError, match="the factor on K_B must be above 0"):
         bs.corrected_vessel(1.0, -3.0, 0.0)
 
 

@@ -36,8 +36,8 @@ def test_a_loop_tells_what_it_loses():
     liner = Viscoelastic(bs.HessForsbach(), HIP, Prony(terms=((0.3, 0.1),)))
     time = np.linspace(0.0, 1.0, 101)
     depth = 0.05 * np.sin(np.pi * time)
-    force = liner.pressed(time, depth)
-    (axes,) = loop_figure(depth, {"pressed": force, "at once": liner.at_once(depth)}).axes
+    force = liner.cycle_force(time, depth)
+    (axes,) = loop_figure(depth, {"pressed": force, "at once": liner.instantaneous_force(depth)}).axes
     told = [text.get_text() for text in axes.get_legend().get_texts()]
     assert told[0] == f"pressed: {np.trapezoid(force, depth):.3g} N mm lost"
     assert float(told[1].split()[2]) == pytest.approx(0.0, abs=1e-9)

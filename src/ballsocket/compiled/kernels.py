@@ -113,7 +113,7 @@ def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
     _refined_kernel(kind)(*(as_row(number, shape) for number in inputs), outputs)
     edge, *state = (output.reshape(shape) for output in outputs)
     solution = RefinedSolution(joint=joint, edge=edge)
-    vars(solution)["_state"] = ScaledContact(*state)
+    vars(solution)["_scaled_contact"] = ScaledContact(*state)
     return make_answer(solution, kind, load)
 
 

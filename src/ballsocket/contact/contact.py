@@ -48,8 +48,8 @@ class Laws(Protocol):
     def pressure(self, angle: Array) -> Array: ...
 
 
-def _law(name: str) -> Any:
-    """Return a property that computes the quantity of that name by the laws of the contact, once."""
+def _law_property(name: str) -> Any:
+    """Make a cached property that evaluates one law of the contact."""
 
     def compute(self: Contact) -> Array:
         return self._evaluate(law)
@@ -87,14 +87,14 @@ class Contact(Outcome):
     force: Array
     indentation: Array
 
-    half_angle = _law("half_angle")
-    max_pressure = _law("max_pressure")
-    max_pressure_angle = _law("max_pressure_angle")
-    pole_pressure = _law("pole_pressure")
-    stiffness = _law("stiffness")
-    energy = _law("energy")
-    foundation_modulus = _law("foundation_modulus")
-    pressure_integral = _law("pressure_integral")
+    half_angle = _law_property("half_angle")
+    max_pressure = _law_property("max_pressure")
+    max_pressure_angle = _law_property("max_pressure_angle")
+    pole_pressure = _law_property("pole_pressure")
+    stiffness = _law_property("stiffness")
+    energy = _law_property("energy")
+    foundation_modulus = _law_property("foundation_modulus")
+    pressure_integral = _law_property("pressure_integral")
 
     @property
     def _load(self) -> Array:
@@ -130,12 +130,12 @@ class Contact(Outcome):
 
     @property
     def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of `von_mises` in MPa that need no solution for the stresses."""
+        """Lower and upper bound of `von_mises` in MPa, computed without solving for the stresses."""
         return self.von_mises, self.von_mises
 
     @property
     def utilisation_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of `utilisation` that need no solution for the stresses."""
+        """Lower and upper bound of `utilisation`, computed without solving for the stresses."""
         low, high = self.von_mises_bounds
         pressure = self.max_pressure
         return strength.utilisation(self.joint, low, pressure), strength.utilisation(self.joint, high, pressure)
@@ -191,7 +191,7 @@ class Contact(Outcome):
 
     @property
     def conformity(self) -> Array:
-        """Clearance over indentation, c/d; 0 is a ball of the socket's own radius."""
+        """Clearance over indentation, c/d; 0 if ball and socket have equal radii."""
         quotient = self.joint.clearance / arrays.safe_divisor(self.indentation)
         return self._match_load(arrays.where(self.indentation == 0, numpy.inf, quotient))
 
@@ -253,7 +253,7 @@ class Contact(Outcome):
         return self.pressure(arrays.atan2(across, z))
 
     def friction_torque(self, coefficient: Array, axis_angle: float = pi / 2) -> Array:
-        """Torque in N mm about an axis through the centre of the ball, sliding everywhere with Coulomb friction.
+        """Compute the Coulomb friction torque in N mm about an axis through the ball's centre, for sliding everywhere.
 
         Parameters
         ----------

@@ -105,7 +105,7 @@ _END_TOLERANCE = 1e-6
 
 
 def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
-    """Fit a curve to the loads of many indentations, with more pieces until the last terms of ln F are small.
+    """Fit a curve to the loads at many indentations, and add pieces until the last terms of ln F are small.
 
     Parameters
     ----------
@@ -119,9 +119,9 @@ def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: f
     TypeError
         A load at the shallowest indentation that is not above 0.
     """
-    end = _end(force, shallowest, deepest)
+    end = _deepest_indentation(force, shallowest, deepest)
     for count in _PIECE_COUNTS:
-        series = _series(force, shallowest, end, count)
+        series = _chebyshev_pieces(force, shallowest, end, count)
         if numpy.max(abs(series[:, -1])) <= _SERIES_TOLERANCE:
             break
     return CurveLaw(
@@ -129,12 +129,12 @@ def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: f
         deepest=end,
         first=math.log(shallowest),
         density=count / math.log(end / shallowest),
-        pieces=numpy.ascontiguousarray((series @ _powers())[:, ::-1]),
+        pieces=numpy.ascontiguousarray((series @ _chebyshev_to_powers())[:, ::-1]),
     )
 
 
-def _end(force: Callable[[Numbers], Numbers], low: float, high: float) -> float:
-    """Find the deepest indentation that has a load, less a millionth, which is the tolerance of a solver."""
+def _deepest_indentation(force: Callable[[Numbers], Numbers], low: float, high: float) -> float:
+    """Find the deepest indentation that has a load, reduced by the relative tolerance of a solver, 1e-6."""
     if not force(numpy.array([low]))[0] > 0:
         raise TypeError(f"no force law: the load at an indentation of {low:.3g} mm must be above 0 N")
     while high / low > 1 + _END_TOLERANCE:
@@ -146,7 +146,7 @@ def _end(force: Callable[[Numbers], Numbers], low: float, high: float) -> float:
     return low * (1 - _END_TOLERANCE)
 
 
-def _series(force: Callable[[Numbers], Numbers], low: float, high: float, count: int) -> Numbers:
+def _chebyshev_pieces(force: Callable[[Numbers], Numbers], low: float, high: float, count: int) -> Numbers:
     """Compute Chebyshev coefficients (pieces, terms) of ln F over ln d; neighbouring pieces meet continuously."""
     nodes = -numpy.cos(math.pi * numpy.arange(_DEGREE + 1) / _DEGREE)
     along = (numpy.arange(count)[:, None] + (1 + nodes[:-1]) / 2).ravel() / count
@@ -159,7 +159,7 @@ def _series(force: Callable[[Numbers], Numbers], low: float, high: float, count:
 
 
 @cache
-def _powers() -> Numbers:
+def _chebyshev_to_powers() -> Numbers:
     """Compute the matrix that converts Chebyshev coefficients to coefficients of powers."""
     matrix = numpy.zeros((_DEGREE + 1, _DEGREE + 1))
     for term in range(_DEGREE + 1):

@@ -272,7 +272,7 @@ class RimLimited(ModelWrapper):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        """Validity of the model, a distance of one liner thickness to the rim, and a bonded liner."""
+        """Validity of the model, limited to a bonded liner and a rim one liner thickness or more away."""
         rim = Range(
             quantity=partial(_relative_rim_distance, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM
         )

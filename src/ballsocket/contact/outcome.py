@@ -64,7 +64,7 @@ class Outcome(ABC):
         return tuple(notes)
 
     def _note(self, good: Array, sentence: str) -> list[str]:
-        """List the sentence, with the number of points for which `good` is false, or nothing if there are none."""
+        """List the sentence with the number of points for which `good` is false; return [] without such points."""
         if arrays.all_true(good) is not False:
             return []
         good = arrays.to_numpy(good)

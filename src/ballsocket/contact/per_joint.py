@@ -129,8 +129,8 @@ def _values(model: Model, number: Array) -> numpy.ndarray:
     return values
 
 
-def _of_state(name: str) -> Any:
-    """Return a property that combines a quantity of all states, once."""
+def _combined_property(name: str) -> Any:
+    """Make a cached property that combines a quantity of the solved contacts of all joints."""
 
     def combine(self: CombinedSolution) -> Array:
         return self.spread(lambda piece: getattr(piece.state, name))
@@ -158,15 +158,17 @@ class CombinedSolution:
     pieces: tuple[tuple[numpy.ndarray, JointContacts], ...]
 
     def spread(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
-        """Combine a quantity of every joint to the shape (*rows, *shape); NaN where there is none."""
-        return self._like_load(self._flat(lambda indices, piece: quantity(piece), prod(rows)), rows)
+        """Combine the values of all joints into the shape (*rows, *shape); NaN at points without a solution."""
+        return self._like_load(self._combine_joints(lambda indices, piece: quantity(piece), prod(rows)), rows)
 
     def located(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
-        """Combine a quantity that also depends on the indices of the contacts."""
-        return self._like_load(self._flat(quantity))
+        """Combine the values of all joints for a quantity that depends on the indices of the points."""
+        return self._like_load(self._combine_joints(quantity))
 
-    def _flat(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: int = 1) -> numpy.ndarray:
-        """Combine a quantity to NumPy values of the shape (rows, points)."""
+    def _combine_joints(
+        self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: int = 1
+    ) -> numpy.ndarray:
+        """Combine the values of all joints into a NumPy array (rows, points); NaN at points without a solution."""
         combined = numpy.full((rows, prod(self.shape)), numpy.nan)
         for indices, piece in self.pieces:
             combined[:, indices] = piece.spread(quantity(indices, piece))
@@ -191,15 +193,15 @@ class CombinedSolution:
         """Estimated relative error of each quantity."""
         return {name: self._error(name) for name in QUANTITIES}
 
-    force = _of_state("force")
-    indentation = _of_state("indentation")
-    half_angle = _of_state("half_angle")
-    max_pressure = _of_state("max_pressure")
-    max_pressure_angle = _of_state("max_pressure_angle")
-    pole_pressure = _of_state("pole_pressure")
-    stiffness = _of_state("stiffness")
-    energy = _of_state("energy")
-    pressure_integral = _of_state("pressure_integral")
+    force = _combined_property("force")
+    indentation = _combined_property("indentation")
+    half_angle = _combined_property("half_angle")
+    max_pressure = _combined_property("max_pressure")
+    max_pressure_angle = _combined_property("max_pressure_angle")
+    pole_pressure = _combined_property("pole_pressure")
+    stiffness = _combined_property("stiffness")
+    energy = _combined_property("energy")
+    pressure_integral = _combined_property("pressure_integral")
 
     @property
     def foundation_modulus(self) -> Array:
@@ -218,7 +220,7 @@ class CombinedSolution:
             values: numpy.ndarray = piece.state.pressure(rows[:, indices[piece.touching]])
             return values
 
-        return self._like_load(self._flat(pressure, rows=len(rows)), front)
+        return self._like_load(self._combine_joints(pressure, rows=len(rows)), front)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)

@@ -56,7 +56,7 @@ def increasing_root(
     def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
         return bracketed(law, target, arguments, tolerance, *state[:-1])
 
-    x = _repeated(step, (start, low, high, start < high, start == start), steps)
+    x = _iterate(step, (start, low, high, start < high, start == start), steps)
     if namespace(x) is numpy:
         return x
     x = stop_gradient(x)
@@ -125,8 +125,8 @@ def bracketed(
     return next_x, low, high, fresh, abs(next_x - x) > tolerance * abs(next_x)
 
 
-def _repeated(step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], times: int) -> Array:
-    """Repeat a step until the mask at the end of the state is false everywhere; return the start of the state."""
+def _iterate(step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], times: int) -> Array:
+    """Iterate a step until the mask, the last item of the state, is all false; return the first item."""
     if all_true(state[-1]) is None and array_api_compat.is_jax_array(state[0]):
         import jax  # compile one loop instead of unrolling the steps
 

@@ -184,7 +184,7 @@ def _limit_remarks(
         ratio = (pressure if by_pressure else von_mises()) / strength
         stress = "pressure" if by_pressure else "von Mises stress"
         limit = f": a linear result is valid up to {MAX_ELASTIC_UTILISATION:g} times" if name == "yield_stress" else ""
-        yield logical_not(ratio > 1), f"{stress} {_times(ratio)} the {STRENGTH[name].title} of the {body}{limit}"
+        yield logical_not(ratio > 1), f"{stress} {_ratio_text(ratio)} the {STRENGTH[name].title} of the {body}{limit}"
 
 
 def _linearity_remarks(body: str, material: Material, stress: Array) -> Iterator[tuple[Array, str]]:
@@ -194,7 +194,7 @@ def _linearity_remarks(body: str, material: Material, stress: Array) -> Iterator
     good = logical_not(stress > limit) if yields is None else logical_not((stress > limit) & (stress <= yields))
     if all_true(good) is not False:
         return
-    times = _times(where(good, nan, stress / limit))
+    times = _ratio_text(where(good, nan, stress / limit))
     title = LINEARITY["proportional_limit"].title
     yield good, f"estimated von Mises stress {times} the {title} of the {body}: {_SOFTER}"
 
@@ -202,8 +202,8 @@ def _linearity_remarks(body: str, material: Material, stress: Array) -> Iterator
 _SOFTER = "its secant modulus is below E, so d and ε are larger and pmax is smaller"
 
 
-def _times(ratio: Array) -> str:
-    """Format a ratio above 1, or the largest of many."""
+def _ratio_text(ratio: Array) -> str:
+    """Format a ratio above 1 as "2.5 times", or the largest of an array as "up to 2.5 times"."""
     listed = to_numpy(ratio)
     digits = f"{numpy.nanmax(listed, initial=0.0):.2g}"
     largest = f"{'1.0' if digits == '1' else digits} times"

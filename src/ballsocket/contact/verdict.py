@@ -50,7 +50,7 @@ def strength_uses(contact: Contact) -> tuple[StrengthUse, ...]:
 
 
 def strength_uses_at(contact: Contact, von_mises: float) -> tuple[StrengthUse, ...]:
-    """List the same as `strength_uses` for a largest von Mises stress in the liner in MPa."""
+    """List the stresses relative to all strengths for a given largest von Mises stress in the liner (MPa)."""
     joint, pressure = contact.joint, float(contact.max_pressure)
     uses = list(_material_uses("liner", joint.liner, pressure, von_mises))
     if joint.ball is not None:

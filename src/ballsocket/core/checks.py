@@ -123,7 +123,7 @@ def check_vectors(name: str, value: Any, axes: str) -> Array:
 
 
 def _check_integer(name: str, value: float) -> float:
-    """Return a number, unless it is an integer that is too large for a float."""
+    """Return a number; raise ValueError for an integer that is too large for a float."""
     try:
         float(value)
     except OverflowError as error:
@@ -171,7 +171,7 @@ def reject_unnamed_loads(loads: tuple[Any, ...]) -> None:
 
 
 def degrees_hint(value: float) -> str:
-    """Convert an angle in degrees for the hint of a message."""
+    """Format the hint that converts a value in degrees to radians."""
     return f"{value:g} degrees are {radians(value):.4g} radians"
 
 

@@ -1,15 +1,18 @@
-"""The joint in motion: a force element of any model, what it loses, and what becomes of it over time."""
+"""Force elements of a joint, damping, friction, viscoelastic liners, and simulated motion."""
 
 from . import restitution as relations
 from .bristles import Bristles
 from .damping import Damping, Flores, Gonthier, HuntCrossley, LankaraniNikravesh, Restitution, of_restitution
-from .drop_test import Identified, from_bounces, from_restitution
 from .element import ForceElement
 from .friction import Friction
-from .load import Load, Touch
-from .motion import Motion, simulate
-from .prony import Prony
-from .viscoelastic import Viscoelastic
+from .load import ContactState, Load
+from .motion import Motion
+from .rebound import DampingEstimate, from_bounces, from_restitution
+from .simulation import simulate
+from .viscoelastic import Prony, Viscoelastic
+
+Identified = DampingEstimate
+Touch = ContactState
 
 __all__ = [
     "Bristles",

@@ -1,4 +1,4 @@
-"""Friction that gives way before it slides: bristles between ball and socket, with a state of their own."""
+"""LuGre friction: bristles between ball and socket, whose deflections are an internal state."""
 
 from __future__ import annotations
 
@@ -7,49 +7,49 @@ from typing import ClassVar
 
 from ..core.arrays import Array, safe_divisor, sqrt, where
 from ..core.sources import Source
-from .friction import Coulomb, checked, coefficient_at, effective_slip, tilt_share
-from .reaction import Place, Sliding, versine
+from .friction import Coulomb, coefficient_at, effective_slip, set_checked_number, tilt_share
+from .reaction import BallCentre, Sliding, versine
 
-Four = tuple[Array, Array, Array, Array]
-"""Deflections of the bristles in mm: x, y, z across the load, and about it, as an arc at the lever ρ."""
+Deflections = tuple[Array, Array, Array, Array]
+"""Deflections of the bristles in mm: x, y and z across the load, and the arc at the lever ρ about the load."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Bristles(Coulomb):
-    """The LuGre model: with z the deflection, v the slip, and N the normal force::
+    """LuGre model of friction, for a deflection z, a slip v and a normal force N::
 
         z' = v - σ0 q(v) z/(h μ(q)),    f = -N (σ0 z + σ1 z' + σ2 v),
 
-    for the slip across the load and the spin about it at once, which share μ. q is the effective slip speed of
-    `Friction` for the mean of a patch that slides and one that turns, and h v/q its slope. Bristles that slide have the
-    resultants of the patch, within 1 % of the force and 7 % of the drilling moment. Rolling about a pole that does not
-    slip has no loss in this model. Bristles that hold are springs of N σ0.
-    The damping σ1 falls with the slip just enough that they generate no energy. After the ball leaves the socket its
-    deflections decay within `release` seconds. With σ1 = σ2 = 0 and one coefficient it is Dahl's model.
+    for the slip across the load and the spin about it, which share the limit μ. q is the effective slip speed of
+    `Friction`, and h v/q its slope. Sliding
+    bristles have the resultants of the patch, within 1 % of the force and 7 % of the drilling moment. Rolling about a
+    pole that does not slip has no loss in this model. Sticking bristles are springs of stiffness N σ0. The damping σ1
+    falls with the slip just enough that they generate no energy. After the ball leaves the socket the deflections decay
+    with the time constant `release`. With σ1 = σ2 = 0 and one coefficient it is Dahl's model.
 
     Parameters
     ----------
     coefficient : float
-        Of sliding friction, 0 or more.
+        Coefficient of sliding friction, 0 or more.
     stiffness : float
-        σ0 in 1/mm, above 0: μ/σ0 is the way before the ball slides.
+        σ0 in 1/mm, above 0. The ball slides after a displacement of about μ/σ0.
     damping : float
         σ1 in s/mm, 0 or more.
     viscous : float
         σ2 in s/mm, 0 or more.
     static_coefficient : float, optional
-        Of a ball that hardly moves, not below the coefficient. None, the default, is the same.
+        Coefficient at vanishing slip, not below `coefficient`. None, the default, is the same coefficient.
     stribeck_speed : float
-        In mm/s, above 0: how fast one goes over into the other.
+        Speed of the transition from static to sliding friction in mm/s, above 0.
     release : float
-        In s, above 0.
+        Time constant in s, above 0, of the decay of the deflections without contact.
 
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value.
+        A value out of range.
     TypeError
-        What is no number.
+        A value that is not a number.
 
     References
     ----------
@@ -68,46 +68,60 @@ class Bristles(Coulomb):
 
     def __post_init__(self) -> None:
         for name in ("coefficient", "damping", "viscous"):
-            checked(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
+            set_checked_number(
+                self, name, 0.0, "friction must be at least 0 and finite; negative friction would generate energy"
+            )
         for name in ("stiffness", "stribeck_speed", "release"):
-            checked(self, name, 5e-324, "it is above 0 and finite")
+            set_checked_number(self, name, 5e-324, "it must be above 0 and finite")
         self.check_static()
 
 
-def bent(place: Place, slip: Sliding, deflection: Four, given: Bristles) -> tuple[Four, Four, Array]:
-    """What a load of 1 N is rubbed by (three components, and about the load over ρ), z', and what is lost of 1 N."""
+def bristle_forces(
+    centre: BallCentre, slip: Sliding, deflection: Deflections, bristles: Bristles
+) -> tuple[Deflections, Deflections, Array]:
+    """Compute friction per normal force, the rate of the deflections, and the dissipated power per normal force.
+
+    The friction has three components across the load and one about it, a moment divided by the lever ρ.
+    """
     g = slip.x + slip.bx, slip.y + slip.by, slip.z + slip.bz, sqrt(slip.lever_squared) * slip.spin
     zx, zy, zz, zr = deflection
-    off = zx * place.x + zy * place.y + zz * place.z
-    z = zx - off * place.x, zy - off * place.y, zz - off * place.z, zr
-    speed, shares, least = _patch(g, place)
-    mu = safe_divisor(coefficient_at(speed, given.coefficient, given.static, given.stribeck_speed))
-    fall = given.stiffness * speed / mu
-    damping = given.damping / (1.0 + given.damping * speed / (4.0 * mu * least))
-    sinks = tuple(fall * bend / share for bend, share in zip(z, shares, strict=True))
-    rate = tuple(way - sink for way, sink in zip(g, sinks, strict=True))
-    held = zip(z, rate, g, strict=True)
-    force = tuple(given.stiffness * bend + damping * turn + given.viscous * way for bend, turn, way in held)
-    lost = given.stiffness * _dot(sinks, z) + damping * _dot(rate, g) + given.viscous * _dot(g, g)
+    normal_part = zx * centre.x + zy * centre.y + zz * centre.z
+    z = zx - normal_part * centre.x, zy - normal_part * centre.y, zz - normal_part * centre.z, zr
+    speed, slopes, least_slope = _patch(g, centre)
+    mu = safe_divisor(coefficient_at(speed, bristles.coefficient, bristles.static, bristles.stribeck_speed))
+    decay = bristles.stiffness * speed / mu
+    damping = bristles.damping / (1.0 + bristles.damping * speed / (4.0 * mu * least_slope))
+    losses = tuple(decay * bend / share for bend, share in zip(z, slopes, strict=True))
+    rate = tuple(slip_rate - loss for slip_rate, loss in zip(g, losses, strict=True))
+    states = zip(z, rate, g, strict=True)
+    force = tuple(
+        bristles.stiffness * bend + damping * change + bristles.viscous * slip_rate
+        for bend, change, slip_rate in states
+    )
+    dissipated = bristles.stiffness * _dot(losses, z) + damping * _dot(rate, g) + bristles.viscous * _dot(g, g)
     touching = slip.normal > 0.0
-    forgotten = tuple(where(touching, turn, -bend / given.release) for turn, bend in zip(rate, deflection, strict=True))
-    return force, forgotten, lost
+    released_rate = tuple(
+        where(touching, change, -bend / bristles.release) for change, bend in zip(rate, deflection, strict=True)
+    )
+    return force, released_rate, dissipated
 
 
-_STILL = 1e-30
+_TRANSITION_SPEED_SQUARED = 1e-30
 """Square of the transition speed in (mm/s)²; too small to change the slip."""
 
 
-def _patch(slip: Four, place: Place) -> tuple[Array, Four, Array]:
-    """Compute the effective slip speed, its slopes over half the squares of the slip, and the least of these."""
+def _patch(slip: Deflections, centre: BallCentre) -> tuple[Array, Deflections, Array]:
+    """Compute the effective slip speed, its slopes over half the squares of the slip, and the smallest slope."""
     gx, gy, gz, gr = slip
-    m = versine(place)
+    m = versine(centre)
     across, kappa = gx * gx + gy * gy + gz * gz, tilt_share(m)
     share = kappa * kappa
-    square, by_slip, by_tilt, by_spin, _ = effective_slip(across, share * across, gr * gr, 0.0, _STILL, share, m)
+    square, by_slip, by_tilt, by_spin, _ = effective_slip(
+        across, share * across, gr * gr, 0.0, _TRANSITION_SPEED_SQUARED, share, m
+    )
     push = by_slip + share * by_tilt
     return sqrt(square), (push, push, push, by_spin), where(push < by_spin, push, by_spin)
 
 
-def _dot(first: Four, second: Four) -> Array:
+def _dot(first: Deflections, second: Deflections) -> Array:
     return sum((a * b for a, b in zip(first[1:], second[1:], strict=True)), first[0] * second[0])

@@ -1,4 +1,4 @@
-"""The force element for compiled programs: the same formulas, in tens of nanoseconds, one state or many.
+"""Force element for compiled programs: the same formulas in tens of nanoseconds, for a state or for arrays.
 
 Needs numba (`pip install 'ballsocket[fast]'`).
 """
@@ -17,6 +17,7 @@ from ..compiled.law import CompiledLaw
 from ..compiled.overloads import inline_formula, jit_formula
 from ..contact.law import ForceLaw
 from ..core.arrays import Numbers
+from ..core.deprecation import renamed_names
 from ..models import kinematics
 from ..models.kinematics import Kinematics
 from ..problem import Joint
@@ -29,23 +30,24 @@ from .reaction import Constants
 
 @dataclass(frozen=True, eq=False)
 class CompiledElement:
-    """A force element for functions that numba compiles, and for large arrays of states.
+    """Force element for functions compiled by numba, and for large arrays of states.
 
     Parameters
     ----------
     element : ForceElement
-        Of any model; a closed form that is none of radial springs is followed by a curve, to 1e-9 of its force.
+        Element with any model. A closed form other than radial springs becomes a curve within 1e-9 of its force.
 
     Attributes
     ----------
     potential : CompiledLaw
-        From an indentation to energy, force and stiffness, inside of compiled functions.
+        Energy, force and stiffness of an indentation, for compiled functions.
     constants : Constants
+        Numbers of the element.
 
     Raises
     ------
     ValueError
-        An element with bristles, or one that sticks: they have a state.
+        An element with bristles or adhesion, which has an internal state.
 
     Examples
     --------
@@ -63,38 +65,42 @@ class CompiledElement:
 
     def __post_init__(self) -> None:
         if self.element.remembers:
-            raise ValueError(f"{self.element.remembers}; compiled elements have no state, use the element itself")
+            raise ValueError(
+                f"{self.element.remembers}; compiled elements support no internal state, use the ForceElement"
+            )
 
     def __call__(self, position: Any, velocity: Any = (0.0, 0.0, 0.0), spin: Any = (0.0, 0.0, 0.0)) -> Load:
-        """The load at a state as the element itself has it."""
+        """Compute the load at a state by the element itself, see `ForceElement`."""
         return self.element(position, velocity, spin)
 
     @property
     def constants(self) -> Constants:
+        """Numbers of the element."""
         return self.element.constants
 
     @cached_property
     def potential(self) -> CompiledLaw:
+        """Energy, force and stiffness of an indentation, for compiled functions."""
         return compiled_potential(self.element)
 
     @property
     def march(self) -> Any:
-        """The steps of `simulate`, compiled."""
+        """Compiled loop over the steps of `simulate`."""
         return _march()
 
     def loads(self, position: Numbers, velocity: Numbers, spin: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-        """Force and moment on the ball, energy, and tangent (xx, yy, zz, xy, yz, zx) of many states in one pass.
+        """Compute force and moment on the ball, energy, and tangent (xx, yy, zz, xy, yz, zx) of an array of states.
 
         Parameters
         ----------
         position, velocity, spin : array (states, 3)
-            Of NumPy, in float64.
+            NumPy arrays of float64.
 
         Returns
         -------
         arrays (states, 3), (states, 3), (states,), (states, 6)
         """
-        state = [numpy.ascontiguousarray(part, dtype=float) for part in (position, velocity, spin)]
+        state = [numpy.ascontiguousarray(values, dtype=float) for values in (position, velocity, spin)]
         count = len(position)
         outputs = numpy.empty((count, 3)), numpy.empty((count, 3)), numpy.empty(count), numpy.empty((count, 6))
         _batch()(self.potential, self.constants, *state, *outputs)
@@ -102,17 +108,19 @@ class CompiledElement:
 
 
 def compiled_potential(element: ForceElement) -> CompiledLaw:
-    """Energy, force and stiffness over the indentation as compiled functions take it."""
-    given = element.potential
-    if isinstance(given, SpringPotential):
-        springs = given.springs
+    """Return energy, force and stiffness over the indentation for compiled functions."""
+    energy_law = element.potential
+    if isinstance(energy_law, SpringPotential):
+        springs = energy_law.springs
         numbers: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
         return CompiledLaw(function=_springs(springs.kinematics), numbers=numbers)
     curve = (
-        given.curve if isinstance(given, CurvePotential) else _curve_of(element.joint, element.model.law(element.joint))
+        energy_law.curve
+        if isinstance(energy_law, CurvePotential)
+        else _curve_of(element.joint, element.model.law(element.joint))
     )
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return CompiledLaw(function=_slopes(), numbers=(*ends, curve.pieces))
+    return CompiledLaw(function=_compiled_slopes(), numbers=(*ends, curve.pieces))
 
 
 def _curve_of(joint: Joint, law: ForceLaw) -> Any:
@@ -131,45 +139,45 @@ def _springs(motion: Kinematics) -> Any:
 
 
 @cache
-def _slopes() -> Any:
+def _compiled_slopes() -> Any:
     return njit(error_model="numpy", fastmath={"contract"})(potential.slopes_of_number)
 
 
-def answered(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
-    """Force, moment, energy and tangent (xx, yy, zz, xy, yz, zx) of one state, for compiled functions."""
-    place = reaction.place_of(position[0], position[1], position[2], constants.clearance)
-    return loaded(place, reaction.elastic(potential, place, constants), velocity, spin, constants)
+def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
+    """Compute force, moment, energy and tangent (xx, yy, zz, xy, yz, zx) of one state in a compiled function."""
+    centre = reaction.centre_of(position[0], position[1], position[2], constants.clearance)
+    return load_from_contact(centre, reaction.elastic(potential, centre, constants), velocity, spin, constants)
 
 
-def loaded(place, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
-    """`answered` at a place whose contact is known."""
-    fx, fy, fz, mx, my, mz = reaction.reaction(place, contact, velocity, spin, constants)
-    return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(place, contact, constants)
+def load_from_contact(centre, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
+    """Compute the results of `loads_at` from the elastic contact of the state."""
+    fx, fy, fz, mx, my, mz = reaction.reaction(centre, contact, velocity, spin, constants)
+    return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(centre, contact, constants)
 
 
-_BLOCK = 256
-"""States whose energies are found before their loads: a processor does the one faster without the other."""
+_BLOCK_SIZE = 256
+"""Number of states whose energies are computed before their loads; the separate loops are faster."""
 
 
 @cache
 def _batch() -> Any:
     @njit(error_model="numpy", fastmath={"contract"})
     def run(potential, constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
-        known = numpy.empty((_BLOCK, 3))
-        for first in range(0, len(energy), _BLOCK):
-            last = min(first + _BLOCK, len(energy))
+        block = numpy.empty((_BLOCK_SIZE, 3))
+        for first in range(0, len(energy), _BLOCK_SIZE):
+            last = min(first + _BLOCK_SIZE, len(energy))
             for i in range(first, last):
-                place = reaction.place_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                U, F, k = potential(reaction.ramp(place.indentation, constants.smoothing)[0])
-                known[i - first, 0], known[i - first, 1], known[i - first, 2] = U, F, k
+                centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                U, F, k = potential(reaction.ramp(centre.indentation, constants.smoothing)[0])
+                block[i - first, 0], block[i - first, 1], block[i - first, 2] = U, F, k
             for i in range(first, last):
-                place = reaction.place_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                slopes = known[i - first, 0], known[i - first, 1], known[i - first, 2]
-                rounded = reaction.ramp(place.indentation, constants.smoothing)
-                contact = reaction.stored(place, rounded, slopes, constants)
+                centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                slopes = block[i - first, 0], block[i - first, 1], block[i - first, 2]
+                rounded = reaction.ramp(centre.indentation, constants.smoothing)
+                contact = reaction.elastic_from_slopes(centre, rounded, slopes, constants)
                 v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
                 w = spin[i, 0], spin[i, 1], spin[i, 2]
-                f, m, energy[i], J = loaded(place, contact, v, w, constants)
+                f, m, energy[i], J = load_from_contact(centre, contact, v, w, constants)
                 force[i, 0], force[i, 1], force[i, 2] = f
                 moment[i, 0], moment[i, 1], moment[i, 2] = m
                 tangent[i, 0], tangent[i, 1], tangent[i, 2], tangent[i, 3], tangent[i, 4], tangent[i, 5] = J
@@ -189,30 +197,32 @@ for _formula in (
     reaction.positive,
     reaction._rounded,
     reaction.rim_share,
-    friction.grip,
+    friction.widening_factor,
     friction.drill_lever,
     friction.coefficient_at,
     friction.tilt_share,
     friction.effective_slip,
-    reaction.place_of,
+    reaction.centre_of,
     reaction.elastic,
-    reaction.covered,
-    reaction.leaning,
+    reaction.elastic_at_rim,
+    reaction.dome_angle,
     reaction.pressed,
     reaction.sliding,
     reaction.versine,
     reaction.reaction,
     reaction.dissipation,
     reaction.tangent,
-    stepping.ended,
-    stepping.speed_of,
+    stepping.end_state,
+    stepping.surface_speed,
     stepping.mean_contact,
-    stepping.missing,
-    stepping.corrected,
-    stepping.stepped,
-    answered,
+    stepping.residual_of,
+    stepping.newton_correction,
+    stepping.advance,
+    loads_at,
 ):
     jit_formula(_formula)
 
-for _short in (reaction.stored, loaded):
-    inline_formula(_short)
+for _inlined in (reaction.elastic_from_slopes, load_from_contact):
+    inline_formula(_inlined)
+
+__getattr__ = renamed_names(__name__, {"answered": "loads_at"})

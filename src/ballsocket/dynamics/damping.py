@@ -1,4 +1,4 @@
-"""What a contact loses while it is pressed and let go: a hysteresis in the speed, and a liner that takes its time."""
+"""Damping of a contact: hysteresis damping of Hunt & Crossley, and a Kelvin-Voigt liner."""
 
 from __future__ import annotations
 
@@ -14,26 +14,27 @@ from .restitution import Relation, restitution_of
 
 @dataclass(frozen=True, kw_only=True)
 class Damping:
-    """The damping of a contact: its normal force is F + (χ F + τ k) ḋ, and never pulls.
+    """Damping of a contact with the normal force F + (χ F + τ k) ḋ, which is never negative.
 
-    F and k are the elastic force and stiffness at the indentation d. The first part is that of Hunt & Crossley. The
-    second is a liner of Kelvin-Voigt springs, each of which answers to K (u + τ u̇); a contact that travels along the
-    socket loses energy with it too, τ F/e v² at a distance e of the centres.
+    F and k are the elastic force and stiffness at the indentation d. The term with χ is that of Hunt & Crossley. The
+    term with τ is a liner of Kelvin-Voigt springs with the pressure K (u + τ u̇). It also dissipates the power
+    τ F/e v² when the contact moves along the socket with the speed v, at a distance e of the centres.
 
     Parameters
     ----------
     hysteresis : float
-        χ in s/mm, 0 or more. `Flores(...)` and its kin find it from a coefficient of restitution.
+        χ in s/mm, 0 or more. `Flores(...)` and similar functions compute it from a coefficient of restitution.
     time : float
-        τ in s, 0 or more: the time of retardation of the liner.
+        Retardation time τ of the liner in s, 0 or more.
     sources : tuple of Source
+        Published sources of the relation.
 
     Raises
     ------
     ValueError
-        A number below 0, or not finite.
+        A number that is negative or not finite.
     TypeError
-        What is no number.
+        A value that is not a number.
 
     Examples
     --------
@@ -48,55 +49,57 @@ class Damping:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
-        _set(self, "hysteresis", "damping is 0 or more and finite: below 0 a contact would make energy")
-        _set(self, "time", "a time of retardation (s) is 0 or more and finite: below 0 a contact would make energy")
+        _set_checked(
+            self, "hysteresis", "damping must be at least 0 and finite; negative damping would generate energy"
+        )
+        _set_checked(self, "time", "a retardation time (s) must be at least 0 and finite")
 
     def restitution(self, speed: float) -> float:
-        """The coefficient of restitution at a speed of touch-down (mm/s) of χ alone, the same for all laws F(d)."""
+        """Compute the coefficient of restitution at an impact speed in mm/s from χ alone, for any law F(d)."""
         return restitution_of(self.hysteresis * speed)
 
 
-def _set(damping: Damping, name: str, allowed: str) -> None:
+def _set_checked(damping: Damping, name: str, allowed: str) -> None:
     value = check_number(name, getattr(damping, name))
     require(name, value, 0.0 <= value < math.inf, allowed)
     object.__setattr__(damping, name, value)
 
 
 def of_restitution(relation: Relation, restitution: float, impact_speed: float) -> Damping:
-    """The damping that a relation takes for a coefficient of restitution at a speed of touch-down.
+    """Compute the damping for a coefficient of restitution at an impact speed by a published relation.
 
     Parameters
     ----------
     relation : Relation
-        One of `ballsocket.dynamics.relations`; `exact` keeps the coefficient, the others nearly.
+        One of `ballsocket.dynamics.relations`; `exact` reproduces the coefficient, the others approximate it.
     restitution : float
         e, above 0 and up to 1.
     impact_speed : float
-        At touch-down in mm/s, above 0.
+        Speed at first contact in mm/s, above 0.
 
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value.
+        A value out of range.
     """
     speed = check_number("impact_speed", impact_speed)
-    require("impact_speed", speed, 0.0 < speed < math.inf, "a speed (mm/s) is above 0 and finite")
+    require("impact_speed", speed, 0.0 < speed < math.inf, "a speed (mm/s) must be above 0 and finite")
     chi = relation.damping(check_number("restitution", restitution)) / speed
     return Damping(hysteresis=chi, sources=relation.sources)
 
 
-def _named(relation: Relation) -> Callable[..., Damping]:
+def _constructor(relation: Relation) -> Callable[..., Damping]:
     def damping(*, restitution: float, impact_speed: float) -> Damping:
         return of_restitution(relation, restitution, impact_speed)
 
-    damping.__doc__ = f"""The damping of {relation.name} for a coefficient of restitution.
+    damping.__doc__ = f"""Compute the damping for a coefficient of restitution by the relation of {relation.name}.
 
     Parameters
     ----------
     restitution : float
         e, above 0 and up to 1.
     impact_speed : float
-        At touch-down in mm/s, above 0.
+        Speed at first contact in mm/s, above 0.
 
     Returns
     -------
@@ -106,8 +109,8 @@ def _named(relation: Relation) -> Callable[..., Damping]:
     return damping
 
 
-HuntCrossley = _named(relations.hunt_crossley)
-LankaraniNikravesh = _named(relations.lankarani_nikravesh)
-Flores = _named(relations.flores)
-Gonthier = _named(relations.gonthier)
-Restitution = _named(relations.exact)
+HuntCrossley = _constructor(relations.hunt_crossley)
+LankaraniNikravesh = _constructor(relations.lankarani_nikravesh)
+Flores = _constructor(relations.flores)
+Gonthier = _constructor(relations.gonthier)
+Restitution = _constructor(relations.exact)

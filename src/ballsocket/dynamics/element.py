@@ -1,4 +1,4 @@
-"""The force element: a model, a joint, what it loses, bound once and asked at one state after the other."""
+"""Force element: model, joint, damping and friction, evaluated at states of the ball."""
 
 from __future__ import annotations
 
@@ -20,45 +20,44 @@ from ..problem.cup import Cup
 from .bristles import Bristles
 from .damping import Damping
 from .friction import Friction
-from .load import Load, brushed
+from .load import Load, apply_bristles
 from .matrices import vector
-from .potential import Potential, potential_of, slopes_of_array
-from .reaction import APART, Constants, Place, Three, elastic, place_of, reaction
-from .sticking import sticking_potential, undamped_pull
-from .watch import Watch
+from .potential import Potential, adhesion_potential, potential_of, slopes_of_array
+from .reaction import APART, BallCentre, Constants, Vector, centre_of, elastic, reaction, undamped_pull
+from .validity_monitor import ValidityMonitor
 
-_REST = (0.0, 0.0, 0.0)
-_UNBENT = (0.0, 0.0, 0.0, 0.0)
-_LISTS = (tuple, list)
-_OF_NUMPY = numpy.float64
+_ZERO_VECTOR = (0.0, 0.0, 0.0)
+_ZERO_DEFLECTION = (0.0, 0.0, 0.0, 0.0)
+_SEQUENCES = (tuple, list)
+_NUMPY_FLOAT = numpy.float64
 
 
 @dataclass(frozen=True, eq=False)
 class ForceElement:
-    """A ball joint as a force element for programs that step through time.
+    """Ball joint as a force element for time-stepping programs.
 
     Parameters
     ----------
     model : Model
-        Any that has a law: closed forms, `Tabulated`, `Refined`, `Exact`, ...
+        Any model with a force law: closed forms, `Tabulated`, `Refined`, `Exact`, ...
     joint : Joint
-        Of plain numbers.
+        Joint of plain numbers.
     damping : Damping, optional
-        `Flores(restitution=..., impact_speed=...)` and its kin, or `Damping(...)`. None, the default, loses nothing.
+        `Damping(...)`, or a relation: `Flores(restitution=..., impact_speed=...)`. None, the default, has no losses.
     friction : Friction or Bristles, optional
-        Bristles have a state, which is asked and answered with the rest. None, the default, rubs nowhere.
+        Bristles have a state, an argument of each call. None, the default, has no friction.
     cup : Cup, optional
-        With a rim, over which the force dies out. None, the default, is a whole sphere.
+        Cup with a rim, at which the force falls to zero. None, the default, is a full sphere.
     smoothing : float
-        In mm: the touch-down is rounded off over this depth on both sides of first touch, so that the force is twice
-        continuously differentiable, as optimal control needs it. 0, the default, is the model's own law.
+        Indentation in mm on both sides of first touch over which the law is rounded off. The force is then twice
+        continuously differentiable, as optimal control needs it. 0, the default, is the law of the model.
 
     Raises
     ------
     ValueError
-        A joint outside the model's domain; a smoothing that is negative, or wider than the clearance.
+        A joint outside the domain of the model; a smoothing below 0 or above the clearance.
     TypeError
-        A model without a law, arrays in the joint, or what is no damping, friction or cup.
+        A model without a force law, arrays in the joint, or a wrong type of damping, friction or cup.
 
     Examples
     --------
@@ -84,14 +83,14 @@ class ForceElement:
     def __post_init__(self) -> None:
         check_joint(self.joint)
         for name, kind in (("model", Model), ("damping", Damping), ("friction", Friction | Bristles), ("cup", Cup)):
-            given = getattr(self, name)
-            if not (isinstance(given, kind) or (given is None and name != "model")):
-                raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(given)}")
+            value = getattr(self, name)
+            if not (isinstance(value, kind) or (value is None and name != "model")):
+                raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(value)}")
         smoothing = check_number("smoothing", self.smoothing)
         potential = self._potential()
         clearance = float(self.joint.clearance)
-        good = 0.0 <= smoothing <= clearance
-        require("smoothing", smoothing, good, f"it is 0 or more, and at most the clearance, {clearance:g} mm")
+        valid = 0.0 <= smoothing <= clearance
+        require("smoothing", smoothing, valid, f"it must be between 0 and the clearance, {clearance:g} mm")
         object.__setattr__(self, "potential", potential)
         object.__setattr__(self, "constants", self._constants(smoothing))
 
@@ -99,20 +98,20 @@ class ForceElement:
         if not isinstance(self.model, AdhesiveSocket):
             return potential_of(self.model, self.joint)
         if self.friction or self.cup or self.smoothing:
-            raise TypeError("an adhesive socket takes a damping, but no friction, cup or smoothing: nobody knows those")
-        return sticking_potential(self.model, self.joint)
+            raise TypeError("friction, cup and smoothing are not supported with AdhesiveSocket")
+        return adhesion_potential(self.model, self.joint)
 
     @cached_property
     def stretch(self) -> float:
-        """How far a ball that sticks is pulled back before it is free, in mm: u_c; 0 for all other models."""
+        """Stretch u_c in mm at which an adhesive ball separates; 0 for other models."""
         return getattr(self.potential, "stretch", 0.0)
 
     @property
     def remembers(self) -> str:
-        """What of the contact has a state of its own, in words; empty where nothing does."""
+        """Sentence that names the internal state of the contact; empty without one."""
         if isinstance(self.friction, Bristles):
             return "bristles have a state"
-        return "a ball that sticks has a state" if self.stretch > 0.0 else ""
+        return "an adhesive ball has a state" if self.stretch > 0.0 else ""
 
     def _constants(self, smoothing: float) -> Constants:
         joint, cup = self.joint.with_floats(), self.cup
@@ -138,137 +137,140 @@ class ForceElement:
     def __call__(
         self,
         position: Any,
-        velocity: Any = _REST,
-        spin: Any = _REST,
-        deflection: Any = _UNBENT,
+        velocity: Any = _ZERO_VECTOR,
+        spin: Any = _ZERO_VECTOR,
+        deflection: Any = _ZERO_DEFLECTION,
         attached: Any = False,
     ) -> Load:
-        """The load at a state, in axes that are fixed to the socket.
+        """Compute the load at a state, in axes fixed to the socket.
 
         Parameters
         ----------
         position : (3,) or array (..., 3)
-            Of the ball's centre from the socket's, in mm. Tuples and lists of numbers are answered in tuples, and
-            quickest; arrays of any library in arrays, all states at once.
+            Position of the ball centre relative to the socket centre in mm. Tuples and lists of numbers return tuples,
+            which is fastest; arrays of any library return arrays for all states at once.
         velocity : (3,) or array (..., 3)
-            Of the ball's centre as it is seen from the socket, in mm/s.
+            Velocity of the ball centre relative to the socket in mm/s.
         spin : (3,) or array (..., 3)
-            Angular velocity of the ball less that of the socket, in rad/s.
+            Angular velocity of the ball relative to the socket in rad/s.
         deflection : (4,) or array (..., 4)
-            Of the bristles in mm, where the friction has such: the integral of the load's `deflection_rate`.
+            Deflections of the bristles in mm: the integral of the `deflection_rate` of the load.
         attached : bool or array
-            Whether a ball that sticks already did: the `attached` of the load before.
+            True for an adhesive ball that was attached: `attached` of the previous load.
 
         Raises
         ------
         ValueError
-            What does not have three components.
+            A vector without three components.
         """
-        if type(position) in _LISTS:
-            load = self._of_numbers(three(position), three(velocity), three(spin), attached)
+        if type(position) in _SEQUENCES:
+            load = self._of_numbers(components(position), components(velocity), components(spin), attached)
         else:
             load = self._of_arrays(position, velocity, spin, attached)
         if not isinstance(self.friction, Bristles):
             return load
         with numpy.errstate(all="ignore"):
-            return brushed(load, self.friction, deflection)
+            return apply_bristles(load, self.friction, deflection)
 
-    def _of_numbers(self, position: Three, velocity: Three, spin: Three, attached: bool) -> Load:
-        given = self.constants
-        place = place_of(*position, given.clearance)
+    def _of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
+        constants = self.constants
+        centre = centre_of(*position, constants.clearance)
         sticks = self.stretch > 0.0
         if sticks:
-            place = self._held(place, attached)
-        if place.indentation <= -given.smoothing and place.distance > 0.0:
-            return Load(_REST, _REST, 0.0, self, place, APART, position, velocity, spin)
-        if place.indentation > self._watch.limit:
-            self._watch.at(place.indentation)
-        contact = elastic(self.potential, place, given)
+            centre = self._attached_centre(centre, attached)
+        if centre.indentation <= -constants.smoothing and centre.distance > 0.0:
+            return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, APART, position, velocity, spin)
+        if centre.indentation > self._monitor.limit:
+            self._monitor.check(centre.indentation)
+        contact = elastic(self.potential, centre, constants)
         if sticks:
             contact = undamped_pull(contact)
-        fx, fy, fz, mx, my, mz = reaction(place, contact, velocity, spin, given)
-        return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, place, contact, position, velocity, spin)
+        fx, fy, fz, mx, my, mz = reaction(centre, contact, velocity, spin, constants)
+        return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, centre, contact, position, velocity, spin)
 
     def _of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
         position = check_vectors("position", position, axes[0])
-        checked = map(check_vectors, names, [_beside(position, each) for each in (position, velocity, spin)], axes)
-        r, v, w = (_components(each) for each in to_common_arrays(*checked))
-        with numpy.errstate(all="ignore"):  # a state without an answer has a status
-            place = self._held(place_of(*r, self.constants.clearance), attached)
-            self._watch.look(place.indentation)
-            contact = elastic(self.potential, place, self.constants)
+        states = [_as_array_like(position, value) for value in (position, velocity, spin)]
+        r, v, w = (_split(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
+        with numpy.errstate(all="ignore"):  # states without a result have a status
+            centre = self._attached_centre(centre_of(*r, self.constants.clearance), attached)
+            self._monitor.check_array(centre.indentation)
+            contact = elastic(self.potential, centre, self.constants)
             contact = undamped_pull(contact) if self.stretch > 0.0 else contact
-            parts = reaction(place, contact, v, w, self.constants)
-        force, moment = vector(object, *parts[:3]), vector(object, *parts[3:])
-        return Load(force, moment, contact.energy, self, place, contact, r, v, w)
+            loads = reaction(centre, contact, v, w, self.constants)
+        force, moment = vector(object, *loads[:3]), vector(object, *loads[3:])
+        return Load(force, moment, contact.energy, self, centre, contact, r, v, w)
 
-    def _held(self, place: Place, attached: Any) -> Place:
-        """The place of a ball that sticks: apart before first touch, unless it is attached."""
+    def _attached_centre(self, centre: BallCentre, attached: Any) -> BallCentre:
+        """Return the centre of an adhesive ball: without contact before first touch, unless it is attached."""
         if self.stretch == 0.0:
-            return place
-        held = attached | (place.indentation >= self.stretch)
-        return place._replace(indentation=where(held, place.indentation, 0.0 * place.indentation - 1.0))
+            return centre
+        in_contact = attached | (centre.indentation >= self.stretch)
+        return centre._replace(indentation=where(in_contact, centre.indentation, 0.0 * centre.indentation - 1.0))
 
     @property
     def wall(self) -> float:
-        """The deepest indentation that the socket's wall and the model leave room for, in mm."""
+        """Largest indentation in mm that wall thickness and model allow."""
         return self.constants.wall - self.stretch
 
     @cached_property
-    def _watch(self) -> Watch:
-        return Watch(model=self.model, joint=self.joint.with_floats(), wall=self.wall)
+    def _monitor(self) -> ValidityMonitor:
+        return ValidityMonitor(model=self.model, joint=self.joint.with_floats(), wall=self.wall)
 
     @cached_property
     def curves(self) -> tuple[CurveLaw, CurveLaw]:
-        """Half angle (rad) and largest pressure (MPa) over the indentation, as curves of ln over ln."""
+        """Half angle (rad) and largest pressure (MPa) over the indentation, as curves in logarithms."""
         return _curve_of(self.model, self.joint, "half_angle"), _curve_of(self.model, self.joint, "max_pressure")
 
     def half_angle(self, indentation: Array) -> Array:
-        """ε in rad of an indentation in mm; 0 where nothing touches."""
+        """Compute the half angle in rad at an indentation in mm; 0 without contact."""
         return _read(self.curves[0], indentation)
 
     def max_pressure(self, indentation: Array) -> Array:
-        """In MPa of an indentation in mm; 0 where nothing touches."""
+        """Compute the largest pressure in MPa at an indentation in mm; 0 without contact."""
         return _read(self.curves[1], indentation)
 
 
-def three(value: Any, name: str = "a state") -> Three:
+def components(value: Any, name: str = "a state") -> Vector:
+    """Return the components of a vector as floats; raise ValueError without three real numbers."""
     try:
         x, y, z = value
         if isinstance(x + y + z, complex):
             raise TypeError("complex numbers")
-        if type(x) is _OF_NUMPY:  # numbers of Python are quicker
+        if type(x) is _NUMPY_FLOAT:  # Python numbers are faster
             return float(x), float(y), float(z)
         return x + 0.0, y + 0.0, z + 0.0
     except (TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"{name} has three components, x, y and z, all real numbers, got {shown(value)}") from error
+        raise ValueError(
+            f"{name} must have three components, x, y and z, all real numbers, got {shown(value)}"
+        ) from error
 
 
-def _beside(position: Any, value: Any) -> Any:
-    """A list as an array of the position's library."""
-    if type(value) not in _LISTS:
+def _as_array_like(position: Any, value: Any) -> Any:
+    """Convert a list to an array like the position."""
+    if type(value) not in _SEQUENCES:
         return value
-    place = to_common_arrays(position)[0]
-    return arrays.namespace(place).asarray(value, dtype=place.dtype, device=arrays.device(place))
+    like = to_common_arrays(position)[0]
+    return arrays.namespace(like).asarray(value, dtype=like.dtype, device=arrays.device(like))
 
 
-def _components(value: Any) -> Three:
+def _split(value: Any) -> Vector:
     return value[..., 0], value[..., 1], value[..., 2]
 
 
 def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
-    """A quantity of a contact over the indentation, up to the socket's radius."""
-    whole = joint.with_floats()
-    shallowest = 1e-6 * (whole.clearance or whole.socket_radius)
+    """Fit a curve of a contact quantity over the indentation, up to the socket radius."""
+    joint = joint.with_floats()
+    shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
     return curve_law(
-        lambda depths: getattr(model.press(whole, indentation=depths), quantity), shallowest, whole.socket_radius
+        lambda depths: getattr(model.press(joint, indentation=depths), quantity), shallowest, joint.socket_radius
     )
 
 
 def _read(curve: CurveLaw, indentation: Array) -> Array:
-    """The curve at indentations of any sign: 0 where nothing touches, NaN beyond its end."""
+    """Evaluate a curve at indentations of any sign: 0 without contact, NaN beyond its end."""
     if type(indentation) is float:
         return curve(indentation)[0]
     ends = curve.shallowest, curve.deepest, curve.first, curve.density

@@ -1,8 +1,8 @@
-"""Friction of the ball in its socket: resultants of Coulomb stresses over the patch, as slopes of one potential.
+"""Friction of the ball in its socket: resultants of Coulomb stresses over the patch, as slopes of a potential.
 
-On the patch a ball slides with the speed |w|, w = v + R1 ω x m less its part along the normal m. The resultants are the
-slopes of μ ∫ p |w| dA = μ N q over v and ω. N = ∫ p |a x m| dA for an axis a across the load, and q is an effective
-slip speed: q = |v| for a ball that slides, q = R1 |ω| for one that turns about an axis across the load.
+On the patch the ball slides with the speed |w|. Here w is v + R1 ω x m without its component along the normal m. The
+resultants are the slopes of μ ∫ p |w| dA = μ N q over v and ω, with N = ∫ p |a x m| dA for an axis a across the load.
+q is an effective slip speed: |v| for a sliding ball, and R1 |ω| for a ball that turns about an axis across the load.
 """
 
 from __future__ import annotations
@@ -15,28 +15,29 @@ from ..core.checks import check_number, require
 
 
 class Coulomb:
-    """A coefficient of sliding, and one of a ball that hardly moves where that differs."""
+    """Coefficients of sliding and static friction."""
 
     coefficient: float
     static_coefficient: float | None
 
     @property
     def static(self) -> float:
-        """The coefficient of a ball that hardly moves."""
+        """Coefficient of friction at vanishing slip."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
     def check_static(self) -> None:
-        """Raise ValueError for a static coefficient that is below that of sliding."""
+        """Raise ValueError for a static coefficient below the coefficient of sliding friction."""
         if self.static_coefficient is not None:
-            checked(self, "static_coefficient", self.coefficient, "static friction is not below that of sliding")
+            allowed = "static friction must be at least the sliding friction"
+            set_checked_number(self, "static_coefficient", self.coefficient, allowed)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Friction(Coulomb):
-    """Regularised Coulomb friction: the force is smooth in the speed, nearly μ N once that is above the transition.
+    """Regularised Coulomb friction: the force is smooth in the speed, and nearly μ N above the transition speed.
 
-    Sliding, turning and drilling share one limit. With q the effective slip speed of the patch, rounded off by the
-    transition speed, and N the normal force times the widening of the contact::
+    Sliding, turning and drilling share one limit. q is the effective slip speed of the patch, rounded off by the
+    transition speed, and N the normal force times the widening factor of the contact::
 
         f = -N (μ(q) + viscous q) ∂q/∂v,   M = -N (μ(q) + viscous q) ∂q/∂ω,
         μ(q) = coefficient + (static - coefficient) exp[-(q/stribeck_speed)²].
@@ -51,22 +52,22 @@ class Friction(Coulomb):
     Parameters
     ----------
     coefficient : float
-        Of sliding friction, 0 or more.
+        Coefficient of sliding friction, 0 or more.
     transition_speed : float
-        In mm/s, above 0: at this slip the force has 71 % of its size. Below, the ball creeps.
+        Slip in mm/s, above 0, at which the force has 71 % of its limit. Below it the ball creeps.
     static_coefficient : float, optional
-        Of a ball that hardly moves, not below the coefficient. None, the default, is the same.
+        Coefficient at vanishing slip, not below `coefficient`. None, the default, is the same coefficient.
     stribeck_speed : float
-        In mm/s, above 0: how fast one goes over into the other.
+        Speed of the transition from static to sliding friction in mm/s, above 0.
     viscous : float
-        In s/mm, 0 or more: what is added per speed.
+        Increase of the coefficient with the slip in s/mm, 0 or more.
 
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value.
+        A value out of range.
     TypeError
-        What is no number.
+        A value that is not a number.
     """
 
     coefficient: float
@@ -77,40 +78,43 @@ class Friction(Coulomb):
 
     def __post_init__(self) -> None:
         for name in ("coefficient", "viscous"):
-            checked(self, name, 0.0, "friction is 0 or more and finite: below 0 it would make energy")
+            set_checked_number(
+                self, name, 0.0, "friction must be at least 0 and finite; negative friction would generate energy"
+            )
         for name in ("transition_speed", "stribeck_speed"):
-            checked(self, name, 5e-324, "a speed (mm/s) is above 0 and finite")
+            set_checked_number(self, name, 5e-324, "a speed (mm/s) must be above 0 and finite")
         self.check_static()
 
 
-def checked(friction: object, name: str, least: float, allowed: str) -> None:
-    """Make a number of a frozen value a float, if it is allowed."""
+def set_checked_number(friction: object, name: str, least: float, allowed: str) -> None:
+    """Check a number of a frozen object, and store it as a float."""
     value = check_number(name, getattr(friction, name))
     require(name, value, least <= value < math.inf, allowed)
     object.__setattr__(friction, name, value)
 
 
-def grip(versine: Array) -> Array:
-    """∫ p |a x n| dA over the force: how much more a turning ball is braked than one that slides on a point.
+def widening_factor(versine: Array) -> Array:
+    """Compute the ratio of ∫ p |a x n| dA to the force: friction of an extended patch over that of a point contact.
 
-    a is an axis across the load, 1 - cos ε the versine. A fit to radial springs, within 2e-6; a hundredth off where
-    the pressure has another shape.
+    a is an axis across the load, and 1 - cos ε the versine. The polynomial fits radial springs within 2e-6; other
+    pressure distributions differ by about 1 %.
     """
     m = versine
     return 1.0 + m * (0.166617 + m * (0.066859 + m * (0.019915 + m * (0.023034 + m * (0.009908 * m - 0.013095)))))
 
 
 def drill_lever(versine: Array) -> Array:
-    """The lever ρ of the pressure about the axis of the load, ∫ p R2 sin φ dA over F times the grip, over R2 sin ε.
+    """Compute the lever ρ of the pressure about the axis of the load, relative to the patch radius R2 sin ε.
 
-    8/15 for a small contact. A fit to radial springs, within 1e-5.
+    ρ is ∫ p R2 sin φ dA over the force and the widening factor, 8/15 of R2 sin ε for a small contact. The polynomial
+    fits radial springs within 1e-5.
     """
     m = versine
     return 8 / 15 + m * (0.165042 + m * (0.054402 + m * (0.015167 + m * (0.019374 + m * (0.009834 * m - 0.011755)))))
 
 
 def coefficient_at(speed: Array, sliding: Array, static: Array, stribeck_speed: Array) -> Array:
-    """μ of a slip."""
+    """Compute the coefficient of friction μ at a slip speed."""
     share = speed / stribeck_speed
     return sliding + (static - sliding) * exp(-share * share)
 
@@ -118,7 +122,7 @@ def coefficient_at(speed: Array, sliding: Array, static: Array, stribeck_speed: 
 def tilt_share(versine: Array) -> Array:
     """Compute κ = ∫ p sin²(φ/2) dA/N: the share of its speed with which a rolling ball slides around a pole at rest.
 
-    A fit to radial springs, within 2e-5 of it.
+    The polynomial fits radial springs within 2e-5 of κ.
     """
     m = versine
     return m * (0.1666654 + m * (0.02783786 + m * (0.00243272 + m * (0.00084687 - m * 0.00142777))))
@@ -138,32 +142,32 @@ ROLL_FIT = (0.40882, 0.62470)
 
 
 def effective_slip(
-    slip: Array, tilt: Array, spin: Array, mixed: Array, still: Array, tilt_squared: Array, versine: Array
+    slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, tilt_squared: Array, versine: Array
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Compute q² and its slopes over X = |S|², Y = κ²|D|², Z = (ρ ω_n)² and P = κ S·D, all in (mm/s)².
 
-    S = v + b is the slip at the pole and D = v - b, where b = R1 ω x n; `still` is the square of the transition
-    speed v0. With G = X + θ Y + v0²::
+    S = v + b is the slip at the pole and D = v - b, where b = R1 ω x n. `transition_squared` is the
+    square of the transition speed v0. With G = X + θ Y + v0²::
 
         q² = v0² + (1 - κ²) X + Y + Z - Z [X (α X + β Z) + P (τ X + ν Z)]/(G² + η G Z + λ Z²)
              - γ Y Z/(X + Y + ζ Z + v0²).
 
-    The numbers are a least-squares fit to the slopes of ∫ p |w| dA of radial springs with half angles of 4° to 86°.
+    The constants are a least-squares fit to the slopes of ∫ p |w| dA of radial springs with half angles of 4° to 86°.
     """
     (a0, a1, a2, b, theta), (t0, t1, t2, n), (e0, e1, l0, l1), (g, zeta) = SLIP_FIT, TURN_FIT, DRILL_FIT, ROLL_FIT
-    m, total = versine, slip + tilt + spin + still
+    m, total = versine, slip + tilt + spin + transition_squared
     scale = 1.0 / total
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
     a, t, eta, lam_z = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, (l0 + l1 * m) * z
-    G = x + theta * y + scale * still
+    G = x + theta * y + scale * transition_squared
     along, turned = a * x + b * z, t * x + n * z
     over, roll = 1.0 / (G * (G + eta * z) + lam_z * z), g / (1.0 + (zeta - 1.0) * z)
     inner = x * along + p * turned
-    ratio, bent = z * inner * over, roll * y * z
+    ratio, rolling = z * inner * over, roll * y * z
     fall = ratio * (2.0 * G + eta * z) * over
-    push = bent * roll / g
+    push = rolling * roll / g
     return (
-        total * (1.0 - ratio - bent) - tilt_squared * slip,
+        total * (1.0 - ratio - rolling) - tilt_squared * slip,
         1.0 - tilt_squared - z * (along + a * x + t * p) * over + fall + push,
         1.0 + theta * fall - roll * z + push,
         1.0 - (inner + z * (b * x + n * p) - ratio * (eta * G + 2.0 * lam_z)) * over - roll * y + zeta * push,
@@ -172,14 +176,14 @@ def effective_slip(
 
 
 def effective_slip_bends(
-    slip: Array, tilt: Array, spin: Array, mixed: Array, still: Array, versine: Array
+    slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, versine: Array
 ) -> dict[tuple[int, int], Array]:
-    """Compute the second slopes of q² over X, Y, Z and P, numbered 0 to 3, as `effective_slip` has q²."""
+    """Compute the second derivatives of the q² of `effective_slip` over X, Y, Z and P, numbered 0 to 3."""
     (a0, a1, a2, b, theta), (t0, t1, t2, n), (e0, e1, l0, l1), (g, zeta) = SLIP_FIT, TURN_FIT, DRILL_FIT, ROLL_FIT
-    m, scale = versine, 1.0 / (slip + tilt + spin + still)
+    m, scale = versine, 1.0 / (slip + tilt + spin + transition_squared)
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
     a, t, eta, lam = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, l0 + l1 * m
-    G = x + theta * y + scale * still
+    G = x + theta * y + scale * transition_squared
     over, out, none = 1.0 / (G * (G + eta * z) + lam * z * z), 1.0 / (1.0 + (zeta - 1.0) * z), 0.0 * x
     # N/d with N = z [x (α x + β z) + p (τ x + ν z)]
     ratio = z * (x * (a * x + b * z) + p * (t * x + n * z)) * over

@@ -1,4 +1,4 @@
-"""Components put together: vectors, symmetric matrices, and the matrix of damping."""
+"""Vectors and matrices of components, and the damping matrix of a load."""
 
 from __future__ import annotations
 
@@ -9,77 +9,83 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array, where
 from . import friction
-from .reaction import ROUNDED, Constants, Elastic, Place, Sliding, Three, pressed, ramp, sliding, versine
+from .reaction import SMOOTHING_SHARE, BallCentre, Constants, Elastic, Sliding, Vector, pressed, ramp, sliding, versine
 
 
 def vector(kind: type, *components: Array) -> Any:
-    """Components as a tuple, or along the last axis of an array."""
+    """Return components as a tuple, or as the last axis of an array."""
     if kind is tuple:
         return components
     return arrays.namespace(*components).stack(components, axis=-1)
 
 
-def damping_matrix(place: Place, contact: Elastic, velocity: Three, spin: Three, given: Constants) -> Any:
-    """∂/∂(v, ω) of what damping and friction take, friction at the normal force as it is: (..., 6, 6)."""
-    place, contact = Place(*_arrays(place)), Elastic(*_arrays(contact))
+def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Any:
+    """Compute -∂(F, M)/∂(v, ω) of damping and friction at a constant normal force: (..., 6, 6)."""
+    centre, contact = BallCentre(*_arrays(centre)), Elastic(*_arrays(contact))
     velocity, spin = _arrays(velocity), _arrays(spin)
-    n, one, none = _vector(place.x, place.y, place.z), *_ones(place.distance)
+    n, unit, zero = _vector(centre.x, centre.y, centre.z), *_one_and_zero(centre.distance)
     normal = n[..., :, None] * n[..., None, :]
-    level = matrix(((one, none, none), (none, one, none), (none, none, one))) - normal
-    along, drag = _normal_rates(place, contact, velocity, given)
+    level = matrix(((unit, zero, zero), (zero, unit, zero), (zero, zero, unit))) - normal
+    along, drag = _normal_rates(centre, contact, velocity, constants)
     push = along[..., None, None] * normal + drag[..., None, None] * level
-    slip = sliding(place, pressed(contact, _along(place, velocity), given), velocity, spin, given)
+    slip = sliding(centre, pressed(contact, _normal_speed(centre, velocity), constants), velocity, spin, constants)
     slip = Sliding(*_arrays(slip))
-    x, y, z = place.x, place.y, place.z
-    turn = given.ball_radius * matrix(((none, z, -y), (-z, none, x), (y, -x, none)))
+    x, y, z = centre.x, centre.y, centre.z
+    rotation = constants.ball_radius * matrix(((zero, z, -y), (-z, zero, x), (y, -x, zero)))
     lever = arrays.sqrt(slip.lever_squared)
     xp = arrays.namespace(n)
-    # rows: v across the load, R1 ω x n, and the lever's speed; columns: v and ω
+    # rows: v across the load, R1 ω x n, and the speed at the lever; columns: v and ω
     empty = 0.0 * level
-    moved, turned = xp.concat([level, empty], axis=-1), xp.concat([empty, turn], axis=-1)
-    drilled = xp.concat([0.0 * n, lever[..., None] * n], axis=-1)[..., None, :]
+    translation, turning = xp.concat([level, empty], axis=-1), xp.concat([empty, rotation], axis=-1)
+    drilling = xp.concat([0.0 * n, lever[..., None] * n], axis=-1)[..., None, :]
     v, b = _vector(slip.x, slip.y, slip.z), _vector(slip.bx, slip.by, slip.bz)
-    rate = slip.rate[..., None, None] * _potential_bend(place, slip, (moved, turned, drilled), (v, b), given)
-    felt = _felt(moved, slip.push[..., None] * v + slip.mixed[..., None] * b)
-    felt = felt + _felt(turned, slip.mixed[..., None] * v + slip.turn[..., None] * b)
-    felt = felt + _felt(drilled, (slip.drill * lever * slip.spin)[..., None])
-    fall = _friction_fall(slip, given) / slip.speed
-    rate = rate + fall[..., None, None] * (felt[..., :, None] * felt[..., None, :])
-    wide = xp.concat([push, 0.0 * push], axis=-1)
-    return rate + xp.concat([wide, 0.0 * wide], axis=-2)
+    curvature = _potential_curvature(centre, slip, (translation, turning, drilling), (v, b), constants)
+    rate = slip.rate[..., None, None] * curvature
+    projection = _project(translation, slip.push[..., None] * v + slip.mixed[..., None] * b)
+    projection = projection + _project(turning, slip.mixed[..., None] * v + slip.rotation[..., None] * b)
+    projection = projection + _project(drilling, (slip.drill * lever * slip.spin)[..., None])
+    fall = _friction_fall(slip, constants) / slip.speed
+    rate = rate + fall[..., None, None] * (projection[..., :, None] * projection[..., None, :])
+    rows = xp.concat([push, 0.0 * push], axis=-1)
+    return rate + xp.concat([rows, 0.0 * rows], axis=-2)
 
 
-def _normal_rates(place: Place, contact: Elastic, velocity: Three, given: Constants) -> tuple[Array, Array]:
-    """How fast the normal force rises with ḋ, and how a contact drags that travels along the socket."""
-    lossy = given.hysteresis * contact.damped_force + given.time * contact.damped_stiffness
-    force = contact.normal + lossy * _along(place, velocity)
-    if given.smoothing > 0.0:
-        width = ROUNDED * contact.damped_force
+def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Vector, constants: Constants) -> tuple[Array, Array]:
+    """Compute the derivative of the normal force over ḋ, and the drag of a contact that moves along the socket."""
+    lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
+    force = contact.normal + lossy * _normal_speed(centre, velocity)
+    if constants.smoothing > 0.0:
+        width = SMOOTHING_SHARE * contact.damped_force
         slope = ramp(force / arrays.safe_divisor(width), 1.0)[1]
     else:
         slope = where(force > 0.0, 0.0 * force + 1.0, 0.0 * force)
-    return lossy * slope, given.time * contact.damped_force * place.over
+    return lossy * slope, constants.time * contact.damped_force * centre.over
 
 
-def _potential_bend(place: Place, slip: Sliding, ways: Three, rates: tuple[Array, Array], given: Constants) -> Array:
-    """Compute half of the second slopes of q² over velocity and spin: (..., 6, 6)."""
+def _potential_curvature(
+    centre: BallCentre, slip: Sliding, directions: Vector, rates: tuple[Array, Array], constants: Constants
+) -> Array:
+    """Compute half of the second derivatives of q² over velocity and spin: (..., 6, 6)."""
     xp = arrays.namespace(rates[0])
-    (moved, turned, drilled), (v, b), kappa = ways, rates, friction.tilt_share(versine(place))
+    (translation, turning, drilling), (v, b), kappa = directions, rates, friction.tilt_share(versine(centre))
     share, drill = kappa * kappa, slip.lever_squared * slip.spin * slip.spin
     pole, tilt = v + b, v - b
     squares = xp.sum(pole * pole, axis=-1), xp.sum(tilt * tilt, axis=-1), xp.sum(pole * tilt, axis=-1)
     state = squares[0], share * squares[1], drill, kappa * squares[2]
-    bends = friction.effective_slip_bends(*state, given.transition_speed * given.transition_speed, versine(place))
-    first, other = moved + turned, moved - turned
+    transition_squared = constants.transition_speed * constants.transition_speed
+    bends = friction.effective_slip_bends(*state, transition_squared, versine(centre))
+    plus, minus = translation + turning, translation - turning
     halves = (
-        _felt(first, pole),
-        share[..., None] * _felt(other, tilt),
-        _felt(drilled, (arrays.sqrt(slip.lever_squared) * slip.spin)[..., None]),
-        0.5 * kappa[..., None] * (_felt(first, tilt) + _felt(other, pole)),
+        _project(plus, pole),
+        share[..., None] * _project(minus, tilt),
+        _project(drilling, (arrays.sqrt(slip.lever_squared) * slip.spin)[..., None]),
+        0.5 * kappa[..., None] * (_project(plus, tilt) + _project(minus, pole)),
     )
-    total = slip.push[..., None, None] * _square(moved, moved) + slip.turn[..., None, None] * _square(turned, turned)
-    total = total + slip.mixed[..., None, None] * (_square(moved, turned) + _square(turned, moved))
-    total = total + slip.drill[..., None, None] * _square(drilled, drilled)
+    total = slip.push[..., None, None] * _outer(translation, translation)
+    total = total + slip.rotation[..., None, None] * _outer(turning, turning)
+    coupling = _outer(translation, turning) + _outer(turning, translation)
+    total = total + slip.mixed[..., None, None] * coupling
+    total = total + slip.drill[..., None, None] * _outer(drilling, drilling)
     for (i, j), bend in bends.items():
         outer = halves[i][..., :, None] * halves[j][..., None, :]
         both = outer if i == j else outer + xp.matrix_transpose(outer)
@@ -87,28 +93,28 @@ def _potential_bend(place: Place, slip: Sliding, ways: Three, rates: tuple[Array
     return total
 
 
-def _square(one: Array, other: Array) -> Array:
-    xp = arrays.namespace(one)
-    return xp.matmul(xp.matrix_transpose(one), other)
+def _outer(first: Array, second: Array) -> Array:
+    xp = arrays.namespace(first)
+    return xp.matmul(xp.matrix_transpose(first), second)
 
 
-def _felt(ways: Array, rates: Array) -> Array:
-    return arrays.namespace(ways).sum(rates[..., :, None] * ways, axis=-2)
+def _project(directions: Array, rates: Array) -> Array:
+    return arrays.namespace(directions).sum(rates[..., :, None] * directions, axis=-2)
 
 
-def _friction_fall(slip: Sliding, given: Constants) -> Array:
-    """Compute the slope of friction's rate over q."""
+def _friction_fall(slip: Sliding, constants: Constants) -> Array:
+    """Compute the derivative of the friction rate over q."""
     q = slip.speed
-    mu = friction.coefficient_at(q, given.sliding, given.static, given.stribeck_speed)
-    mu_slope = -2.0 * (mu - given.sliding) * q / (given.stribeck_speed * given.stribeck_speed)
+    mu = friction.coefficient_at(q, constants.sliding, constants.static, constants.stribeck_speed)
+    mu_slope = -2.0 * (mu - constants.sliding) * q / (constants.stribeck_speed * constants.stribeck_speed)
     return slip.normal * (mu_slope - mu / q) / q
 
 
-def _along(place: Place, velocity: Three) -> Array:
-    return velocity[0] * place.x + velocity[1] * place.y + velocity[2] * place.z
+def _normal_speed(centre: BallCentre, velocity: Vector) -> Array:
+    return velocity[0] * centre.x + velocity[1] * centre.y + velocity[2] * centre.z
 
 
-def _ones(like: Array) -> tuple[Array, Array]:
+def _one_and_zero(like: Array) -> tuple[Array, Array]:
     return 0.0 * like + 1.0, 0.0 * like
 
 
@@ -117,10 +123,10 @@ def _vector(*components: Array) -> Any:
 
 
 def matrix(rows: Any) -> Any:
-    """Rows of components as the last two axes of an array."""
+    """Stack rows of components along the last two axes of an array."""
     stacked = [_vector(*row) for row in rows]
     return arrays.namespace(*stacked).stack(stacked, axis=-2)
 
 
 def _arrays(components: Any) -> Any:
-    return tuple(numpy.asarray(part) if type(part) is float else part for part in components)
+    return tuple(numpy.asarray(value) if type(value) is float else value for value in components)

@@ -1,4 +1,4 @@
-"""The energy of a joint over the indentation, with its two slopes: what a force element is made of."""
+"""Elastic energy of a joint over the indentation, with its first and second derivative."""
 
 from __future__ import annotations
 
@@ -13,18 +13,20 @@ from ..contact import Model
 from ..contact.law import CurveLaw, ForceLaw, PolynomialPieces, curve_law
 from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, exp, log, where
+from ..core.checks import require
+from ..models.adhesion import AdhesiveSocket
 from ..models.closed_form import ClosedForm, ClosedLaw
 from ..models.foundation import FoundationLaw
 from ..problem import Joint
 
 Slopes = tuple[Array, Array, Array]
-"""U in N mm, F = dU/dd in N, k = dF/dd in N/mm."""
+"""Energy U in N mm, force F = dU/dd in N, and stiffness k = dF/dd in N/mm."""
 
 
 class Potential(Protocol):
-    """The energy of one joint and its slopes, of a Python number or an array of indentations (mm), 0 or more.
+    """Energy of a joint and its derivatives at indentations in mm, 0 or more, in a number or an array.
 
-    `deepest` is the last indentation that has an answer, in mm.
+    `deepest` is the largest indentation in mm with a result.
     """
 
     @property
@@ -35,7 +37,7 @@ class Potential(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class SpringPotential:
-    """The energy of radial springs, by their formulas."""
+    """Energy of radial springs, by their formulas."""
 
     springs: FoundationLaw
     deepest: float = math.inf
@@ -48,22 +50,22 @@ class SpringPotential:
 
 @dataclass(frozen=True, kw_only=True)
 class FormulaPotential:
-    """The energy of a closed form, by its formulas."""
+    """Energy of a closed form, by its formulas."""
 
     model: ClosedForm
     joint: Joint
     deepest: float = math.inf
 
     def __call__(self, indentation: Array) -> Slopes:
-        given = self.joint, indentation
-        return self.model.energy(*given), self.model.force(*given), self.model.stiffness(*given)
+        arguments = self.joint, indentation
+        return self.model.energy(*arguments), self.model.force(*arguments), self.model.stiffness(*arguments)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurvePotential:
-    """The energy as polynomials of ln d, piece by piece: ln U is kept, so that F and k are its exact slopes.
+    """Energy by piecewise polynomials of ln U over ln d, whose exact derivatives give F and k.
 
-    Below the curve's `shallowest` indentation U is a power of d, beyond its `deepest` there is none.
+    Below the curve's `shallowest` indentation U is a power of d. Beyond its `deepest` indentation U is NaN.
     """
 
     curve: CurveLaw
@@ -87,19 +89,19 @@ class CurvePotential:
 def slopes_of_number(
     indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float, float]:
-    """A `CurvePotential` as a function of its numbers: U, F and k of one indentation."""
+    """Compute U, F and k at a single indentation from the numbers of a `CurvePotential`."""
     if indentation <= 0.0:
         return 0.0, 0.0, 0.0
     if not indentation <= deepest:
         return math.nan, math.nan, math.nan
     along = (math.log(max(indentation, shallowest)) - first) * density
     number = min(max(int(along), 0), len(pieces) - 1)
-    place = 2.0 * (along - number) - 1.0
+    coordinate = 2.0 * (along - number) - 1.0
     value, slope, bend = 0.0, 0.0, 0.0
     for coefficient in pieces[number]:
-        bend = bend * place + slope
-        slope = slope * place + value
-        value = value * place + coefficient
+        bend = bend * coordinate + slope
+        slope = slope * coordinate + value
+        value = value * coordinate + coefficient
     power, curvature = 2.0 * density * slope, 8.0 * density * density * bend
     energy = math.exp(value)
     if indentation < shallowest:
@@ -109,25 +111,26 @@ def slopes_of_number(
     return energy, force, (force * (power - 1.0) + energy * over * curvature) * over
 
 
-_TINY = 1e-150
+_MIN_INDENTATION = 1e-150
+"""Smallest indentation in mm whose energy does not underflow in an intermediate result."""
 
 
 def slopes_of_array(
     indentation: Array, shallowest: float, deepest: float, first: float, density: float, pieces: Numbers
 ) -> Slopes:
-    """`slopes_of_number` of an array of any library."""
+    """Compute U, F and k at an array of indentations of any library, as `slopes_of_number`."""
     xp = arrays.namespace(indentation)
     rows = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
-    d = where(indentation == indentation, clip(indentation, _TINY, deepest), deepest)
+    d = where(indentation == indentation, clip(indentation, _MIN_INDENTATION, deepest), deepest)
     along = (log(clip(d, shallowest, deepest)) - first) * density
     number = xp.astype(clip(xp.floor(arrays.stop_gradient(along)), 0.0, rows.shape[0] - 1.0), xp.int64)
-    place = 2.0 * (along - xp.astype(number, d.dtype)) - 1.0
+    coordinate = 2.0 * (along - xp.astype(number, d.dtype)) - 1.0
     flat = xp.reshape(number, (-1,))
-    value, slope, bend = 0.0 * place, 0.0 * place, 0.0 * place
+    value, slope, bend = 0.0 * coordinate, 0.0 * coordinate, 0.0 * coordinate
     for term in range(rows.shape[1]):
-        bend = bend * place + slope
-        slope = slope * place + value
-        value = value * place + xp.reshape(xp.take(rows[:, term], flat), tuple(d.shape))
+        bend = bend * coordinate + slope
+        slope = slope * coordinate + value
+        value = value * coordinate + xp.reshape(xp.take(rows[:, term], flat), tuple(d.shape))
     power, curvature = 2.0 * density * slope, 8.0 * density * density * bend
     below = d < shallowest
     energy = exp(value + where(below, power * log(where(below, d, shallowest) / shallowest), 0.0))
@@ -138,12 +141,12 @@ def slopes_of_array(
 
 
 def potential_of(model: Model, joint: Joint) -> Potential:
-    """The energy of any model that has a law.
+    """Return the energy of a joint by a model with a force law.
 
     Raises
     ------
     TypeError, ValueError
-        As `model.law(joint)`.
+        The errors of `model.law(joint)`.
     """
     law = model.law(joint)
     if isinstance(law, FoundationLaw):
@@ -160,19 +163,69 @@ def _ends(law: ForceLaw, joint: Joint) -> tuple[float, float]:
 
 
 def energy_curve(law: ForceLaw, shallowest: float, deepest: float) -> CurveLaw:
-    """ln U over ln d of a law, which is integrated."""
-    return curve_law(lambda depths: _work(law, depths, shallowest), shallowest, deepest)
+    """Integrate a force law, and fit ln U over ln d by a curve."""
+    return curve_law(lambda depths: _integrate_force(law, depths, shallowest), shallowest, deepest)
 
 
-def _work(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbers:
-    """∫ F dd up to each of some indentations that grow: of a power below the shallowest, then by Gauss over ln d."""
+def _integrate_force(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbers:
+    """Integrate the force up to increasing indentations: a power law up to the first, then Gauss points over ln d."""
     force, stiffness = law(shallowest)
-    begun = force * shallowest / (1.0 + stiffness * shallowest / force)
+    initial_work = force * shallowest / (1.0 + stiffness * shallowest / force)
     logs = numpy.log(numpy.concatenate([[shallowest], depths]))
-    nodes, weights = map(numpy.array, arrays.gauss_legendre(_NODES))
-    places = numpy.exp(logs[:-1, None] + numpy.diff(logs)[:, None] * nodes)
-    forces = numpy.array([law(float(place))[0] for place in places.ravel()]).reshape(places.shape)
-    return begun + numpy.cumsum(numpy.diff(logs) * ((forces * places) @ weights))
+    nodes, weights = map(numpy.array, arrays.gauss_legendre(_GAUSS_NODES))
+    points = numpy.exp(logs[:-1, None] + numpy.diff(logs)[:, None] * nodes)
+    forces = numpy.array([law(float(depth))[0] for depth in points.ravel()]).reshape(points.shape)
+    return initial_work + numpy.cumsum(numpy.diff(logs) * ((forces * points) @ weights))
 
 
-_NODES = 16
+_GAUSS_NODES = 16
+"""Number of Gauss points between two indentations."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class AdhesionPotential:
+    """Energy of an adhesive socket over d + u_c, where the last spring detaches at the distance u_c before first touch.
+
+    The energy is zero at separation, and negative at first touch.
+    """
+
+    model: AdhesiveSocket
+    joint: Joint
+    deepest: float
+
+    @cached_property
+    def stretch(self) -> float:
+        """Largest stretch u_c of a spring in mm."""
+        return float(self.model.critical_stretch(self.joint))
+
+    @cached_property
+    def _separation_energy(self) -> float:
+        return float(self.model.energy(self.joint, -self.stretch))
+
+    def __call__(self, indentation: Array) -> Slopes:
+        arguments = self.joint, indentation - self.stretch
+        return (
+            self.model.energy(*arguments) - self._separation_energy,
+            self.model.force(*arguments),
+            self.model.stiffness(*arguments),
+        )
+
+
+def adhesion_potential(model: AdhesiveSocket, joint: Joint) -> AdhesionPotential:
+    """Return the energy of an adhesive joint whose ball can separate.
+
+    Raises
+    ------
+    ValueError
+        An adhesion number η = u_c/c of 1 or more: the hemisphere sticks as a unit and never separates gradually.
+    """
+    model.law(joint)  # raises for arrays and for joints outside the domain
+    checked = joint.with_floats()
+    eta = float(model.adhesion_number(checked))
+    require(
+        "the adhesion number",
+        eta,
+        eta < 1.0,
+        "it must be below 1; otherwise the entire hemisphere sticks, and the rim determines the separation",
+    )
+    return AdhesionPotential(model=model, joint=checked, deepest=checked.socket_radius)

@@ -1,7 +1,8 @@
-"""The formulas of the force element, on components: numbers or arrays alike, and what a compiler or C is taught.
+"""Formulas of the force element on components, for numbers and arrays, compiled functions and exported programs.
 
-The ball's centre sits at r = (x, y, z) from the socket's, in axes fixed to the socket; e = |r|, n = r/e, d = e - c.
-All forces act on the ball, moments about its centre; the socket is met by the same with the other sign, see `Load`.
+r = (x, y, z) is the position of the ball centre relative to the socket centre, in axes fixed to the socket. From it
+follow e = |r|, n = r/e and d = e - c. All forces act on the ball, and all moments about its centre. `Load` gives force
+and moment on the socket.
 """
 
 from __future__ import annotations
@@ -12,13 +13,14 @@ from typing import NamedTuple
 from ..core.arrays import Array, atan2, clip, safe_divisor, sqrt, where
 from . import friction
 
-Three = tuple[Array, Array, Array]
+Vector = tuple[Array, Array, Array]
+"""Components of a vector."""
 
 
 class Constants(NamedTuple):
-    """The numbers of a force element besides those of its potential: lengths in mm, speeds in mm/s, times in s.
+    """Numbers of a force element except those of its potential: lengths in mm, speeds in mm/s, times in s.
 
-    `rim` is the polar angle of the cup's rim in rad, 0 where there is none; `dome` points to the pole of its bore.
+    `rim` is the polar angle of the cup rim in rad, 0 without a rim. `dome` is the unit vector to the pole of the bore.
     """
 
     ball_radius: float
@@ -39,10 +41,11 @@ class Constants(NamedTuple):
     dome_z: float
 
 
-class Place(NamedTuple):
-    """Where the ball is: distance of the centres, the way from socket to ball, indentation, 1 over the distance.
+class BallCentre(NamedTuple):
+    """Position of the ball centre: distance, direction, indentation, and inverse distance.
 
-    The way is a unit vector, but at the very centre, where it is none.
+    The distance and the direction are those from the socket centre to the ball centre. The direction is a unit
+    vector, or zero where the centres coincide.
     """
 
     distance: Array
@@ -54,12 +57,12 @@ class Place(NamedTuple):
 
 
 class Elastic(NamedTuple):
-    """The elastic contact there.
+    """Elastic contact at a position of the ball.
 
-    `energy` U; `normal`, the force back to the socket's centre, dU/de; `stiffness`, d²U/de²; force and stiffness that
-    the damping is measured by, those without the rim's own part. `covered` is the distance of the rim over the half
-    angle, at least 1 away from it. Along (`px`, `py`, `pz`), where the rim is nearest: the force `polar`, and the
-    parts `mixed`, `along` and `around` of the tangent.
+    `energy` is U, `normal` the force dU/de to the socket centre, and `stiffness` is d²U/de². Damping is proportional to
+    `damped_force` and `damped_stiffness`, which lack the gradient of the rim. `covered` is the angle to the rim over
+    the half angle, 1 or more away from the rim. (`px`, `py`, `pz`) is the direction to the nearest rim. `polar` is the
+    force along it, and `mixed`, `along` and `around` are components of the tangent.
     """
 
     energy: Array
@@ -78,57 +81,57 @@ class Elastic(NamedTuple):
 
 
 APART = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-"""Where nothing touches."""
+"""Elastic contact of a ball that does not touch the socket."""
 
 
-def place_of(x: Array, y: Array, z: Array, clearance: float) -> Place:
-    """The place of the ball's centre."""
+def centre_of(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
+    """Compute distance, direction and indentation of the ball centre."""
     distance = sqrt(x * x + y * y + z * z)
     over = 1.0 / safe_divisor(distance)
-    return Place(distance, x * over, y * over, z * over, distance - clearance, over)
+    return BallCentre(distance, x * over, y * over, z * over, distance - clearance, over)
 
 
-def elastic(potential, place: Place, given: Constants) -> Elastic:  # type: ignore[no-untyped-def]
-    """The elastic contact at a place; its touch-down is rounded off over ± `smoothing`."""
-    rounded = ramp(place.indentation, given.smoothing)
-    return stored(place, rounded, potential(rounded[0]), given)
+def elastic(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
+    """Compute the elastic contact at a position, with first touch rounded off over ± `smoothing`."""
+    rounded = ramp(centre.indentation, constants.smoothing)
+    return elastic_from_slopes(centre, rounded, potential(rounded[0]), constants)
 
 
-def stored(place: Place, rounded: Three, slopes: Three, given: Constants) -> Elastic:
-    """The elastic contact at a place whose indentation was rounded off, with energy, force and stiffness there."""
-    d = place.indentation
+def elastic_from_slopes(centre: BallCentre, rounded: Vector, slopes: Vector, constants: Constants) -> Elastic:
+    """Compute the elastic contact from energy, force and stiffness at the rounded indentation."""
+    d = centre.indentation
     depth, slope, bend = rounded
     energy, force, stiffness = slopes
-    missing = where(d > given.wall, nan, 0.0 * d)
+    missing = where(d > constants.wall, nan, 0.0 * d)
     energy, force, stiffness = energy + missing, force + missing, stiffness + missing
-    if given.rim > 0.0:
-        return covered(place, depth, slope, bend, energy, force, stiffness, given)
-    none, normal = 0.0 * energy, force * slope
+    if constants.rim > 0.0:
+        return elastic_at_rim(centre, depth, slope, bend, energy, force, stiffness, constants)
+    zero, normal = 0.0 * energy, force * slope
     k = stiffness * slope * slope + force * bend
-    return Elastic(energy, normal, k, normal, k, none + 1.0, none, none, none, none, none, none, none)
+    return Elastic(energy, normal, k, normal, k, zero + 1.0, zero, zero, zero, zero, zero, zero, zero)
 
 
-def covered(
-    place: Place, depth: Array, slope: Array, bend: Array, U: Array, F: Array, k: Array, given: Constants
+def elastic_at_rim(
+    centre: BallCentre, depth: Array, slope: Array, bend: Array, U: Array, F: Array, k: Array, constants: Constants
 ) -> Elastic:
-    """The contact in a cup: its energy is U W(s), s = (rim - γ)/ε, with cos ε = c/(c + d): what overlaps."""
-    lean, across, ax, ay, az = leaning(place, given)
+    """Compute the elastic contact in a cup, with the energy U W(s) for s = (rim - γ)/ε and cos ε = c/(c + d)."""
+    lean, across, ax, ay, az = dome_angle(centre, constants)
     gamma = atan2(across, lean)
     touching = depth > 0.0
     # ε = acos(c/g), g = c + d: ε' = c/(g w), ε'' = -c (2 g² - c²)/(g² w³), w = sqrt(g² - c²)
-    c, g = given.clearance, safe_divisor(given.clearance + depth)
+    c, g = constants.clearance, safe_divisor(constants.clearance + depth)
     w = where(touching, sqrt(where(touching, depth * (g + c), 1.0)), 1.0)
     epsilon = where(touching, atan2(w, c + 0.0 * w), 1.0)
     first, second = c / (g * w), -c * (2.0 * g * g - c * c) / (g * g * w * w * w)
-    s = (given.rim - gamma) / epsilon
+    s = (constants.rim - gamma) / epsilon
     W, W1, W2 = rim_share(s)
     U, F, k = where(s > -1.0, U, 0.0), where(s > -1.0, F, 0.0), where(s > -1.0, k, 0.0)
     s1, s2 = -s * first / epsilon, s * (2.0 * first * first / epsilon - second) / epsilon
-    # slopes of U W(s) over the depth and γ, over which s falls by 1/ε
+    # derivatives of U W(s) over the depth and γ; s decreases by 1/ε per γ
     by_depth = F * W + U * W1 * s1
     by_both = (U * W1 * first / epsilon - F * W1 - U * W2 * s1) / epsilon
     by_angle = -U * W1 / epsilon
-    over, nearer = 1.0 / safe_divisor(across), place.over
+    over, nearer = 1.0 / safe_divisor(across), centre.over
     return Elastic(
         energy=U * W,
         normal=by_depth * slope,
@@ -146,34 +149,44 @@ def covered(
     )
 
 
-def leaning(place: Place, given: Constants) -> tuple[Array, Array, Array, Array, Array]:
-    """cos γ and sin γ of the angle between the ball's way and the dome's axis, and where γ grows, times sin γ."""
-    lean = given.dome_x * place.x + given.dome_y * place.y + given.dome_z * place.z
-    ax, ay, az = lean * place.x - given.dome_x, lean * place.y - given.dome_y, lean * place.z - given.dome_z
+def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, Array, Array, Array]:
+    """Compute cos γ, sin γ and sin γ times the direction of increasing γ, the angle from the dome axis to the ball."""
+    lean = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
+    ax, ay, az = (
+        lean * centre.x - constants.dome_x,
+        lean * centre.y - constants.dome_y,
+        lean * centre.z - constants.dome_z,
+    )
     return lean, sqrt(ax * ax + ay * ay + az * az), ax, ay, az
 
 
-def pressed(elastic: Elastic, speed: Array, given: Constants) -> Array:
-    """The normal force on the ball, towards the socket's centre: F + (χ F + τ k) ḋ, never below 0."""
-    lossy = given.hysteresis * elastic.damped_force + given.time * elastic.damped_stiffness
+def pressed(elastic: Elastic, speed: Array, constants: Constants) -> Array:
+    """Compute the normal force towards the socket centre, F + (χ F + τ k) ḋ, which damping never makes negative."""
+    lossy = constants.hysteresis * elastic.damped_force + constants.time * elastic.damped_stiffness
     force = elastic.normal + lossy * speed
-    if given.smoothing > 0.0:
-        return positive(force, ROUNDED * elastic.damped_force)
-    least = where(elastic.normal < 0.0, elastic.normal, 0.0)  # below 0 where a ball sticks
-    return where(force < least, least, force)  # no number stays none
+    if constants.smoothing > 0.0:
+        return positive(force, SMOOTHING_SHARE * elastic.damped_force)
+    least = where(elastic.normal < 0.0, elastic.normal, 0.0)  # negative for an adhesive ball
+    return where(force < least, least, force)  # keeps NaN
 
 
-ROUNDED = 0.1
-"""Of the force: over what share of it, on both sides of 0, a smooth element rounds off a contact that lets go."""
+def undamped_pull(contact: Elastic) -> Elastic:
+    """Remove damping from a contact in tension, where it would generate energy."""
+    pressing = clip(contact.damped_force, 0.0, float("inf"))
+    return contact._replace(damped_force=pressing, damped_stiffness=clip(contact.damped_stiffness, 0.0, float("inf")))
+
+
+SMOOTHING_SHARE = 0.1
+"""Share of the force, on both sides of 0, over which a smooth element rounds off the separation of the contact."""
 
 
 class Sliding(NamedTuple):
     """Slip of a ball and its friction.
 
     (`x`, `y`, `z`) is the velocity v across the load and (`bx`, `by`, `bz`) is b = R1 ω x n, both in mm/s. `spin` is
-    the one about the load in rad/s, `lever_squared` is in mm². `normal` is N, `speed` the effective slip speed q, and
-    `rate` is N μ(q)/q plus viscous friction. The force of friction is -rate (push v + mixed b). Its moment is
-    -rate R1 n x (mixed v + turn b) across the load and -rate drill lever² spin about it.
+    the angular velocity about the load in rad/s, and `lever_squared` is in mm². `normal` is N, and `speed` the
+    effective slip speed q. `rate` is N μ(q)/q plus viscous friction. The friction force is -rate (push v + mixed b).
+    Its moment is -rate R1 n x (mixed v + rotation b) across the load and -rate drill lever² spin about it.
     """
 
     x: Array
@@ -189,92 +202,94 @@ class Sliding(NamedTuple):
     speed: Array
     push: Array
     mixed: Array
-    turn: Array
+    rotation: Array
     drill: Array
 
 
-def sliding(place: Place, force: Array, velocity: Three, spin: Three, given: Constants) -> Sliding:
-    """Compute the slip of the ball on the patch and friction's rate, from velocities across n and about it."""
-    (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, given.ball_radius
-    nx, ny, nz = place.x, place.y, place.z
+def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, constants: Constants) -> Sliding:
+    """Compute the slip of the ball on the patch and the rate of friction, from velocity and spin."""
+    (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, constants.ball_radius
+    nx, ny, nz = centre.x, centre.y, centre.z
     speed, turning = vx * nx + vy * ny + vz * nz, wx * nx + wy * ny + wz * nz
     ax, ay, az = vx - speed * nx, vy - speed * ny, vz - speed * nz
     bx, by, bz = R1 * (wy * nz - wz * ny), R1 * (wz * nx - wx * nz), R1 * (wx * ny - wy * nx)
-    m = versine(place)
-    lever, kappa = given.socket_radius * friction.drill_lever(m), friction.tilt_share(m)
+    m = versine(centre)
+    lever, kappa = constants.socket_radius * friction.drill_lever(m), friction.tilt_share(m)
     squared, share = lever * lever * m * (2.0 - m), kappa * kappa
     aa, bb, cross = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, 2.0 * (ax * bx + ay * by + az * bz)
-    both, still = aa + bb, given.transition_speed * given.transition_speed
+    both, transition_squared = aa + bb, constants.transition_speed * constants.transition_speed
     drilled, twisted = squared * turning * turning, kappa * (aa - bb)
     q2, slope, tilt, drill, twist = friction.effective_slip(
-        both + cross, share * (both - cross), drilled, twisted, still, share, m
+        both + cross, share * (both - cross), drilled, twisted, transition_squared, share, m
     )
     q, tilt, twist = sqrt(q2), share * tilt, kappa * twist
-    mu = friction.coefficient_at(q, given.sliding, given.static, given.stribeck_speed)
-    N = force * friction.grip(m)
-    rate, mean = N * (mu / q + given.viscous), slope + tilt
-    push, turn = mean + twist, mean - twist
-    return Sliding(ax, ay, az, bx, by, bz, turning, squared, N, rate, q, push, slope - tilt, turn, drill)
+    mu = friction.coefficient_at(q, constants.sliding, constants.static, constants.stribeck_speed)
+    N = force * friction.widening_factor(m)
+    rate, mean = N * (mu / q + constants.viscous), slope + tilt
+    push, rotation = mean + twist, mean - twist
+    return Sliding(ax, ay, az, bx, by, bz, turning, squared, N, rate, q, push, slope - tilt, rotation, drill)
 
 
-def versine(place: Place) -> Array:
-    """1 - cos ε of what overlaps, d/e."""
-    return where(place.indentation > 0.0, place.indentation * place.over, 0.0)
+def versine(centre: BallCentre) -> Array:
+    """Compute the versine 1 - cos ε = d/e of the overlap of ball and socket."""
+    return where(centre.indentation > 0.0, centre.indentation * centre.over, 0.0)
 
 
-def reaction(place: Place, contact: Elastic, velocity: Three, spin: Three, given: Constants) -> tuple[Array, ...]:
-    """Force (N) and moment (N mm) on the ball about its centre, six components."""
-    (vx, vy, vz), nx, ny, nz = velocity, place.x, place.y, place.z
+def reaction(
+    centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants
+) -> tuple[Array, ...]:
+    """Compute force (N) and moment (N mm) on the ball about its centre: six components."""
+    (vx, vy, vz), nx, ny, nz = velocity, centre.x, centre.y, centre.z
     speed = vx * nx + vy * ny + vz * nz
-    normal = pressed(contact, speed, given)
+    normal = pressed(contact, speed, constants)
     fx, fy, fz = -normal * nx, -normal * ny, -normal * nz
-    if given.rim > 0.0:
+    if constants.rim > 0.0:
         P = contact.polar
         fx, fy, fz = fx + P * contact.px, fy + P * contact.py, fz + P * contact.pz
-    if given.time > 0.0:
-        drag = given.time * contact.damped_force * place.over
+    if constants.time > 0.0:
+        drag = constants.time * contact.damped_force * centre.over
         fx, fy, fz = fx - drag * (vx - speed * nx), fy - drag * (vy - speed * ny), fz - drag * (vz - speed * nz)
-    if given.static + given.viscous == 0.0:
-        none = 0.0 * normal
-        return fx, fy, fz, none, none, none
-    ax, ay, az, bx, by, bz, twirl, lever, _, rate, _, push, mixed, turn, drill = sliding(
-        place, normal, velocity, spin, given
+    if constants.static + constants.viscous == 0.0:
+        zero = 0.0 * normal
+        return fx, fy, fz, zero, zero, zero
+    ax, ay, az, bx, by, bz, twirl, lever, _, rate, _, push, mixed, rotation, drill = sliding(
+        centre, normal, velocity, spin, constants
     )
     push, mixed = -rate * push, -rate * mixed
     tx, ty, tz = push * ax + mixed * bx, push * ay + mixed * by, push * az + mixed * bz
-    R1, drill = given.ball_radius, -rate * drill * lever * twirl
-    turn, mixed = -rate * turn * R1, mixed * R1
-    gx, gy, gz = mixed * ax + turn * bx, mixed * ay + turn * by, mixed * az + turn * bz
+    R1, drill = constants.ball_radius, -rate * drill * lever * twirl
+    rotation, mixed = -rate * rotation * R1, mixed * R1
+    gx, gy, gz = mixed * ax + rotation * bx, mixed * ay + rotation * by, mixed * az + rotation * bz
     mx = ny * gz - nz * gy + drill * nx
     my = nz * gx - nx * gz + drill * ny
     mz = nx * gy - ny * gx + drill * nz
     return fx + tx, fy + ty, fz + tz, mx, my, mz
 
 
-def dissipation(place: Place, contact: Elastic, velocity: Three, spin: Three, given: Constants) -> Array:
-    """What damping, liner and friction take, in N mm/s."""
+def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Array:
+    """Compute the power dissipated by damping, liner and friction in N mm/s."""
     vx, vy, vz = velocity
-    speed = vx * place.x + vy * place.y + vz * place.z
-    normal = pressed(contact, speed, given)
-    slip = sliding(place, normal, velocity, spin, given)
-    drag = given.time * contact.damped_force * place.over
+    speed = vx * centre.x + vy * centre.y + vz * centre.z
+    normal = pressed(contact, speed, constants)
+    slip = sliding(centre, normal, velocity, spin, constants)
+    drag = constants.time * contact.damped_force * centre.over
     aa = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z
     cross = slip.x * slip.bx + slip.y * slip.by + slip.z * slip.bz
     bb = slip.bx * slip.bx + slip.by * slip.by + slip.bz * slip.bz
-    rubbed = slip.push * aa + 2.0 * slip.mixed * cross + slip.turn * bb
-    rubbed = rubbed + slip.drill * slip.lever_squared * slip.spin * slip.spin
-    return (normal - contact.normal) * speed + drag * aa + slip.rate * rubbed
+    friction_power = slip.push * aa + 2.0 * slip.mixed * cross + slip.rotation * bb
+    friction_power = friction_power + slip.drill * slip.lever_squared * slip.spin * slip.spin
+    return (normal - contact.normal) * speed + drag * aa + slip.rate * friction_power
 
 
-def tangent(place: Place, contact: Elastic, given: Constants) -> tuple[Array, ...]:
-    """∂²U/∂r² in N/mm: xx, yy, zz, xy, yz, zx."""
-    nx, ny, nz, px, py, pz = place.x, place.y, place.z, contact.px, contact.py, contact.pz
-    # at the very centre of a socket without clearance all directions are alike
-    across = where(place.distance > 0.0, contact.normal * place.over, contact.stiffness)
+def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple[Array, ...]:
+    """Compute the tangent stiffness ∂²U/∂r² in N/mm: xx, yy, zz, xy, yz, zx."""
+    nx, ny, nz, px, py, pz = centre.x, centre.y, centre.z, contact.px, contact.py, contact.pz
+    # where the centres coincide, without clearance, the stiffness is isotropic
+    across = where(centre.distance > 0.0, contact.normal * centre.over, contact.stiffness)
     radial = contact.stiffness - across
     xx, yy, zz = across + radial * nx * nx, across + radial * ny * ny, across + radial * nz * nz
     xy, yz, zx = radial * nx * ny, radial * ny * nz, radial * nz * nx
-    if given.rim > 0.0:
+    if constants.rim > 0.0:
         A, B = contact.mixed, contact.around
         C = contact.along - B
         xx = xx + B + 2.0 * A * nx * px - B * nx * nx + C * px * px
@@ -287,17 +302,17 @@ def tangent(place: Place, contact: Elastic, given: Constants) -> tuple[Array, ..
 
 
 def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
-    """Return max(y, 0) and its two derivatives, rounded off between -width and width by a polynomial."""
+    """Compute max(y, 0) and its two derivatives, rounded off between -width and width by a polynomial."""
     if width == 0.0:
-        none = 0.0 * y
-        return where(y > 0.0, y, none), where(y >= 0.0, none + 1.0, none), none
+        zero = 0.0 * y
+        return where(y > 0.0, y, zero), where(y >= 0.0, zero + 1.0, zero), zero
     t = clip((y + width) / (2.0 * width), 0.0, 1.0)
     bend = 15.0 * t * t * (1.0 - t) * (1.0 - t) / width
     return where(y >= width, y, 2.0 * width * _rounded(t)), t * t * t * (10.0 - 15.0 * t + 6.0 * t * t), bend
 
 
 def positive(y: Array, width: Array) -> Array:
-    """Return the value of `ramp` for a width that may be an array, 0 included."""
+    """Compute the value of `ramp` for a width that may be an array, 0 included."""
     span = where(width > 0.0, width, 1.0)
     t = clip((y + width) / (2.0 * span), 0.0, 1.0)
     return where(y >= width, y, 2.0 * width * _rounded(t))
@@ -308,13 +323,13 @@ def _rounded(t: Array) -> Array:
     return t * t * t * t * (2.5 - 3.0 * t + t * t)
 
 
-def rim_share(place: Array) -> tuple[Array, Array, Array]:
-    """Return the energy share W(s) of a contact that a straight rim cuts, with its first and second derivative.
+def rim_share(centre: Array) -> tuple[Array, Array, Array]:
+    """Compute the energy share W(s) of a contact cut by a straight rim, with its first and second derivative.
 
-    s is the distance of the rim from the patch centre over the half angle: W is 1 from s = 1 and 0 up to s = -1. The
-    energy of radial springs under a small patch is the marginal of (1 - x² - y²)² over a disc.
+    s is the distance of the rim from the patch centre over the half angle. W is 1 for s >= 1, and 0 for s <= -1. It is
+    the marginal of (1 - x² - y²)² over a disc, the energy density of radial springs under a small patch.
     """
-    s = clip(place, -1.0, 1.0)
+    s = clip(centre, -1.0, 1.0)
     square = clip(1.0 - s * s, 0.0, 1.0)
     root = sqrt(square)
     W = 0.5 + (atan2(s, root) + s * root * (33.0 + s * s * (8.0 * s * s - 26.0)) / 15.0) / pi

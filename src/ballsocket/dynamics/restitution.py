@@ -1,10 +1,10 @@
-"""How much of its speed a ball keeps: what published relations make of a coefficient of restitution, and what is exact.
+"""Relations between damping and the coefficient of restitution: the exact solution and published approximations.
 
-All of them speak of one law of damping, F(d) (1 + χ ḋ), and of h = χ v, v being the speed at touch-down. For any F(d)
+All relations are for the normal force F(d) (1 + χ ḋ) and the number h = χ v, with the impact speed v. The relation
 
     h (1 + e) = ln[(1 + h)/(1 - h e)]
 
-is exact; the published relations are approximations of it, near e = 1 or over all of it.
+is exact for any F(d). The published relations approximate it near e = 1 or for all e.
 """
 
 from __future__ import annotations
@@ -19,16 +19,18 @@ from ..core.sources import Source
 
 @dataclass(frozen=True, kw_only=True)
 class Relation:
-    """A relation between the coefficient of restitution e, above 0 and up to 1, and the damping h = χ v.
+    """Relation between the coefficient of restitution e, above 0 and up to 1, and the damping h = χ v.
 
     Attributes
     ----------
     name : str
+        Authors of the relation.
     law : str
-        The relation as people write it.
+        Relation as a formula, for display.
     formula : function
-        From e to h.
+        Function that returns h for e.
     sources : tuple of Source
+        Published sources.
     """
 
     name: str
@@ -37,15 +39,15 @@ class Relation:
     sources: tuple[Source, ...] = ()
 
     def damping(self, restitution: float) -> float:
-        """h = χ v that the relation takes for a coefficient of restitution.
+        """Compute the damping h = χ v for a coefficient of restitution.
 
         Raises
         ------
         ValueError
-            A coefficient that is not above 0 and up to 1.
+            A coefficient that is not above 0 and at most 1.
         """
-        why = "a coefficient of restitution is above 0, up to 1"
-        require("restitution", restitution, 0.0 < restitution <= 1.0, why)
+        allowed = "a coefficient of restitution must be above 0 and at most 1"
+        require("restitution", restitution, 0.0 < restitution <= 1.0, allowed)
         return self.formula(float(restitution))
 
     def __repr__(self) -> str:
@@ -53,14 +55,19 @@ class Relation:
 
 
 def restitution_of(damping: float) -> float:
-    """The coefficient of restitution e that h = χ v really has, for any law of contact.
+    """Compute the exact coefficient of restitution e for a damping h = χ v and any contact law.
 
     Parameters
     ----------
     damping : float
-        h, 0 or more.
+        Damping h, 0 or more and finite.
+
+    Raises
+    ------
+    ValueError
+        A negative or infinite damping.
     """
-    require("damping", damping, 0.0 <= damping < math.inf, "χ v is 0 or more and finite")
+    require("damping", damping, 0.0 <= damping < math.inf, "χ v must be at least 0 and finite")
     if damping < 1e-4:
         return 1.0 - 2.0 * damping / 3.0 + 4.0 * damping * damping / 9.0
     low, high = 0.0, min(1.0, 1.0 / damping)
@@ -68,12 +75,12 @@ def restitution_of(damping: float) -> float:
         middle = (low + high) / 2
         if not low < middle < high:
             break
-        low, high = (middle, high) if _miss(damping, middle) > 0 else (low, middle)
+        low, high = (middle, high) if _exit_balance(damping, middle) > 0 else (low, middle)
     return low
 
 
-def _miss(h: float, e: float) -> float:
-    """Above 0 where the ball leaves faster than e: what is left of ∫ x/(1 + x) dx from -h e to h."""
+def _exit_balance(h: float, e: float) -> float:
+    """Compute ∫ x/(1 + x) dx from -h e to h, which is positive for an e below the exact coefficient."""
     return h + math.log1p(-h * e) + h * e - math.log1p(h) if h * e < 1.0 else -math.inf
 
 
@@ -121,4 +128,4 @@ flores = Relation(
 """h = 8 (1 - e)/(5 e)."""
 
 relations = (hunt_crossley, lankarani_nikravesh, flores, gonthier, exact)
-"""All of them."""
+"""All relations."""

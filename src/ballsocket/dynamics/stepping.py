@@ -1,9 +1,9 @@
-"""One time step of a ball in its socket: second order, with energy and angular momentum conserved to rounding.
+"""Time steps of a ball in its socket: of second order, with energy and angular momentum conserved to rounding.
 
 The elastic force is the discrete gradient of Gonzalez in the invariants of the contact: the distance e = |r| of the
-centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly the fall of the energy. It
-has no moment about the socket's centre, in a cup none about the dome axis. Damping, friction and spin are those at the
-middle of the step; what they dissipate is never negative.
+centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly the decrease of the energy.
+It has no moment about the socket centre, or in a cup about the dome axis. Damping, friction and spin are evaluated at
+the midpoint of the step, and their dissipation is never negative.
 """
 
 from __future__ import annotations
@@ -13,24 +13,25 @@ from typing import NamedTuple
 
 from ..core.arrays import safe_divisor, sqrt
 from .reaction import (
+    BallCentre,
     Constants,
     Elastic,
-    Place,
-    Three,
+    Vector,
+    centre_of,
     dissipation,
+    dome_angle,
     elastic,
-    leaning,
-    place_of,
     pressed,
     reaction,
     sliding,
 )
 
-ROUNDS = 60
+MAX_ITERATIONS = 60
+"""Largest number of iterations of a step."""
 
 
-class Ball(NamedTuple):
-    """The ball as it moves: its centre (mm), velocity (mm/s) and spin (rad/s), seen from a socket at rest."""
+class BallState(NamedTuple):
+    """State of a ball: centre (mm), velocity (mm/s) and spin (rad/s) relative to a socket at rest."""
 
     x: float
     y: float
@@ -43,66 +44,77 @@ class Ball(NamedTuple):
     wz: float
 
 
-class Step(NamedTuple):
-    """What a step led to: the ball, what was lost (N mm), and whether the iteration converged and the cup holds it."""
+class StepResult(NamedTuple):
+    """Result of a step: the ball, the dissipated energy (N mm), and True for a converged step that ends in the cup."""
 
-    ball: Ball
-    lost: float
-    good: bool
+    ball: BallState
+    dissipated: float
+    converged: bool
 
 
-def stepped(  # type: ignore[no-untyped-def]
-    potential, given: Constants, ball: Ball, mass: float, inertia: float, pull: Three, h: float
-) -> Step:
-    """The ball after h seconds.
+def advance(  # type: ignore[no-untyped-def]
+    potential, constants: Constants, ball: BallState, mass: float, inertia: float, pull: Vector, h: float
+) -> StepResult:
+    """Advance a ball by a step of h seconds.
 
-    `mass` in t (N s²/mm), `inertia` in t mm², `pull` a constant force in N. The unknowns are velocity and spin at the
-    middle of the step; each round solves for them as if stiffness and friction's rate were constant.
+    `mass` is in t (N s²/mm), `inertia` in t mm², and `pull` is a constant force in N. The unknowns are velocity and
+    spin at the midpoint of the step. Each iteration solves for them with constant stiffness and rate of friction.
     """
-    heavy, slow = 2.0 * mass / h, 2.0 * inertia / h
-    begun = place_of(ball.x, ball.y, ball.z, given.clearance)
-    middle = Middle(
-        ball.vx + pull[0] / heavy, ball.vy + pull[1] / heavy, ball.vz + pull[2] / heavy, ball.wx, ball.wy, ball.wz
+    mass_rate, inertia_rate = 2.0 * mass / h, 2.0 * inertia / h
+    initial = centre_of(ball.x, ball.y, ball.z, constants.clearance)
+    midpoint = Midpoint(
+        ball.vx + pull[0] / mass_rate,
+        ball.vy + pull[1] / mass_rate,
+        ball.vz + pull[2] / mass_rate,
+        ball.wx,
+        ball.wy,
+        ball.wz,
     )
-    if begun.indentation + h * (abs(middle.x) + abs(middle.y) + abs(middle.z)) < -given.smoothing:
-        return Step(ended(ball, middle, h), 0.0, True)
-    start = elastic(potential, begun, given)
-    push = start.normal / heavy
-    ax, ay, az, bx, by, bz = middle
-    middle = Middle(ax - push * begun.x, ay - push * begun.y, az - push * begun.z, bx, by, bz)
-    size, best, moved = 1e-300, 1e300, 1e300
-    for _ in range(ROUNDS):
-        missed = missing(potential, given, ball, middle, begun.distance, start.energy, heavy, slow, pull, h)
-        after, moved = corrected(missed, middle, given, heavy, slow, h)
-        if not isfinite(moved):
+    if initial.indentation + h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z)) < -constants.smoothing:
+        return StepResult(end_state(ball, midpoint, h), 0.0, True)
+    start = elastic(potential, initial, constants)
+    push = start.normal / mass_rate
+    ax, ay, az, bx, by, bz = midpoint
+    midpoint = Midpoint(ax - push * initial.x, ay - push * initial.y, az - push * initial.z, bx, by, bz)
+    size, best, change = 1e-300, 1e300, 1e300
+    for _ in range(MAX_ITERATIONS):
+        residual = residual_of(
+            potential, constants, ball, midpoint, initial.distance, start.energy, mass_rate, inertia_rate, pull, h
+        )
+        after, change = newton_correction(residual, midpoint, constants, mass_rate, inertia_rate, h)
+        if not isfinite(change):
             break
-        middle = after
-        size = max(size, speed_of(middle, given) + missed.force / heavy)
-        if moved <= _ENOUGH * size or (moved <= _NOISE * size and moved >= 0.5 * best):
+        midpoint = after
+        size = max(size, surface_speed(midpoint, constants) + residual.force / mass_rate)
+        if change <= _RELATIVE_TOLERANCE * size or (change <= _ROUNDING_TOLERANCE * size and change >= 0.5 * best):
             break
-        best = min(best, moved)
-    ax, ay, az, bx, by, bz = middle
-    lost = h * dissipation(missed.place, missed.contact, (ax, ay, az), (bx, by, bz), given)
-    return Step(ended(ball, middle, h), lost, missed.held and moved <= _NOISE * size)
+        best = min(best, change)
+    ax, ay, az, bx, by, bz = midpoint
+    dissipated = h * dissipation(residual.centre, residual.contact, (ax, ay, az), (bx, by, bz), constants)
+    return StepResult(
+        end_state(ball, midpoint, h), dissipated, residual.in_cup and change <= _ROUNDING_TOLERANCE * size
+    )
 
 
-_ENOUGH = 1e-15
-"""Change of the last round, as a share of the speeds in a step. A larger share leaves errors of one sign: 1e-13 adds
-5e-15 of the energy in each bounce of two steps.
+_RELATIVE_TOLERANCE = 1e-15
+"""Largest change of the speeds in a converged iteration, relative to the speeds of the step.
+
+A larger tolerance leaves errors of one sign: 1e-13 adds 5e-15 of the energy in each bounce of two steps.
 """
 
-_NOISE = 1e-10
-"""Of the speeds in a step: rounds that move them by less, and do not get better, have met rounding."""
+_ROUNDING_TOLERANCE = 1e-10
+"""Relative change of the speeds below which an iteration that no longer improves is limited by rounding."""
 
 
-_UNSURE = 1e-14
+_MIN_PATH_RATIO = 1e-14
 """Smallest ratio of the cubed path to the cubed indentation at which the difference quotient of the energy is used.
 
-For a shorter path the mean gradient is exact to rounding."""
+For a shorter path the mean gradient is exact to rounding.
+"""
 
 
-class Middle(NamedTuple):
-    """Velocity and spin at the middle of a step."""
+class Midpoint(NamedTuple):
+    """Velocity and spin at the midpoint of a step."""
 
     x: float
     y: float
@@ -115,13 +127,13 @@ class Middle(NamedTuple):
 class MeanContact(NamedTuple):
     """Elastic contact at the mean of the invariants of both ends of a step.
 
-    `place` has the direction of the middle of the step and the mean distance; `end` is the place after the step.
-    `shortening` is the distance of the middle over the mean distance. The rim's force acts along (`qx`, `qy`, `qz`);
-    (`ux`, `uy`, `uz`) is the unit vector across the middle's direction in its plane with the dome axis.
+    `centre` has the direction of the midpoint of the step and the mean distance. `end` is the position after the step.
+    `shortening` is the distance at the midpoint over the mean distance. The force of the rim acts along (`qx`, `qy`,
+    `qz`). (`ux`, `uy`, `uz`) is the unit vector across the direction of the midpoint, in its plane with the dome axis.
     """
 
-    place: Place
-    end: Place
+    centre: BallCentre
+    end: BallCentre
     contact: Elastic
     shortening: float
     qx: float
@@ -132,8 +144,8 @@ class MeanContact(NamedTuple):
     uz: float
 
 
-class Missing(NamedTuple):
-    """Residual of the balance of a step: of force (N) and moment (N mm); the contact that it was evaluated at."""
+class StepResidual(NamedTuple):
+    """Residuals of force (N) and moment (N mm) in the balance of a step, with the contact at its midpoint."""
 
     x: float
     y: float
@@ -141,167 +153,172 @@ class Missing(NamedTuple):
     wx: float
     wy: float
     wz: float
-    place: Place
+    centre: BallCentre
     contact: Elastic
     force: float
-    held: bool
+    in_cup: bool
 
 
-def ended(ball: Ball, middle: Middle, h: float) -> Ball:
-    """The ball after a step whose middle is known."""
-    ax, ay, az, bx, by, bz = middle
-    return Ball(
+def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
+    """Compute the ball after a step from velocity and spin at its midpoint."""
+    ax, ay, az, bx, by, bz = midpoint
+    return BallState(
         ball.x + h * ax, ball.y + h * ay, ball.z + h * az,
         2.0 * ax - ball.vx, 2.0 * ay - ball.vy, 2.0 * az - ball.vz,
         2.0 * bx - ball.wx, 2.0 * by - ball.wy, 2.0 * bz - ball.wz,
     )  # fmt: skip
 
 
-def speed_of(middle: Middle, given: Constants) -> float:
-    """How fast the ball moves and its surface turns, in mm/s."""
-    turning = abs(middle.wx) + abs(middle.wy) + abs(middle.wz)
-    return abs(middle.x) + abs(middle.y) + abs(middle.z) + given.ball_radius * turning
+def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
+    """Compute the speed of the ball plus that of its turning surface, in mm/s."""
+    turning = abs(midpoint.wx) + abs(midpoint.wy) + abs(midpoint.wz)
+    return abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z) + constants.ball_radius * turning
 
 
 def mean_contact(  # type: ignore[no-untyped-def]
-    potential, given: Constants, ball: Ball, middle: Middle, distance: float, h: float
+    potential, constants: Constants, ball: BallState, midpoint: Midpoint, distance: float, h: float
 ) -> MeanContact:
-    """Evaluate the elastic contact at the mean of both ends of a step, which begins at a distance of the centres.
+    """Compute the elastic contact at the mean of both ends of a step, for the distance of the centres at its start.
 
-    The mean is that of e and of r·dome. There the difference of the energy is the gradient times the differences of
-    the invariants to third order, also for a step that hardly changes them.
+    The mean is that of e and of r·dome. To third order the difference of the energy is the gradient at the mean times
+    the differences of the invariants, also for a step that hardly changes them.
     """
-    ax, ay, az = middle.x, middle.y, middle.z
-    half = place_of(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, given.clearance)
-    end = place_of(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, given.clearance)
+    ax, ay, az = midpoint.x, midpoint.y, midpoint.z
+    half = centre_of(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, constants.clearance)
+    end = centre_of(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, constants.clearance)
     mean = 0.5 * (distance + end.distance)
     nx, ny, nz, over = half.x, half.y, half.z, 1.0 / safe_divisor(mean)
-    shortening, depth = half.distance * over, mean - given.clearance
-    place = Place(mean, nx, ny, nz, depth, over)
-    if given.rim == 0.0:
-        contact = elastic(potential, place, given)
-        return MeanContact(place, end, contact, shortening, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    cosine, sine, px, py, pz = leaning(half, given)
+    shortening, depth = half.distance * over, mean - constants.clearance
+    centre = BallCentre(mean, nx, ny, nz, depth, over)
+    if constants.rim == 0.0:
+        contact = elastic(potential, centre, constants)
+        return MeanContact(centre, end, contact, shortening, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    cosine, sine, px, py, pz = dome_angle(half, constants)
     lean, across = shortening * cosine, 1.0 / safe_divisor(sine)
     level = sqrt(max(1.0 - lean * lean, 0.0))
     stretch, steep = level * across, 1.0 / safe_divisor(level)
-    gx, gy, gz = given.dome_x, given.dome_y, given.dome_z
+    gx, gy, gz = constants.dome_x, constants.dome_y, constants.dome_z
     kx, ky, kz = lean * gx, lean * gy, lean * gz
     kx, ky, kz = kx + stretch * (nx - cosine * gx), ky + stretch * (ny - cosine * gy), kz + stretch * (nz - cosine * gz)
-    contact = elastic(potential, Place(mean, kx, ky, kz, depth, over), given)
+    contact = elastic(potential, BallCentre(mean, kx, ky, kz, depth, over), constants)
     tilt = lean * shortening
     return MeanContact(
-        place, end, contact, shortening,
+        centre, end, contact, shortening,
         (tilt * nx - gx) * steep, (tilt * ny - gy) * steep, (tilt * nz - gz) * steep,
         px * across, py * across, pz * across,
     )  # fmt: skip
 
 
-def missing(  # type: ignore[no-untyped-def]
+def residual_of(  # type: ignore[no-untyped-def]
     potential,
-    given: Constants,
-    ball: Ball,
-    middle: Middle,
+    constants: Constants,
+    ball: BallState,
+    midpoint: Midpoint,
     distance: float,
     before: float,
-    heavy: float,
-    slow: float,
-    pull: Three,
+    mass_rate: float,
+    inertia_rate: float,
+    pull: Vector,
     h: float,
-) -> Missing:
-    """Compute the residual at a middle: inertia less the discrete gradient, damping, friction and pull."""
-    ax, ay, az, bx, by, bz = middle
-    mean = mean_contact(potential, given, ball, middle, distance, h)
-    place, end, contact = mean.place, mean.end, mean.contact
-    fx, fy, fz, mx, my, mz = reaction(place, contact, (ax, ay, az), (bx, by, bz), given)
-    after = elastic(potential, end, given)
-    nx, ny, nz = place.x, place.y, place.z
+) -> StepResidual:
+    """Compute the residual at a midpoint: inertia minus the discrete gradient, damping, friction and pull."""
+    ax, ay, az, bx, by, bz = midpoint
+    mean = mean_contact(potential, constants, ball, midpoint, distance, h)
+    centre, end, contact = mean.centre, mean.end, mean.contact
+    fx, fy, fz, mx, my, mz = reaction(centre, contact, (ax, ay, az), (bx, by, bz), constants)
+    after = elastic(potential, end, constants)
+    nx, ny, nz = centre.x, centre.y, centre.z
     speed = ax * nx + ay * ny + az * nz
     normal, polar = mean.shortening * contact.normal, contact.polar
     fall, square, drift = normal * speed, speed * speed, 0.0
-    if given.rim > 0.0:
+    if constants.rim > 0.0:
         fall = fall - polar * (ax * mean.qx + ay * mean.qy + az * mean.qz)
         drift = ax * mean.ux + ay * mean.uy + az * mean.uz
         square = square + drift * drift
-    way, depth = h * sqrt(square), abs(place.indentation)
-    sure = way * way * way / safe_divisor(way * way * way + _UNSURE * depth * depth * depth)
-    along = sure * ((after.energy - before) / h - fall) / safe_divisor(square)
-    inward = normal - contact.normal + along * speed  # beyond the normal force that the reaction has
+    path, depth = h * sqrt(square), abs(centre.indentation)
+    certainty = path * path * path / safe_divisor(path * path * path + _MIN_PATH_RATIO * depth * depth * depth)
+    along = certainty * ((after.energy - before) / h - fall) / safe_divisor(square)
+    inward = normal - contact.normal + along * speed  # in addition to the normal force of the reaction
     fx, fy, fz = fx - inward * nx, fy - inward * ny, fz - inward * nz
-    if given.rim > 0.0:
+    if constants.rim > 0.0:
         aside = along * drift
         fx = fx + polar * (mean.qx - contact.px) - aside * mean.ux
         fy = fy + polar * (mean.qy - contact.py) - aside * mean.uy
         fz = fz + polar * (mean.qz - contact.pz) - aside * mean.uz
-    return Missing(
-        heavy * (ax - ball.vx) - fx - pull[0],
-        heavy * (ay - ball.vy) - fy - pull[1],
-        heavy * (az - ball.vz) - fz - pull[2],
-        slow * (bx - ball.wx) - mx,
-        slow * (by - ball.wy) - my,
-        slow * (bz - ball.wz) - mz,
-        place,
+    return StepResidual(
+        mass_rate * (ax - ball.vx) - fx - pull[0],
+        mass_rate * (ay - ball.vy) - fy - pull[1],
+        mass_rate * (az - ball.vz) - fz - pull[2],
+        inertia_rate * (bx - ball.wx) - mx,
+        inertia_rate * (by - ball.wy) - my,
+        inertia_rate * (bz - ball.wz) - mz,
+        centre,
         contact,
         abs(fx) + abs(fy) + abs(fz),
-        after.covered > -1.0 or end.indentation <= -given.smoothing,
+        after.covered > -1.0 or end.indentation <= -constants.smoothing,
     )
 
 
-def corrected(
-    missed: Missing, middle: Middle, given: Constants, heavy: float, slow: float, h: float
-) -> tuple[Middle, float]:
-    """The middle that misses nothing if stiffness and friction's rate stay, and how far it moved in mm/s."""
-    place, contact, R1 = missed.place, missed.contact, given.ball_radius
-    nx, ny, nz = place.x, place.y, place.z
-    push, mixed, turn, drill = 0.0, 0.0, 0.0, 0.0
-    if given.static + given.viscous > 0.0:
-        speed = middle.x * nx + middle.y * ny + middle.z * nz
-        velocity, spin = (middle.x, middle.y, middle.z), (middle.wx, middle.wy, middle.wz)
-        slip = sliding(place, pressed(contact, speed, given), velocity, spin, given)
-        push, mixed, turn = slip.rate * slip.push, slip.rate * slip.mixed, slip.rate * slip.turn
+def newton_correction(
+    residual: StepResidual,
+    midpoint: Midpoint,
+    constants: Constants,
+    mass_rate: float,
+    inertia_rate: float,
+    h: float,
+) -> tuple[Midpoint, float]:
+    """Solve for the midpoint with constant stiffness and rate of friction; return it with its change in mm/s."""
+    centre, contact, R1 = residual.centre, residual.contact, constants.ball_radius
+    nx, ny, nz = centre.x, centre.y, centre.z
+    push, mixed, rotation, drill = 0.0, 0.0, 0.0, 0.0
+    if constants.static + constants.viscous > 0.0:
+        speed = midpoint.x * nx + midpoint.y * ny + midpoint.z * nz
+        velocity, spin = (midpoint.x, midpoint.y, midpoint.z), (midpoint.wx, midpoint.wy, midpoint.wz)
+        slip = sliding(centre, pressed(contact, speed, constants), velocity, spin, constants)
+        push, mixed, rotation = slip.rate * slip.push, slip.rate * slip.mixed, slip.rate * slip.rotation
         drill = slip.rate * slip.drill * slip.lever_squared
-    lossy = given.hysteresis * contact.damped_force + given.time * contact.damped_stiffness
-    across = (0.5 * h * contact.normal + given.time * contact.damped_force) * place.over
-    outward = missed.x * nx + missed.y * ny + missed.z * nz
-    turning = missed.wx * nx + missed.wy * ny + missed.wz * nz
-    dn = -outward / (heavy + lossy + 0.5 * h * abs(contact.stiffness))
-    dw = -turning / (slow + drill)
-    # across the load friction couples the velocity with u = ω x n
-    A, B, C = heavy + push + across, slow + turn * R1 * R1, mixed * R1
+    lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
+    across = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.over
+    outward = residual.x * nx + residual.y * ny + residual.z * nz
+    turning = residual.wx * nx + residual.wy * ny + residual.wz * nz
+    dn = -outward / (mass_rate + lossy + 0.5 * h * abs(contact.stiffness))
+    dw = -turning / (inertia_rate + drill)
+    # friction couples the velocity across the load with u = ω x n
+    A, B, C = mass_rate + push + across, inertia_rate + rotation * R1 * R1, mixed * R1
     over = 1.0 / (A * B - C * C)
-    tx, ty, tz = missed.x - outward * nx, missed.y - outward * ny, missed.z - outward * nz
-    ux = missed.wy * nz - missed.wz * ny
-    uy = missed.wz * nx - missed.wx * nz
-    uz = missed.wx * ny - missed.wy * nx
+    tx, ty, tz = residual.x - outward * nx, residual.y - outward * ny, residual.z - outward * nz
+    ux = residual.wy * nz - residual.wz * ny
+    uy = residual.wz * nx - residual.wx * nz
+    uz = residual.wx * ny - residual.wy * nx
     dx, dy, dz = (C * ux - B * tx) * over, (C * uy - B * ty) * over, (C * uz - B * tz) * over
     ex, ey, ez = (C * tx - A * ux) * over, (C * ty - A * uy) * over, (C * tz - A * uz) * over
-    moved = abs(dx) + abs(dy) + abs(dz) + abs(dn) + R1 * (abs(ex) + abs(ey) + abs(ez) + abs(dw))
-    after = Middle(
-        middle.x + dx + dn * nx,
-        middle.y + dy + dn * ny,
-        middle.z + dz + dn * nz,
-        middle.wx + ny * ez - nz * ey + dw * nx,
-        middle.wy + nz * ex - nx * ez + dw * ny,
-        middle.wz + nx * ey - ny * ex + dw * nz,
+    change = abs(dx) + abs(dy) + abs(dz) + abs(dn) + R1 * (abs(ex) + abs(ey) + abs(ez) + abs(dw))
+    after = Midpoint(
+        midpoint.x + dx + dn * nx,
+        midpoint.y + dy + dn * ny,
+        midpoint.z + dz + dn * nz,
+        midpoint.wx + ny * ez - nz * ey + dw * nx,
+        midpoint.wy + nz * ex - nx * ez + dw * ny,
+        midpoint.wz + nx * ey - ny * ex + dw * nz,
     )
-    return after, moved
+    return after, change
 
 
 def march(  # type: ignore[no-untyped-def]
-    potential, given: Constants, ball: Ball, mass: float, inertia: float, pulls, h: float, states, lost
+    potential, constants: Constants, ball: BallState, mass: float, inertia: float, pulls, h: float, states, dissipated
 ) -> int:
-    """Steps into `states` (steps + 1, 9) and `lost` (steps + 1,), pulled by `pulls` (steps, 3); how many were good.
+    """Advance a ball, write `states` (steps + 1, 9) and `dissipated` (steps + 1,), and return the converged steps.
 
-    In Python `pulls` is a list: numbers of NumPy would be slower.
+    `pulls` (steps, 3) is the pull in each step. In Python it is a list, which is faster than an array.
     """
     states[0, :] = ball
-    for number in range(len(lost) - 1):
+    for number in range(len(dissipated) - 1):
         row = pulls[number]
         pull = row[0], row[1], row[2]
-        after = stepped(potential, given, ball, mass, inertia, pull, h)
+        after = advance(potential, constants, ball, mass, inertia, pull, h)
         ball = after.ball
         states[number + 1, :] = ball
-        lost[number + 1] = lost[number] + after.lost
-        if not after.good:
+        dissipated[number + 1] = dissipated[number] + after.dissipated
+        if not after.converged:
             return number
-    return len(lost) - 1
+    return len(dissipated) - 1

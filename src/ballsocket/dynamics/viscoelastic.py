@@ -1,16 +1,16 @@
-"""A ball that is pressed into a liner whose modulus relaxes, and let go again.
+"""Contact with a viscoelastic liner: relaxation, creep, vibration, and the force of a loading cycle.
 
-While the contact grows, the force is the hereditary integral of the elastic law (correspondence, Lee & Radok). While
-it shrinks, the edge of the contact is where the pressure ends, not where the ball ends: after Ting, force and edge at a
-time t are those of a history that stopped at an earlier t1, with ∫ g(t - s) ḋ ds = 0 from t1 to t. For radial
-springs that is exact, whatever the law, since every spring is pressed in proportion to ḋ. `springs` are those springs,
-one by one, through any history.
+While the contact grows, the force is the hereditary integral of the elastic law (correspondence principle, Lee &
+Radok). While it shrinks, Ting's solution applies. Force and edge at a time t are those of a history that stopped at an
+earlier time t1, with ∫ g(t - s) ḋ ds = 0 from t1 to t. For radial springs it is exact, because ḋ compresses all springs
+in proportion. `spring_force` integrates the springs numerically for any history.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from typing import Any, ClassVar
 
 import numpy
@@ -18,25 +18,103 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..core.deprecation import RenamedAttribute
 from ..core.sources import Source
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import linear_kinematics
 from ..problem import Joint
 from .potential import Potential, potential_of
-from .prony import Prony
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prony:
+    """Relaxation modulus relative to the instantaneous modulus: g(t) = g∞ + Σ g_i exp(-t/τ_i), with g(0) = 1.
+
+    Parameters
+    ----------
+    terms : tuple of (float, float)
+        Shares g_i, above 0 and with a sum below 1, and relaxation times τ_i in s. g∞ is 1 minus the sum.
+
+    Raises
+    ------
+    ValueError
+        No terms; a share or a time that is not positive; shares with a sum of 1 or more.
+    """
+
+    terms: tuple[tuple[float, float], ...]
+
+    def __post_init__(self) -> None:
+        terms = tuple((float(share), float(time)) for share, time in self.terms)
+        require("the number of terms", len(terms), len(terms) > 0, "a relaxation modulus needs at least one term")
+        for share, time in terms:
+            require("a share", share, 0.0 < share < 1.0, "it must be above 0 and below 1")
+            require("a time", time, 0.0 < time < inf, "a relaxation time (s) must be above 0 and finite")
+        total = sum(share for share, _ in terms)
+        require("the sum of the shares", total, total < 1.0, "it must be below 1, or no modulus remains at long times")
+        object.__setattr__(self, "terms", terms)
+
+    rest = RenamedAttribute("long_term_share")
+    relaxed = RenamedAttribute("relaxation")
+    crept = RenamedAttribute("creep_compliance")
+
+    @property
+    def shares(self) -> Numbers:
+        """Shares g_i of the terms."""
+        return numpy.array([share for share, _ in self.terms])
+
+    @property
+    def times(self) -> Numbers:
+        """Relaxation times τ_i of the terms in s."""
+        return numpy.array([time for _, time in self.terms])
+
+    @property
+    def long_term_share(self) -> float:
+        """Share g∞ of the modulus at long times."""
+        return 1.0 - sum(share for share, _ in self.terms)
+
+    def relaxation(self, time: Numbers) -> Numbers:
+        """Compute the relative modulus g(t) at times in s, 0 or more."""
+        ages = numpy.asarray(time, dtype=float)[..., None]
+        return self.long_term_share + numpy.sum(self.shares * numpy.exp(-ages / self.times), axis=-1)
+
+    def mean(self, early: Numbers, late: Numbers) -> Numbers:
+        """Compute the mean of g between an early and a late time in s."""
+        first, span = early[..., None] / self.times, (late - early)[..., None] / self.times
+        return self.long_term_share + numpy.sum(self.shares * numpy.exp(-first) * -numpy.expm1(-span) / span, axis=-1)
+
+    def complex_modulus(self, frequency: Numbers) -> Numbers:
+        """Compute the complex modulus g∞ + Σ g_i iωτ/(1 + iωτ) at frequencies in Hz; its imaginary part is the loss."""
+        phase = 2j * numpy.pi * numpy.asarray(frequency, dtype=float)[..., None] * self.times
+        return self.long_term_share + numpy.sum(self.shares * phase / (1 + phase), axis=-1)
+
+    def creep_compliance(self, time: Numbers) -> Numbers:
+        """Compute the creep compliance J(t), the strain under a unit stress: 1 at first, and 1/g∞ at long times."""
+        rates, weights = self._retardation
+        return 1.0 / self.long_term_share - numpy.sum(
+            weights * numpy.exp(-numpy.asarray(time)[..., None] * rates), axis=-1
+        )
+
+    @cached_property
+    def _retardation(self) -> tuple[Numbers, Numbers]:
+        # strains r of the dashpots: τ r' = 1 + g·r - r, made symmetric by sqrt(g τ); J = 1 + g·r
+        g, tau = self.shares, self.times
+        root = numpy.sqrt(g / tau)
+        rates, modes = numpy.linalg.eigh(numpy.diag(1.0 / tau) - root[:, None] * root)
+        return rates, (modes.T @ root) ** 2 / rates
 
 
 @dataclass(frozen=True, eq=False)
 class Viscoelastic:
-    """A joint whose liner relaxes: the model's law holds at once, Poisson's ratio stays.
+    """Joint with a viscoelastic liner: the model gives the instantaneous force, and Poisson's ratio is constant.
 
     Parameters
     ----------
     model : Model
-        Any that has a law.
+        Any model with a force law.
     joint : Joint
-        Of plain numbers; Young's modulus of the liner is that of a sudden load.
+        Joint of plain numbers, with the instantaneous Young's modulus of the liner.
     modulus : Prony
+        Relative modulus of the liner over time.
 
     Examples
     --------
@@ -46,8 +124,8 @@ class Viscoelastic:
     >>> liner = Viscoelastic(bs.HessForsbach(), bs.joints["hip-28"], Prony(terms=((0.3, 0.1), (0.2, 10.0))))
     >>> time = numpy.linspace(0.0, 1.0, 401)
     >>> depth = 0.05 * numpy.sin(numpy.pi * time)
-    >>> force = liner.pressed(time, depth)
-    >>> bool(force[100] > force[300] > 0)  # less on the way back
+    >>> force = liner.cycle_force(time, depth)
+    >>> bool(force[100] > force[300] > 0)  # smaller force on unloading
     True
     """
 
@@ -57,144 +135,155 @@ class Viscoelastic:
     joint: Joint
     modulus: Prony
 
+    at_once = RenamedAttribute("instantaneous_force")
+    relaxing = RenamedAttribute("relaxation_force")
+    creeping = RenamedAttribute("creep_indentation")
+    product = RenamedAttribute("separable_force")
+    grown = RenamedAttribute("hereditary_force")
+    pressed = RenamedAttribute("cycle_force")
+    springs = RenamedAttribute("spring_force")
+
     @cached_property
     def potential(self) -> Potential:
+        """Instantaneous elastic energy over the indentation."""
         return potential_of(self.model, self.joint)
 
-    def at_once(self, depth: Numbers) -> Numbers:
-        """The force in N of a sudden indentation in mm; 0 where nothing touches."""
+    def instantaneous_force(self, depth: Numbers) -> Numbers:
+        """Compute the instantaneous force in N at an indentation in mm; 0 without contact."""
         return self.potential(numpy.maximum(numpy.asarray(depth, dtype=float), 0.0))[1]
 
-    def relaxing(self, depth: float, time: Numbers) -> Numbers:
-        """The force in N at times (s) after an indentation (mm) that came at once and stays."""
-        return self.at_once(numpy.array(depth)) * self.modulus.relaxed(time)
+    def relaxation_force(self, depth: float, time: Numbers) -> Numbers:
+        """Compute the force in N at times in s after a sudden, then constant indentation in mm."""
+        return self.instantaneous_force(numpy.array(depth)) * self.modulus.relaxation(time)
 
-    def creeping(self, force: float, time: Numbers) -> Numbers:
-        """The indentation in mm at times (s) after a force (N) that came at once and stays: the contact grows."""
-        return self.model.press(self.joint.with_floats(), force=force * self.modulus.crept(time)).indentation
+    def creep_indentation(self, force: float, time: Numbers) -> Numbers:
+        """Compute the indentation in mm at times in s after a sudden, then constant force in N."""
+        return self.model.press(self.joint.with_floats(), force=force * self.modulus.creep_compliance(time)).indentation
 
     def dynamic_stiffness(self, depth: float, frequency: Numbers) -> Numbers:
-        """The complex stiffness in N/mm of a small vibration (Hz) about an indentation (mm) that lasts."""
+        """Compute the complex stiffness in N/mm of small vibrations at frequencies in Hz about an indentation in mm."""
         return self.potential(numpy.array(depth))[2] * self.modulus.complex_modulus(frequency)
 
-    def product(self, time: Numbers, depth: Numbers) -> Numbers:
-        """What is not to be done: the elastic force times the modulus of that time, g(t) F(d(t))."""
-        time, depth = _checked(time, depth)
+    def separable_force(self, time: Numbers, depth: Numbers) -> Numbers:
+        """Compute the product g(t) F(d(t)), a common but wrong approximation, for comparison."""
+        time, depth = _check_history(time, depth)
         touched = numpy.argmax(depth > 0)
-        return self.modulus.relaxed(numpy.maximum(time - time[touched], 0.0)) * self.at_once(depth)
+        return self.modulus.relaxation(numpy.maximum(time - time[touched], 0.0)) * self.instantaneous_force(depth)
 
-    def grown(self, time: Numbers, depth: Numbers) -> Numbers:
-        """The hereditary integral ∫ g(t - s) dF of the elastic force: right as long as the contact has only grown."""
-        time, depth = _checked(time, depth)
-        rise = numpy.diff(self.at_once(depth))
+    def hereditary_force(self, time: Numbers, depth: Numbers) -> Numbers:
+        """Compute the hereditary integral ∫ g(t - s) dF of the elastic force, which holds while the contact grows."""
+        time, depth = _check_history(time, depth)
+        rise = numpy.diff(self.instantaneous_force(depth))
         return numpy.append(0.0, numpy.sum(self._weights(time) * rise, axis=1))
 
-    def pressed(self, time: Numbers, depth: Numbers) -> Numbers:
-        """The force in N of a ball that is pressed in once and let go.
+    def cycle_force(self, time: Numbers, depth: Numbers) -> Numbers:
+        """Compute the force in N of a single loading and unloading.
 
         Parameters
         ----------
         time : array (instants,)
-            In s, growing.
+            Increasing times in s.
         depth : array (instants,)
-            The indentation in mm, which rises from 0 or less to its highest and then falls; straight between instants.
+            Indentation in mm, linear between instants: it rises from 0 or less to its maximum, and then falls.
 
         Raises
         ------
         ValueError
-            Times that do not grow; a depth that rises again: ask `springs`.
+            Times that do not increase; a depth that rises again, for which `spring_force` is valid.
         """
-        time, depth = _checked(time, depth)
+        time, depth = _check_history(time, depth)
         top = int(numpy.argmax(depth))
         again = numpy.flatnonzero(numpy.diff(depth)[top:] > 0)
-        require("depth", depth, _until(len(depth), top, again), "it rises once and falls then; ask `springs`")
-        force = self.grown(time, depth)
+        require(
+            "depth", depth, _mask_until(len(depth), top, again), "it must rise once and then fall; use `spring_force`"
+        )
+        force = self.hereditary_force(time, depth)
         weights, bed = self._weights(time), numpy.maximum(depth, 0.0)
         for number in range(top + 1, len(time)):
-            force[number] = self._shrunk(weights[number - 1], bed, top, number)
+            force[number] = self._unloading_force(weights[number - 1], bed, top, number)
         return force
 
-    def _shrunk(self, weights: Numbers, depth: Numbers, top: int, number: int) -> float:
-        """Ting: the last instant t1 of the rise from which on the springs at the edge have been pushed and let go."""
-        pushed = numpy.cumsum((weights[:number] * numpy.diff(depth)[:number])[::-1])[::-1]
-        begun = numpy.flatnonzero(pushed[: top + 1] <= 0)
-        if len(begun) and begun[0] == 0:
+    def _unloading_force(self, weights: Numbers, depth: Numbers, top: int, number: int) -> float:
+        """Compute the force on unloading by the last instant t1 of the loading with the same edge, after Ting."""
+        strain = numpy.cumsum((weights[:number] * numpy.diff(depth)[:number])[::-1])[::-1]
+        initial = numpy.flatnonzero(strain[: top + 1] <= 0)
+        if len(initial) and initial[0] == 0:
             return 0.0
-        last = int(begun[0]) - 1 if len(begun) else top
-        after = pushed[last + 1] if last + 1 < number else 0.0
-        share = pushed[last] / (pushed[last] - after)
+        last = int(initial[0]) - 1 if len(initial) else top
+        after = strain[last + 1] if last + 1 < number else 0.0
+        share = strain[last] / (strain[last] - after)
         edge = depth[last] + share * (depth[last + 1] - depth[last])
-        forces = self.at_once(numpy.append(depth[: last + 1], edge))
+        forces = self.instantaneous_force(numpy.append(depth[: last + 1], edge))
         return float(numpy.sum(weights[: last + 1] * numpy.diff(forces)))
 
     def _weights(self, time: Numbers) -> Numbers:
-        """The mean of g(t - s) over each stretch of s before each t: (instants - 1, stretches), 0 after t."""
+        """Compute the mean of g(t - s) over the intervals of s before each t: (instants - 1, intervals), 0 after t."""
         late, early = time[1:, None] - time[None, :-1], time[1:, None] - time[None, 1:]
         return numpy.where(early >= 0, self.modulus.mean(numpy.maximum(early, 0.0), numpy.maximum(late, 1e-300)), 0.0)
 
-    def springs(self, time: Numbers, depth: Numbers, rings: int = 400) -> Numbers:
-        """The force in N of any history, by radial springs that are Maxwell chains, ring by ring.
+    def spring_force(self, time: Numbers, depth: Numbers, rings: int = 400) -> Numbers:
+        """Compute the force in N of any history, by radial springs that are Maxwell chains.
 
-        A spring whose pressure would fall below 0 lets go, recovers by itself, and is met again where it is then.
+        A spring whose pressure would become negative detaches and recovers, until the ball touches it again.
 
         Parameters
         ----------
         time, depth : array (instants,)
-            In s and mm, straight between instants.
+            Times in s and indentations in mm, linear between instants.
         rings : int
-            Of springs about the pole.
+            Number of rings of springs about the pole.
 
         Raises
         ------
         TypeError
-            A model that is not one of radial springs with linear kinematics.
+            A model other than radial springs with linear kinematics.
         """
         if not isinstance(self.model, RadialFoundation) or self.model.kinematics is not linear_kinematics:
-            raise TypeError(
-                f"springs stand for a model of radial springs with linear kinematics, not {self.model.name}"
-            )
-        time, depth = _checked(time, depth)
+            raise TypeError(f"the model must be radial springs with linear kinematics, got {self.model.name}")
+        time, depth = _check_history(time, depth)
         joint = self.joint.with_floats()
         c, deepest = joint.clearance, max(float(depth.max()), 1e-300)
         width = deepest / (c + deepest) / rings
         m = width * (numpy.arange(rings) + 0.5)
         ball = numpy.maximum(depth, -c)[:, None] * (1.0 - m) - c * m  # d cos φ - c (1 - cos φ)
-        pressure = _chains(self.modulus, time, ball)
+        pressure = _maxwell_pressures(self.modulus, time, ball)
         factor = 2 * numpy.pi * joint.socket_radius**2 * float(self.model.modulus.of(joint)) * width
         return factor * (pressure @ (1.0 - m))
 
 
-def _chains(modulus: Prony, time: Numbers, ball: Numbers) -> Numbers:
-    """Pressure over the stiffness at once of springs (instants, springs), pushed by a ball's surface."""
+def _maxwell_pressures(modulus: Prony, time: Numbers, ball: Numbers) -> Numbers:
+    """Compute the pressure over the instantaneous stiffness of springs: (instants, springs)."""
     surface = numpy.zeros(ball.shape[1])
-    held = numpy.zeros((len(modulus.terms), ball.shape[1]))
+    stresses = numpy.zeros((len(modulus.terms), ball.shape[1]))
     pressure = numpy.zeros(ball.shape)
-    g, tau, rest = modulus.shares[:, None], modulus.times[:, None], modulus.rest
+    g, tau, g_inf = modulus.shares[:, None], modulus.times[:, None], modulus.long_term_share
     for number, step in enumerate(numpy.diff(time), start=1):
         fade, weight = numpy.exp(-step / tau), -numpy.expm1(-step / tau) * tau / step
-        kept = numpy.sum(g * (fade * held - weight * surface), axis=0)
-        stiff = rest + float(numpy.sum(g * weight))
-        moved = numpy.maximum(ball[number], -kept / stiff)  # the ball's surface, or the one that recovers
-        held = fade * held + weight * (moved - surface)
-        pressure[number] = numpy.where(moved == ball[number], rest * moved + numpy.sum(g * held, axis=0), 0.0)
-        surface = moved
+        memory = numpy.sum(g * (fade * stresses - weight * surface), axis=0)
+        stiff = g_inf + float(numpy.sum(g * weight))
+        displaced = numpy.maximum(ball[number], -memory / stiff)  # the ball surface, or the recovering liner surface
+        stresses = fade * stresses + weight * (displaced - surface)
+        pressure[number] = numpy.where(
+            displaced == ball[number], g_inf * displaced + numpy.sum(g * stresses, axis=0), 0.0
+        )
+        surface = displaced
     return pressure
 
 
-def _checked(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
+def _check_history(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
     time, depth = numpy.asarray(time, dtype=float), numpy.asarray(depth, dtype=float)
     if time.ndim != 1 or time.shape != depth.shape or len(time) < 2:
-        raise ValueError(f"time and depth are rows of one length, 2 or more, got {time.shape} and {depth.shape}")
-    require("depth", depth, numpy.isfinite(depth), "an indentation (mm) is finite")
-    grows = numpy.append(True, numpy.diff(time) > 0)
-    require("time", time, grows, "each is later than the one before")
-    require("depth", depth[:1], depth[:1] <= 0, "a history begins before the touch, or at it")
+        raise ValueError(f"time and depth must be rows of equal length, at least 2, got {time.shape} and {depth.shape}")
+    require("depth", depth, numpy.isfinite(depth), "an indentation (mm) must be finite")
+    increasing = numpy.append(True, numpy.diff(time) > 0)
+    require("time", time, increasing, "times must increase")
+    require("depth", depth[:1], depth[:1] <= 0, "a history must begin without contact")
     return time, depth
 
 
-def _until(count: int, top: int, again: Numbers) -> Numbers:
-    """Where a depth does as it should: it does not after the instant from which it rises again."""
-    good = numpy.ones(count, dtype=bool)
+def _mask_until(count: int, top: int, again: Numbers) -> Numbers:
+    """Return the mask of instants before the depth rises again."""
+    valid = numpy.ones(count, dtype=bool)
     if len(again):
-        good[top + again[0] + 1 :] = False
-    return good
+        valid[top + again[0] + 1 :] = False
+    return valid

@@ -14,10 +14,10 @@ from typing import Any
 from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
 from ..core.storage.atomic_files import write_text
-from ..dynamics import ForceElement, Touch, reaction
+from ..dynamics import ContactState, ForceElement, reaction
 from ..dynamics.load import status_of
 from ..dynamics.potential import CurvePotential, energy_curve
-from ..dynamics.reaction import Constants, Elastic, Place, Three
+from ..dynamics.reaction import BallCentre, Constants, Elastic, Vector
 from ..version import __version__
 from .c_text import c_number, c_statements
 from .recorder import Part, Recorded, Tape, directional_derivatives
@@ -43,7 +43,7 @@ class Recording:
     tape: Tape = field(default_factory=Tape)
 
     @cached_property
-    def state(self) -> tuple[Three, Three, Three]:
+    def state(self) -> tuple[Vector, Vector, Vector]:
         """Position, velocity and spin."""
         x, v, w = (tuple(self.tape.input(f"{name}[{axis}]") for axis in range(3)) for name in STATE)
         return x, v, w  # type: ignore[return-value]
@@ -71,12 +71,12 @@ class Recording:
         return curves
 
     @cached_property
-    def place(self) -> Place:
-        return reaction.place_of(*self.state[0], self.constants.clearance)
+    def centre(self) -> BallCentre:
+        return reaction.centre_of(*self.state[0], self.constants.clearance)
 
     @cached_property
     def contact(self) -> Elastic:
-        return reaction.elastic(self._potential, self.place, self.constants)
+        return reaction.elastic(self._potential, self.centre, self.constants)
 
     def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
         if ENERGY in self.curves:
@@ -87,25 +87,25 @@ class Recording:
     @cached_property
     def load(self) -> Outputs:
         """Force, moment and energy."""
-        parts = reaction.reaction(self.place, self.contact, *self.state[1:], self.constants)
+        parts = reaction.reaction(self.centre, self.contact, *self.state[1:], self.constants)
         return {**_numbered("force", parts[:3]), **_numbered("moment", parts[3:]), "*energy": self.contact.energy}
 
     @cached_property
     def pressed(self) -> Outputs:
         """Half angle and largest pressure."""
-        depth = self.place.indentation
+        depth = self.centre.indentation
         angle, pressure = (self.tape.curve(name, depth, 1)[0] for name in (HALF_ANGLE, MAX_PRESSURE))
         return {"*half_angle": angle, "*max_pressure": pressure}
 
     @cached_property
     def status(self) -> Outputs:
         """Code of the `ContactState`."""
-        return {"status": status_of(self.place, self.contact, isfinite(self.place.distance), self.constants)}
+        return {"status": status_of(self.centre, self.contact, isfinite(self.centre.distance), self.constants)}
 
     @cached_property
     def tangent(self) -> Outputs:
         """Nine components of the tangent stiffness ∂²U/∂r²."""
-        xx, yy, zz, xy, yz, zx = reaction.tangent(self.place, self.contact, self.constants)
+        xx, yy, zz, xy, yz, zx = reaction.tangent(self.centre, self.contact, self.constants)
         return _numbered("tangent", (xx, xy, zx, xy, yy, yz, zx, yz, zz))
 
     @cached_property
@@ -174,7 +174,7 @@ class CElement:
         fields = "\n".join(
             f"    double {parameter.name}; /* {parameter.unit}: {parameter.meaning} */" for parameter in TUNABLES
         )
-        codes = "\n".join(f"    {self.name.upper()}_{touch.name} = {touch.value}," for touch in Touch)
+        codes = "\n".join(f"    {self.name.upper()}_{touch.name} = {touch.value}," for touch in ContactState)
         names = {"name": self.name, "NAME": self.name.upper()}
         return fill_template("element.h", fields=fields, codes=codes, **names, **self.about)
 
@@ -187,15 +187,15 @@ class CElement:
             name=self.name,
             NAME=self.name.upper(),
             along=_template("curve.c"),
-            curves="\n".join(_curve(name, curve) for name, curve in sorted(recording.curves.items())),
+            curves="\n".join(_curve_function(name, curve) for name, curve in sorted(recording.curves.items())),
             defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
-            checks="\n".join(_check(parameter.name, parameter.above) for parameter in TUNABLES),
+            checks="\n".join(_range_check(parameter.name, parameter.above) for parameter in TUNABLES),
             first_touch=c_number(constants.clearance - constants.smoothing),
             load=c_statements({**recording.status, **recording.load}),
             pressed=c_statements({**recording.status, **recording.pressed}),
             tangent=c_statements({**recording.status, **recording.tangent}),
             slope=c_statements({**recording.status, **recording.slope}),
-            sentences="\n".join(f'    case {touch.value}: return "{touch.sentence}";' for touch in Touch),
+            sentences="\n".join(f'    case {touch.value}: return "{touch.sentence}";' for touch in ContactState),
             **self.about,
         )
 
@@ -218,15 +218,15 @@ class CElement:
         return {"version": __version__, "model": self.element.model.name, "joint": joint}
 
 
-def _check(name: str, above: bool) -> str:
+def _range_check(name: str, above: bool) -> str:
     """Write the C statement that rejects a parameter outside its range."""
     operator, allowed = (">", "above 0") if above else (">=", "0 or more")
     condition = f"p->{name} {operator} 0.0 && p->{name} < INFINITY"
     return f'    if (!({condition})) return "{name} must be finite and {allowed}";'
 
 
-def _curve(name: str, curve: CurveLaw) -> str:
-    """Write the coefficients of a curve as C arrays with their evaluation function."""
+def _curve_function(name: str, curve: CurveLaw) -> str:
+    """Write a tabulated curve in C: its coefficients and the function that evaluates it."""
     pieces: Numbers = curve.pieces
     rows = ",\n".join("    " + ", ".join(map(c_number, row)) for row in pieces.tolist())
     ends = ", ".join(map(c_number, (curve.shallowest, curve.deepest, curve.first, curve.density)))

@@ -49,20 +49,20 @@ def power_fit(element: ForceElement, depth: float) -> PowerFit:
     """Fit F = k d^n up to a depth in mm; the largest error is minimal."""
     d = depth * numpy.linspace(_LOWEST_FITTED_SHARE, 1.0, _SAMPLES)
     F = element.potential(d)[1]
-    exponent = _minimum(lambda n: _best_stiffness(d, F, n)[1])
+    exponent = _golden_section_minimum(lambda n: _best_stiffness(d, F, n)[1])
     k, error = _best_stiffness(d, F, exponent)
     return PowerFit(stiffness=k, exponent=exponent, depth=depth, error=error / float(F[-1]))
 
 
 def _best_stiffness(d: Numbers, F: Numbers, n: float) -> tuple[float, float]:
-    """Return the k of an exponent with the smallest largest error, and this error in N."""
+    """Find the stiffness k that minimises the largest error of F = k d^n, and return k and this error in N."""
     shape = (d / d[-1]) ** n
-    k = _minimum(lambda k: float(numpy.max(abs(k * shape - F))), 0.5 * float(F[-1]), 2.0 * float(F[-1]))
+    k = _golden_section_minimum(lambda k: float(numpy.max(abs(k * shape - F))), 0.5 * float(F[-1]), 2.0 * float(F[-1]))
     return k / float(d[-1]) ** n, float(numpy.max(abs(k * shape - F)))
 
 
-def _minimum(function: Callable[[float], float], low: float = 0.5, high: float = 4.0) -> float:
-    """Find the minimum of a function with one minimum, by golden-section search."""
+def _golden_section_minimum(function: Callable[[float], float], low: float = 0.5, high: float = 4.0) -> float:
+    """Return the position of the minimum of a unimodal function, by golden-section search."""
     ratio = (5.0**0.5 - 1.0) / 2.0
     for _ in range(60):
         inner_low, inner_high = high - ratio * (high - low), low + ratio * (high - low)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..core.deprecation import RenamedAttribute
 from ..core.storage.atomic_files import write_text
-from ..dynamics import ForceElement, Touch
+from ..dynamics import ContactState, ForceElement
 from ..dynamics.reaction import Constants
 from .c_element import CElement
 from .compiler import LIBRARY_ENDING
@@ -52,7 +52,7 @@ class ExportJob:
             "parameters": str(len(TUNABLES)),
             "units": ", ".join(repr(parameter.si) for parameter in TUNABLES),
             "tunables": ", ".join(parameter.name for parameter in TUNABLES),
-            "failed": str(Touch.THROUGH_WALL.value),
+            "failed": str(ContactState.THROUGH_WALL.value),
         }
 
     words = RenamedAttribute("template_context")

@@ -118,7 +118,7 @@ class CounterfaceMap:
 
 
 def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
-    """Map the ball's cells that pass over some cells of the socket in a cycle."""
+    """Map cells of the socket to the cells of the ball that pass over them during a cycle."""
     cup_frame = numpy.array(setup.placed.frame)
     rotated = cup_frame @ setup.moved.midpoint_rotations[setup.loaded]
     grid = setup.ball_grid

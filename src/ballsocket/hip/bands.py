@@ -262,7 +262,9 @@ class Bands:
     def _summarize_report(self, report: int) -> dict[str, Any]:
         """Return the bands at a report."""
         bands: dict[str, dict[str, Any]] = {
-            name: {end: _finite(self.quantile(name, fraction)[report]) for end, fraction in self._fractions.items()}
+            name: {
+                end: _finite_or_none(self.quantile(name, fraction)[report]) for end, fraction in self._fractions.items()
+            }
             for name in RESULT_UNITS
         }
         if self.shared is not None:
@@ -273,18 +275,19 @@ class Bands:
             "cycles": self.counts[report],
             **({} if year is None else {"years": self.counts[report] / year}),
             **bands,
-            "edge_loading": _finite(self.edge_loading(report)),
+            "edge_loading": _finite_or_none(self.edge_loading(report)),
             "peak_utilisation": {
-                end: _finite(self.utilisation_quantile(fraction)[report]) for end, fraction in self._fractions.items()
+                end: _finite_or_none(self.utilisation_quantile(fraction)[report])
+                for end, fraction in self._fractions.items()
             },
-            "valid": _finite(self.valid_fraction(report)),
+            "valid": _finite_or_none(self.valid_fraction(report)),
         }
 
     def _summarize_coefficients(self, shared: SharedCoefficient, name: str, report: int) -> dict[str, Any]:
         """Return the bands of the patients for each shared coefficient."""
         return {
             coefficient: {
-                end: _finite(shared.quantile(coefficient, name, fraction)[report])
+                end: _finite_or_none(shared.quantile(coefficient, name, fraction)[report])
                 for end, fraction in self._fractions.items()
             }
             for coefficient in shared.values
@@ -296,7 +299,7 @@ class Bands:
             return None
         return {
             result: {
-                name: {order: _finite(values[row, column]) for order, values in self.indices.items()}
+                name: {order: _finite_or_none(values[row, column]) for order, values in self.indices.items()}
                 for column, name in enumerate(self.variability.distributions)
             }
             for row, result in enumerate(INFLUENCED_RESULTS)
@@ -310,6 +313,6 @@ class Bands:
     valid_share = RenamedAttribute("valid_fraction")
 
 
-def _finite(value: float) -> float | None:
-    """Return a finite number as it is, and None for others."""
+def _finite_or_none(value: float) -> float | None:
+    """Return a finite number, else None."""
     return float(value) if numpy.isfinite(value) else None

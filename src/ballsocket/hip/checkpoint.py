@@ -98,7 +98,7 @@ def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
 
 
 def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
-    """Return the checkpoint of a hip's run in a folder.
+    """Make the checkpoint of a wear simulation, stored in a folder.
 
     Raises
     ------

@@ -64,7 +64,7 @@ def join_results(results: Sequence[CohortResult]) -> CohortResult:
 
 def result_table(reports: Sequence[Report]) -> Numbers:
     """Return the results of `RESULT_UNITS` as an array (reports, results)."""
-    return numpy.array([[_result(report, name) for name in RESULT_UNITS] for report in reports])
+    return numpy.array([[_result_number(report, name) for name in RESULT_UNITS] for report in reports])
 
 
 def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
@@ -74,7 +74,7 @@ def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
     )
 
 
-def _result(report: Report, name: str) -> float:
+def _result_number(report: Report, name: str) -> float:
     """Return a result of a report as one number; the edge distance is the least one of the cycle."""
     value = getattr(report, name)
     return float(value.min(initial=inf)) if name == "edge_distance" else float(value)

@@ -144,13 +144,16 @@ def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
     pressed = (inner > 0) | (outer > 0)
     polar, step = grid.polar[:-1, None], numpy.diff(grid.polar)[:, None]
     between = numpy.where(pressed, numpy.cos(polar + low * step) - numpy.cos(polar + high * step), 0.0)
-    ends = (rows[:, 0] > 0) * (1 - numpy.cos(grid.polar[0])), (rows[:, -1] > 0) * _versine(grid.polar[-1], reach)
+    ends = (
+        (rows[:, 0] > 0) * (1 - numpy.cos(grid.polar[0])),
+        (rows[:, -1] > 0) * _solid_angle_fraction(grid.polar[-1], reach),
+    )
     versine = (between.sum(axis=1) + ends[0] + ends[1]).mean(axis=1)
     return numpy.arccos(numpy.clip(1 - versine, -1.0, 1.0))
 
 
-def _versine(polar: float, reach: float) -> float:
-    """Compute the solid angle between two polar angles over 2π."""
+def _solid_angle_fraction(polar: float, reach: float) -> float:
+    """Compute the solid angle between two polar angles, divided by 2π."""
     return float(numpy.cos(polar) - numpy.cos(reach))
 
 

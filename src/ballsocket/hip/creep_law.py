@@ -70,7 +70,7 @@ class CreepLaw(Law):
         return ((1 - growth)[:, None] * strain).sum(axis=0), float(growth @ compliance)
 
     def _growth(self, seconds: float) -> tuple[Numbers, Numbers]:
-        """Compute compliances in 1/MPa, and the share of its final strain that each element gains in a time."""
+        """Compute the compliance of each element in 1/MPa, and the share of its remaining strain gained in a time."""
         compliance, time = self._confined_elements
         return compliance, -numpy.expm1(-seconds / time)
 
@@ -101,7 +101,7 @@ def constrained_share(poisson: float) -> float:
 
 
 def confinement_note(creep: CreepLaw, poisson: float) -> str:
-    """Describe the lateral constraint of a creep law for a liner with this Poisson's ratio; empty outside 0 to 0.5."""
+    """Describe the lateral constraint that a creep law assumes; empty for a Poisson's ratio outside 0 to 0.5."""
     if creep.confinement != 1:
         return f"creep strain is {creep.confinement:.3g} of that of a free bar: the liner is laterally constrained"
     if not 0 < poisson <= 0.5:

@@ -132,7 +132,7 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
             check_closed(title, values, options.closing, *(("°", 180 / pi) if title in ANGLES else (" N", 1.0)))
         if title in ANGLES:
             _check_angle(title, values)
-    angles = _angles(phase, columns, motion)
+    angles = _angle_function(phase, columns, motion)
     frame = known_name("frame", options.frame or table.frame or _FRAMES[0], _FRAMES)
     loaded_body = known_name("force_on", options.force_on or table.force_on or _BODIES[0], _BODIES)
     force = monotone_periodic(phase, _socket_force(columns, options.side, loaded_body))
@@ -161,8 +161,8 @@ def _check_angle(title: str, values: Numbers) -> None:
         raise ValueError(f"{title} goes to {180 / pi * largest:.4g}°; allowed are angles up to 180°: check its unit")
 
 
-def _angles(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> PhaseFunction:
-    """Return the angles of the table, or those of another cycle if the table has none."""
+def _angle_function(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> PhaseFunction:
+    """Return the angles as a function of phase, from the table or, without angle columns, from another cycle."""
     if motion is None:
         return monotone_periodic(phase, numpy.stack([columns.get(name, 0.0 * phase) for name in ANGLES]))
     if any(name in columns for name in ANGLES):

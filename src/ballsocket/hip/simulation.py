@@ -129,7 +129,7 @@ the error by 3.
 
 
 def _halving_error(values: list[float]) -> float:
-    """Estimate the relative error of the first value from those with halved time steps, and then with halved rings."""
+    """Estimate the relative error of a value from three results: given steps, half steps, and half steps and rings."""
     value, finer_steps, finer_rings = values
     if not finer_rings:
         return 0.0
@@ -151,7 +151,7 @@ def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
 
 
 def check_total_wear(setup: HipSetup, cycles: float) -> None:
-    """Reject numbers of cycles that would wear away more than ten liner thicknesses by the rate of the first cycle.
+    """Raise ValueError for cycles that would wear away more than ten liner thicknesses at the initial wear rate.
 
     Raises
     ------

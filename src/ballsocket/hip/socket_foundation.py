@@ -266,7 +266,7 @@ class SpringFoundation:
 
 
 def grid_neighbours(grid: Grid) -> Numbers:
-    """Number the four neighbours of every cell: (2, 2, cells), along the meridians and around the axis.
+    """Return the indices of the four neighbours of every cell: (2, 2, cells), along the meridians and around the axis.
 
     Across the pole the neighbour is the opposite cell of the first ring. At the rim a cell is its own neighbour.
     """

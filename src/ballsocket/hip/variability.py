@@ -1,4 +1,4 @@
-"""Variability between patients with one kind of hip: distributions of their quantities, and the hip of each patient."""
+"""Variability between patients: distributions of their quantities, and the simulation set-up of each patient."""
 
 from __future__ import annotations
 
@@ -138,7 +138,10 @@ class PatientVariability:
         cup = cup.tilted(values["tilt"]) if "tilt" in values else cup
         orientation: Any = {name: values[name] for name in ("inclination", "anteversion") if name in values}
         cup = replace(cup, **orientation)
-        cycle_ratio, force_ratio = self._ratio(values, "cycles_per_year"), self._ratio(values, "body_weight")
+        cycle_ratio, force_ratio = (
+            self._ratio_to_nominal(values, "cycles_per_year"),
+            self._ratio_to_nominal(values, "body_weight"),
+        )
         wear = use.wear
         if "coefficient" in values:
             require("coefficient", values["coefficient"], values["coefficient"] >= 0, "it must be at least 0")
@@ -156,7 +159,7 @@ class PatientVariability:
             cycle_ratio=cycle_ratio,
         )
 
-    def _ratio(self, values: Mapping[str, float], name: str) -> float:
+    def _ratio_to_nominal(self, values: Mapping[str, float], name: str) -> float:
         """Compute the ratio of a patient's quantity to that of the nominal patient."""
         if name not in values:
             return 1.0

@@ -12,10 +12,10 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.runge_kutta_chebyshev import ChebyshevStep, integrate_step, max_step_length, stage_count
 from .ball_wear import select_active_cells
 from .creep_law import CreepLaw
 from .hip_setup import HipSetup
-from .runge_kutta_chebyshev import ChebyshevStep, integrate_step, max_step_length, stage_count
 from .socket_foundation import CycleEquilibrium
 from .wear_law import CycleExposure, max_wear_sensitivity
 
@@ -127,11 +127,11 @@ class WearIntegrator:
         cells = numpy.flatnonzero(mask)
         self._active = select_active_cells(self.setup, cells)
         self._active_creep = self.creep_depth[cells]
-        self._rate = self._compute_rate(self._values)
+        self._rate = self._compute_rate(self._state_vector)
 
     @property
-    def _values(self) -> Numbers:
-        """State to integrate: depths of the active cells of socket and ball, and the work."""
+    def _state_vector(self) -> Numbers:
+        """State vector of the integration: depths of the active cells of socket and ball, and the work."""
         active = self._active
         return numpy.concatenate([self.depth[active.cells], self.ball[active.ball_cells], [self.work]])
 
@@ -201,13 +201,13 @@ class WearIntegrator:
         while True:
             length = _block_length(min(self.length, max_step_length(decay_rate), self._max_creep_step), remaining)
             block = integrate_step(
-                self._compute_rate, self._values, self._rate, length, stage_count(length, decay_rate)
+                self._compute_rate, self._state_vector, self._rate, length, stage_count(length, decay_rate)
             )
             if self._contact_left_active_cells(block):
                 self.margin *= 2
                 self._update_active_cells()
                 continue
-            error = self._error(block, decay_rate)
+            error = self._block_error(block, decay_rate)
             self.length = length * min(max(_STEP_SAFETY * max(error, 1e-12) ** (-1 / 3), _MIN_GROWTH), _MAX_GROWTH)
             if error <= 1:
                 break
@@ -243,7 +243,7 @@ class WearIntegrator:
         stiffness = active.foundation.max_stiffness * (weights @ (self._exposure.pressure > 0))
         for _ in range(_MAX_CREEP_SWEEPS):
             self._active_creep = active.foundation.smoothed(thickness * (recovered + strain_per_pressure * mean))
-            self._compute_rate(self._values)
+            self._compute_rate(self._state_vector)
             change = (weights @ self._exposure.pressure - mean) / (1 + stiffness * thickness * strain_per_pressure)
             mean = numpy.maximum(mean + change, 0.0)
             if abs(change).max(initial=0.0) <= _CREEP_TOLERANCE * mean.max(initial=0.0):
@@ -252,7 +252,7 @@ class WearIntegrator:
         pressure[active.cells] = mean
         self.strain = creep.advanced(self.strain, pressure, seconds)
 
-    def _error(self, block: ChebyshevStep, decay_rate: float) -> float:
+    def _block_error(self, block: ChebyshevStep, decay_rate: float) -> float:
         """Estimate the root mean square error of a block over the cells, relative to the allowed error."""
         initial = _FIRST_BLOCK * float(self._rate[:-1].max(initial=0.0)) / decay_rate if decay_rate > 0 else 0.0
         allowed = self.setup.tolerance * max(float(block.values[:-1].max(initial=0.0)), initial)

@@ -209,7 +209,7 @@ def _limits(path: _Path, point: _Point, move: Numbers, low: Numbers, high: Numbe
     outward = _points_outward(theta, new_gradient, low, high)
     inner = set(numpy.flatnonzero(~outward).tolist()) - {path.index}
     at_limit = [index for index in numpy.flatnonzero(outward).tolist() if index != path.index]
-    gains = {index: _gain(point.hessian, new_gradient, [*inner, index]) for index in at_limit}
+    gains = {index: _misfit_decrease(point.hessian, new_gradient, [*inner, index]) for index in at_limit}
     return tuple(index for index, gain in gains.items() if gain > _MIN_LIMIT_GAIN * path.rise)
 
 
@@ -218,7 +218,7 @@ def _points_outward(theta: Numbers, gradient: Numbers, low: Numbers, high: Numbe
     return ((theta - low < _LIMIT_TOLERANCE) & (gradient > 0)) | ((high - theta < _LIMIT_TOLERANCE) & (gradient < 0))
 
 
-def _gain(hessian: Numbers, gradient: Numbers, free: list[int]) -> float:
+def _misfit_decrease(hessian: Numbers, gradient: Numbers, free: list[int]) -> float:
     """Compute the decrease of χ² to its minimum over the free unknowns, by the quadratic model."""
     return float(gradient[free] @ numpy.linalg.solve(hessian[numpy.ix_(free, free)], gradient[free]))
 

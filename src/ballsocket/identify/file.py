@@ -90,35 +90,35 @@ def read_identify(path: str | Path) -> IdentifyFile:
         A file cannot be read.
     """
     path = Path(path)
-    return read_toml(path, "measurement", lambda content: _file(content, path.parent))
+    return read_toml(path, "measurement", lambda content: _parse_file(content, path.parent))
 
 
-def _file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
+def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
     """Convert the tables of a file to model, joint, data and unknowns."""
     check_keys(content, "", "at the top", FILE_KEYS)
     joint_file = joint_in(content, folder)
-    machines = {name: _machine(name, table) for name, table in table_of(content, "machine").items()}
+    machines = {name: _parse_machine(name, table) for name, table in table_of(content, "machine").items()}
     return IdentifyFile(
         model=named_model(content.get("model", "tabulated")).in_cup(joint_file.cup),
         joint=joint_file.joint,
-        data=_data(content.get("data", []), machines, folder),
-        free=_free(table_of(content, "free")),
+        data=_parse_data(content.get("data", []), machines, folder),
+        free=_parse_unknowns(table_of(content, "free")),
         scatter=_SCATTER_MODELS[known_name("scatter", content.get("scatter", "normal"), _SCATTER_MODELS)],
     )
 
 
-def _free(table: Mapping[str, Any]) -> dict[str, Prior]:
+def _parse_unknowns(table: Mapping[str, Any]) -> dict[str, Prior]:
     """Read the unknowns; those of a material may have their own table, `liner.young`."""
     flat: dict[str, Any] = {}
     for name, value in table.items():
         is_material = name in ("liner", "ball") and isinstance(value, Mapping)
         flat |= {f"{name}_{number}": entry for number, entry in value.items()} if is_material else {name: value}
     check_names(flat, FREE_NUMBERS, "in [free]")
-    return {name: _prior(name, value) for name, value in flat.items()}
+    return {name: _parse_prior(name, value) for name, value in flat.items()}
 
 
-def _prior(name: str, value: Any) -> Prior:
-    """Read two ends or a distribution."""
+def _parse_prior(name: str, value: Any) -> Prior:
+    """Read the prior of an unknown: the two ends of a range, or a distribution."""
     kind = FREE_NUMBERS[name].kind
     if isinstance(value, str):
         return ends_of(name, value, kind)
@@ -127,7 +127,7 @@ def _prior(name: str, value: Any) -> Prior:
     return distribution_of(name, value, lambda key, number: parse(key, number, kind))
 
 
-def _machine(name: str, table: Any) -> Machine:
+def _parse_machine(name: str, table: Any) -> Machine:
     """Read the errors of a machine."""
     if not isinstance(table, Mapping):
         raise ValueError(f"machine.{name} = {shown(table)} must be a table: [machine.{name}]")
@@ -142,24 +142,24 @@ def _number_or_range(name: str, value: Any, error: str) -> NumberOrRange:
     return ends_of(name, value, kind) if isinstance(value, str) and ".." in value else parse(name, value, kind)
 
 
-def _data(tables: Any, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
+def _parse_data(tables: Any, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
     """Read all data sets of a file."""
     if not isinstance(tables, list) or not tables or not all(isinstance(table, Mapping) for table in tables):
         raise ValueError("the file has no measurements: add [[data]] before each set")
-    return tuple(measured for table in tables for measured in _sets(table, machines, folder))
+    return tuple(measured for table in tables for measured in _parse_data_table(table, machines, folder))
 
 
-def _sets(table: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
+def _parse_data_table(table: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
     """Read the data sets of one table."""
     check_keys(table, "data", "in [[data]]", FILE_KEYS)
     if ("file" in table) == ("values" in table):
         raise ValueError("[[data]] needs either a file, or a quantity with its values")
     machine = machines[known_name("machine", table["machine"], machines)] if "machine" in table else IDEAL_MACHINE
-    return _sets_of_file(table, machine, folder) if "file" in table else (_set_of_values(table, machine),)
+    return _data_from_file(table, machine, folder) if "file" in table else (_data_from_values(table, machine),)
 
 
-def _sets_of_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[Measured, ...]:
-    """Read the data sets of a table with a file."""
+def _data_from_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[Measured, ...]:
+    """Read the data sets of a table that names a CSV or Parquet file."""
     check_names(table, (*_FILE_KEYS, *_COMMON_KEYS), "in [[data]] with a file")
     listed = table.get("quantities", [])
     quantities = [listed] if isinstance(listed, str) else listed
@@ -170,59 +170,61 @@ def _sets_of_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> t
         quantities=quantities,
         load=load,
         uncertainty=table.get("uncertainty"),
-        load_uncertainty=_load_uncertainty(table, load or "force"),
+        load_uncertainty=_parse_load_uncertainty(table, load or "force"),
         machine=machine,
         gaps=Gaps(gaps),
-        **_saturation(table),
+        **_saturation_argument(table),
     )
 
 
-def _set_of_values(table: Mapping[str, Any], machine: Machine) -> Measured:
-    """Read the data set of a table with values."""
+def _data_from_values(table: Mapping[str, Any], machine: Machine) -> Measured:
+    """Read the data set of a table that lists its values."""
     check_names(table, (*_VALUE_KEYS, *_COMMON_KEYS), "in [[data]] with values")
     for key in ("quantity", "uncertainty"):
         if key not in table:
             raise ValueError(f"[[data]] with values needs its {key}")
     name = known_name("quantity", table["quantity"], _QUANTITIES)
-    values = _numbers(name, table["values"], _QUANTITIES[name].kind)
-    loads: dict[str, Any] = {kind: _numbers(kind, table[kind], LOADS[kind].kind) for kind in LOADS if kind in table}
+    values = _parse_numbers(name, table["values"], _QUANTITIES[name].kind)
+    loads: dict[str, Any] = {
+        kind: _parse_numbers(kind, table[kind], LOADS[kind].kind) for kind in LOADS if kind in table
+    }
     if "order" in table:
-        loads["order"] = _numbers("order", table["order"], Kind.NUMBER)
+        loads["order"] = _parse_numbers("order", table["order"], Kind.NUMBER)
     if "angle" in table:
-        loads["angle"] = _numbers("angle", table["angle"], Kind.ANGLE)
+        loads["angle"] = _parse_numbers("angle", table["angle"], Kind.ANGLE)
     return Measured(
         quantity=name,
         values=values,
         uncertainty=uncertainty_of(_QUANTITIES[name], table["uncertainty"], values),
-        observable=_observable(name, table),
-        load_uncertainty=_load_uncertainty(table, next((kind for kind in LOADS if kind in table), "force")),
+        observable=_parse_observable(name, table),
+        load_uncertainty=_parse_load_uncertainty(table, next((kind for kind in LOADS if kind in table), "force")),
         machine=machine,
         name=check_text("name", table.get("name", "")),
         **loads,
-        **_saturation(table),
+        **_saturation_argument(table),
     )
 
 
-def _observable(name: str, table: Mapping[str, Any]) -> CustomObservable | None:
+def _parse_observable(name: str, table: Mapping[str, Any]) -> CustomObservable | None:
     """Return the custom observable of a frequency; None for a quantity of a contact."""
     if (name == FREQUENCY.name) != ("mass" in table):
         raise ValueError("[[data]] of a frequency needs its mass, and other data take none")
     return oscillation(parse("mass", table["mass"], Kind.MASS)) if "mass" in table else None
 
 
-def _saturation(table: Mapping[str, Any]) -> dict[str, Any]:
+def _saturation_argument(table: Mapping[str, Any]) -> dict[str, Any]:
     """Read the saturation as an argument of `Measured`, if it is stated."""
     return {"saturation": parse("saturation", table["saturation"], Kind.MODULUS)} if "saturation" in table else {}
 
 
-def _load_uncertainty(table: Mapping[str, Any], load: str) -> float:
+def _parse_load_uncertainty(table: Mapping[str, Any], load: str) -> float:
     """Read the uncertainty of the loads; 0 by default."""
     return (
         parse("load_uncertainty", table["load_uncertainty"], LOADS[load].kind) if "load_uncertainty" in table else 0.0
     )
 
 
-def _numbers(name: str, value: Any, kind: str) -> numpy.ndarray:
+def _parse_numbers(name: str, value: Any, kind: str) -> numpy.ndarray:
     """Read one number or a list of numbers with units as an array."""
     numbers = value if isinstance(value, list) else [value]
     return numpy.array([parse(name, number, kind) for number in numbers])

@@ -89,9 +89,9 @@ def identify(
         raise TypeError(f"model must be a model, such as bs.Tabulated(), got {shown(model)}")
     if not all(map(is_plain, joint.numbers())):
         raise ValueError("joint must have plain numbers, got arrays: identify one joint at a time")
-    sets = _sets(data)
+    sets = _checked_data_sets(data)
     unknowns = unknowns_of(free, [measured.machine for measured in sets], model)
-    _check(sets, joint, unknowns)
+    _check_counts_and_areas(sets, joint, unknowns)
     forward = ForwardModel(model, joint, sets, tuple(unknown.name for unknown in unknowns))
     uncertainty = _concatenated(measured.uncertainty for measured in sets)
     misfit = Misfit(forward, ParameterTransform(unknowns), scatter, slopes, uncertainty)
@@ -126,8 +126,8 @@ def _concatenated(rows: Iterable[Numbers]) -> Numbers:
     return numpy.concatenate(list(rows))
 
 
-def _sets(data: Any) -> tuple[Measured, ...]:
-    """Return the data sets; raise TypeError for other data."""
+def _checked_data_sets(data: Any) -> tuple[Measured, ...]:
+    """Return the data sets as a tuple; raise TypeError for anything but `Measured`."""
     sets = tuple(data) if isinstance(data, list | tuple) else (data,)
     if not sets:
         raise ValueError("data must have at least one set of measurements, got none")
@@ -137,8 +137,8 @@ def _sets(data: Any) -> tuple[Measured, ...]:
     return sets
 
 
-def _check(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
-    """Raise ValueError for no unknowns, impossible areas, or fewer values than unknowns."""
+def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
+    """Raise ValueError without unknowns, with impossible areas, or with fewer values than unknowns."""
     if not unknowns:
         raise ValueError("free has no unknowns: name at least one with two ends, such as clearance")
     for measured in data:

@@ -132,7 +132,9 @@ class Calibration:
 def calibrate(
     joint: Joint, *, force: Array = FORCES, form: Form = as_constant, reference: Model | None = None
 ) -> Calibration:
-    """Fit a foundation modulus to a reference by the mean of p0/d over loads, as the paper did to finite elements.
+    """Fit a foundation modulus to the mean of p0/d of a reference model over several loads.
+
+    The paper fits its modulus to finite elements in the same way.
 
     Parameters
     ----------

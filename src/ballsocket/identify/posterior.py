@@ -180,7 +180,7 @@ class _StudentProposal:
     root: Numbers
 
     def draw(self, count: int, random: Any) -> Numbers:
-        """Draw theta (count, unknowns)."""
+        """Draw `count` proposals of the scaled parameters theta: (count, unknowns)."""
         size = len(self.centre)
         scale = numpy.sqrt(_PROPOSAL_FREEDOM / random.chisquare(_PROPOSAL_FREEDOM, (count, 1)))
         return self.centre + scale * random.standard_normal((count, size)) @ self.root.T

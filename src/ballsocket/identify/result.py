@@ -85,12 +85,12 @@ class IdentificationResult(FittedModel):
             "information": {
                 "rank": self.information.rank,
                 "unknowns": len(self.transform.names),
-                "condition": _finite(self.information.condition),
+                "condition": _finite_or_none(self.information.condition),
                 "eigenvalues": self.information.eigenvalues.tolist(),
                 "unidentifiable": list(self.information.unidentifiable),
             },
             "sensitivity": [error.summary() for error in self.sensitivity],
-            "spread": _finite(self.spread),
+            "spread": _finite_or_none(self.spread),
             "widening": self.misfit.widening,
             "degrees_of_freedom": self.freedom,
             "data": [
@@ -117,7 +117,7 @@ def _value_and_band(estimate: Estimate) -> str:
     return f"= {estimate.value:.4g}{unit} ({band})" if estimate.identifiable else f"is not identifiable: {band}"
 
 
-def _finite(number: float) -> float | None:
+def _finite_or_none(number: float) -> float | None:
     """Return a finite number, else None."""
     return number if abs(number) < float("inf") else None
 
@@ -131,16 +131,16 @@ def _identifiability_notes(result: IdentificationResult) -> Iterator[str]:
     mixed = {name for product in products for name in product.exponents}
     separate = [name for name in result.transform.names if name in {*unidentifiable, *mixed}]
     if products:
-        names, verb = _and([product.name for product in products]), "is" if len(products) == 1 else "are"
-        note = f"only {names} {verb} identifiable from these data, {_and(separate)} separately are not"
+        names, verb = _join_with_and([product.name for product in products]), "is" if len(products) == 1 else "are"
+        note = f"only {names} {verb} identifiable from these data, {_join_with_and(separate)} separately are not"
     else:
-        note = f"{_and(separate)} {'is' if len(separate) == 1 else 'are'} not identifiable from these data"
+        note = f"{_join_with_and(separate)} {'is' if len(separate) == 1 else 'are'} not identifiable from these data"
     measured = {row.quantity for row in result.data}
-    sufficient = [_title(name) for name in result.next.sufficient_quantities if name not in measured]
+    sufficient = [_title_in_notes(name) for name in result.next.sufficient_quantities if name not in measured]
     if sufficient:
-        yield f"{note}: measure {_or(sufficient)}"
+        yield f"{note}: measure {_join_with_or(sufficient)}"
     elif result.next.gains:
-        best = _title(result.next.best.candidate.quantity)
+        best = _title_in_notes(result.next.best.candidate.quantity)
         yield f"{note}; of the usual measurements {best} would add most, though not enough"
     else:
         yield note
@@ -155,25 +155,25 @@ def _band_notes(result: IdentificationResult) -> Iterator[str]:
         pairs = ((estimate.low, unknown.low), (estimate.high, unknown.high))
         ends = [f"{end:g}" for end, range_end in pairs if end == range_end]
         if ends:
-            yield f"the band of {name} ends at {_and(ends)}, the end of its range"
+            yield f"the band of {name} ends at {_join_with_and(ends)}, the end of its range"
         else:
             yield f"the band of {name} ends where {result.model.name} has no result for all the data"
     for name, estimate in result.estimates.items():
         if estimate.limited_by and name not in estimate.limited_by:
-            yield f"the band of {name} ends where the range of {_and(estimate.limited_by)} ends"
+            yield f"the band of {name} ends where the range of {_join_with_and(estimate.limited_by)} ends"
 
 
-def _title(quantity: str) -> str:
-    """Return the name of a quantity in a note."""
+def _title_in_notes(quantity: str) -> str:
+    """Return the name of a quantity for notes."""
     return "free play" if quantity == "diametral_clearance" else MEASURED[quantity].title
 
 
-def _or(names: Sequence[str]) -> str:
+def _join_with_or(names: Sequence[str]) -> str:
     """Join names by commas and "or"."""
     return " or ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 
 
-def _and(names: Sequence[str]) -> str:
+def _join_with_and(names: Sequence[str]) -> str:
     """Join names by commas and "and"."""
     return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 

@@ -27,7 +27,7 @@ class ScatterModel(Protocol):
 
     @property
     def information(self) -> float:
-        """Fisher information of a reading about its centre, in 1/uncertainty²."""
+        """Fisher information of one reading about the true value, in 1/uncertainty²."""
 
     @property
     def constant(self) -> float:
@@ -101,7 +101,7 @@ class HeavyTailed:
 
     @property
     def information(self) -> float:
-        """Fisher information of a reading about its centre, in 1/uncertainty²."""
+        """Fisher information of one reading about the true value, in 1/uncertainty²."""
         return (self.degrees + 1) / (self.degrees + 3)
 
     @property

@@ -24,14 +24,14 @@ def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
         The model has no result for all data at any point within the ranges.
     """
     ends = [minimise(misfit, start) for start in _starts(misfit, seed)]
-    best = _most_central(misfit, ends)
+    best = _choose_fit(misfit, ends)
     distant = [end for end in ends if numpy.max(abs(end.theta - best.theta)) > _SAME_POINT]
     rivals = tuple(end.theta for end in distant if end.cost < best.cost + _RIVAL_COST)
     return FitResult(best.theta, best.cost, best.converged, rivals)
 
 
-def _most_central(misfit: Misfit, ends: list[FitResult]) -> FitResult:
-    """Choose the end of least cost; among equal costs, the one nearest to the middle of the ranges."""
+def _choose_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
+    """Choose the fit of least cost; among fits of equal cost, the one nearest to the middle of the ranges."""
     least, middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
     lowest = [end for end in ends if end.cost <= least + _EQUAL_COST]
     return min(lowest, key=lambda end: float(numpy.max(abs(end.theta - middle))))

@@ -61,13 +61,13 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
     The shifts are linear at the best point: δθ = (Jᵀ W J)⁻¹ Jᵀ W δ, with the errors δ of the values. Errors that are
     unknowns of the fit are omitted. Their sizes are those assumed in the registry.
     """
-    cases = list(_cases(fitted))
+    cases = list(_neglected_errors(fitted))
     if not cases:
         return ()
     theta, transform, forward = fitted.best.theta, fitted.transform, fitted.misfit.forward
     values = transform.values(theta[None])
     results = forward.at(values)[0]
-    errors = numpy.stack([_change(fitted, machine, error, values, results) for machine, error in cases])
+    errors = numpy.stack([_result_change(fitted, machine, error, values, results) for machine, error in cases])
     moves = fitted.information.covariance @ fitted.misfit.shifts(theta, errors)
     shifts = transform.derivatives(theta)[:, None] * moves
     unidentifiable = [name in fitted.information.unidentifiable for name in transform.names]
@@ -78,8 +78,8 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
     )
 
 
-def _cases(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]:
-    """Yield machines and their errors that are not unknowns, the largest first."""
+def _neglected_errors(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]:
+    """Yield the name of each machine with each error that is not an unknown, the largest error first."""
     machines = {measured.machine.name: measured.machine for measured in fitted.data if _reads_indentation(measured)}
     errors = sorted(MACHINE_ERRORS.values(), key=lambda error: -error.assumed * abs(error.effect(_TYPICAL_FORCE, 1.0)))
     for name, machine in machines.items():
@@ -93,7 +93,7 @@ def _reads_indentation(measured: Measured) -> bool:
     return "indentation" in (measured.quantity, measured.load)
 
 
-def _change(fitted: FittedModel, name: str, error: MachineError, values: Numbers, results: Numbers) -> Numbers:
+def _result_change(fitted: FittedModel, name: str, error: MachineError, values: Numbers, results: Numbers) -> Numbers:
     """Compute the change of the results by an error of a machine, (data,)."""
     data = tuple(
         _with_error(measured, error) if _reads_indentation(measured) and measured.machine.name == name else measured

@@ -1,1 +1,1 @@
-"""The closed forms, and the plane layer: what answers to `press` without a solver."""
+"""Contact models in closed form, and the numerical plane layer."""

@@ -141,7 +141,7 @@ class AdhesiveSocket(ClosedForm):
         return increasing_root(_force_and_stiffness, share, low, high, start, arguments=(c, stretch))
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        return angle_of(_edge(indentation, joint.clearance, self.critical_stretch(joint))[1])
+        return angle_of(_edge_cosine(indentation, joint.clearance, self.critical_stretch(joint))[1])
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         versine = versine_of(half_angle)
@@ -158,12 +158,12 @@ class AdhesiveSocket(ClosedForm):
         """Compute the pressure in MPa, which is negative (tension) towards the edge."""
         versine = versine_of(angle)
         u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
-        _, edge = _edge(indentation, joint.clearance, self.critical_stretch(joint))
+        _, edge = _edge_cosine(indentation, joint.clearance, self.critical_stretch(joint))
         return where(versine <= edge, self.modulus.of(joint) * u, 0.0)
 
 
-def _edge(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
-    """Compute k = cos ε, 0 where the full hemisphere adheres, and m = 1 - k."""
+def _edge_cosine(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
+    """Compute k = cos ε, which is 0 if the full hemisphere adheres, and m = 1 - k."""
     e = safe_divisor(c + d)
     return clip((c - stretch) / e, 0.0, 1.0), clip((d + stretch) / e, 0.0, 1.0)
 
@@ -171,14 +171,14 @@ def _edge(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
 def _force(d: Array, c: Array, stretch: Array) -> Array:
     """Compute F/(2π R2² K)."""
     # F/(2π R2² K) = e (1 - k³)/3 - c (1 - k²)/2, with m = 1 - k taken out
-    k, m = _edge(d, c, stretch)
+    k, m = _edge_cosine(d, c, stretch)
     return m * (d * (1 + k) / 2 - (c + d) * m * (1 + 2 * k) / 6)
 
 
 def _stiffness(d: Array, c: Array, stretch: Array) -> Array:
     """Compute the derivative of `_force` by d."""
     # the edge moves: dF/de + dF/dk dk/de
-    k, m = _edge(d, c, stretch)
+    k, m = _edge_cosine(d, c, stretch)
     return m * (1 + k + k * k) / 3 - k * k * stretch / safe_divisor(c + d)
 
 

@@ -149,7 +149,7 @@ class ClosedLaw:
         return finite_or_nan(F, stiffness)
 
 
-def _evaluated(law: str) -> Any:
+def _law_property(law: str) -> Any:
     """Make a property that evaluates one law of the model at the stored joint and indentation."""
 
     def value(self: ClosedFormSolution) -> Array:
@@ -167,14 +167,14 @@ class ClosedFormSolution:
     joint: Joint
     indentation: Array
 
-    half_angle = _evaluated("half_angle")
-    max_pressure = _evaluated("max_pressure")
-    max_pressure_angle = _evaluated("max_pressure_angle")
-    pole_pressure = _evaluated("pole_pressure")
-    stiffness = _evaluated("stiffness")
-    energy = _evaluated("energy")
-    foundation_modulus = _evaluated("foundation_modulus")
-    pressure_integral = _evaluated("pressure_integral")
+    half_angle = _law_property("half_angle")
+    max_pressure = _law_property("max_pressure")
+    max_pressure_angle = _law_property("max_pressure_angle")
+    pole_pressure = _law_property("pole_pressure")
+    stiffness = _law_property("stiffness")
+    energy = _law_property("energy")
+    foundation_modulus = _law_property("foundation_modulus")
+    pressure_integral = _law_property("pressure_integral")
 
     def pressure(self, angle: Array) -> Array:
         """Compute p(φ) in MPa, 0 outside the contact."""

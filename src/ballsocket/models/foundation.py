@@ -167,7 +167,7 @@ def Vessel() -> RadialFoundation:  # noqa: N802
 
 
 def Bartel() -> RadialFoundation:  # noqa: N802
-    """Make the model of Bartel et al. 1985: vessel modulus with exact kinematics, here in closed form.
+    """Make the model of Bartel et al. 1985 in closed form: vessel modulus and exact kinematics.
 
     References
     ----------

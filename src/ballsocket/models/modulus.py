@@ -105,7 +105,7 @@ def polynomial_formula(R2: Array, L: Array, E: Array, nu: Array, c1: Array, c2: 
 
 
 def corrected_vessel_formula(R2: Array, L: Array, E: Array, nu: Array, a0: Array, a1: Array, a2: Array) -> Array:
-    """Compute K_B times a polynomial of κ = R2/(R2 + L)."""
+    """Compute the vessel modulus K_B times a quadratic polynomial of κ = R2/(R2 + L)."""
     ratio = R2 / L
     kappa = ratio / (1 + ratio)
     return vessel_formula(R2, L, E, nu) * (a0 + kappa * (a1 + kappa * a2))

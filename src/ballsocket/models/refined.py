@@ -91,7 +91,7 @@ class RefinedSolution:
         return _liner(self.joint)
 
     @cached_property
-    def _state(self) -> ScaledContact:
+    def _scaled_contact(self) -> ScaledContact:
         """Scaled contact at the half angle."""
         return scaled_contact(safe_divisor(self.edge), self._liner)
 
@@ -102,20 +102,20 @@ class RefinedSolution:
     @property
     def _secant(self) -> Array:
         """Secant stiffness F/d in N/mm."""
-        return self.joint.liner.young * self.joint.socket_radius * self._state.secant
+        return self.joint.liner.young * self.joint.socket_radius * self._scaled_contact.secant
 
     def loads(self, kind: str, load: Array) -> tuple[Array, Array]:
         """Compute F and d; the applied one is returned unchanged."""
         if kind == "force":
             d = load / self._secant
             return self._or_zero(load), self._or_zero(d)
-        d = load if kind == "indentation" else self.joint.clearance * self._state.indentation
+        d = load if kind == "indentation" else self.joint.clearance * self._scaled_contact.indentation
         return self._or_zero(d * self._secant), self._or_zero(d)
 
     def relative_residual(self, indentation: Array) -> Array:
         """Compute the relative error of the half angle for an indentation."""
-        d = self._state.indentation
-        error = abs(1 - indentation / (self.joint.clearance * d)) / self._state.indentation_rate
+        d = self._scaled_contact.indentation
+        error = abs(1 - indentation / (self.joint.clearance * d)) / self._scaled_contact.indentation_rate
         return where(self.edge > 0, error, 0.0)
 
     @property
@@ -125,17 +125,19 @@ class RefinedSolution:
     @property
     def indentation(self) -> Array:
         """Indentation d in mm."""
-        return self._or_zero(self.joint.clearance * self._state.indentation)
+        return self._or_zero(self.joint.clearance * self._scaled_contact.indentation)
 
     @cached_property
     def stiffness(self) -> Array:
-        return self._or_zero(self._secant * (1 + self._state.secant_rate / self._state.indentation_rate))
+        return self._or_zero(
+            self._secant * (1 + self._scaled_contact.secant_rate / self._scaled_contact.indentation_rate)
+        )
 
     @cached_property
     def energy(self) -> Array:
         # ∫ F (dd/dε) dε; the points are dense near the edge, where d increases fast
         edge = safe_divisor(self.edge)
-        rate = self._state.indentation_rate / edge
+        rate = self._scaled_contact.indentation_rate / edge
         width = arrays.log(1 + rate * edge)
 
         def work(x: float) -> Array:
@@ -150,7 +152,7 @@ class RefinedSolution:
     @property
     def _modulus(self) -> Array:
         """Foundation modulus K = p0/d in MPa/mm."""
-        return self.joint.liner.young / (self.joint.socket_radius * self._state.compliance)
+        return self.joint.liner.young / (self.joint.socket_radius * self._scaled_contact.compliance)
 
     @property
     def foundation_modulus(self) -> Array:
@@ -161,18 +163,18 @@ class RefinedSolution:
         return self._or_zero(self._modulus * self.indentation)
 
     @property
-    def _ring(self) -> Array:
-        """Position y of the largest pressure: 0 (the pole) unless β > 1/2."""
+    def _peak_position(self) -> Array:
+        """Position y of the largest pressure: 0, the pole, for β up to 1/2."""
         fullness = self._fullness
         return where(fullness > 0.5, (2 * fullness - 1) / where(fullness > 0.5, 3 * fullness, 1.0), 0.0)
 
     @property
     def max_pressure(self) -> Array:
-        return self.pole_pressure * self._profile(self._ring)
+        return self.pole_pressure * self._profile(self._peak_position)
 
     @property
     def max_pressure_angle(self) -> Array:
-        return self._or_zero(2 * arrays.asin(arrays.sqrt(self._ring * self._edge_share)))
+        return self._or_zero(2 * arrays.asin(arrays.sqrt(self._peak_position * self._edge_share)))
 
     @property
     def _edge_share(self) -> Array:
@@ -183,7 +185,7 @@ class RefinedSolution:
     def _fullness(self) -> Array:
         """Coefficient β of the profile, from 2π R2² ∫ p cos φ sin φ dφ = F."""
         S = self._edge_share
-        mean = self._state.secant * self._state.compliance / (4 * pi * S)
+        mean = self._scaled_contact.secant * self._scaled_contact.compliance / (4 * pi * S)
         return (mean - 2 / 3 + 8 * S / 15) / (4 / 15 - 32 * S / 105)
 
     @cached_property
@@ -203,7 +205,7 @@ class RefinedSolution:
 def _limit_half_angle(joint: Joint, half_angle: Array) -> Array:
     """Return the half angle, NaN beyond the largest one."""
     edge = broadcast(half_angle, half_angle, *joint.numbers())
-    d = RefinedSolution(joint=joint, edge=edge)._state.indentation
+    d = RefinedSolution(joint=joint, edge=edge)._scaled_contact.indentation
     return where((edge == 0) | ((edge <= MAX_HALF_ANGLE) & (d > 0)), edge, nan)
 
 
@@ -220,7 +222,7 @@ def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
 
 
 def make_answer(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
-    """Make the answer of a solution for loads of one kind."""
+    """Make the solver result of a solution for loads of one kind."""
     force, indentation = solution.loads(kind, load)
     return SolverResult(
         laws=solution,

@@ -119,7 +119,7 @@ def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledCon
 
 
 def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
-    """Compute ln c and its slope by ln k at the four waves; only the longest may come near q = 1."""
+    """Compute ln c and its slope by ln k at four wave numbers; only the smallest may come near q = 1."""
     if arrays.is_plain(half_angle):
         return log_compliances_of_number(half_angle, liner, waves)
     xp = arrays.namespace(half_angle)
@@ -132,7 +132,7 @@ def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -
 def log_compliances_of_number(
     half_angle: Array, liner: Liner, waves: tuple[float, ...]
 ) -> tuple[Pair, Pair, Pair, Pair]:
-    """Compute ln c and its slope at the four waves for one number."""
+    """Compute ln c and its slope by ln k at the four wave numbers of a scalar half angle."""
     return (
         log_compliance_anywhere(waves[0] / half_angle, liner),
         log_compliance(waves[1] / half_angle, liner),

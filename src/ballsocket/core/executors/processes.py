@@ -127,7 +127,7 @@ def available_cores() -> int:
 
 
 def _run_until_broken(pool: ProcessPoolExecutor, pending: deque[int], max_queued: int) -> Iterator[tuple[int, Any]]:
-    """Take numbers from `pending` and yield each with its future, until all are finished or a worker process died."""
+    """Yield each pending number with its future, until all are finished or a worker process has died."""
     submitted: dict[Future[Any], int] = {}
     broken = False
     while submitted or (pending and not broken):

@@ -20,7 +20,7 @@ class PieceStore(ABC):
 
     @abstractmethod
     def save(self, number: int, result: Any) -> Any:
-        """Store the result of a piece, and return it as the calling process receives it.
+        """Store the result of a piece, and return the value to send to the calling process.
 
         Raises
         ------

@@ -102,8 +102,8 @@ class AbelState(PeakPressure):
         return d[:, 0]
 
     @cached_property
-    def _deepening(self) -> Numbers:
-        """Transform A[∂u/∂d] at the targets."""
+    def _indentation_transform(self) -> Numbers:
+        """Abel transform A[∂u/∂d] at the targets."""
         return self.gap.indentation_derivative(self._targets, self.indentation[:, None])
 
     @cached_property
@@ -127,14 +127,14 @@ class AbelState(PeakPressure):
         return numpy.sum(self._weights * factor * self._G[0], axis=-1) / self.kernel.compliance
 
     @property
-    def _area(self) -> float:
+    def _squared_radius(self) -> float:
         """Square of the socket radius R2 in mm²."""
         return self.gap.socket_radius * self.gap.socket_radius
 
     @cached_property
     def force(self) -> Numbers:
         """Force F in N."""
-        return 4 * pi / 3 * self._area * self._integral(numpy.sin(1.5 * self._point_angles))
+        return 4 * pi / 3 * self._squared_radius * self._integral(numpy.sin(1.5 * self._point_angles))
 
     @cached_property
     def pole_pressure(self) -> Numbers:
@@ -162,7 +162,7 @@ class AbelState(PeakPressure):
     @cached_property
     def pressure_integral(self) -> Numbers:
         """Integral ∫ p dA in N."""
-        return 4 * pi * self._area * self._integral(numpy.sin(self._point_angles / 2))
+        return 4 * pi * self._squared_radius * self._integral(numpy.sin(self._point_angles / 2))
 
     @cached_property
     def stiffness(self) -> Numbers:
@@ -170,21 +170,21 @@ class AbelState(PeakPressure):
 
         It is that of a punch of constant contact area, because G is continuous at the edge.
         """
-        punch = (self._inverse @ self._deepening[:, :-1, None])[..., 0]
+        punch = (self._inverse @ self._indentation_transform[:, :-1, None])[..., 0]
         total = numpy.sum(self._weights * numpy.cos(1.5 * self._point_angles) * punch, axis=-1)
-        return 2 * pi * self._area * total / self.kernel.compliance
+        return 2 * pi * self._squared_radius * total / self.kernel.compliance
 
     @cached_property
     def widening(self) -> Numbers:
         """Derivative dd/dε in mm/rad, from the balance of a deeper punch and a wider contact at the edge."""
-        return self._G[1] / self._edge_value(self._deepening)
+        return self._G[1] / self._edge_value(self._indentation_transform)
 
     @cached_property
     def energy(self) -> Numbers:
         """Energy ∫ F dd in N mm."""
         if not self.gap.conservative:
             return self._integrate_work()
-        gap_work = 16 * pi / 3 * self._area * self._integral(numpy.sin(self._point_angles / 2) ** 3)
+        gap_work = 16 * pi / 3 * self._squared_radius * self._integral(numpy.sin(self._point_angles / 2) ** 3)
         return (self.indentation * self.force - self.gap.clearance * gap_work) / 2
 
     def _integrate_work(self) -> Numbers:
@@ -223,7 +223,7 @@ class AbelState(PeakPressure):
         return []
 
     def _compute_modes(self, count: int) -> Numbers:
-        """Compute the modes by Gauss-Legendre quadrature on panels that are short against the waves."""
+        """Compute the pressure modes p_n by Gauss-Legendre quadrature on panels shorter than the wavelengths."""
         panels = 4 + ceil(count * float(self.half_angle.max(initial=0.0)) / 4)
         x, w = (numpy.array(part) for part in gauss_legendre(12))
         y = ((numpy.arange(panels)[:, None] + x) / panels).ravel()

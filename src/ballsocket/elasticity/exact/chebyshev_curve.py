@@ -120,7 +120,7 @@ class ChebyshevCurve:
 
     @cached_property
     def expansion(self) -> Numbers:
-        """Coefficients (Legendre chebyshev_polynomials, terms) of G/sin s/X, see `abel`, as far as they count."""
+        """Coefficients (Legendre, Chebyshev) of G/sin s/X, see `abel`, without negligible Legendre terms."""
         reach = self.curve.gap.clearance + self.knots.indentation
         scaled = coefficients((self.knots.expansion / reach[:, None]).T, 1)
         return scaled[numpy.cumsum(abs(scaled[::-1]).max(axis=1))[::-1] > ROUNDING * abs(scaled).max()]
@@ -217,7 +217,7 @@ class ChebyshevState(PeakPressure):
         return self._reach * self._closure[0] * rate / self._closure[1]
 
     @cached_property
-    def _unit(self) -> Numbers:
+    def _pressure_scale(self) -> Numbers:
         """Pressure scale X ε/C in MPa."""
         return self._reach * self.half_angle / self.kernel.compliance
 
@@ -225,12 +225,12 @@ class ChebyshevState(PeakPressure):
     def force(self) -> Numbers:
         """Force F in N."""
         radius = self.gap.socket_radius * self.half_angle
-        return numpy.exp(self._functions[0][1]) * self._unit * radius * radius
+        return numpy.exp(self._functions[0][1]) * self._pressure_scale * radius * radius
 
     @cached_property
     def pole_pressure(self) -> Numbers:
         """Pressure p0 at the pole in MPa."""
-        return self._functions[0][2] * self._unit
+        return self._functions[0][2] * self._pressure_scale
 
     @cached_property
     def stiffness(self) -> Numbers:

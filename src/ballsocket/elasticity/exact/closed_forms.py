@@ -29,7 +29,7 @@ def modular(a: Numbers) -> Numbers:
 
 
 def smooth(a: Numbers, reach: float) -> Numbers:
-    """Compute the coefficients of s, a polynomial in x² that is accurate up to x = reach."""
+    """Compute the coefficients of s, a polynomial in x² that is accurate for x up to `reach`."""
     terms = min(_MAX_TERMS, 4 + ceil(log(1e-17) / log(max((reach / (2 * pi)) ** 2, 1e-9))))
     return _power_series()[:terms] @ a
 

@@ -40,18 +40,18 @@ class HemisphereGap(LinearGap):
 
     def transform(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute A[u](t)."""
-        return super().transform(t, d) - self._sum(numpy.cos, t, numpy.ones(self.extra.shape[1]))
+        return super().transform(t, d) - self._sum_waves(numpy.cos, t, numpy.ones(self.extra.shape[1]))
 
     def slope(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute d A[u]/dt."""
-        return super().slope(t, d) + self._sum(numpy.sin, t, self._orders)
+        return super().slope(t, d) + self._sum_waves(numpy.sin, t, self._orders)
 
     @property
     def _orders(self) -> Numbers:
         """Wave numbers n + ½."""
         return numpy.arange(self.extra.shape[1]) + 0.5
 
-    def _sum(self, wave: numpy.ufunc, t: Numbers, factor: Numbers) -> Numbers:
+    def _sum_waves(self, wave: numpy.ufunc, t: Numbers, factor: Numbers) -> Numbers:
         """Sum the waves of the additional displacement, weighted with a factor."""
         total: Numbers = numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._orders))
         return total

@@ -232,7 +232,7 @@ def _even_interpolation(grid: QuadratureGrid, fine: _Panels) -> Numbers:
 
 @cache
 def _odd_interpolation(grid: QuadratureGrid, fine: _Panels) -> Numbers:
-    """Compute the same matrix for an odd function."""
+    """Compute the matrix from an odd function at the points of a grid to weighted values at the panels' points."""
     return _interpolation(grid, fine, 1)
 
 

@@ -70,7 +70,7 @@ class LoadCurve:
             else self._estimate_angle(kind, positive_load)
         )
         for points in _GRIDS:
-            state, residual = self._solve(kind, positive_load, self._limit(angle), points)
+            state, residual = self._solve(kind, positive_load, self._clip_angles(angle), points)
             reached = (state.half_angle <= LIMIT) & (state.half_angle < self._widest_computed) & _is_contact(state)
             floor = residual + self.kernel.tolerance
             error = {name: error + floor for name, error in errors(kind, state).items()}
@@ -95,11 +95,11 @@ class LoadCurve:
             if not numpy.any(abs(residual) > _LOAD_TOLERANCE):
                 break
             step = numpy.clip(residual / log_slope(kind, state), -0.5, 0.5)
-            state = self.state(self._limit(state.half_angle * numpy.exp(-step)), points)
+            state = self.state(self._clip_angles(state.half_angle * numpy.exp(-step)), points)
         return state, abs(residual)
 
-    def _limit(self, angle: Numbers) -> Numbers:
-        """Limit angles to the largest one that is computed; NaN becomes that angle too."""
+    def _clip_angles(self, angle: Numbers) -> Numbers:
+        """Clip angles to the largest computed one, and replace NaN by it."""
         return numpy.where(angle < self._widest_computed, angle, self._widest_computed)
 
     @cached_property
@@ -174,7 +174,7 @@ class LoadCurve:
 
 
 def window_of(angle: Numbers) -> slice | None:
-    """Return the knots around half angles in a narrow range, with two or more on each side; else None."""
+    """Return the slice of knots around a narrow range of half angles; None if no slice contains the range."""
     index = numpy.searchsorted(_ANGLES, angle)
     start = int(max(index.min() - 2, 0) // _WINDOW_STEP * _WINDOW_STEP)
     stop = start + _WINDOW

@@ -120,7 +120,7 @@ _NEAR_HEMISPHERE = NearHemisphere()
 
 
 def make_answer(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
-    """Make the answer of a solution; errors beyond the tolerance count as not converged."""
+    """Make the solver result of a solution; errors beyond the tolerance count as not converged."""
     return SolverResult(
         laws=solution,
         force=solution.force,

@@ -124,7 +124,7 @@ class Socket:
         return c
 
     def excess(self, degrees: ArrayLike) -> numpy.ndarray:
-        """ρ_n = c_n (n + ½)/C - 1."""
+        """Compute the excess ρ_n = c_n (n + ½)/C - 1 of each degree."""
         n = _check_degrees(degrees)
         rho = homogeneous_excess(n + 0.5, self.shells[0].poisson)
         layered = n < self.reach(_NEGLIGIBLE)
@@ -242,7 +242,7 @@ class ElasticBall:
         return numpy.where(rigid, 0.0, self.asymptote / (2 * (1 - nu)) * P / Q)
 
     def excess(self, degrees: ArrayLike) -> numpy.ndarray:
-        """ρ_n = c_n (n + ½)/C - 1."""
+        """Compute the excess ρ_n = c_n (n + ½)/C - 1 of each degree."""
         n = _check_degrees(degrees)
         rigid = n == 1
         return numpy.where(rigid, -1.0, homogeneous_excess(-(n + rigid + 0.5), self.poisson))

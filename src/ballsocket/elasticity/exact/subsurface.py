@@ -67,7 +67,7 @@ def peak(state: AbelState, thickness: float) -> Peak:
     for _ in range(_SEARCH_ROUNDS):
         values = stress(state, angles[:, None], depths).von_mises
         i, j = numpy.unravel_index(numpy.argmax(values), values.shape)
-        angles, depths = _refine(angles, int(i)), _refine(depths, int(j))
+        angles, depths = _refined_points(angles, int(i)), _refined_points(depths, int(j))
         maximum = Peak(
             von_mises=float(values[i, j]), depth=float(depths[_HALF_INTERVALS]), angle=float(angles[_HALF_INTERVALS])
         )
@@ -141,8 +141,8 @@ def largest_von_mises(state: AbelState, reached: Numbers) -> Numbers:
 _HALF_INTERVALS, _SEARCH_ROUNDS = 4, 4
 
 
-def _refine(values: Numbers, i: int) -> Numbers:
-    """Make a finer row from the neighbour below index i to the neighbour above."""
+def _refined_points(values: Numbers, i: int) -> Numbers:
+    """Make a finer row of points between the two neighbours of index i."""
     low, high = values[max(i - 1, 0)], values[min(i + 1, len(values) - 1)]
     below = numpy.linspace(low, values[i], _HALF_INTERVALS + 1)
     return numpy.append(below, numpy.linspace(values[i], high, _HALF_INTERVALS + 1)[1:])

@@ -159,7 +159,9 @@ class Harmonics:
         plain, azimuthal = self._strains(gradients.strain, points, gradients.coordinates[0])
         traces = plain[..., :2, :].sum(axis=-2) + plain[..., _HOOP, :], azimuthal[..., _HOOP, :]
         swelling = [self.elastic.project(elements, gradients.coordinates, volume, trace) for trace in traces]
-        rows = [_flat(strain * (_SCALE * numpy.sqrt(shear)[..., None, None])) for strain in (plain, azimuthal)]
+        rows = [
+            _merge_strain_axes(strain * (_SCALE * numpy.sqrt(shear)[..., None, None])) for strain in (plain, azimuthal)
+        ]
         drops = [trace * numpy.sqrt(2 / 3 * shear)[..., None] for trace in traces]
         swells = [projection * numpy.sqrt(bulk)[..., None] for projection in swelling]
 
@@ -209,6 +211,6 @@ def socket_harmonics(shape: SocketShape, edges: Numbers) -> Harmonics:
     return Harmonics(elastic=socket_elastic(shape, mesh), shape=shape)
 
 
-def _flat(strain: Numbers) -> Numbers:
+def _merge_strain_axes(strain: Numbers) -> Numbers:
     """Reshape strains to (elements, points times strains, unknowns)."""
     return strain.reshape(len(strain), -1, strain.shape[-1])

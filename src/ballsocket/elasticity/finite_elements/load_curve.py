@@ -59,7 +59,7 @@ class MeshedLoadCurve:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         loads = load[touching].tolist()
-        numbers = [self._class(kind, value) for value in loads]
+        numbers = [self._mesh_class(kind, value) for value in loads]
         fine, *coarse = (
             MeshedStates(solved=tuple(self._contact(kind, *pair, mesh) for pair in zip(loads, numbers, strict=True)))
             for mesh in (FINE, COARSE)[: self.meshes]
@@ -70,8 +70,8 @@ class MeshedLoadCurve:
             error = estimate_errors(kind, fine, coarse[0], self.order)
         return JointContacts(load=load, touching=touching, state=fine, reached=reached, error=error)
 
-    def _class(self, kind: str, load: float) -> int:
-        """Return the class of a load by its estimated half angle on the coarse mesh of a nearby class."""
+    def _mesh_class(self, kind: str, load: float) -> int:
+        """Return the mesh class of a load, from its half angle estimated on the coarse mesh of a nearby class."""
         last = len(self.classes) - 2
         if kind == "half_angle":
             return min(sum(load <= edge for edge in self.classes[1:]), last)

@@ -61,7 +61,7 @@ class ContactBracket:
         }
 
     def is_exceeded(self, kind: str, load: float) -> bool:
-        """Return True if even the widest contact has less than the load."""
+        """Check that no sample is missing and that the load exceeds that of the widest contact."""
         return len(self._samples) == _SAMPLES and bool(getattr(self._samples[-1], kind) < load)
 
     def estimate_angle(self, kind: str, load: float) -> float | None:

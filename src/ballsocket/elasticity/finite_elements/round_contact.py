@@ -40,11 +40,13 @@ class PartialContact:
     def _edge_functions(self) -> tuple[Numbers, Numbers, Numbers, Numbers]:
         """Angles, weights of ∫ dA, edge functions (2, angles), and the slope of t in ε."""
         previous, start = self.pair.angle[self.last - 1 : self.last + 1]
-        rise = self._between(previous, start)
+        rise = self._corners_between(previous, start)
         widths = numpy.diff(rise)[:, None]
         rising = (rise[:-1, None] + widths * _NODES).ravel()
         width = self.half_angle - start
-        t_ends = numpy.sqrt(numpy.maximum(self.half_angle - self._between(start, self.half_angle), 0.0) / width)[::-1]
+        t_ends = numpy.sqrt(
+            numpy.maximum(self.half_angle - self._corners_between(start, self.half_angle), 0.0) / width
+        )[::-1]
         steps = numpy.diff(t_ends)[:, None]
         t = (t_ends[:-1, None] + steps * _NODES).ravel()  # φ = ε - width t²
         falling = self.half_angle - width * t * t
@@ -57,8 +59,8 @@ class PartialContact:
         slope = numpy.concatenate([numpy.zeros_like(rising), (1 / t - t) / (2 * width)])
         return angle, weights * self.pair.area(angle), shape, slope
 
-    def _between(self, start: float, end: float) -> Numbers:
-        """Return the corners between two angles, and these angles."""
+    def _corners_between(self, start: float, end: float) -> Numbers:
+        """Return `start`, the corners between the two angles, and `end`."""
         corners = self.pair.corners
         inside = corners[(corners > start + 1e-9) & (corners < end - 1e-9)]
         return numpy.concatenate([[start], inside, [end]])

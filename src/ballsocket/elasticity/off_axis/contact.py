@@ -154,7 +154,7 @@ class OffAxisContact(SolvedContact):
 
     @property
     def _dislocation_note(self) -> str:
-        """Sentence with the tilt of a load that points beyond the bore, or with the distance the ball moved."""
+        """Note on a dislocated ball: the tilt of a load that points beyond the bore, else the displacement."""
         tilt, reach = (degrees(float(angle)) for angle in (self.tilt, self.model.reach_of(self.joint)))
         if tilt > reach:
             return f"the load points {tilt:.1f}° from the dome's pole, and the bore ends at {reach:.1f}°"

@@ -78,7 +78,7 @@ class ContactPatch:
 
     def pressure_at(self, directions: Numbers) -> Numbers:
         """Interpolate the pressure in MPa in directions (..., 3) of the cup's frame; 0 outside contact and bore."""
-        return self._pressure_interpolator(_angles(directions)).reshape(directions.shape[:-1])
+        return self._pressure_interpolator(_spherical_coordinates(directions)).reshape(directions.shape[:-1])
 
     def pressure_along(self, angle: Numbers) -> Numbers:
         """Interpolate the pressure in MPa at angles from the load towards the rim, in the plane of load and axis."""
@@ -134,12 +134,12 @@ class ContactPatch:
         angles = numpy.arange(1, int(pi / step)) * step
         points = _rays(self._centre, angles[:, None] + 0 * azimuths, azimuths)
         inside = points[..., 2] >= numpy.cos(self.grid.reach)
-        outside = ~((self._level_interpolator(_angles(points)) > 0) & inside)
+        outside = ~((self._level_interpolator(_spherical_coordinates(points)) > 0) & inside)
         end = numpy.argmax(outside, axis=0)  # the first step outside
         rim = self._rim_angles(azimuths)
         high = numpy.where(inside[end, numpy.arange(_RAYS)], angles[end], numpy.minimum(angles[end], rim))
         edge = self._bisect_edge(angles[end] - step, high) - self.inset * self.grid.width
-        reached = self._level_interpolator(_angles(_rays(self._centre, high, azimuths))) > 0
+        reached = self._level_interpolator(_spherical_coordinates(_rays(self._centre, high, azimuths))) > 0
         ends = numpy.minimum(numpy.where(reached, rim, numpy.maximum(edge, 0.0)), rim)
         return numpy.where(outside.any(axis=0), ends, 0.0)
 
@@ -147,7 +147,9 @@ class ContactPatch:
         """Bisect each ray between an angle inside the contact and one outside."""
         for _ in range(_BISECTIONS):
             middle = (low + high) / 2
-            loaded = self._level_interpolator(_angles(_rays(self._centre, middle, self._ray_azimuths))) > 0
+            loaded = (
+                self._level_interpolator(_spherical_coordinates(_rays(self._centre, middle, self._ray_azimuths))) > 0
+            )
             low, high = numpy.where(loaded, middle, low), numpy.where(loaded, high, middle)
         return (low + high) / 2
 
@@ -204,7 +206,7 @@ class ContactPatch:
         return numpy.where(loaded.any(axis=0), nodes[ring] + fraction * (nodes[after] - nodes[ring]), 0.0)
 
 
-def _angles(directions: Numbers) -> Numbers:
+def _spherical_coordinates(directions: Numbers) -> Numbers:
     """Compute polar angles and azimuths (..., 2) of directions (..., 3)."""
     components = numpy.moveaxis(directions, -1, 0)
     azimuth = numpy.arctan2(components[1], components[0]) % (2 * pi)

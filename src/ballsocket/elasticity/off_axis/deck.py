@@ -186,8 +186,8 @@ class TiltedDeck:
     def socket(self) -> SphericalBlock:
         """Mesh of the cup. A chamfer is omitted: the bore ends at its beginning, on a cone."""
         return SphericalBlock(
-            polar=self._divide(self._shape.reach),
-            azimuth=self._divide(pi),
+            polar=self._divide_angles(self._shape.reach),
+            azimuth=self._divide_angles(pi),
             radius=join_points(self._layers),
             centre=numpy.zeros(3),
         )
@@ -205,7 +205,7 @@ class TiltedDeck:
             offset=(self.socket.last_number, sum(1 for _ in self.socket.elements())),
         )
 
-    def _divide(self, end: float) -> Numbers:
+    def _divide_angles(self, end: float) -> Numbers:
         """Divide the angles from 0 to an end (rad) into elements of equal size."""
         return numpy.linspace(0.0, end, max(round(end / self.element_size), 4) + 1)
 

@@ -108,7 +108,7 @@ def _solve_half_angles(bore: BoreContact, half_angle: Numbers, axes: Numbers, ed
         ratio = _spring_indentation(bore, target) / numpy.maximum(_spring_indentation(bore, angle), 1e-9 * d)
         guess = d * numpy.clip(ratio, 0.1, 10.0)
         active, guess = active[unsolved], guess[unsolved]
-        indentation[active] = _into_bracket(guess, low[active], high[active], limit)
+        indentation[active] = _limit_to_bracket(guess, low[active], high[active], limit)
     states = _solve_indentations(bore, indentation, axes, edges)
     deficit = half_angle - states.half_angle
     converged = states.equilibrium.converged & (abs(deficit) <= _MAX_ANGLE_JUMP * width)
@@ -122,8 +122,8 @@ def _spring_indentation(bore: BoreContact, half_angle: Numbers) -> Numbers:
     return max(abs(bore.gap.clearance), 1e-9) * versine / numpy.maximum(1 - versine, 0.05)
 
 
-def _into_bracket(guess: Numbers, low: Numbers, high: Numbers, limit: float) -> Numbers:
-    """Return the guess if it lies inside the bracket, otherwise a point inside.
+def _limit_to_bracket(guess: Numbers, low: Numbers, high: Numbers, limit: float) -> Numbers:
+    """Return the guess if it lies inside the bracket, else another point inside the bracket.
 
     A guess beyond an upper end that was never computed becomes a point just below the limit.
     """

@@ -186,7 +186,9 @@ def orient(
     _check_single(joint, load)
     single = model.direction.ndim == 1
     require("directions of the model", model.direction.size // 3, single, "give one direction of the load")
-    axes = [_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))]
+    axes = [
+        _check_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))
+    ]
     start, contacts = perf_counter(), []
     for number, angle in enumerate(axes[0]):
         report_progress(f"inclination {number + 1} of {len(axes[0])}")
@@ -212,7 +214,7 @@ def _check_single(joint: Any, load: Mapping[str, Any]) -> None:
             check_number(name, value)
 
 
-def _angles(name: str, values: Array) -> Numbers:
+def _check_angles(name: str, values: Array) -> Numbers:
     """Validate a row of angles (n,) in rad of a cup."""
     angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].checked(values)).astype(float))
     if angles.ndim != 1 or angles.size == 0:

@@ -191,14 +191,14 @@ def solve_pressure_change(
         next_descent = integrate(residual, gradient)
         if (next_descent <= tolerance**2 * scale).all():
             break
-        direction = gradient + _ratio(next_descent, descent)[:, None, None] * direction
+        direction = gradient + _divide_or_zero(next_descent, descent)[:, None, None] * direction
         response = numpy.where(touching, displacement(direction), 0)
-        length = _ratio(next_descent, integrate(direction, response))[:, None, None]
+        length = _divide_or_zero(next_descent, integrate(direction, response))[:, None, None]
         change, residual, descent = change + length * direction, residual - length * response, next_descent
     return change
 
 
-def _ratio(numerator: Numbers, denominator: Numbers) -> Numbers:
+def _divide_or_zero(numerator: Numbers, denominator: Numbers) -> Numbers:
     """Divide arrays, with 0 where the denominator is not positive."""
     quotient: Numbers = numpy.divide(numerator, denominator, out=numpy.zeros_like(numerator), where=denominator > 0)
     return quotient

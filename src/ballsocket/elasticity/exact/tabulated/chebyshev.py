@@ -80,7 +80,7 @@ def ball_coordinate(share: Array, poisson: Array, ratio: Array) -> Array:
 
 
 def ball_shrinkage(ball_poisson: Array) -> Array:
-    """Compute the parameter of the ball's ν: its shrinkage under a uniform pressure."""
+    """Compute the shrinkage of the ball under a uniform pressure, the table parameter for its ν."""
     return (1 - 2 * ball_poisson) / (1 - ball_poisson * ball_poisson)
 
 

@@ -37,7 +37,7 @@ class JointCurves:
     indices: Array | None = None
 
     def _take_shared(self, values: Array) -> Array:
-        """Take the column of each contact's joint."""
+        """Select the column of each contact's joint."""
         return arrays.namespace(values).take(values, self.indices, axis=-1)
 
     @cached_property
@@ -56,7 +56,7 @@ class JointCurves:
 
     @cached_property
     def compliance(self) -> Array:
-        """Compliance C in mm/MPa."""
+        """Compliance C of liner and ball together in mm/MPa, the limit at high degrees."""
         liner = self.joint.liner
         return 2 * (1 - liner.poisson**2) * self.joint.socket_radius / liner.young * (1 + self._softness)
 

@@ -76,19 +76,19 @@ def sum_series(coefficients: Array, waves: Array) -> Array:
 
 
 def angle_derivative(angle: Array, root: Array, ratio: Array) -> Array:
-    """d(place)/d(ln ε)."""
+    """Compute the derivative of the table coordinate 2 root - 1 with respect to ln ε."""
     near = ANGLE_SCALE * (1 + ratio)
     return near * angle / ((1 + near * angle) * log1p(near * LIMIT) * root)
 
 
 def opening(angle: Array, share: Pair) -> Pair:
-    """σ = d/(c + d) and the slope of its logarithm, from the first function."""
+    """Compute σ = d/(c + d) and the slope of its logarithm by ln ε, from the first function."""
     half = sin(angle / 2)
     return exp(share[0]) * 2 * half * half, share[1] + angle * cos(angle / 2) / half
 
 
 def contact(angle: Array, curve: CurveCoefficients, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
-    """d, F, p0, dF/dd and dd/d(ln ε) at ε > 0."""
+    """Compute d, F, p0, dF/dd and dd/d(ln ε) at ε > 0."""
     share, load, pole = evaluate(angle, curve, ALL)
     sigma, rate = opening(angle, share)
     reach = scale.clearance / (1 - sigma)

@@ -83,7 +83,7 @@ class Tabulated(Model):
         return self.answer(joint, kind, load, curve_reader(kind))
 
     def answer(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
-        """Solve loads of one kind; `read` finds the contacts on their joints' curves."""
+        """Solve the contacts for loads of one kind; `read` finds them on the curves of their joints."""
         solution = solution_of(self.file, joint, load, read)
         d, F, _, _ = solution.values
         return SolverResult(
@@ -99,7 +99,7 @@ class Tabulated(Model):
 
 
 def _rounding_error(load: Array, depth: Array) -> Array:
-    """Return the relative rounding error of a load, which grows near the perfect fit (d/c = `depth` to infinity)."""
+    """Return the relative rounding error of a load, which increases with `depth` = d/c."""
     return arrays.machine_epsilon(load) * (1e4 + 1e2 * depth)
 
 

@@ -75,15 +75,15 @@ class TableSolution:
         return F + (d * F - 2 * self.energy) / self.joint.clearance
 
     @cached_property
-    def _profile(self) -> Array:
-        """Chebyshev coefficients of p/(p0 sqrt(1 - v)) in 2v - 1 (first axis), v = sin²(φ/2)/sin²(ε/2)."""
-        (series,) = _read_in_blocks(self.file, self.joint, self.angle, _profile)
+    def _profile_coefficients(self) -> Array:
+        """Chebyshev coefficients (first axis) of p/(p0 sqrt(1 - v)) over 2v - 1, with v = sin²(φ/2)/sin²(ε/2)."""
+        (series,) = _read_in_blocks(self.file, self.joint, self.angle, _profile_coefficients)
         return series
 
     @cached_property
     def _profile_correction(self) -> tuple[Array, Array]:
         """Corrections a, b of the profile, for 1 at the pole and force F: p = p0 sqrt(1 - v) [q(v) + a + b v]."""
-        q = [self._profile[k, ...] for k in range(self._profile.shape[0])]
+        q = [self._profile_coefficients[k, ...] for k in range(self._profile_coefficients.shape[0])]
         _, F, p0, _ = self.values
         height = sin(safe_divisor(self.angle) / 2) ** 2
         plain, tilted = _moments(len(q))
@@ -100,7 +100,7 @@ class TableSolution:
         lift, tilt = self._profile_correction
         half, height = sin(angle / 2), sin(safe_divisor(self.angle) / 2) ** 2
         v = half * half / height
-        total = _clenshaw(self._profile, clip(2 * v - 1, -1.0, 1.0)) + lift + tilt * v
+        total = _clenshaw(self._profile_coefficients, clip(2 * v - 1, -1.0, 1.0)) + lift + tilt * v
         inside = (v < 1) & (abs(angle) < pi) & (self.angle > 0)
         return where(inside, self.values[2] * sqrt(clip(1 - v, 0.0, 1.0)) * clip(total, 0.0, inf), 0.0)
 
@@ -113,7 +113,7 @@ def _clenshaw(series: Array, x: Array) -> Array:
     return series[0, ...] + x * current - following
 
 
-def _profile(curves: JointCurves, angle: Array) -> tuple[Array]:
+def _profile_coefficients(curves: JointCurves, angle: Array) -> tuple[Array]:
     """Compute the Chebyshev coefficients of the pressure profile at half angles."""
     series = curves.series("profile")
     if series.ndim == 2:
@@ -193,7 +193,7 @@ def _read_in_blocks(file: str, joint: Joint, load: Array, read: CurveReader) -> 
 
 
 def _shared_curves(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[JointCurves | None, Array | None]:
-    """Return the curves of the joints of a grid and the joint of each contact, or None if that does not save time."""
+    """Return the curves of the joints of a grid and the joint of each contact, or None if sharing saves no time."""
     numbers = joint.numbers()
     inner = numpy.broadcast_shapes(*(tuple(part.shape) for part in numbers))
     if (

@@ -142,7 +142,9 @@ class DeckBodies:
     @cached_property
     def ball(self) -> DeckBody:
         """Ball at first contact, with the radius that the scaled clearance leaves."""
-        mesh, fixed_directions, contact = self._ring() if self.joint.ball is None else self._half(self.joint.ball)
+        mesh, fixed_directions, contact = (
+            self._rigid_ball_mesh() if self.joint.ball is None else self._elastic_ball_mesh(self.joint.ball)
+        )
         clearance = self.scale * float(self.joint.clearance)
         return DeckBody(
             names=("BALL",),
@@ -155,13 +157,13 @@ class DeckBodies:
             elements_before=self.socket.block.elements.shape[1],
         )
 
-    def _half(self, material: Material) -> tuple[Block, Numbers, Numbers]:
-        """Mesh half of an elastic ball."""
+    def _elastic_ball_mesh(self, material: Material) -> tuple[Block, Numbers, Numbers]:
+        """Mesh half of an elastic ball; return the block, its fixed directions and its contact nodes."""
         body = ball_body(float(material.poisson), self.solved.pair.ball_resolution)
         return body.elastic.block, body.fixed_unknowns.reshape(-1, 2).T, body.contact
 
-    def _ring(self) -> tuple[Block, Numbers, Numbers]:
-        """Mesh a rigid ball: one layer of elements, matching the bore's and one element longer, all of it fixed."""
+    def _rigid_ball_mesh(self) -> tuple[Block, Numbers, Numbers]:
+        """Mesh a rigid ball as one fixed layer of elements, which match the bore's and extend one element further."""
         corners = self.solved.pair.angle
         corners = numpy.append(corners, 2 * corners[-1] - corners[-2])
         mesh = block(corners, [numpy.array([1 - _RING_THICKNESS, 1.0])], self.solved.pair.resolution.order)

@@ -14,7 +14,7 @@ from math import sqrt
 
 import numpy
 
-from ..core.arrays import Numbers
+from .arrays import Numbers
 
 Rate = Callable[[Numbers], Numbers]
 """Function from values to their rate of change per unit of length."""
@@ -57,7 +57,7 @@ def stage_count(length: float, spectral_radius: float) -> int:
 
 
 def max_step_length(spectral_radius: float) -> float:
-    """Return the length of the longest stable step; infinite if nothing decays."""
+    """Return the length of the longest stable step; infinite for a decay rate of 0."""
     return ((_MAX_STAGES - 2) ** 2 - 1) / (_STABILITY * spectral_radius) if spectral_radius > 0 else float("inf")
 
 
@@ -80,7 +80,7 @@ def _coefficients(stages: int) -> tuple[tuple[float, ...], ...]:
 
 
 def integrate_step(rate: Rate, values: Numbers, slope: Numbers, length: float, stages: int) -> ChebyshevStep:
-    """Integrate one step.
+    """Integrate one Runge-Kutta-Chebyshev step, and estimate its error.
 
     Parameters
     ----------

@@ -1,0 +1,155 @@
+"""Damping of a joint from measured coefficients of restitution or from the times of bounces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, nan
+from typing import Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import check_number, require
+from .damping import Damping
+from .restitution import restitution_of
+
+GRAVITY = 9806.65
+"""Acceleration of gravity in mm/s²."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DampingEstimate:
+    """Damping estimated from measured coefficients of restitution.
+
+    Attributes
+    ----------
+    damping : Damping
+        Damping whose hysteresis χ is the least-squares fit to the measurements.
+    error : float
+        Standard error of χ in s/mm; NaN for a single measurement without uncertainty.
+    noise : float
+        Standard deviation of a measured coefficient of restitution: as stated, or the scatter about the fit.
+    speed, restitution : array
+        Measured speeds in mm/s and coefficients of restitution.
+    """
+
+    damping: Damping
+    error: float
+    noise: float
+    speed: Numbers
+    restitution: Numbers
+
+    @property
+    def residuals(self) -> Numbers:
+        """Measured minus fitted coefficients of restitution."""
+        return self.restitution - _restitutions(self.damping.hysteresis, self.speed)
+
+    def __str__(self) -> str:
+        return f"χ = {self.damping.hysteresis:.4g} ± {self.error:.2g} s/mm from {len(self.speed)} restitutions"
+
+
+def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None = None) -> DampingEstimate:
+    """Estimate damping from coefficients of restitution, by the exact relation for any contact law.
+
+    Parameters
+    ----------
+    speed : array
+        Impact speeds in mm/s, above 0.
+    restitution : array
+        Coefficients of restitution, above 0 and up to 1.
+    uncertainty : float, optional
+        Standard deviation of each coefficient; None, the default, uses the scatter about the fit.
+
+    Raises
+    ------
+    ValueError
+        A number out of range; arrays of different lengths.
+
+    Examples
+    --------
+    >>> from ballsocket.dynamics import from_restitution
+    >>> print(from_restitution(speed=[20.0, 40.0, 80.0], restitution=[0.951, 0.902, 0.822]))
+    χ = 0.004037 ± 3.6e-05 s/mm from 3 restitutions
+    """
+    speeds = numpy.atleast_1d(numpy.asarray(speed, dtype=float))
+    restitutions = numpy.atleast_1d(numpy.asarray(restitution, dtype=float))
+    if speeds.shape != restitutions.shape or speeds.ndim != 1 or not len(speeds):
+        raise ValueError(
+            f"speed and restitution must be rows of equal length, got {speeds.shape} and {restitutions.shape}"
+        )
+    require("speed", speeds, (speeds > 0) & (speeds < inf), "a speed (mm/s) must be above 0 and finite")
+    require(
+        "restitution",
+        restitutions,
+        (restitutions > 0) & (restitutions <= 1),
+        "a coefficient of restitution must be above 0 and at most 1",
+    )
+    if uncertainty is not None:
+        valid = 0.0 < check_number("uncertainty", uncertainty) < inf
+        require("uncertainty", uncertainty, valid, "a standard deviation must be above 0 and finite")
+    chi = _fit_hysteresis(speeds, restitutions)
+    slope = _restitution_slopes(chi, speeds)
+    freedom = len(speeds) - 1
+    scatter = (
+        float(numpy.sqrt(numpy.sum((restitutions - _restitutions(chi, speeds)) ** 2) / freedom)) if freedom else nan
+    )
+    noise = scatter if uncertainty is None else float(uncertainty)
+    error = noise / float(numpy.sqrt(numpy.sum(slope**2)))
+    return DampingEstimate(
+        damping=Damping(hysteresis=chi), error=error, noise=noise, speed=speeds, restitution=restitutions
+    )
+
+
+def from_bounces(*, times: Any, gravity: float = GRAVITY, uncertainty: float | None = None) -> DampingEstimate:
+    """Estimate damping from the times at which a ball that bounces under its weight touches down.
+
+    The duration Δt of a flight gives the speed at both its ends, v = g Δt/2. The ratio of two successive speeds is the
+    coefficient of restitution of the bounce between them.
+
+    Parameters
+    ----------
+    times : array
+        Times of at least three touch-downs in s, increasing.
+    gravity : float
+        Acceleration of gravity in mm/s².
+    uncertainty : float, optional
+        Standard deviation of each coefficient of restitution, as in `from_restitution`.
+
+    Raises
+    ------
+    ValueError
+        Fewer than three times; times that do not increase, or flights that do not become shorter.
+    """
+    instants = numpy.asarray(times, dtype=float)
+    require("the number of times", instants.size, instants.size >= 3, "at least three are needed")
+    flights = numpy.diff(instants)
+    require("a flight", flights, flights > 0, "times must increase")
+    speed = check_number("gravity", gravity) * flights / 2
+    return from_restitution(speed=speed[:-1], restitution=speed[1:] / speed[:-1], uncertainty=uncertainty)
+
+
+def _restitutions(chi: float, speeds: Numbers) -> Numbers:
+    """Compute the coefficients of restitution of a hysteresis χ at impact speeds."""
+    return numpy.array([restitution_of(chi * speed) for speed in speeds.tolist()])
+
+
+def _restitution_slopes(chi: float, speeds: Numbers) -> Numbers:
+    """Compute ∂e/∂χ, from h (1 + e) = ln[(1 + h)/(1 - h e)]."""
+    h, e = chi * speeds, _restitutions(chi, speeds)
+    small = h < 1e-4
+    safe = numpy.where(small, 1.0, h)
+    slope = (1 / (1 + safe) - e * e / (1 - safe * e)) * (1 - safe * e) / (safe * e)
+    return speeds * numpy.where(small, -2 / 3, slope)
+
+
+def _fit_hysteresis(speeds: Numbers, restitutions: Numbers) -> float:
+    """Fit χ by Gauss-Newton iterations that start from the relation of Hunt & Crossley."""
+    chi = float(numpy.median(1.5 * (1 - restitutions) / speeds))
+    for _ in range(50):
+        slope = _restitution_slopes(chi, speeds)
+        step = float(numpy.sum(slope * (restitutions - _restitutions(chi, speeds))) / numpy.sum(slope**2))
+        updated = max(chi + step, chi / 4)
+        change, chi = abs(updated - chi), updated
+        if change <= 1e-12 * chi:
+            break
+    return chi

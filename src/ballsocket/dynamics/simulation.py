@@ -1,0 +1,178 @@
+"""Simulation of a ball in its socket, by energy-momentum steps or with the internal state of the contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import check_number, require, shown
+from . import stepping
+from .element import ForceElement, components
+from .load import ContactState, Load
+from .motion import TONNE, Motion
+from .stateful_motion import StatefulIntegrator, pull_of
+from .stepping import BallState
+
+
+def simulate(
+    element: ForceElement,
+    *,
+    mass: float,
+    position: Any,
+    velocity: Any = (0.0, 0.0, 0.0),
+    spin: Any = (0.0, 0.0, 0.0),
+    pull: Any = (0.0, 0.0, 0.0),
+    inertia: float | None = None,
+    duration: float,
+    step: float,
+) -> Motion:
+    """Simulate a ball in a socket at rest, by steps that conserve energy and angular momentum to rounding.
+
+    The method is of order 2: halving the step divides the errors of positions and phases by four. Conserved energy
+    does not bound these errors. Bristles and adhesion have a state; with them the motion is integrated by
+    LSODA, with a tolerance of 1e-10.
+
+    Parameters
+    ----------
+    element : ForceElement
+    mass : float
+        Mass in kg.
+    position, velocity, spin : (3,)
+        Initial position in mm, velocity in mm/s and angular velocity in rad/s.
+    pull : (3,) or function
+        Force on the ball in N, for example its weight, or a function of the time in s.
+    inertia : float, optional
+        Moment of inertia about any axis through the centre in kg mm²; None is that of a solid ball.
+    duration, step : float
+        Duration and step in s. A contact should last at least twenty steps.
+
+    Returns
+    -------
+    Motion
+        It ends early at a state without force or a step that does not converge; `ended` gives the reason.
+
+    Raises
+    ------
+    ValueError
+        A number out of range.
+    TypeError
+        An element of another type.
+    """
+    plain = getattr(element, "element", element)
+    if not isinstance(plain, ForceElement):
+        raise TypeError(f"element must be a ForceElement, got {shown(element)}")
+    checked_mass = _check_inertia("mass", mass)
+    solid_ball = 0.4 * checked_mass * element.constants.ball_radius**2
+    checked_inertia = solid_ball if inertia is None else _check_inertia("inertia", inertia)
+    duration = _check_positive("duration", duration)
+    steps = duration / _check_positive("step", step)
+    require("the number of steps", steps, steps <= _MAX_STEPS, f"at most {_MAX_STEPS:g}")
+    count = max(int(numpy.ceil(steps - 1e-9)), 1)
+    initial = BallState(*components(position), *components(velocity), *components(spin))
+    ball = _InitialValueProblem(element, plain, checked_mass, checked_inertia, initial, pull, duration / count, count)
+    if ContactState(plain(initial[:3], initial[3:6], initial[6:]).status).failed:
+        return ball.failure()
+    return ball.with_contact_state() if plain.remembers else ball.advance()
+
+
+_MAX_STEPS = 1e8
+"""Largest number of steps of a simulation."""
+
+
+@dataclass(frozen=True)
+class _InitialValueProblem:
+    """Initial state of a ball, and `count` steps of `step` seconds."""
+
+    element: Any
+    plain: ForceElement
+    mass: float
+    inertia: float
+    initial: BallState
+    pull: Any
+    step: float
+    count: int
+
+    def failure(self) -> Motion:
+        """Return the motion of a ball whose initial state has no load."""
+        states, none = numpy.array([self.initial]), numpy.zeros(1)
+        return self._motion(
+            states, self.plain(states[:, :3]), lost=none, work=none, ended=_failure_note(self.plain, states[0])
+        )
+
+    def advance(self) -> Motion:
+        """Simulate by energy-momentum steps."""
+        h, count, constants = self.step, self.count, (self.element.potential, self.element.constants)
+        states, lost = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
+        pulls = _pulls(self.pull, h * (numpy.arange(count) + 0.5))
+        plain = isinstance(self.element, ForceElement)
+        march, rows = (stepping.march, pulls.tolist()) if plain else (self.element.march, pulls)
+        converged = march(*constants, self.initial, TONNE * self.mass, TONNE * self.inertia, rows, h, states, lost)
+        ended = "" if converged == count else _failure_note(self.plain, states[converged + 1], converged * h, h)
+        states, lost, pulls = states[: converged + 1], lost[: converged + 1], pulls[:converged]
+        position = states[:, :3]
+        work = numpy.cumsum(numpy.sum(pulls * numpy.diff(position, axis=0), axis=1))
+        moment = numpy.cumsum(h / 2 * numpy.cross(position[:-1] + position[1:], pulls), axis=0)
+        sums = {"work": numpy.append(0.0, work), "pull_moment": numpy.vstack([numpy.zeros(3), moment])}
+        return self._motion(states, self.plain(position), lost=lost, ended=ended, **sums)
+
+    def with_contact_state(self) -> Motion:
+        """Simulate by LSODA a contact with bristles or adhesion."""
+        ball = StatefulIntegrator(
+            element=self.plain, mass=TONNE * self.mass, inertia=TONNE * self.inertia, pull=pull_of(self.pull)
+        )
+        results = ball.integrate(self.initial, self.step * numpy.arange(self.count + 1), self.step)
+        load = self.plain(results.states[:, :3], attached=results.attached)
+        ended = ""
+        if results.failure is not None:
+            notes = "; ".join(results.failure.notes) or "the integration failed"
+            ended = f"after {self.step * (len(results.states) - 1):g} s: {notes}"
+        contact_state = {"deflection": results.deflection, "attached": results.attached, "ended": ended}
+        return self._motion(results.states, load, lost=results.dissipated, work=results.work, **contact_state)
+
+    def _motion(self, states: Numbers, load: Load, **results: Any) -> Motion:
+        return Motion(
+            element=self.plain,
+            mass=self.mass,
+            inertia=self.inertia,
+            time=self.step * numpy.arange(len(states)),
+            position=states[:, :3],
+            velocity=states[:, 3:6],
+            spin=states[:, 6:],
+            energy=load.energy,
+            **results,
+        )
+
+
+def _pulls(pull: Any, time: Numbers) -> Numbers:
+    """Return the pull at times: (times, 3)."""
+    if callable(pull):
+        return numpy.array([components(pull(instant), "a pull") for instant in time.tolist()])
+    return numpy.tile(numpy.array(components(pull, "a pull")), (len(time), 1))
+
+
+def _failure_note(element: ForceElement, state: Numbers, time: float = 0.0, step: float = 0.0) -> str:
+    """Describe the reason for the end of a motion, with the state after the last step."""
+    x, y, z, *rates = state.tolist()
+    notes = element((x, y, z), rates[:3], rates[3:]).notes
+    return f"after {time:g} s: {'; '.join(notes) or f'a step of {step:g} s did not converge'}"
+
+
+_MASS_RANGE = (1e-100, 1e100)
+"""Range of masses and moments of inertia whose products are neither zero nor infinite."""
+
+
+def _check_inertia(name: str, value: Any) -> float:
+    number = check_number(name, value)
+    low, high = _MASS_RANGE
+    require(name, number, low <= number <= high, f"{name} must be between {low:g} and {high:g}")
+    return number
+
+
+def _check_positive(name: str, value: Any) -> float:
+    number = check_number(name, value)
+    require(name, number, 0.0 < number < inf, "it must be above 0 and finite")
+    return number

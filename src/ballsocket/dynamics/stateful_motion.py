@@ -1,0 +1,154 @@
+"""Simulation of a ball whose contact has an internal state: the deflection of bristles, or adhesion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import inf
+from typing import Any, NamedTuple
+
+import numpy
+
+from ..core.arrays import Numbers
+from .element import ForceElement, components
+from .load import Load
+from .reaction import Vector
+
+_TOLERANCE = 1e-10
+"""Relative and absolute tolerance of the integration."""
+
+_STATE_SIZE = 15
+"""Number of unknowns: position, velocity, spin, four deflections, dissipated energy, and the work of the pull."""
+
+
+class StatefulTrajectory(NamedTuple):
+    """States of a ball at the computed times. `failure` is the load without a result that ended the motion, or None."""
+
+    states: Numbers
+    deflection: Numbers
+    attached: Numbers
+    dissipated: Numbers
+    work: Numbers
+    failure: Load | None
+
+
+class _NoLoad(ArithmeticError):  # noqa: N818 - it ends the integration, and no caller sees it
+    """State without a result."""
+
+    def __init__(self, load: Load) -> None:
+        super().__init__("; ".join(load.notes))
+        self.load = load
+
+
+@dataclass(frozen=True, kw_only=True)
+class StatefulIntegrator:
+    """Integrator of a ball under a pull: `mass` in t, `inertia` in t mm², `pull` in N as a function of time in s."""
+
+    element: ForceElement
+    mass: float
+    inertia: float
+    pull: Callable[[float], Vector]
+
+    def integrate(self, initial: Any, times: Numbers, step: float) -> StatefulTrajectory:
+        """Integrate from the initial state at the first of the increasing times, with steps no longer than `step`."""
+        state = numpy.zeros(_STATE_SIZE)
+        state[:9] = initial
+        states, attachments, failure = [state], [self._is_touching(state)], None
+        try:
+            for reached, attached in self._segments(state, times, step):
+                states.append(reached)
+                attachments.append(attached)
+        except _NoLoad as error:
+            failure = error.load
+        rows = numpy.array(states)
+        return StatefulTrajectory(
+            rows[:, :9], rows[:, 9:13], numpy.array(attachments), rows[:, 13], rows[:, 14], failure
+        )
+
+    def _segments(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
+        """Yield the state at each time after the first, and restart the solver where the ball attaches or separates."""
+        from scipy.integrate import LSODA
+
+        time, attached, change = float(times[0]), self._is_touching(state), 0.0
+        options = {"max_step": step, "rtol": _TOLERANCE, "atol": _TOLERANCE}
+        while time < times[-1]:
+            solver = LSODA(self._rates(attached), time, state, float(times[-1]), **options)
+            while solver.status == "running":
+                solver.step()
+                if solver.status == "failed":
+                    raise _NoLoad(self._load(solver.y, attached))
+                path = solver.dense_output()
+                change = self._switch_time(path, attached)
+                for time in times[slice(*numpy.searchsorted(times, (path.t_old, min(path.t, change)), "right"))]:
+                    yield path(time), attached
+                time = solver.t
+                if change < inf:
+                    time, state, attached = change, path(change), not attached
+                    break
+            if attached and change < inf:  # the jump of the energy is dissipated
+                state[13] -= self._load(state, attached).energy
+
+    def _rates(self, attached: bool) -> Callable[[float, Numbers], list[float]]:
+        def rates(time: float, state: Numbers) -> list[float]:
+            load, pull = self._load(state, attached), self.pull(time)
+            if load.force[0] != load.force[0] or load.contact.covered <= -1.0:
+                raise _NoLoad(load)
+            acceleration = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
+            angular_acceleration = [a / self.inertia for a in load.moment]
+            work = _dot(pull, load.velocity)
+            return [
+                *load.velocity,
+                *acceleration,
+                *angular_acceleration,
+                *load.deflection_rate,
+                _dissipated_power(load),
+                work,
+            ]
+
+        return rates
+
+    def _load(self, state: Numbers, attached: bool) -> Load:
+        s = state.tolist()
+        return self.element(s[:3], s[3:6], s[6:9], s[9:13], attached)
+
+    def _is_touching(self, state: Numbers) -> bool:
+        return bool(self._depth(state) >= 0.0)
+
+    def _depth(self, state: Numbers) -> float:
+        return float(numpy.linalg.norm(state[:3])) - float(self.element.joint.clearance)
+
+    def _switch_time(self, path: Any, attached: bool) -> float:
+        """Return the time in a step at which an adhesive ball attaches or separates; infinity without such a time."""
+        from scipy.optimize import brentq
+
+        stretch = self.element.stretch
+        if stretch == 0.0:
+            return inf
+
+        def distance(time: float) -> float:
+            return self._depth(path(time)) + (stretch if attached else 0.0)
+
+        before, after = distance(path.t_old), distance(path.t)
+        changes = before > 0.0 >= after if attached else before < 0.0 <= after
+        return float(brentq(distance, path.t_old, path.t, xtol=1e-15)) if changes else inf
+
+
+def pull_of(pull: Any) -> Callable[[float], Vector]:
+    """Return the pull as a function of the time."""
+    if callable(pull):
+        return lambda time: components(pull(time), "a pull")
+    constant = components(pull, "a pull")
+    return lambda time: constant
+
+
+def _dissipated_power(load: Load) -> float:
+    """Compute the power in N mm/s of all loads that are not elastic, with that stored in bristles."""
+    contact, centre = load.contact, load.centre
+    speed = _dot(load.velocity, (centre.x, centre.y, centre.z))
+    polar_speed = _dot(load.velocity, (contact.px, contact.py, contact.pz))
+    elastic_power = contact.normal * speed - contact.polar * polar_speed
+    return -(_dot(load.force, load.velocity) + elastic_power + _dot(load.moment, load.spin))
+
+
+def _dot(a: Any, b: Any) -> float:
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])

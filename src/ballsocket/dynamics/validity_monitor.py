@@ -1,0 +1,78 @@
+"""Warning in the log when a force element first leaves the validity range of its model."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from functools import partial
+from math import inf
+
+import numpy
+
+from ..contact import Contact, Model
+from ..core.arrays import Array, concrete_values
+from ..core.validity import Range
+from ..problem import Joint
+
+_log = logging.getLogger("ballsocket.dynamics")
+
+
+@dataclass
+class ValidityMonitor:
+    """Monitor that logs a warning at the first indentation outside the validity range of a model.
+
+    Contacts below the range do not count, because every impact passes through them.
+
+    Attributes
+    ----------
+    model : Model
+    joint : Joint
+    wall : float
+        Largest indentation in mm that wall thickness and model allow.
+    limit : float
+        Largest indentation in mm that needs no check; infinite after the warning.
+    """
+
+    model: Model
+    joint: Joint
+    wall: float
+    limit: float = 0.0
+
+    def check_array(self, indentation: Array) -> None:
+        """Check the largest of an array of indentations in mm."""
+        depths = concrete_values(indentation) if self.limit < inf else None
+        if depths is not None and depths.size:
+            self.check(float(numpy.max(depths, initial=0.0, where=depths <= self.wall)))
+
+    def check(self, indentation: float) -> None:
+        """Check an indentation in mm. Beyond the wall the status of the load reports it."""
+        if not self.limit < indentation <= self.wall:
+            return
+        contact = self._contact_at(indentation)
+        if not self._exceeds_range(contact):
+            self.limit = self._valid_limit(indentation)
+            return
+        self.limit = inf
+        _log.warning("%s at an indentation of %.3g mm: %s", self.model.name, indentation, "; ".join(contact.notes))
+
+    def _valid_limit(self, depth: float) -> float:
+        """Return a depth up to which the model is valid, from a depth at which it is."""
+        deeper = min(max(2 * depth, 1e-3 * self.wall), self.wall)
+        for _ in range(6):
+            if not self._exceeds_range(self._contact_at(deeper)):
+                return deeper
+            deeper = (depth + deeper) / 2
+        return depth
+
+    def _contact_at(self, indentation: float) -> Contact:
+        return self.model.press(self.joint, indentation=indentation)
+
+    def _exceeds_range(self, contact: Contact) -> bool:
+        """Return True for a contact that is invalid for another reason than its small size."""
+        return not contact.valid and not all(map(partial(_holds_when_larger, contact), contact._limits))
+
+
+def _holds_when_larger(contact: Contact, limit: Range) -> bool:
+    """Return True for a limit that holds, or that holds for a larger contact."""
+    grows = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
+    return bool(limit.holds(contact)) or (grows and bool(limit.of(contact) < limit.low))
