@@ -10,6 +10,7 @@ from urllib.parse import urlencode
 
 from ..catalogue import catalogue, reference
 from ..core.checks import check_names, shown
+from ..core.deprecation import renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
 from ..io.joint_file import JointFile, joint_of
@@ -317,3 +318,6 @@ def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> li
     """What `limit_of` reads, for each end; numbers are `written` by their name and value."""
     ends = ((">=", limit.low), ("<=", limit.high))
     return [f"{limit.name}{sign}{written(limit.name, end)}" for sign, end in ends if isfinite(end)]
+
+
+__getattr__ = renamed_names(__name__, {"Axis": "MapAxis"})

@@ -1,5 +1,6 @@
 """Views: one question each."""
 
+from ...core.deprecation import renamed_names
 from .compare import Compare
 from .cup import CupView
 from .design_map import DesignMap
@@ -31,3 +32,5 @@ KINDS: dict[str, Kind] = {
     "evidence": Evidence,
 }
 """All, by the names that links give them, in the order of the page."""
+
+__getattr__ = renamed_names(__name__, {"Cup": "CupView"})
