@@ -117,7 +117,7 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
         self._heard(key, Done(Packed(conclusions=("kept",), record={"worst": worst}, content=b"a pack")))
 
     monkeypatch.setattr(Job, "ask", ask)
-    monkeypatch.setattr(evidence, "_FOUND", evidence.Kept(most=4))
+    monkeypatch.setattr(evidence, "_FOUND", evidence.CachedRun(most=4))
     page = opened()
     edits(page, "evidence.take", True)
     assert "there is no pack of this yet" in trouble(page)

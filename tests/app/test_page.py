@@ -227,7 +227,7 @@ def test_a_report_has_the_joint_its_inputs_and_no_machine(view):
     assert name.endswith(".html")
     for part in ("Drawing", "Inputs", "head diameter", "SHA-256", "In the explorer: <code>?"):
         assert part in text, part
-    assert ("<span class='holds'>bears it: " in text) == (view == "press")
+    assert ("<span class='holds'>within its strength: " in text) == (view == "press")
     assert "localhost" not in text
     assert "http" not in text.replace("http://www.w3.org", "")
 

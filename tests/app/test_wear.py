@@ -31,7 +31,7 @@ LINK = (
 
 @pytest.fixture(autouse=True)
 def nothing_is_known(monkeypatch):
-    monkeypatch.setattr(wear, "_FOUND", wear.Kept(most=4))
+    monkeypatch.setattr(wear, "_FOUND", wear.CachedRun(most=4))
     monkeypatch.setattr(wearing, "drawn", lambda figure: b"a picture")
 
 
