@@ -216,7 +216,7 @@ class ElasticBall:
 
     Examples
     --------
-    >>> Ball(radius=17.9, young=1000.0, poisson=0.4).compliance([0, 1, 2]).round(8)
+    >>> ElasticBall(radius=17.9, young=1000.0, poisson=0.4).compliance([0, 1, 2]).round(8)
     array([0.00358 , 0.      , 0.015036])
     """
 
