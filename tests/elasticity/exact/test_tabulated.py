@@ -53,6 +53,7 @@ def test_a_point_contact_is_that_of_hertz():
     hertz = bs.Hertz().press(joint, force=tiny.force)
     assert tiny.max_pressure == pytest.approx(hertz.max_pressure, rel=1e-5)
     assert tiny.half_angle == pytest.approx(hertz.half_angle, rel=1e-5)
+    assert tiny.max_pressure_angle == 0.0
 
 
 @pytest.mark.parametrize("joint", [RIGID, HIP])
