@@ -124,7 +124,6 @@ class ElasticContact(SolvedContact):
 
         The solution itself is that of a closed sphere. The keys are the names in `hemisphere.CHANGES`. A change is NaN
         where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
-        where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
         """
         changes = self.laws.spread(_hemisphere_of, rows=(len(CHANGES),))
         return {name: self._match_load(changes[number, ...]) for number, name in enumerate(CHANGES)}

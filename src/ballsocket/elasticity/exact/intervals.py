@@ -1,6 +1,8 @@
 """Integrals of the kernel over [-ε, ε] for half angles on a grid, independent of the joint.
 
 ½ ∫ k(t - s) f(s) ds for even f and for odd f, as matrices (loads, points + 1, points) from f at the points to the
+integral at the points and at t = ε. They are linear in the kernel: in a_1 .. a_6 and in the remainder r_n, see
+`kernel`.
 """
 
 from __future__ import annotations
@@ -133,9 +135,8 @@ def _add_products(waves: tuple[Numbers, Numbers, Numbers, Numbers], remainder: N
 
 def _waves_between(half_angle: Numbers, grid: QuadratureGrid, count: int) -> tuple[Numbers, Numbers, Numbers, Numbers]:
     """Compute cos and sin of (n + ½) t at the targets, and integrals of functions at the points against them.
+
     The shapes are (loads, points + 1, count) and (loads, count, points). The arrays are valid until the next call.
-
-
     Waves are shorter than the variations of the pressure, so they are integrated at their own points.
     """
     edge = half_angle[:, None]

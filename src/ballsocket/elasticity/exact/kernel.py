@@ -2,7 +2,6 @@
 
 In Abel space (see `abel`) the ball and the socket act through k(x) = Σ ρ_n cos((n + ½) x). ρ_n measures how far mode
 n departs from a row of independent springs. Since ρ_n ~ Σ a_j (n + ½)^-j, the sum is split into
-n departs from a row of independent springs. Since ρ_n ~ Σ a_j (n + ½)^-j, the sum is split into
 
     k(x) = g(x²) ln|x| + h(x²) |x| + s(x²) + Σ r_n cos((n + ½) x),
 

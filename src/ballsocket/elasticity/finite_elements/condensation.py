@@ -27,7 +27,7 @@ class CondensedBody:
     Parameters
     ----------
     elastic : ElasticBlock
-    held : array of bool (unknowns,)
+    fixed_unknowns : array of bool (unknowns,)
         Mask of the unknowns that the supports fix to zero.
     contact : array (nodes,)
         Nodes of the contact surface, from the pole outwards.

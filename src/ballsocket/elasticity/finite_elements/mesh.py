@@ -90,7 +90,7 @@ def block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tup
         Radii of each layer's corners (corners,), from the inside out; each layer begins at the end of the previous one.
         Radii may vary along the angle (corner angles, corners).
     order : int
-    parted : tuple of int
+    sliding_layers : tuple of int
         Layers that slide on the next inner one.
     """
     angle = add_midpoints(angle, order)

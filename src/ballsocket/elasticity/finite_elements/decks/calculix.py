@@ -36,8 +36,6 @@ class CcxAnswer:
     indentation, force, pole_pressure, half_angle : array
         Values in mm, N, MPa and rad. Pressure and half angle are NaN on CAX4, whose facets CalculiX does not treat as
         one surface.
-        surface.
-        surface.
     """
 
     indentation: Numbers
