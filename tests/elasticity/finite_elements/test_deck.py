@@ -152,6 +152,7 @@ def test_steps_and_what_is_expected():
         np.testing.assert_allclose(made.expected[name], getattr(again, name))
     assert made.expected["force"][-1] == pytest.approx(contact.force, rel=1e-6)
     assert made.expected["half_angle_deg"][-1] == pytest.approx(40.0, abs=1e-4)
+    assert [int(line.split()[1]) for line in deck.title[-5:]] == [1, 2, 3, 4, 5]
     np.testing.assert_allclose([float(word) for word in deck.title[-1].split()[1:]][1:],
                                [made.expected[name][-1] for name in made.expected], rtol=1e-6)  # fmt: skip
 

@@ -169,6 +169,24 @@ def test_the_pressure_at_the_pole_is_extrapolated_by_an_even_polynomial():
     assert pressure_at_pole(few, 5.0 - 2.0 * few**2, 1.0) == pytest.approx(5.0, rel=1e-9)
 
 
+def test_the_pressure_at_the_pole_of_few_nodes_is_a_parabola_through_three():
+    """Scatter that is orthogonal to a parabola has no effect; the fourth node lies outside the pole region."""
+    angle = np.array([0.0, 0.1, 0.2, 0.3, 0.4, 1.0])
+    square = angle[1:4] ** 2
+    scatter = np.cross(np.ones(3), square)
+    pressures = np.append(99.0, np.append(5.0 - 2.0 * square + 0.3 * scatter / abs(scatter).max(), [77.0, 0.0]))
+    assert pressure_at_pole(angle, pressures, 0.5) == pytest.approx(5.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("elements", [5.5, 6.5])
+def test_a_contact_of_few_elements_has_a_pole_pressure(pair, elements):
+    half_angle = elements * pair.resolution.size
+    contact = partial_contact(pair, LinearGap(clearance=0.1, socket_radius=18.0), half_angle)
+    assert contact.last <= 3
+    exact = bs.Exact().press(RIGID, half_angle=half_angle)
+    assert contact.pole_pressure == pytest.approx(exact.pole_pressure, rel=0.02)
+
+
 def test_lagrange_polynomials_interpolate():
     corners = np.array([0.0, 0.1, 0.3, 0.6])
     for order in (1, 2):
