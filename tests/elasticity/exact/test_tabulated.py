@@ -110,6 +110,18 @@ def test_beyond_the_tables_is_a_status():
     assert not bs.Tabulated().press(replace(HIP, ball=bs.Material(young=2e5, poisson=0.45)), force=1000.0).valid
 
 
+def test_loads_near_the_perfect_fit_are_solved():
+    """In a thick liner indentations of a thousand clearances change the half angle by fractions of a degree."""
+    thick = replace(RIGID, liner_thickness=80.0, clearance=1e-3)
+    depth = 1e-3 * np.array([50.0, 150.0, 1000.0, 5000.0])
+    found, exact = (model.press(thick, indentation=depth) for model in (bs.Tabulated(), bs.Exact()))
+    assert found.status.tolist() == [bs.Status.OK] * 4
+    np.testing.assert_allclose(found.force, exact.force, rtol=1e-6)
+    again = bs.Tabulated().press(thick, force=found.force)
+    assert again.status.tolist() == [bs.Status.OK] * 4
+    np.testing.assert_allclose(again.indentation, depth, rtol=1e-10)
+
+
 def test_every_field_has_derivatives_in_jax():
     jax = pytest.importorskip("jax")
     fields = ("indentation", "max_pressure", "half_angle", "stiffness")
