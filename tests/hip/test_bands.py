@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from ballsocket.hip.bands import Bands, SharedCoefficient
-from ballsocket.hip.cohort_results import RESULT_UNITS, CohortResult
 from ballsocket.hip.uncertainty import _Response
+from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability

@@ -21,7 +21,7 @@ from ballsocket.hip.cohort import (
     table_columns,
     write_csv,
 )
-from ballsocket.hip.cohort_results import RESULT_UNITS, CohortResult, join_results
+from ballsocket.hip.variability import RESULT_UNITS, CohortResult, join_results
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run

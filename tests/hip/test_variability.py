@@ -19,8 +19,7 @@ from ballsocket.hip import (
     logarithmic,
     rocking,
 )
-from ballsocket.hip.cohort_results import RESULT_UNITS, contact_table, result_table
-from ballsocket.hip.variability import Patient
+from ballsocket.hip.variability import RESULT_UNITS, Patient, contact_table, result_table
 from ballsocket.problem.cup import Side
 from ballsocket.studies import LogNormal, Normal, Rectangular
 

@@ -19,8 +19,16 @@ from ballsocket.hip import (
 )
 from ballsocket.hip.creep_law import confinement_note
 from ballsocket.hip.creep_laws import CREEP_LAWS, read_creep_law
-from ballsocket.hip.law_fields import law_keys, law_summary, wear_factor, wear_per_energy, wear_per_slide
-from ballsocket.hip.wear_law import CycleExposure, coefficient_field, max_wear_sensitivity, with_coefficient
+from ballsocket.hip.law_fields import law_keys, law_summary
+from ballsocket.hip.wear_law import (
+    CycleExposure,
+    coefficient_field,
+    max_wear_sensitivity,
+    wear_factor,
+    wear_per_energy,
+    wear_per_slide,
+    with_coefficient,
+)
 from ballsocket.hip.wear_laws import WEAR_LAWS, read_ball_law, read_wear_law
 
 PRESSURE = np.array([[2.0, 0.0, 4.0], [3.0, 0.0, 0.0]])

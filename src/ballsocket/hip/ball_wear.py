@@ -119,8 +119,8 @@ class CounterfaceMap:
 
 def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
     """Map cells of the socket to the cells of the ball that pass over them during a cycle."""
-    cup_frame = numpy.array(setup.placed.frame)
-    rotated = cup_frame @ setup.moved.midpoint_rotations[setup.loaded]
+    cup_frame = numpy.array(setup.frame.placed.frame)
+    rotated = cup_frame @ setup.frame.side_cycle.midpoint_rotations[setup.frame.loaded]
     grid = setup.ball_grid
     directions = ball_directions(grid)
     to_ball = interpolation_at(setup.grid, numpy.einsum("tij,jp->itp", rotated, directions))
@@ -133,7 +133,7 @@ def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
         cells=ball_cells,
         sliding=SurfaceSliding(
             radius=radius,
-            rotation_increments=numpy.einsum("tji,tj->ti", rotated, setup.rotation_increments),
+            rotation_increments=numpy.einsum("tji,tj->ti", rotated, setup.frame.rotation_increments),
             directions=directions[:, ball_cells],
         ),
         areas=numpy.repeat(grid.areas[:, 0], grid.meridians)[ball_cells] * radius**2,

@@ -11,10 +11,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_arguments
-from ..elasticity.off_axis.surfaces import Springs
-from .cohort_results import RESULT_UNITS, CohortResult
 from .contact_checks import list_notes
-from .variability import PatientVariability, summarize_distributions
+from .variability import RESULT_UNITS, CohortResult, PatientVariability, summarize_distributions
 from .wear_law import coefficient_field
 
 DEFAULT_LEVEL = 0.95
@@ -159,7 +157,7 @@ class Bands:
     def notes(self) -> tuple[str, ...]:
         """Assumptions and limits of the bands."""
         assumed = f"assumed: given and independent distributions of {', '.join(self.variability.distributions)}"
-        surface = () if isinstance(self.variability.use.surface, Springs) else ("the bands are for radial springs",)
+        surface = () if self.variability.use.uses_springs else ("the bands are for radial springs",)
         return (
             assumed,
             *self._coefficient_note,

@@ -19,9 +19,16 @@ from ..core.storage.atomic_files import write_text
 from ..core.storage.fingerprint import check_worker_code, digest_of, fingerprint
 from ..core.storage.pieces import PieceRun, PieceStore
 from ..studies.axes import SampleAxis
-from .checkpoint import checkpoint
-from .cohort_results import RESULT_UNITS, CohortResult, contact_table, join_results, result_table
-from .variability import ANGLES, PatientVariability
+from .report_points import checkpoint
+from .variability import (
+    ANGLES,
+    RESULT_UNITS,
+    CohortResult,
+    PatientVariability,
+    contact_table,
+    join_results,
+    result_table,
+)
 
 PATIENTS_PER_PIECE = 16
 """Patients of one piece of work: about half a second."""
@@ -283,9 +290,9 @@ __getattr__ = renamed_names(
         "kept": "cohort_store",
         "drawn": "sample_patients",
         "Lives": "CohortRun",
-        "Lived": "ballsocket.hip.cohort_results.CohortResult",
+        "Lived": "ballsocket.hip.variability.CohortResult",
         "Kept": "CohortStore",
-        "joined": "ballsocket.hip.cohort_results.join_results",
+        "joined": "ballsocket.hip.variability.join_results",
         "columns": "table_columns",
     },
 )

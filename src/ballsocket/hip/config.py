@@ -27,11 +27,10 @@ from .creep_laws import CREEP_LAWS, read_creep_law
 from .cycle_file import KEYS as CYCLE_KEYS
 from .cycle_file import parse_cycle
 from .film import Lubricant
-from .law_fields import law_keys, wear_factor
-from .mix import Mix
+from .law_fields import law_keys
 from .simulation import HipSimulation, check_cycles
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
-from .wear_law import coefficient_field
+from .wear_law import coefficient_field, wear_factor
 from .wear_laws import BALL_COEFFICIENT, WEAR_LAWS, read_ball_law, read_wear_law
 
 UNCERTAINTY_KEYS = ("count", "seed", *SAMPLED_QUANTITIES)
@@ -128,8 +127,8 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         seconds_per_cycle=_parse_seconds(table_of(content, "creep")),
         **width,
     )
-    if isinstance(cycle, Mix) and "years" in content:
-        cycles, report_at = _parse_years(content, cycle)
+    if cycle.per_year is not None and "years" in content:
+        cycles, report_at = _parse_years(content, cycle.per_year)
     else:
         cycles, report_at = _parse_cycles(content)
     check_cycles(cycles, report_at)
@@ -195,14 +194,14 @@ def _parse_cycles(content: Mapping[str, Any]) -> tuple[float, tuple[float, ...]]
     return cycles, _parse_report_points(content, "report_at", cycles)
 
 
-def _parse_years(content: Mapping[str, Any], mix: Mix) -> tuple[float, tuple[float, ...]]:
+def _parse_years(content: Mapping[str, Any], per_year: float) -> tuple[float, tuple[float, ...]]:
     """Read the years and the years of the reports as numbers of cycles of a mix of activities."""
     for name in ("cycles", "report_at"):
         if name in content:
             raise ValueError(f"{name} and years exclude each other: both set the length of the run; remove one")
     years = _parse_count("years", content["years"])
     reports = _parse_report_points(content, "report_years", years)
-    return years * mix.per_year, tuple(year * mix.per_year for year in reports)
+    return years * per_year, tuple(year * per_year for year in reports)
 
 
 def _parse_report_points(content: Mapping[str, Any], name: str, end: float) -> tuple[float, ...]:
@@ -314,7 +313,7 @@ def read_uncertainty(content: Mapping[str, Any], use: HipSimulation) -> Uncertai
 
 def _nominal(use: HipSimulation) -> dict[str, float]:
     """Return the nominal values of the quantities that may differ between patients."""
-    coefficient, cup = coefficient_field(use.wear), use.placed
+    coefficient, cup = coefficient_field(use.wear), use.frame.placed
     values = {"clearance": use.joint.clearance, "inclination": cup.inclination, "anteversion": cup.anteversion}
     known = values if coefficient is None else {**values, "coefficient": getattr(use.wear, coefficient.name)}
     return {name: float(value) for name, value in known.items()}

@@ -100,6 +100,11 @@ def constrained_share(poisson: float) -> float:
     return (1 + poisson) * (1 - 2 * poisson) / (1 - poisson)
 
 
+def creep_notes(creep: CreepLaw | None, poisson: float) -> tuple[str, ...]:
+    """List the notes on a creep law and its confinement, for a liner with a Poisson's ratio; empty without a law."""
+    return () if creep is None else (*creep.notes, *filter(None, [confinement_note(creep, poisson)]))
+
+
 def confinement_note(creep: CreepLaw, poisson: float) -> str:
     """Describe the lateral constraint that a creep law assumes; empty for a Poisson's ratio outside 0 to 0.5."""
     if creep.confinement != 1:

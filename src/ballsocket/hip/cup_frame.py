@@ -1,15 +1,15 @@
-"""Loads and rotations of a cycle in the cup's frame."""
+"""Loads and rotations of a cycle in the frame of a cup."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees
+from typing import Any, Generic, TypeVar, overload
 
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import RenamedAttribute
 from ..problem import Joint
 from ..problem.cup import Cup, Side
 from .cycle import Cycle, Frame
@@ -23,17 +23,28 @@ _MIN_RELATIVE_FORCE = 1e-6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CupFrame:
-    """Cycle of loads and rotations in the frame of the cup; the fields are those of `HipSimulation`."""
+    """Loads and rotations of a cycle in the frame of a cup: x to its rim, upwards; z from its centre to its dome.
+
+    Parameters
+    ----------
+    joint : Joint
+        Joint of single numbers.
+    cycle : Cycle or Mix
+        Loads and rotations in the body's frame, for the right side of the body.
+    cup : Cup
+        Arc of cover and orientation. A cup without a given orientation takes the tilt of the cycle's standard.
+
+    Raises
+    ------
+    ValueError
+        A load that pushes the ball over the rim, unless a spring balances the load there.
+    """
 
     joint: Joint
     cycle: Cycle | Mix
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
-    tether = RenamedAttribute("lateral_stiffness")
-    carried = RenamedAttribute("socket_forces")
-    turns = RenamedAttribute("rotation_increments")
 
-    def _check_dislocation(self) -> None:
-        """Refuse a load that pushes the ball over the rim, unless a spring holds the ball."""
+    def __post_init__(self) -> None:
         outside = self._beyond_rim
         if self.separation is not None:
             outside = outside[numpy.isnan(self.separation.displacement[:, 0])]
@@ -47,14 +58,14 @@ class CupFrame:
             )
 
     @cached_property
-    def moved(self) -> Cycle | Mix:
-        """Cycle on the side of the body that the cup belongs to."""
+    def side_cycle(self) -> Cycle | Mix:
+        """Cycle for the side of the body that the cup belongs to: mirrored for a left cup."""
         return self.cycle.mirrored() if self.cup.side is Side.LEFT else self.cycle
 
     @cached_property
     def forces(self) -> Numbers:
         """Forces of the ball on the socket in N, in the cup's frame: (instants, 3)."""
-        forces = self.moved.forces
+        forces = self.side_cycle.forces
         return forces if self.cycle.frame is Frame.CUP else _in_cup(self.placed, forces)
 
     @property
@@ -71,7 +82,7 @@ class CupFrame:
     @cached_property
     def _pulled(self) -> SpringLoadedBall | None:
         """Ball on its lateral spring; None without a spring."""
-        spring = self.moved.spring
+        spring = self.side_cycle.spring
         if spring is None:
             return None
         return SpringLoadedBall(
@@ -90,7 +101,7 @@ class CupFrame:
     @cached_property
     def lateral_stiffness(self) -> Numbers:
         """Stiffness in N/mm of the cycle's spring, which unloads the ball as it moves: (3, 3)."""
-        spring = self.moved.spring
+        spring = self.side_cycle.spring
         return numpy.outer(self._spring_axis, self._spring_axis) * (0.0 if spring is None else spring.stiffness)
 
     def socket_forces(self, displacement: Numbers) -> Numbers:
@@ -132,6 +143,15 @@ class CupFrame:
         return numpy.flatnonzero(mask)
 
     @cached_property
+    def activities(self) -> tuple[tuple[str, Numbers], ...]:
+        """Name of each activity with contact, and its loads as indices into the loaded instants."""
+        indices = {
+            number: numpy.flatnonzero((self.loaded >= part.start) & (self.loaded < part.stop))
+            for number, (_, part) in enumerate(self.cycle.activity_slices)
+        }
+        return tuple((self.cycle.activity_slices[number][0], loads) for number, loads in indices.items() if len(loads))
+
+    @cached_property
     def loads(self) -> Numbers:
         """Forces in N of the loaded instants, in the cup's frame: (loaded, 3)."""
         return numpy.ascontiguousarray(self.forces[self.loaded])
@@ -145,18 +165,18 @@ class CupFrame:
     @cached_property
     def rotation_increments(self) -> Numbers:
         """Rotation vectors of the ball in the loaded instants in rad, in the cup's frame: (loaded, 3)."""
-        return _in_cup(self.placed, self.moved.rotation_increments[self.loaded])
+        return _in_cup(self.placed, self.side_cycle.rotation_increments[self.loaded])
 
     @property
     def slide(self) -> float:
         """Sliding distance of the ball past the line of the load in a cycle, in mm."""
         sizes = self.cycle.force_magnitudes[:, None]
         directions = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
-        rotations = _in_cup(self.placed, self.moved.rotation_increments)
+        rotations = _in_cup(self.placed, self.side_cycle.rotation_increments)
         return sliding_distance(float(self.joint.ball_radius), rotations, _fill_unloaded(directions, self.loaded))
 
     @property
-    def _frame_notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[str, ...]:
         """Notes on the orientation of the cup, unloaded instants and microseparation."""
         tilted = () if self.placed == self.cup else (_TILTED.format(degrees(self.cycle.cup_tilt or 0.0)),)
         separated = () if self.separation is None else (self.separation.describe(self.cycle),)
@@ -189,3 +209,26 @@ def _fill_unloaded(directions: Numbers, loaded: Numbers) -> Numbers:
         return directions
     last = numpy.searchsorted(loaded, numpy.arange(len(directions)), side="right") - 1
     return directions[loaded[last]]
+
+
+T = TypeVar("T")
+
+
+class FromFrame(Generic[T]):
+    """Attribute of a simulation that is an attribute of its `frame`: `loads = FromFrame[Numbers]()` in its class."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+        self.__doc__ = getattr(CupFrame, name).__doc__
+
+    @overload
+    def __get__(self, instance: None, owner: type) -> FromFrame[T]: ...
+
+    @overload
+    def __get__(self, instance: Any, owner: type) -> T: ...
+
+    def __get__(self, instance: Any, owner: type) -> FromFrame[T] | T:
+        if instance is None:
+            return self
+        value: T = getattr(instance.frame, self._name)
+        return value

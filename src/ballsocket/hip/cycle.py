@@ -183,6 +183,16 @@ class Cycle:
         return numpy.full(self.n_steps, self.duration / self.n_steps)
 
     @property
+    def activity_cycles(self) -> tuple[Cycle, ...]:
+        """Cycles of the activities: this one."""
+        return (self,)
+
+    @property
+    def per_year(self) -> None:
+        """Number of cycles a year: None, as it is known for a mix alone."""
+        return None
+
+    @property
     def activity_slices(self) -> tuple[tuple[str, slice], ...]:
         """Name and steps of the only activity."""
         return ((self.name, slice(0, self.n_steps)),)
@@ -194,6 +204,10 @@ class Cycle:
     def finer(self) -> Cycle:
         """Return this cycle with twice as many steps, up to the largest allowed number."""
         return replace(self, n_steps=min(2 * self.n_steps, _MAX_STEPS))
+
+    def transformed(self, transform: Callable[[Cycle], Cycle]) -> Cycle:
+        """Return the result of a function of this cycle."""
+        return transform(self)
 
     def mirrored(self) -> Cycle:
         """Return this cycle for the other side of the body: lateral forces and rotations change sign."""

@@ -175,31 +175,29 @@ class LoadedCycle(Protocol):
 
 
 def film(
-    cup_frame: LoadedCycle,
+    frame: LoadedCycle,
     foundation: SocketFoundation,
     sliding: SurfaceSliding,
     equilibrium: CycleEquilibrium,
     lubricant: Lubricant,
 ) -> Film:
     """Compute film and friction of a cycle from its contacts and its sliding."""
-    durations = cup_frame.cycle.seconds[cup_frame.loaded]
-    forces = cup_frame.socket_forces(equilibrium.displacement)
+    durations = frame.cycle.seconds[frame.loaded]
+    forces = frame.socket_forces(equilibrium.displacement)
     size = numpy.linalg.norm(forces, axis=1)
-    spin = numpy.linalg.norm(numpy.cross(cup_frame.rotation_increments, forces), axis=1) / numpy.where(
-        size > 0, size, 1.0
-    )
-    least, central = film_thickness(cup_frame.joint, size, spin / durations, lubricant.viscosity)
+    spin = numpy.linalg.norm(numpy.cross(frame.rotation_increments, forces), axis=1) / numpy.where(size > 0, size, 1.0)
+    least, central = film_thickness(frame.joint, size, spin / durations, lubricant.viscosity)
     roughness = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
     work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.distances, foundation.areas)
     return Film(
-        phases=cup_frame.cycle.phases[cup_frame.loaded],
+        phases=frame.cycle.phases[frame.loaded],
         least=least,
         central=central,
         ratio=least / roughness if roughness > 0 else numpy.full_like(least, inf),
         moment=lubricant.friction * _unit_moment(foundation, sliding, equilibrium.pressure),
         power=1e-3 * work / durations,
         heat=1e-3 * float(work.sum()),
-        duration=cup_frame.cycle.duration,
+        duration=frame.cycle.duration,
     )
 
 

@@ -16,9 +16,16 @@ from ..studies.room import check_samples
 from ..studies.sobol import sobol
 from .bands import COEFFICIENT, CONVERTED, DEFAULT_LEVEL, INFLUENCED_RESULTS, Bands, SharedCoefficient
 from .cohort import CohortRun, CohortStore, ProgressCallback, sample_patients
-from .cohort_results import RESULT_UNITS, CohortResult, join_results, result_table
 from .history import History, Report
-from .variability import DEFAULT_COUNT, Patient, PatientVariability
+from .variability import (
+    DEFAULT_COUNT,
+    RESULT_UNITS,
+    CohortResult,
+    Patient,
+    PatientVariability,
+    join_results,
+    result_table,
+)
 
 _CONVERTED_COLUMNS = [list(RESULT_UNITS).index(name) for name in CONVERTED]
 

@@ -142,7 +142,7 @@ class WearIntegrator:
         if active.counterface is not None:
             depth = depth + active.counterface.depth_on_socket(values[count:-1])
         equilibrium = active.foundation.solve_equilibrium(
-            self.setup.loads, depth, self.equilibrium, self.setup.lateral_stiffness
+            self.setup.frame.loads, depth, self.equilibrium, self.setup.frame.lateral_stiffness
         )
         self.equilibrium = equilibrium
         self.converged = self.converged and equilibrium.converged
@@ -236,7 +236,7 @@ class WearIntegrator:
     def _advance_creep(self, creep: CreepLaw, seconds: float) -> None:
         """Creep under the mean pressure at the end of a block, which decreases by the creep itself: iterate both."""
         active, setup = self._active, self.setup
-        weights = setup.cycle.seconds[setup.loaded] / setup.cycle.duration
+        weights = setup.cycle.seconds[setup.frame.loaded] / setup.cycle.duration
         recovered, strain_per_pressure = creep.linear_response(self.strain[:, active.cells], seconds)
         thickness = float(setup.joint.liner_thickness)
         mean = weights @ self._exposure.pressure

@@ -11,18 +11,17 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import NamedItems, require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
-from .law_fields import (
-    NUMBER,
-    PRESSURE,
+from .law_fields import NUMBER, PRESSURE, Law, law_field, read_law, select_law
+from .wear_law import (
+    COEFFICIENT,
+    METRE,
     WEAR_FACTOR,
     WEAR_PER_ENERGY,
     WEAR_PER_SLIDE,
-    Law,
-    law_field,
-    read_law,
-    select_law,
+    CycleExposure,
+    WearLaw,
+    plausibility_notes,
 )
-from .wear_law import COEFFICIENT, METRE, CycleExposure, WearLaw, plausibility_notes
 
 
 @dataclass(frozen=True, kw_only=True)
