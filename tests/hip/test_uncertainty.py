@@ -306,7 +306,7 @@ def test_the_nominal_patient_has_the_weight_and_the_years_of_the_file(tmp_path):
     assert one.cycles_per_year == 1e6
     assert one.body_weight == 900.0
     assert one.patient({"body_weight": 990.0}).use.cycle.largest_force == pytest.approx(
-        1.1 * one.quick.cycle.largest_force
+        1.1 * one.coarse_simulation.cycle.largest_force
     )
     two = text.replace("per_year = 1e6", 'per_year = 1e6\nbody_weight = "800 N"')
     with pytest.raises(ValueError, match="body_weight has several values, but patients need one"):

@@ -19,7 +19,7 @@ from ..core.storage.atomic_files import write_text
 from ..core.storage.fingerprint import check_worker_code, digest_of, fingerprint
 from ..core.storage.pieces import PieceRun, PieceStore
 from ..studies.axes import SampleAxis
-from .report_points import checkpoint
+from .report_points import make_checkpoint
 from .variability import (
     ANGLES,
     RESULT_UNITS,
@@ -49,7 +49,9 @@ ProgressCallback = Callable[[int], None]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CohortRun:
-    """Simulation of sampled patients in pieces of a few patients; a call with a number computes that piece.
+    """Simulation of a sampled patient cohort, divided into pieces of a few patients.
+
+    A call with the number of a piece simulates its patients.
 
     Attributes
     ----------
@@ -74,7 +76,7 @@ class CohortRun:
 
     @property
     def pieces(self) -> range:
-        """Numbers of the pieces."""
+        """Numbers of the pieces of the cohort, from 0."""
         return range(ceil(len(self) / PATIENTS_PER_PIECE))
 
     def patients(self, piece: int) -> range:
@@ -120,7 +122,7 @@ class CohortRun:
         """
         if store is not None:
             store.create()
-        coarse = replace(self, variability=replace(self.variability, use=self.variability.quick))
+        coarse = replace(self, variability=replace(self.variability, use=self.variability.coarse_simulation))
         run = PieceRun(coarse, self.pieces, None if store is None else replace(store, n_patients=len(self)))
         results = dict(run.stored)
         finished = sum(len(self.patients(piece)) for piece in results)
@@ -152,13 +154,15 @@ class CohortStore(PieceStore):
 
     @property
     def _label_path(self) -> Path:
+        """Path of the file with the identity of the cohort."""
         return self.folder / _LABEL_NAME
 
     def _piece_path(self, piece: int) -> Path:
+        """Return the path of the file with the results of a piece."""
         return self.folder / f"patients_{piece:06d}.npz"
 
     def create(self) -> None:
-        """Create the folder and its label, unless they exist.
+        """Create the folder of the store and its label file, unless they exist.
 
         Raises
         ------
@@ -188,12 +192,12 @@ class CohortStore(PieceStore):
             raise ValueError(f"{self.folder} has another cohort, or one of another version; choose another folder")
 
     def load(self, numbers: Sequence[int]) -> dict[int, CohortResult]:
-        """Load the stored pieces that are complete and undamaged."""
+        """Load the stored results of pieces that are complete and undamaged."""
         results = {piece: self._read(piece) for piece in numbers}
         return {piece: result for piece, result in results.items() if result is not None}
 
     def save(self, number: int, result: CohortResult) -> CohortResult:
-        """Store the result of a piece, and return it.
+        """Store the result of a piece in a file, and return the result.
 
         Raises
         ------
@@ -219,7 +223,7 @@ class CohortStore(PieceStore):
 
 @renamed_arguments(scatter="variability")
 def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence[float], seed: int) -> CohortStore:
-    """Return the store of a sampled cohort in a folder.
+    """Create the store of a sampled cohort in a folder, and check that the folder has no other cohort.
 
     Parameters
     ----------
@@ -237,7 +241,7 @@ def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence
     ValueError
         The folder has another cohort or a damaged label.
     """
-    nominal = checkpoint(variability.quick, folder).identity
+    nominal = make_checkpoint(variability.coarse_simulation, folder).identity
     distributions = dict(variability.distributions)
     identity = digest_of(fingerprint(), nominal, distributions, variability.body_weight, tuple(counts), seed)
     store = CohortStore(folder=folder.absolute(), identity=identity)

@@ -23,7 +23,9 @@ _MIN_RELATIVE_FORCE = 1e-6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CupFrame:
-    """Loads and rotations of a cycle in the frame of a cup: x to its rim, upwards; z from its centre to its dome.
+    """Loads and rotations of a cycle in the frame of a cup.
+
+    The axis x points upwards along the rim's plane, z to the dome's pole.
 
     Parameters
     ----------
@@ -45,7 +47,8 @@ class CupFrame:
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
 
     def __post_init__(self) -> None:
-        outside = self._beyond_rim
+        """Check that no load pushes the ball over the rim, unless a spring balances the load there."""
+        outside = self._instants_beyond_rim
         if self.separation is not None:
             outside = outside[numpy.isnan(self.separation.displacement[:, 0])]
         if len(outside):
@@ -66,7 +69,7 @@ class CupFrame:
     def forces(self) -> Numbers:
         """Forces of the ball on the socket in N, in the cup's frame: (instants, 3)."""
         forces = self.side_cycle.forces
-        return forces if self.cycle.frame is Frame.CUP else _in_cup(self.placed, forces)
+        return forces if self.cycle.frame is Frame.CUP else _convert_to_cup_frame(self.placed, forces)
 
     @property
     def _force_angles(self) -> Numbers:
@@ -74,14 +77,14 @@ class CupFrame:
         return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
 
     @cached_property
-    def _has_load(self) -> Numbers:
+    def _load_mask(self) -> Numbers:
         """Mask of the instants with a load: (instants,)."""
         sizes = self.cycle.force_magnitudes
         return numpy.asarray(sizes > _MIN_RELATIVE_FORCE * max(float(sizes.max()), 1e-300))
 
     @cached_property
-    def _pulled(self) -> SpringLoadedBall | None:
-        """Ball on its lateral spring; None without a spring."""
+    def _spring_loaded_ball(self) -> SpringLoadedBall | None:
+        """Ball on the lateral spring of the cycle; None without a spring."""
         spring = self.side_cycle.spring
         if spring is None:
             return None
@@ -100,7 +103,10 @@ class CupFrame:
 
     @cached_property
     def lateral_stiffness(self) -> Numbers:
-        """Stiffness in N/mm of the cycle's spring, which unloads the ball as it moves: (3, 3)."""
+        """Stiffness matrix in N/mm of the cycle's lateral spring: (3, 3).
+
+        A displacement of the ball times this matrix is the decrease of the force on the socket.
+        """
         spring = self.side_cycle.spring
         return numpy.outer(self._spring_axis, self._spring_axis) * (0.0 if spring is None else spring.stiffness)
 
@@ -109,37 +115,41 @@ class CupFrame:
         return self.loads - displacement @ self.lateral_stiffness
 
     @cached_property
-    def _beyond_rim(self) -> Numbers:
+    def _instants_beyond_rim(self) -> Numbers:
         """Indices of the instants in which the load pushes the ball over the rim."""
-        beyond = numpy.flatnonzero(self._has_load & (self._force_angles >= self.reach))
-        return beyond if self._pulled is None else beyond[self._pulled.leaves_bore(self.forces[beyond])]
+        beyond = numpy.flatnonzero(self._load_mask & (self._force_angles >= self.reach))
+        return (
+            beyond
+            if self._spring_loaded_ball is None
+            else beyond[self._spring_loaded_ball.leaves_bore(self.forces[beyond])]
+        )
 
     @cached_property
     def separation(self) -> Microseparation | None:
         """Instants in which a spring has pushed the ball onto the rim; None without such instants."""
-        beyond = self._beyond_rim
+        beyond = self._instants_beyond_rim
         return (
             None
-            if self._pulled is None or not len(beyond)
-            else self._pulled.solve_separation(self.forces[beyond], beyond)
+            if self._spring_loaded_ball is None or not len(beyond)
+            else self._spring_loaded_ball.solve_separation(self.forces[beyond], beyond)
         )
 
     @cached_property
     def placed(self) -> Cup:
-        """Cup with its own orientation if set, else with the tilt of the cycle's standard."""
+        """Cup in its orientation: that of `cup` if set, else the tilt of the cycle's standard."""
         tilt = self.cycle.cup_tilt
         return self.cup if self.cup.oriented or tilt is None else self.cup.tilted(tilt)
 
     @property
     def reach(self) -> float:
-        """End of the bore, in rad from the dome's pole."""
+        """Polar angle in rad of the end of the bore, from the dome's pole."""
         return float(self.cup.rim - self.cup.chamfer / self.joint.socket_radius)
 
     @cached_property
     def loaded(self) -> Numbers:
         """Indices of the instants in which the ball is pressed into the bore: (loaded,)."""
-        mask = self._has_load.copy()
-        mask[self._beyond_rim] = False
+        mask = self._load_mask.copy()
+        mask[self._instants_beyond_rim] = False
         return numpy.flatnonzero(mask)
 
     @cached_property
@@ -157,22 +167,22 @@ class CupFrame:
         return numpy.ascontiguousarray(self.forces[self.loaded])
 
     @property
-    def largest(self) -> Numbers:
-        """Index of the largest load: one number, or none without loads."""
+    def largest_load_index(self) -> Numbers:
+        """Index of the largest load among the loaded instants: (1,), or (0,) without loads."""
         sizes = numpy.linalg.norm(self.loads, axis=1)
         return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
 
     @cached_property
     def rotation_increments(self) -> Numbers:
         """Rotation vectors of the ball in the loaded instants in rad, in the cup's frame: (loaded, 3)."""
-        return _in_cup(self.placed, self.side_cycle.rotation_increments[self.loaded])
+        return _convert_to_cup_frame(self.placed, self.side_cycle.rotation_increments[self.loaded])
 
     @property
     def slide(self) -> float:
-        """Sliding distance of the ball past the line of the load in a cycle, in mm."""
+        """Sliding distance in mm of the ball in a cycle, at the point of the socket where the load points."""
         sizes = self.cycle.force_magnitudes[:, None]
         directions = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
-        rotations = _in_cup(self.placed, self.side_cycle.rotation_increments)
+        rotations = _convert_to_cup_frame(self.placed, self.side_cycle.rotation_increments)
         return sliding_distance(float(self.joint.ball_radius), rotations, _fill_unloaded(directions, self.loaded))
 
     @property
@@ -185,7 +195,7 @@ class CupFrame:
     @property
     def _unloaded_notes(self) -> tuple[str, ...]:
         """Note on the instants without a load."""
-        unloaded = numpy.flatnonzero(~self._has_load)
+        unloaded = numpy.flatnonzero(~self._load_mask)
         if len(unloaded) == self.cycle.n_steps:
             return (_NEVER_LOADED,)
         if not len(unloaded):
@@ -198,13 +208,13 @@ _NEVER_LOADED = "no wear: the ball is never in contact during this cycle"
 _LIFTS_OFF = "the ball lifts off, first at {}: {} of {} instants have no contact and no wear"
 
 
-def _in_cup(cup: Cup, vectors: Numbers) -> Numbers:
-    """Rotate vectors (n, 3) of the body into the cup's frame."""
+def _convert_to_cup_frame(cup: Cup, vectors: Numbers) -> Numbers:
+    """Convert vectors (n, 3) from the body's frame to the cup's frame."""
     return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
 
 
 def _fill_unloaded(directions: Numbers, loaded: Numbers) -> Numbers:
-    """Replace the directions of unloaded instants by those of the last loaded instant before them."""
+    """Replace the direction of each unloaded instant by that of the last loaded instant before."""
     if not len(loaded):
         return directions
     last = numpy.searchsorted(loaded, numpy.arange(len(directions)), side="right") - 1
@@ -215,7 +225,7 @@ T = TypeVar("T")
 
 
 class FromFrame(Generic[T]):
-    """Attribute of a simulation that is an attribute of its `frame`: `loads = FromFrame[Numbers]()` in its class."""
+    """Descriptor for an attribute that a simulation reads from its `frame`: `loads = FromFrame[Numbers]()`."""
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name

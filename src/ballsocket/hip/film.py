@@ -84,13 +84,13 @@ def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float
 
 
 def _plane_strain_compliance(material: Material) -> float:
-    """Compute (1 - ν²)/E in 1/MPa."""
+    """Compute the plane-strain compliance (1 - ν²)/E of a material in 1/MPa."""
     return float((1 - material.poisson**2) / material.young)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Film:
-    """Film and friction of a cycle in the loaded instants.
+    """Lubricant film and friction in the loaded instants of a cycle.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class Film:
 
 
 class LoadedCycle(Protocol):
-    """Joint and cycle of a film, in the cup's frame: a `CupFrame`."""
+    """Loads and rotations of a cycle in the cup's frame, as in `CupFrame`."""
 
     @property
     def joint(self) -> Joint:
@@ -181,7 +181,7 @@ def film(
     equilibrium: CycleEquilibrium,
     lubricant: Lubricant,
 ) -> Film:
-    """Compute film and friction of a cycle from its contacts and its sliding."""
+    """Compute film thickness, friction moment, power and heat of a cycle from its contacts and sliding."""
     durations = frame.cycle.seconds[frame.loaded]
     forces = frame.socket_forces(equilibrium.displacement)
     size = numpy.linalg.norm(forces, axis=1)

@@ -87,7 +87,7 @@ class HipSetup:
     tolerance: float = 4e-3
 
     forces = FromFrame[Numbers]()
-    largest = FromFrame[Numbers]()
+    largest_load_index = FromFrame[Numbers]()
     lateral_stiffness = FromFrame[Numbers]()
     loaded = FromFrame[Numbers]()
     loads = FromFrame[Numbers]()
@@ -100,6 +100,7 @@ class HipSetup:
     socket_forces = FromFrame[Callable[[Numbers], Numbers]]()
 
     carried = RenamedAttribute("socket_forces")
+    largest = RenamedAttribute("largest_load_index")
     moved = RenamedAttribute("side_cycle")
     tether = RenamedAttribute("lateral_stiffness")
     turns = RenamedAttribute("rotation_increments")
@@ -108,6 +109,7 @@ class HipSetup:
     passed = RenamedAttribute("exposure")
 
     def __post_init__(self) -> None:
+        """Check kinds and limits of the fields, and that no load dislocates the ball."""
         for name, kind in (("joint", Joint), ("cycle", Cycle | Mix), ("cup", Cup)):
             if not isinstance(getattr(self, name), kind):
                 raise TypeError(f"{name} must be a {name.capitalize()}, got {shown(getattr(self, name))}")
@@ -132,7 +134,7 @@ class HipSetup:
         _ = self.frame  # checks the loads
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the fields for other processes, without cached results."""
+        """Return the fields for pickling, without cached results."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
@@ -163,7 +165,7 @@ class HipSetup:
 
     @cached_property
     def grid(self) -> Grid:
-        """Grid of the bore."""
+        """Grid of cells on the bore."""
         reach = socket_shape(self.joint, self.cup).reach
         return (graded_grid if self.uses_springs else even_grid)(reach, self.ring_width)
 
@@ -182,7 +184,10 @@ class HipSetup:
 
     @cached_property
     def ball_grid(self) -> Grid:
-        """Grid of the ball: rings about the axis to the front, so that the cells in contact have similar widths."""
+        """Grid of cells on the ball, in rings about the axis to the front.
+
+        The cells in contact then have similar widths.
+        """
         return even_grid(pi, self.ring_width)
 
     @cached_property
@@ -206,7 +211,7 @@ class HipSetup:
 
     @renamed_arguments(rest="equilibrium")
     def edge(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> RimDistance:
-        """Find the edge of each contact nearest to the end of the bore, on a bore worn by a depth in mm."""
+        """Compute the distance from each contact to the rim, on a bore worn by a depth in mm."""
         field = self.foundation.edge_field(equilibrium, self._depth_field(depth))
         return rim_distance(
             self.grid, self.foundation.socket_radius, field, equilibrium.pressure, self.foundation.edge_inset
@@ -248,7 +253,7 @@ class HipSetup:
 
     @renamed_arguments(rest="equilibrium")
     def worst_contacts(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
-        """Compute the contact with the largest pressure in each activity with contact: (activities, `COLUMNS`)."""
+        """Tabulate the contact with the largest pressure of each activity: (activities with contact, `COLUMNS`)."""
         largest = equilibrium.pressure.max(axis=1, initial=0.0)
         rows = numpy.array([loads[largest[loads].argmax()] for _, loads in self.frame.activities], dtype=int)
         worn = self._depth_field(depth)
@@ -271,7 +276,7 @@ class HipSetup:
         )
 
     def contact_checks(self, worst: Numbers) -> tuple[ContactCheck, ...]:
-        """Check the contact model for each activity with contact, from a table of `worst_contacts`."""
+        """Check validity and strength of the worst contact of each activity, from a table of `worst_contacts`."""
         frame = self.frame
         instants = [self.cycle.describe_step(step) for step in frame.loaded[worst[:, 0].astype(int)]]
         return tuple(
@@ -280,18 +285,18 @@ class HipSetup:
         )
 
     @cached_property
-    def unworn_worst(self) -> Numbers:
-        """Worst contacts of the first cycle; see `worst_contacts`."""
+    def unworn_worst_contacts(self) -> Numbers:
+        """Table of the worst contacts of the first cycle, as of `worst_contacts`."""
         return self.worst_contacts(self.unworn)
 
     @cached_property
     def unworn_checks(self) -> tuple[ContactCheck, ...]:
-        """Checks of the contact model in the first cycle."""
-        return self.contact_checks(self.unworn_worst)
+        """Validity and strength of the worst contact of each activity in the first cycle."""
+        return self.contact_checks(self.unworn_worst_contacts)
 
     @renamed_arguments(rest="equilibrium")
     def exposure(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> CycleExposure:
-        """Collect pressures and slides of the socket's points for these contacts, on a bore worn by a depth in mm."""
+        """Collect pressure and sliding of the socket's cells, as a wear law needs, on a bore worn by a depth in mm."""
         contact_shares = partial(self.foundation.contact_shares, equilibrium, self._depth_field(depth))
         return CycleExposure(pressure=equilibrium.pressure, sliding=self.sliding, contact_shares=contact_shares)
 

@@ -89,7 +89,7 @@ class Report:
 
     @property
     def edge(self) -> RimDistance:
-        """Edges of the contacts nearest to the rim."""
+        """Distance from each contact to the rim."""
         return RimDistance(distance=self.edge_distance, azimuth=self.edge_place, pressure=self.edge_pressure)
 
     def summary(self) -> dict[str, Any]:
@@ -150,7 +150,7 @@ class History:
 
     @property
     def last(self) -> Report:
-        """Report at the end."""
+        """Report at the end of the run."""
         return self.reports[-1]
 
     @property
@@ -170,17 +170,17 @@ class History:
 
     @property
     def contact_valid(self) -> bool:
-        """True if the worst contacts, unworn and at the reports, are inside the validity of their model."""
+        """True if the worst contacts in the first cycle and at the reports are inside the validity of their model."""
         return all(check.valid for check in (*self.use.unworn_checks, *chain(*self.contact_checks)))
 
     @property
     def utilisation(self) -> float | None:
-        """Largest utilisation, unworn and at the reports; None where no yield stress is known."""
+        """Largest utilisation in the first cycle and at the reports; None where no yield stress is known."""
         return largest_utilisation((*self.use.unworn_checks, *chain(*self.contact_checks)))
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on cycle, cup, laws, contact model and rim."""
+        """Notes on cycle, cup, laws, contact model and rim, for reports."""
         unbalanced = () if self.converged else (_NOT_CONVERGED,)
         return (*self._contact_notes, *self.use.notes, *self._thin_liner_notes, *self._rim_notes, *unbalanced)
 
@@ -258,7 +258,7 @@ class History:
         }
 
     def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
-        """Return a report as data for JSON, with its contacts, and with years if the cycles per year are known."""
+        """Return a report as data for JSON, with checks of its contacts, and with years if they are known."""
         per_year, edge = self.use.cycle.per_year, report.edge.closest_approach(self.use.frame)
         years = {} if per_year is None else {"years": report.cycles / per_year}
         contact = {

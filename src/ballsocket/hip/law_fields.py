@@ -37,7 +37,7 @@ class LawUnit:
     read: Callable[[str, Any], Any]
 
     def example(self, value: Any) -> str:
-        """Write a value as an example for files."""
+        """Format a value as an example for files, with its unit."""
         if isinstance(value, tuple):
             return f"[{', '.join(f'{number:g}' for number in value)}]"
         return f"'{value:g} {self.typed}'" if self.typed else f"{value:g}"
@@ -107,18 +107,18 @@ class LawField:
     low_included: bool
 
     @property
-    def listed(self) -> bool:
+    def is_list(self) -> bool:
         """True if the value is a tuple of numbers."""
         return isinstance(self.example, tuple)
 
     @property
-    def allowed(self) -> str:
-        """Limits in words."""
+    def allowed_range(self) -> str:
+        """Allowed range in words, for messages."""
         low = f"{self.meaning} ({self.unit.text or 'a number'}) is {'at least' if self.low_included else 'above'} "
         return f"{low}{self.low:g}, and {'finite' if self.high == inf else f'below {self.high:g}'}"
 
     def check(self, value: Any) -> None:
-        """Check a value of this field.
+        """Check kind and limits of a value of this field.
 
         Raises
         ------
@@ -127,13 +127,13 @@ class LawField:
         ValueError
             The value is outside the limits.
         """
-        for number in value if self.listed else (value,):
+        for number in value if self.is_list else (value,):
             if not isinstance(number, Real) or isinstance(number, bool):
-                wanted = "a tuple of numbers" if self.listed else "one number"
+                wanted = "a tuple of numbers" if self.is_list else "one number"
                 raise TypeError(f"{self.name} must be {wanted}, got {value!r:.60}")
             real = float(number)
             above_low = self.low <= real if self.low_included else self.low < real
-            require(self.name, number, above_low and real < self.high, self.allowed)
+            require(self.name, number, above_low and real < self.high, self.allowed_range)
 
 
 def law_field(
@@ -168,7 +168,7 @@ def law_field(
 
 
 class Law(ABC):
-    """Law with a name, and fields with units, of which files, JSON and the explorer are made.
+    """Base of wear and creep laws: a name, and fields with units, which files, JSON and the explorer use.
 
     A law is a frozen dataclass; `law_field` defines its fields.
     """
@@ -185,7 +185,7 @@ class Law(ABC):
 
     @classmethod
     def law_fields(cls) -> tuple[LawField, ...]:
-        """Return the fields of the law."""
+        """Return the fields of the law with their units and limits."""
         return tuple(
             LawField(
                 name=part.name,
@@ -198,7 +198,7 @@ class Law(ABC):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the numbers of the law."""
+        """Notes on the numbers of the law, for reports."""
         return ()
 
     def summary(self) -> dict[str, Any]:
@@ -212,7 +212,7 @@ class Law(ABC):
 
 def _as_json(value: Any, part: LawField) -> Any:
     """Convert the value of a field to a number or a list of numbers."""
-    return list(map(float, value)) if part.listed else float(value)
+    return list(map(float, value)) if part.is_list else float(value)
 
 
 def law_summary(law: Any) -> dict[str, Any] | None:
@@ -226,7 +226,7 @@ AnyLaw = TypeVar("AnyLaw", bound=Law)
 
 
 def law_keys(laws: Mapping[str, type[AnyLaw]]) -> tuple[str, ...]:
-    """Return the keys in files of all laws, each once."""
+    """Return the keys that files use for the fields of any of the laws, without repetitions."""
     return tuple(dict.fromkeys(part.key for law in laws.values() for part in law.law_fields()))
 
 
@@ -285,7 +285,7 @@ def select_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun:
 
 
 def _laws_with_keys(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]]) -> Iterator[type[AnyLaw]]:
-    """List the laws that have a key of a table."""
+    """Yield the laws of which a table has at least one key."""
     for law in laws.values():
         if any(part.key in table for part in law.law_fields()):
             yield law

@@ -17,7 +17,7 @@ from .cycle import Cycle, Frame
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Activity:
-    """Cycle that a patient repeats a number of times a year.
+    """Activity of a patient: a cycle of load and motion, and its number a year.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ class Mix:
         return self._weighted(lambda cycle: cycle.rotation_increments)
 
     def _weighted(self, values_of: Callable[[Cycle], Numbers]) -> Numbers:
-        """Concatenate values of the steps, multiplied by the fractions of the activities."""
+        """Concatenate values of all steps, each multiplied by the fraction of its activity."""
         return numpy.concatenate(
             [fraction * values_of(cycle) for fraction, cycle in zip(self.fractions, self.activity_cycles, strict=True)]
         )
@@ -176,7 +176,7 @@ class Mix:
 
     @property
     def activity_slices(self) -> tuple[tuple[str, slice], ...]:
-        """Name and steps of each activity."""
+        """Name and range of steps of each activity."""
         begin, slices = 0, []
         for cycle in self.activity_cycles:
             slices.append((cycle.name, slice(begin, begin + cycle.n_steps)))
@@ -204,7 +204,7 @@ class Mix:
         return self.transformed(lambda cycle: cycle.scaled(factor))
 
     def transformed(self, transform: Callable[[Cycle], Cycle]) -> Mix:
-        """Return a mix whose cycles are results of a function of a `Cycle`."""
+        """Return this mix with a function applied to the cycle of each activity."""
         return Mix(activities=tuple(replace(activity, cycle=transform(activity.cycle)) for activity in self.activities))
 
 

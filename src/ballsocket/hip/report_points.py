@@ -103,8 +103,8 @@ def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
     return Report(**values)
 
 
-def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
-    """Make the checkpoint of a wear simulation, stored in a folder.
+def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
+    """Create the `Checkpoint` of a wear simulation in a folder, without writing to it.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
 
 
 def check_total_wear(setup: HipSetup, cycles: float) -> None:
-    """Raise ValueError for cycles that would wear away more than ten liner thicknesses at the initial wear rate.
+    """Check that a number of cycles wears at most ten liner thicknesses at the initial wear rate.
 
     Raises
     ------
@@ -182,7 +182,7 @@ def run_to_report_points(
 
 
 def make_report(integrator: WearIntegrator) -> Report:
-    """Report the state of a simulation."""
+    """Create the report of the present state of a simulation."""
     setup, creep_depth, shape = integrator.setup, integrator.creep_depth, (integrator.setup.grid.rings, -1)
     depth = integrator.depth + creep_depth
     if setup.ball_wear is not None:
@@ -191,7 +191,7 @@ def make_report(integrator: WearIntegrator) -> Report:
     combined = setup.solve_equilibrium(depth, integrator.equilibrium)
     worn = combined if setup.creep is None else _solve_or_unworn(setup, integrator.depth)
     states = (combined, worn, _solve_or_unworn(setup, creep_depth))
-    largest, unworn = setup.frame.largest, setup.unworn.displacement
+    largest, unworn = setup.frame.largest_load_index, setup.unworn.displacement
     displacements = [(state.displacement - unworn)[largest].sum(axis=0) for state in states]
     edge = setup.edge(combined, depth)
     return Report(

@@ -13,7 +13,7 @@ from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_name
 from .film import Lubricant
 from .hip_setup import MIN_RING_WIDTH, HipSetup
 from .history import History, NumericalError
-from .report_points import check_total_wear, checkpoint, run_to_report_points
+from .report_points import check_total_wear, make_checkpoint, run_to_report_points
 from .wear_integrator import WearIntegrator
 
 
@@ -92,7 +92,7 @@ class HipSimulation(HipSetup):
         """
         counts = check_cycles(cycles, report_at)
         check_total_wear(self, cycles)
-        stored, (volume, depth) = None if store is None else checkpoint(self, store), self.discretization_error
+        stored, (volume, depth) = None if store is None else make_checkpoint(self, store), self.discretization_error
         integrator = WearIntegrator(setup=self)
         reports = run_to_report_points(integrator, counts, progress, stored)
         blocks = integrator.relative_volume_error
@@ -121,7 +121,7 @@ the error by 3.
 
 
 def _halving_error(values: list[float]) -> float:
-    """Estimate the relative error of a value from three results: given steps, half steps, and half steps and rings."""
+    """Estimate the relative discretization error of a result from three: coarse, half steps, half steps and rings."""
     value, finer_steps, finer_rings = values
     if not finer_rings:
         return 0.0
@@ -129,7 +129,9 @@ def _halving_error(values: list[float]) -> float:
 
 
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
-    """Return the cycle counts of all reports in order, with the total count as the last one.
+    """Check the cycle counts of a run, and return those of its reports in ascending order.
+
+    The last one is the total count.
 
     Raises
     ------

@@ -44,7 +44,7 @@ _ENERGY_UNITS = (*_FACTOR_UNITS, "mm^3/J", "mm^3/kJ", "mm^3/MJ", "m^3/J")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleExposure:
-    """Pressures and slides of all points of the socket during a cycle.
+    """Pressure and sliding of all points of a surface during a cycle, as a wear law needs.
 
     Attributes
     ----------
@@ -66,12 +66,12 @@ class CycleExposure:
 
     @cached_property
     def work(self) -> Numbers:
-        """∫ p v dt of each point, in N/mm: (points,)."""
+        """Integral ∫ p v dt of pressure times sliding speed at each point, in N/mm: (points,)."""
         return numpy.einsum("tp,tp->p", self.pressure, self.sliding.distances)
 
     @cached_property
     def cross_shear(self) -> Numbers:
-        """Cross-shear of each point: (points,)."""
+        """Cross-shear ratio at each point, from 0 to 1/2: (points,)."""
         return self.sliding.cross_shear(self.pressure)
 
 
@@ -103,7 +103,7 @@ class FirstCycleResult:
 
 
 class AnyWearLaw(Protocol):
-    """Object that a simulation accepts as a wear law: a `WearLaw`, or any object with depth and notes."""
+    """Interface of a wear law for a simulation: a `WearLaw`, or any object with `depth` and `notes`."""
 
     def depth(self, cycle: CycleExposure) -> Numbers:
         """Compute the worn depth of each point in a cycle, in mm: (points,)."""
@@ -136,7 +136,7 @@ class WearLaw(Law):
         ValueError
             The law has no coefficient.
         """
-        changed: WearLaw = replace(self, **{_coefficient_field(self).name: value})  # type: ignore[type-var]
+        changed: WearLaw = replace(self, **{_require_coefficient_field(self).name: value})  # type: ignore[type-var]
         return changed
 
 
@@ -146,7 +146,8 @@ def coefficient_field(law: Any) -> LawField | None:
     return next((part for part in parts if part.key == COEFFICIENT), None)
 
 
-def _coefficient_field(law: Any) -> LawField:
+def _require_coefficient_field(law: Any) -> LawField:
+    """Return the field of the wear coefficient of a law; ValueError for a law without one."""
     part = coefficient_field(law)
     if part is None:
         raise ValueError("coefficient cannot be sampled: the wear law has no coefficient")
@@ -161,13 +162,13 @@ def with_coefficient(law: AnyWearLaw, value: float) -> AnyWearLaw:
     ValueError
         The law has no coefficient.
     """
-    _coefficient_field(law)
+    _require_coefficient_field(law)
     changed: AnyWearLaw = law.with_coefficient(value)  # type: ignore[attr-defined]  # it has fields: a `WearLaw`
     return changed
 
 
 def plausibility_notes(*factors: float) -> tuple[str, ...]:
-    """Note the first wear factor outside the range of materials in joints (mm³/(N m))."""
+    """Return a note on the first wear factor (mm³/(N m)) outside the range of joint materials, else nothing."""
     low, high = _PLAUSIBLE_FACTORS
     unusual = next((factor for factor in factors if factor > 0 and not low <= factor <= high), None)
     if unusual is None:
@@ -179,7 +180,7 @@ def plausibility_notes(*factors: float) -> tuple[str, ...]:
 
 
 def max_wear_sensitivity(law: AnyWearLaw, cycle: CycleExposure) -> float:
-    """Compute the largest increase of the depth of a cycle by the pressure, in mm/MPa."""
+    """Compute the largest derivative of the worn depth per cycle with respect to the pressure, in mm/MPa."""
     step = _PRESSURE_STEP * float(cycle.pressure.max(initial=0.0))
     if not step > 0:
         return 0.0
@@ -209,7 +210,7 @@ def wear_factor(name: str, value: Any) -> float:
     ValueError: coefficient = '1.066e-9 mm^3/(N mm)' is for mm of sliding: 1 mm^3/(N mm) is 1000 mm^3/(N m), \
 so that this is 1.066e-06 mm^3/(N m); write it so
     """
-    number, unit = _split(name, value, _WEAR_FACTOR)
+    number, unit = _split_unit(name, value, _WEAR_FACTOR)
     if unit:
         number *= _factor_in_metres(name, value, number, unit, _FACTOR_UNITS)
     require(name, number, 0 <= number < inf, f"a wear coefficient is at least 0 {_WEAR_FACTOR}, and finite")
@@ -224,7 +225,7 @@ def wear_per_energy(name: str, value: Any) -> float:
     ValueError
         As `wear_factor`.
     """
-    number, unit = _split(name, value, "mm^3/J")
+    number, unit = _split_unit(name, value, "mm^3/J")
     if unit:
         number *= _factor_in_metres(name, value, number, unit, _ENERGY_UNITS)
     require(name, number, 0 <= number < inf, "a wear coefficient is at least 0 mm^3/J, and finite")
@@ -239,14 +240,14 @@ def wear_per_slide(name: str, value: Any) -> float:
     ValueError
         Text without a number, or a unit of another dimension.
     """
-    number, unit = _split(name, value, "mm/m")
+    number, unit = _split_unit(name, value, "mm/m")
     if unit:
         number *= _unit_factor(name, value, unit, "", "mm/mm, a depth over a length of sliding")
     require(name, number, 0 <= number < inf, "a wear coefficient is at least 0, and finite")
     return number
 
 
-def _split(name: str, value: Any, example: str) -> tuple[float, str]:
+def _split_unit(name: str, value: Any, example: str) -> tuple[float, str]:
     """Split a coefficient into its number and the text of its unit."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return parse(name, value, Kind.NUMBER), ""
@@ -260,7 +261,7 @@ def _split(name: str, value: Any, example: str) -> tuple[float, str]:
 
 
 def _factor_in_metres(name: str, value: Any, number: float, unit: str, allowed: tuple[str, ...]) -> float:
-    """Compute the factor from a unit to mm³/(N m), and reject units for other lengths of sliding."""
+    """Compute the factor from a unit to mm³/(N m); ValueError for units with other lengths of sliding."""
     meaning = f"{_WEAR_FACTOR}, a volume over a force and a length of sliding"
     factor = _unit_factor(name, value, unit, _WEAR_FACTOR, meaning)
     if parse_units(unit) not in [parse_units(accepted) for accepted in allowed]:
@@ -274,7 +275,7 @@ def _factor_in_metres(name: str, value: Any, number: float, unit: str, allowed: 
 
 
 def _unit_factor(name: str, value: Any, unit: str, target: str, meaning: str) -> float:
-    """Compute the factor from a unit to a target unit, or refuse a unit of another dimension."""
+    """Compute the factor from a unit to a target unit; ValueError for a unit of another dimension."""
     try:
         return convert(1.0, parse_units(unit), parse_units(target))
     except ValueError as error:
