@@ -217,6 +217,8 @@ def test_old_names_of_laws_warn_and_work():
         assert law.of is np.sum
     with pytest.warns(DeprecationWarning, match="AreaLaw is deprecated: use ContactAreaWear"):
         assert wear_laws.AreaLaw is ContactAreaWear
+    with pytest.warns(DeprecationWarning, match="advanced is deprecated: use advance_strain"):
+        assert KelvinVoigtChain.advanced is KelvinVoigtChain.advance_strain
     from ballsocket.hip.coefficients import wear_factor as moved
 
     assert moved is wear_factor
@@ -239,7 +241,12 @@ def test_old_names_of_simulations_warn_and_work():
     use, seen = hip(ring_width=0.15, cycle=flexion(8)), []
     assert isinstance(use.first, First)
     renamed = {"rest": "solve_equilibrium", "bed": "foundation", "halved": "discretization_error"}
-    for old, new in {**renamed, "tether": "lateral_stiffness"}.items():
+    for old, new in {
+        **renamed,
+        "tether": "lateral_stiffness",
+        "moved": "side_cycle",
+        "largest": "largest_load_index",
+    }.items():
         with pytest.warns(DeprecationWarning, match=f"{old} is deprecated: use {new}"):
             value = getattr(use, old)
         assert np.array_equal(value, getattr(use, new))

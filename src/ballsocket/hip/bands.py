@@ -130,7 +130,7 @@ class Bands:
         return low, high
 
     def population_band(self, name: str, coefficient: str = "median") -> tuple[Numbers, Numbers]:
-        """Compute the lower and the upper end of the band at each report, for one wear coefficient of all patients.
+        """Compute both ends of the band of patients with the same wear coefficient, two arrays (reports,).
 
         Parameters
         ----------

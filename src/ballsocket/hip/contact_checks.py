@@ -225,7 +225,7 @@ def list_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator
     """
     listed = set()
     for stage, checks in stages:
-        for check in sorted(checks, key=_severity):
+        for check in sorted(checks, key=_severity_key):
             for note in check.notes:
                 kind = "".join(letter for letter in note if not letter.isdigit())
                 if kind not in listed:
@@ -233,6 +233,6 @@ def list_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator
                     yield note if note == check.utilisation_note else f"{note} ({stage}, at {check.instant})"
 
 
-def _severity(check: ContactCheck) -> tuple[float, float]:
+def _severity_key(check: ContactCheck) -> tuple[float, float]:
     """Return the sort key of a check: large utilisations and pressures come first."""
     return -(check.utilisation or 0.0), -check.max_pressure

@@ -122,7 +122,7 @@ def _parse_setting(line: str) -> tuple[str, str]:
 
 
 def _parse_columns(title: str, lines: Sequence[tuple[int, str]]) -> TextTable:
-    """Split lines into heads and rows; lines before a head of time or phase are skipped."""
+    """Split lines of columns into a `TextTable`: heads with units, and rows below the head of time or phase."""
     begin = next((index for index, (_, line) in enumerate(lines[:_MAX_PREAMBLE]) if _has_time_head(line)), 0)
     below = lines[begin + 1 :]
     _check_row_count(len(below))

@@ -166,7 +166,7 @@ class SurfaceSliding:
         selected = SurfaceSliding(
             radius=self.radius, rotation_increments=self.rotation_increments, directions=self.directions[:, points]
         )
-        vars(selected)["distances"] = self.distances[:, points]
+        vars(selected)["distances"] = self.distances[:, points]  # cached: not computed again
         return selected
 
     def velocities(self, seconds: Numbers) -> Numbers:
