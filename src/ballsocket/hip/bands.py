@@ -88,7 +88,7 @@ class Bands:
         return "predictions" if COEFFICIENT in self.variability.distributions else "patients"
 
     @property
-    def patients(self) -> int:
+    def n_patients(self) -> int:
         """Number of patients."""
         return len(self.cohort.refused)
 
@@ -120,7 +120,7 @@ class Bands:
         fraction : float
             Fraction of the patients below the quantile.
         """
-        if self.n_failed == self.patients:
+        if self.n_failed == self.n_patients:
             return numpy.full(len(self.counts), numpy.nan)
         return numpy.nanquantile(self.cohort.table[:, :, list(RESULT_UNITS).index(name)], fraction, axis=0)
 
@@ -191,15 +191,15 @@ class Bands:
             return ()
         reasons = Counter(str(error).split(":")[0] for error in self.cohort.refused if error)
         reason = reasons.most_common(1)[0][0]
-        failed = f"{self.n_failed} of {self.patients} patients have no result, most often: {reason}"
+        failed = f"{self.n_failed} of {self.n_patients} patients have no result, most often: {reason}"
         return (f"{failed}; the bands are for the others",)
 
     @property
     def _wear_through_note(self) -> tuple[str, ...]:
         """Note on patients whose liner is worn through."""
         depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
-        n_patients = int((depth > self.variability.use.joint.liner_thickness).sum())
-        return (f"{n_patients} of {self.patients} patients wear their liner through",) if n_patients else ()
+        n_worn_through = int((depth > self.variability.use.joint.liner_thickness).sum())
+        return (f"{n_worn_through} of {self.n_patients} patients wear their liner through",) if n_worn_through else ()
 
     @property
     def _validity_note(self) -> tuple[str, ...]:
@@ -207,7 +207,7 @@ class Bands:
         outside = int((self.cohort.valid[:, -1] == 0).sum())
         model = self.variability.coarse_simulation.contact_model.name
         sentence = (
-            f"{outside} of {self.patients} patients have contacts outside the validity of the contact model ({model})"
+            f"{outside} of {self.n_patients} patients have contacts outside the validity of the contact model ({model})"
         )
         return (sentence,) if outside else ()
 
@@ -247,7 +247,7 @@ class Bands:
             "bands": [self._summarize_report(report) for report in range(len(self.counts))],
             "sobol": self._summarize_indices(),
             "uncertainty": {
-                "patients": self.patients,
+                "patients": self.n_patients,
                 "without_answer": self.n_failed,
                 "seed": self.seed,
                 "level": self.level,
@@ -306,6 +306,7 @@ class Bands:
     scatter = RenamedAttribute("variability")
     lived = RenamedAttribute("cohort")
     without = RenamedAttribute("n_failed")
+    patients = RenamedAttribute("n_patients")
     off = RenamedAttribute("quick_run_errors")
     usual_notes = RenamedAttribute("nominal_notes")
     valid_share = RenamedAttribute("valid_fraction")

@@ -79,7 +79,7 @@ class CohortRun:
         """Numbers of the pieces of the cohort, from 0."""
         return range(ceil(len(self) / PATIENTS_PER_PIECE))
 
-    def patients(self, piece: int) -> range:
+    def patient_numbers(self, piece: int) -> range:
         """Return the numbers of the patients in a piece."""
         return range(piece * PATIENTS_PER_PIECE, min((piece + 1) * PATIENTS_PER_PIECE, len(self)))
 
@@ -92,7 +92,7 @@ class CohortRun:
             This worker has another version of the package than the process that started the run.
         """
         check_worker_code(self.code)
-        tables, contacts, errors = zip(*(self._simulate(number) for number in self.patients(piece)), strict=True)
+        tables, contacts, errors = zip(*(self._simulate(number) for number in self.patient_numbers(piece)), strict=True)
         return CohortResult(table=numpy.stack(tables), refused=numpy.array(errors), contact=numpy.stack(contacts))
 
     def _simulate(self, number: int) -> tuple[Numbers, Numbers, str]:
@@ -125,11 +125,11 @@ class CohortRun:
         coarse = replace(self, variability=replace(self.variability, use=self.variability.coarse_simulation))
         run = PieceRun(coarse, self.pieces, None if store is None else replace(store, n_patients=len(self)))
         results = dict(run.stored)
-        finished = sum(len(self.patients(piece)) for piece in results)
+        finished = sum(len(self.patient_numbers(piece)) for piece in results)
         progress(finished)
         for piece, result in run.compute_missing(engine):
             results[piece] = result
-            finished += len(self.patients(piece))
+            finished += len(self.patient_numbers(piece))
             progress(finished)
         return join_results([results[piece] for piece in self.pieces])
 

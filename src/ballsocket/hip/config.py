@@ -299,11 +299,8 @@ def read_uncertainty(content: Mapping[str, Any], use: HipSimulation) -> Uncertai
         A value or a name that is not allowed.
     """
     table = table_of(content, "uncertainty")
-    distributions = {
-        name: distribution_of(name, table[name], _quantity_reader(name, use))
-        for name in SAMPLED_QUANTITIES
-        if name in table
-    }
+    names = [name for name in SAMPLED_QUANTITIES if name in table]
+    distributions = {name: distribution_of(name, table[name], _quantity_reader(name, use)) for name in names}
     count = _read_integer("count", table.get("count", DEFAULT_COUNT))
     seed = _read_integer("seed", table.get("seed", 0))
     if count < 2 or count & (count - 1):

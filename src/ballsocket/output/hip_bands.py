@@ -102,7 +102,7 @@ def share_figure(bands: Bands) -> Figure:
 
 
 def _told(bands: Bands) -> str:
-    share, patients = f"{100 * bands.level:g} %", bands.patients - bands.n_failed
+    share, patients = f"{100 * bands.level:g} %", bands.n_patients - bands.n_failed
     if bands.shared is None:
         among = "" if bands.subject == "patients" else "predictions from "
         return f"{share} of {among}{patients} patients"
