@@ -92,7 +92,7 @@ class ElasticContact(SolvedContact):
         return values if angles.ndim else float(values)
 
     def stress(self, angle: Array, depth: Array) -> Stress:
-        """Compute stresses in the liner and its backing at polar angles (rad) and depths (mm) below the surface.
+        """Compute stresses in MPa in the liner and its backing at polar angles (rad) and depths (mm) below the bore.
 
         Angle and depth broadcast against each other; the results are NumPy arrays. The sum of modes is accurate to
         about 1e-4 of the peak pressure at the surface away from the edge of the contact, and to 1e-8 below it.
@@ -170,7 +170,7 @@ class ElasticContact(SolvedContact):
 
     @cached_property
     def peak_stress(self) -> Peak:
-        """Largest von Mises stress in the liner, with its depth and polar angle.
+        """Largest von Mises stress in the liner in MPa, with its depth in mm and polar angle in rad.
 
         Raises
         ------

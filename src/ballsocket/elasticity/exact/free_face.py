@@ -48,43 +48,38 @@ class FreeFace:
 
         The first functions, one for each layer, are 1 at its inner surface. The others vanish at the layer surfaces.
         """
-        shells, bounds = (
-            self.socket.shells,
-            numpy.cumsum([self.socket.radius, *(s.thickness for s in self.socket.shells)]),
-        )
+        layers = [self._layer_functions(number) for number in range(len(self.socket.shells))]
+        r, w, f, slope = (numpy.concatenate(parts) for parts in zip(*layers, strict=True))
+        return r, w, f, slope, numpy.repeat(numpy.arange(len(layers)), _RADIAL + 4)
+
+    def _layer_functions(self, number: int) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+        """Compute radii (mm), weights, and the radial shape functions with their derivatives in one layer."""
+        shells = self.socket.shells
+        bounds = numpy.cumsum([self.socket.radius, *(shell.thickness for shell in shells)])
         nodes, weights = (numpy.array(values) for values in gauss_legendre(_RADIAL + 4))
         count, bubbles = len(shells), _RADIAL - 1
-        r, w, f, slope, layer = [], [], [], [], []
         shapes, rates = _shifted_legendre(nodes, _RADIAL + 1)
-        for number, shell in enumerate(shells):
-            functions = numpy.zeros((2, len(nodes), count * _RADIAL))
-            span = slice(count + number * bubbles, count + (number + 1) * bubbles)
-            a = bounds[number]
-            if shell.thickness == inf:  # functions of s = a/r that vanish at infinity
-                radii, steps, rate = a / nodes, a / nodes**2, -(nodes**2) / a
-                functions[0, :, number], functions[1, :, number] = nodes, rate
-                hump = nodes * (1 - nodes)
-                functions[0, :, span] = hump[:, None] * shapes[:, :bubbles]
-                functions[1, :, span] = (((1 - 2 * nodes)[:, None] * shapes + hump[:, None] * rates) * rate[:, None])[
-                    :, :bubbles
-                ]
-            else:
-                log_ratio = log(bounds[number + 1] / a)
-                radii = a * numpy.exp(log_ratio * nodes)
-                steps, rate = log_ratio * radii, 1 / (log_ratio * radii)
-                functions[0, :, number], functions[1, :, number] = 1 - nodes, -rate
-                if number + 1 < count:
-                    functions[0, :, number + 1], functions[1, :, number + 1] = nodes, rate
-                scale = numpy.sqrt(2 * numpy.arange(1, _RADIAL) + 1)
-                functions[0, :, span] = (shapes[:, 2:] - shapes[:, :-2]) / (2 * scale)
-                functions[1, :, span] = scale * shapes[:, 1:-1] * rate[:, None]
-            r.append(radii)
-            w.append(weights * steps)
-            f.append(functions[0])
-            slope.append(functions[1])
-            layer.append(numpy.full(len(nodes), number))
-        arrays = (numpy.concatenate(values) for values in (r, w, f, slope, layer))
-        return tuple(arrays)  # type: ignore[return-value]
+        functions = numpy.zeros((2, len(nodes), count * _RADIAL))
+        span = slice(count + number * bubbles, count + (number + 1) * bubbles)
+        a = bounds[number]
+        if shells[number].thickness == inf:  # functions of s = a/r that vanish at infinity
+            radii, steps, rate = a / nodes, a / nodes**2, -(nodes**2) / a
+            functions[0, :, number], functions[1, :, number] = nodes, rate
+            hump = nodes * (1 - nodes)
+            functions[0, :, span] = hump[:, None] * shapes[:, :bubbles]
+            slopes = ((1 - 2 * nodes)[:, None] * shapes + hump[:, None] * rates) * rate[:, None]
+            functions[1, :, span] = slopes[:, :bubbles]
+        else:
+            log_ratio = log(bounds[number + 1] / a)
+            radii = a * numpy.exp(log_ratio * nodes)
+            steps, rate = log_ratio * radii, 1 / (log_ratio * radii)
+            functions[0, :, number], functions[1, :, number] = 1 - nodes, -rate
+            if number + 1 < count:
+                functions[0, :, number + 1], functions[1, :, number + 1] = nodes, rate
+            scale = numpy.sqrt(2 * numpy.arange(1, _RADIAL) + 1)
+            functions[0, :, span] = (shapes[:, 2:] - shapes[:, :-2]) / (2 * scale)
+            functions[1, :, span] = scale * shapes[:, 1:-1] * rate[:, None]
+        return radii, weights * steps, functions[0], functions[1]
 
     @cached_property
     def _stiffness(self) -> Numbers:

@@ -96,7 +96,7 @@ class HemisphereState(AbelState):
 
 
 def solve_on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState:
-    """Solve the contacts on a hemisphere that have the half angles of contacts on the closed sphere.
+    """Solve contacts on a hemisphere, at the same half angles as contacts on the closed sphere.
 
     The additional displacements and the pressures depend linearly on each other. A few fixed-point iterations with
     reduced-rank extrapolation solve this system.

@@ -56,7 +56,7 @@ class Intervals:
     grid: QuadratureGrid
 
     def closed_form_operators(self, a: Numbers) -> Operators:
-        """Compute the integral operators of the kernel's closed forms from their coefficients a_1 .. a_6."""
+        """Compute the integral operators of the part of the kernel in closed form, from its coefficients a_1 .. a_6."""
         grid, edge = self.grid, self.half_angle[:, None, None]
         square = numpy.multiply(edge, grid.distance, out=workspace_array("square", (edge.size, *grid.distance.shape)))
         square *= square
@@ -74,7 +74,7 @@ class Intervals:
         return left + right, right - left
 
     def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
-        """Add the integral operators of the kernel's remainder r_n in place."""
+        """Add the integral operators of the rest of the kernel, a sum of cosines with weights r_n, in place."""
         size = max(1, _BLOCK // (_wave_panels(self.half_angle, self.grid, len(remainder)).count * len(remainder)))
         for first in range(0, len(self.half_angle), size):
             block = slice(first, first + size)
@@ -107,61 +107,62 @@ class CachedIntervals:
         return {}
 
     def closed_form_operators(self, a: Numbers) -> Operators:
-        """Compute the integral operators of the kernel's closed forms from their coefficients a_1 .. a_6."""
+        """Compute the integral operators of the part of the kernel in closed form, from its coefficients a_1 .. a_6."""
         even, odd = self._unit_operators
         return even @ a, odd @ a
 
     def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
-        """Add the integral operators of the kernel's remainder r_n in place."""
+        """Add the integral operators of the rest of the kernel, a sum of cosines with weights r_n, in place."""
         if len(remainder) > _CACHED_COUNTS[-1]:
             self._intervals.add_remainder(remainder, operators)
             return
         count = min(cached for cached in _CACHED_COUNTS if cached >= len(remainder))
         if count not in self._cached_waves:
-            even, odd, even_back, odd_back = _waves_and_integrals(self.half_angle, self.grid, count)
-            self._cached_waves[count] = even.copy(), odd.copy(), even_back.copy(), odd_back.copy()
-        even, odd, even_back, odd_back = self._cached_waves[count]
+            even, odd, even_integrals, odd_integrals = _waves_and_integrals(self.half_angle, self.grid, count)
+            self._cached_waves[count] = even.copy(), odd.copy(), even_integrals.copy(), odd_integrals.copy()
+        even, odd, even_integrals, odd_integrals = self._cached_waves[count]
         first = slice(len(remainder))
         _add_products(
-            (even[..., first], odd[..., first], even_back[:, first], odd_back[:, first]), remainder, operators
+            (even[..., first], odd[..., first], even_integrals[:, first], odd_integrals[:, first]), remainder, operators
         )
 
 
 def _add_products(waves: tuple[Numbers, Numbers, Numbers, Numbers], remainder: Numbers, operators: Operators) -> None:
     """Add the operators of the remainder in place: cosines and sines times their integrals times r_n."""
-    even, odd, even_back, odd_back = waves
-    for operator, wave, back in zip(operators, (even, odd), (even_back, odd_back), strict=True):
+    even, odd, even_integrals, odd_integrals = waves
+    for operator, wave, integrals in zip(operators, (even, odd), (even_integrals, odd_integrals), strict=True):
         weighted = numpy.multiply(wave, remainder, out=workspace_array("weighted waves", wave.shape))
-        operator += numpy.matmul(weighted, back, out=workspace_array("remainder", operator.shape))
+        operator += numpy.matmul(weighted, integrals, out=workspace_array("remainder", operator.shape))
 
 
 def _waves_and_integrals(
     half_angle: Numbers, grid: QuadratureGrid, count: int
 ) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-    """Compute cos and sin of (n + ½) t at the targets, and the matrices of integrals of functions times them.
+    """Compute the cosines and sines of (n + ½) t, and the matrices that integrate functions times them.
 
-    The shapes are (loads, points + 1, count) and (loads, count, points). The arrays are valid until the next call.
-    These waves are shorter than the variations of the pressure, so they are integrated at their own points.
+    The cosines and sines at the targets have the shape (loads, points + 1, count), the matrices (loads, count, points).
+    All arrays are valid until the next call. The waves are shorter than the variations of the pressure, so they are
+    integrated at their own points.
     """
     edge = half_angle[:, None]
-    fine = _wave_panels(half_angle, grid, count)
+    panels = _wave_panels(half_angle, grid, count)
     even, odd = _waves("targets", edge * grid.position, count)
     odd *= edge[..., None]
     even *= edge[..., None]
-    fine_even, fine_odd = _waves("sources", edge * fine.position, count)
+    panel_cosines, panel_sines = _waves("sources", edge * panels.position, count)
     shape = (len(half_angle), count, grid.points)
-    back = numpy.matmul(
-        fine_even.swapaxes(-1, -2), _even_interpolation(grid, fine), out=workspace_array("even back", shape)
+    even_integrals = numpy.matmul(
+        panel_cosines.swapaxes(-1, -2), _even_interpolation(grid, panels), out=workspace_array("even integrals", shape)
     )
-    odd_back = numpy.matmul(
-        fine_odd.swapaxes(-1, -2), _odd_interpolation(grid, fine), out=workspace_array("odd back", shape)
+    odd_integrals = numpy.matmul(
+        panel_sines.swapaxes(-1, -2), _odd_interpolation(grid, panels), out=workspace_array("odd integrals", shape)
     )
-    return even, odd, back, odd_back
+    return even, odd, even_integrals, odd_integrals
 
 
 def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Panels:
     """Choose quadrature panels that resolve this number of cosines and sines."""
-    return _panels_for(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
+    return _panels_with_points(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
 
 
 def _waves(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
@@ -216,7 +217,7 @@ class _Panels:
         return pi / 2 * numpy.cos(pi / 2 * y) * w
 
 
-def _panels_for(points: float) -> _Panels:
+def _panels_with_points(points: float) -> _Panels:
     """Choose panels with at least this number of points, rounded up so that few rules are built."""
     if points <= _LONGEST_PANEL:
         return _panels_of(1, _PANEL_STEP * ceil(points / _PANEL_STEP))
@@ -230,20 +231,20 @@ def _panels_of(panels: int, points: int) -> _Panels:
 
 
 @cache
-def _even_interpolation(grid: QuadratureGrid, fine: _Panels) -> Numbers:
+def _even_interpolation(grid: QuadratureGrid, panels: _Panels) -> Numbers:
     """Compute the matrix that interpolates an even function from a grid to panels, times their weights."""
-    return _interpolation(grid, fine, 0)
+    return _interpolation_matrix(grid, panels, 0)
 
 
 @cache
-def _odd_interpolation(grid: QuadratureGrid, fine: _Panels) -> Numbers:
+def _odd_interpolation(grid: QuadratureGrid, panels: _Panels) -> Numbers:
     """Compute the matrix that interpolates an odd function from a grid to panels, times their weights."""
-    return _interpolation(grid, fine, 1)
+    return _interpolation_matrix(grid, panels, 1)
 
 
-def _interpolation(grid: QuadratureGrid, fine: _Panels, parity: int) -> Numbers:
+def _interpolation_matrix(grid: QuadratureGrid, panels: _Panels, parity: int) -> Numbers:
     """Compute the matrix that interpolates a function of one parity from a grid to panels, times their weights."""
     y, w = grid.positive_nodes
     degree = 2 * numpy.arange(grid.points) + parity
-    P, Q = (numpy.polynomial.legendre.legvander(points, 2 * grid.points)[:, degree] for points in (y, fine.nodes[0]))
-    return fine.weights[:, None] * (Q @ ((2 * degree[:, None] + 1) * (w[:, None] * P).T))
+    P, Q = (numpy.polynomial.legendre.legvander(points, 2 * grid.points)[:, degree] for points in (y, panels.nodes[0]))
+    return panels.weights[:, None] * (Q @ ((2 * degree[:, None] + 1) * (w[:, None] * P).T))

@@ -69,7 +69,7 @@ class MeshedContact(SolvedContact):
 
     @property
     def peak_stress(self) -> Peak:
-        """Largest von Mises stress in the liner, with its depth and polar angle, at the nodes of the mesh."""
+        """Largest von Mises stress in the liner in MPa at the nodes of the mesh, with its depth and polar angle."""
         return self.section.peak_stress
 
     @property

@@ -68,7 +68,7 @@ def _check_geometry(settings: Settings, joint: Joint) -> None:
     """Raise ValueError for a geometry that cannot be meshed."""
     if isinstance(settings.spacing, Uniform):
         bore = socket_shape(joint, settings.cup).reach
-        _check_size(settings.spacing.size, joint, float(joint.socket_radius) * bore)
+        _check_element_size(settings.spacing.size, joint, float(joint.socket_radius) * bore)
     check_cup(settings.cup, joint)
 
 
@@ -91,8 +91,8 @@ def check_cup(cup: Cup, joint: Joint) -> None:
     require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer must leave half of the bore")
 
 
-def _check_size(size: float, joint: Joint, bore: float) -> None:
-    """Raise ValueError for elements of one size that do not fit the layers, or a bore of that length in mm."""
+def _check_element_size(size: float, joint: Joint, bore: float) -> None:
+    """Raise ValueError for an element size in mm that does not fit the layers or the length of the bore."""
     thicknesses = {"liner_thickness": joint.liner_thickness}
     thicknesses |= {f"backing[{number}].thickness": layer.thickness for number, layer in enumerate(joint.backing)}
     for name, thickness in thicknesses.items():

@@ -148,9 +148,9 @@ class _ConjugateGradients:
         response = self.compliance.displacement_in_single_precision(self.direction)
         length = integrate(self.residual, self.direction) / integrate(self.direction, response)
         self.previous_residual = self.residual
-        self._step(length[:, None, None], response)
+        self._change_pressures(length[:, None, None], response)
 
-    def _step(self, length: Numbers, response: Numbers) -> None:
+    def _change_pressures(self, length: Numbers, response: Numbers) -> None:
         """Change the pressures along the search direction by a length, and set negative ones to 0."""
         pressure = self.pressure + length * self.direction
         self.displacement = self.displacement + length * response

@@ -57,7 +57,7 @@ class EdgeRelation:
 
 
 def elastic_edges(joint: Joint, grid: Grid, bounded: bool) -> EdgeRelation:
-    """Return the edge relation of elastic bodies.
+    """Return the relation of pressure and gap near the edge of a contact of elastic bodies.
 
     At the distance s from the edge the pressure falls as s^(1/2), and the gap opens as s^(3/2).
     """
@@ -68,9 +68,9 @@ def elastic_edges(joint: Joint, grid: Grid, bounded: bool) -> EdgeRelation:
 
 
 def spring_edges(modulus: float, grid: Grid) -> EdgeRelation:
-    """Return the edge relation of springs with a modulus in MPa/mm.
+    """Return the relation of pressure and gap near the edge of a contact on springs.
 
-    Pressure and gap are one linear function.
+    `modulus` is in MPa/mm. Pressure and gap are one linear function.
     """
     return EdgeRelation(compliance=numpy.full((grid.rings, 1), 1 / modulus), inset=0.0, bounded=True)
 

@@ -97,7 +97,7 @@ def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
         raise IsADirectoryError(EISDIR, "a file is needed, but this is a folder", str(path))
     with write_atomically(path) as draft:  # raises an error at once if the file cannot be written
         stored: dict[str, Numbers] = {}
-        with _pool(workers) as pool:
+        with _process_pool(workers) as pool:
             for name, spec in _TABLE_SPECS.items():
                 stored[name] = spec.fit(pool.map)
         with draft.open("wb") as stream:
@@ -106,7 +106,7 @@ def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
 
 
 @contextmanager
-def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+def _process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Open a pool of processes with one thread each, so that sums have the same order for any number of them."""
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))
@@ -280,7 +280,7 @@ def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
     """
     chebyshev.tables(str(path))  # raises an error at once for a file without tables
     rigid, elastic = random_contacts(points, seed=2021), random_contacts(max(points // 5, 1), seed=2022, elastic=True)
-    with _pool(workers) as pool:
+    with _process_pool(workers) as pool:
         known = [
             numpy.array(list(pool.map(_solve_exact, zip(*numbers, strict=True), chunksize=50))).T
             for numbers in (rigid, elastic)
