@@ -16,7 +16,9 @@ Deflections = tuple[Array, Array, Array, Array]
 
 @dataclass(frozen=True, kw_only=True)
 class Bristles(Coulomb):
-    """LuGre model of friction, for a deflection z, a slip v and a normal force N::
+    """LuGre friction with the deflection of bristles as an internal state.
+
+    For a deflection z, a slip v and a normal force N::
 
         z' = v - σ0 q(v) z/(h μ(q)),    f = -N (σ0 z + σ1 z' + σ2 v),
 
@@ -79,7 +81,9 @@ class Bristles(Coulomb):
 def bristle_forces(
     centre: BallCentre, slip: Sliding, deflection: Deflections, bristles: Bristles
 ) -> tuple[Deflections, Deflections, Array]:
-    """Compute friction per normal force, the rate of the deflections, and the dissipated power per normal force.
+    """Compute the friction of bristles, the rate of their deflections, and the dissipated power.
+
+    Friction and power are divided by the normal force.
 
     The friction has three components across the load and one about it, a moment divided by the lever ρ.
     """
@@ -111,7 +115,10 @@ _TRANSITION_SPEED_SQUARED = 1e-30
 
 
 def _patch(slip: Deflections, centre: BallCentre) -> tuple[Array, Deflections, Array]:
-    """Compute the effective slip speed, its slopes over half the squares of the slip, and the smallest slope."""
+    """Compute the effective slip speed of the patch, its slopes, and the smallest slope.
+
+    The slopes are derivatives by half the squares of the slip components.
+    """
     gx, gy, gz, gr = slip
     m = versine(centre)
     across, kappa = gx * gx + gy * gy + gz * gz, tilt_share(m)

@@ -14,7 +14,7 @@ from .restitution import Relation, restitution_of
 
 @dataclass(frozen=True, kw_only=True)
 class Damping:
-    """Damping of a contact with the normal force F + (χ F + τ k) ḋ, which is never negative.
+    """Contact damping with the normal force F + (χ F + τ k) ḋ, which is never negative.
 
     F and k are the elastic force and stiffness at the indentation d. The term with χ is that of Hunt & Crossley. The
     term with τ is a liner of Kelvin-Voigt springs with the pressure K (u + τ u̇). It also dissipates the power
@@ -55,7 +55,10 @@ class Damping:
         _set_checked(self, "time", "a retardation time (s) must be at least 0 and finite")
 
     def restitution(self, speed: float) -> float:
-        """Compute the coefficient of restitution at an impact speed in mm/s from χ alone, for any law F(d)."""
+        """Compute the coefficient of restitution at an impact speed in mm/s from the hysteresis χ alone.
+
+        It does not depend on the force law F(d).
+        """
         return restitution_of(self.hysteresis * speed)
 
 
@@ -66,7 +69,7 @@ def _set_checked(damping: Damping, name: str, allowed: str) -> None:
 
 
 def of_restitution(relation: Relation, restitution: float, impact_speed: float) -> Damping:
-    """Compute the damping for a coefficient of restitution at an impact speed by a published relation.
+    """Compute the damping that gives a coefficient of restitution at an impact speed, by a published relation.
 
     Parameters
     ----------
@@ -89,6 +92,8 @@ def of_restitution(relation: Relation, restitution: float, impact_speed: float) 
 
 
 def _constructor(relation: Relation) -> Callable[..., Damping]:
+    """Make the function that computes damping from a coefficient of restitution by one relation."""
+
     def damping(*, restitution: float, impact_speed: float) -> Damping:
         return of_restitution(relation, restitution, impact_speed)
 

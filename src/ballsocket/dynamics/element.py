@@ -1,4 +1,4 @@
-"""Force element: model, joint, damping and friction, evaluated at states of the ball."""
+"""Force element: contact model, joint, damping and friction, evaluated at states of the ball."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _NUMPY_FLOAT = numpy.float64
 
 @dataclass(frozen=True, eq=False)
 class ForceElement:
-    """Ball joint as a force element for time-stepping programs.
+    """Force element of a ball joint for time-stepping programs.
 
     Parameters
     ----------
@@ -81,6 +81,7 @@ class ForceElement:
     constants: Constants = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        """Check the parts of the element, and set its potential and constants."""
         check_joint(self.joint)
         for name, kind in (("model", Model), ("damping", Damping), ("friction", Friction | Bristles), ("cup", Cup)):
             value = getattr(self, name)
@@ -108,12 +109,13 @@ class ForceElement:
 
     @property
     def remembers(self) -> str:
-        """Sentence that names the internal state of the contact; empty without one."""
+        """Note on the internal state of the contact (bristles or adhesion); empty without one."""
         if isinstance(self.friction, Bristles):
             return "bristles have a state"
         return "an adhesive ball has a state" if self.stretch > 0.0 else ""
 
     def _constants(self, smoothing: float) -> Constants:
+        """Collect the constants of joint, damping, friction and cup."""
         joint, cup = self.joint.with_floats(), self.cup
         damping = self.damping or Damping()
         friction = self.friction if isinstance(self.friction, Friction) else Friction(coefficient=0.0)
@@ -142,7 +144,7 @@ class ForceElement:
         deflection: Any = _ZERO_DEFLECTION,
         attached: Any = False,
     ) -> Load:
-        """Compute the load at a state, in axes fixed to the socket.
+        """Compute force, moment and energy at a state of the ball, in axes fixed to the socket.
 
         Parameters
         ----------
@@ -173,6 +175,7 @@ class ForceElement:
             return apply_bristles(load, self.friction, deflection)
 
     def _of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
+        """Compute the load at a single state of plain numbers."""
         constants = self.constants
         centre = centre_of(*position, constants.clearance)
         sticks = self.stretch > 0.0
@@ -189,6 +192,7 @@ class ForceElement:
         return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, centre, contact, position, velocity, spin)
 
     def _of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
+        """Compute the loads at an array of states."""
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
         position = check_vectors("position", position, axes[0])
@@ -204,7 +208,10 @@ class ForceElement:
         return Load(force, moment, contact.energy, self, centre, contact, r, v, w)
 
     def _attached_centre(self, centre: BallCentre, attached: Any) -> BallCentre:
-        """Return the centre of an adhesive ball: without contact before first touch, unless it is attached."""
+        """Return the ball centre, moved out of contact where an adhesive ball is not attached.
+
+        Before first touch an adhesive ball has no contact unless it is attached.
+        """
         if self.stretch == 0.0:
             return centre
         in_contact = attached | (centre.indentation >= self.stretch)
@@ -212,7 +219,7 @@ class ForceElement:
 
     @property
     def wall(self) -> float:
-        """Largest indentation in mm that wall thickness and model allow."""
+        """Largest indentation in mm that the wall thickness and the model allow."""
         return self.constants.wall - self.stretch
 
     @cached_property
@@ -221,7 +228,7 @@ class ForceElement:
 
     @cached_property
     def curves(self) -> tuple[CurveLaw, CurveLaw]:
-        """Half angle (rad) and largest pressure (MPa) over the indentation, as curves in logarithms."""
+        """Curves of the half angle (rad) and the largest pressure (MPa) over the indentation, in logarithms."""
         return _curve_of(self.model, self.joint, "half_angle"), _curve_of(self.model, self.joint, "max_pressure")
 
     def half_angle(self, indentation: Array) -> Array:
@@ -234,7 +241,7 @@ class ForceElement:
 
 
 def components(value: Any, name: str = "a state") -> Vector:
-    """Return the components of a vector as floats; raise ValueError without three real numbers."""
+    """Convert a vector to three floats; raise ValueError for anything but three real numbers."""
     try:
         x, y, z = value
         if isinstance(x + y + z, complex):
@@ -249,7 +256,7 @@ def components(value: Any, name: str = "a state") -> Vector:
 
 
 def _as_array_like(position: Any, value: Any) -> Any:
-    """Convert a list to an array like the position."""
+    """Convert a tuple or list to an array of the same library as the position."""
     if type(value) not in _SEQUENCES:
         return value
     like = to_common_arrays(position)[0]
@@ -261,7 +268,7 @@ def _split(value: Any) -> Vector:
 
 
 def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
-    """Fit a curve of a contact quantity over the indentation, up to the socket radius."""
+    """Fit a curve to a contact quantity over the indentation, up to the socket radius."""
     joint = joint.with_floats()
     shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
     return curve_law(
@@ -270,7 +277,7 @@ def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
 
 
 def _read(curve: CurveLaw, indentation: Array) -> Array:
-    """Evaluate a curve at indentations of any sign: 0 without contact, NaN beyond its end."""
+    """Evaluate a curve at indentations in mm: 0 without contact, NaN beyond its end."""
     if type(indentation) is float:
         return curve(indentation)[0]
     ends = curve.shallowest, curve.deepest, curve.first, curve.density

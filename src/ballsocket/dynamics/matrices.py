@@ -1,4 +1,4 @@
-"""Vectors and matrices of components, and the damping matrix of a load."""
+"""Damping matrix of a load, and vectors and matrices built of components."""
 
 from __future__ import annotations
 
@@ -13,14 +13,17 @@ from .reaction import SMOOTHING_SHARE, BallCentre, Constants, Elastic, Sliding, 
 
 
 def vector(kind: type, *components: Array) -> Any:
-    """Return components as a tuple, or as the last axis of an array."""
+    """Join components to a tuple, or along the last axis of an array."""
     if kind is tuple:
         return components
     return arrays.namespace(*components).stack(components, axis=-1)
 
 
 def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Any:
-    """Compute -∂(F, M)/∂(v, ω) of damping and friction at a constant normal force: (..., 6, 6)."""
+    """Compute the damping matrix -∂(F, M)/∂(v, ω) at a constant normal force: (..., 6, 6).
+
+    The units are N s/mm, N s and N mm s.
+    """
     centre, contact = BallCentre(*_arrays(centre)), Elastic(*_arrays(contact))
     velocity, spin = _arrays(velocity), _arrays(spin)
     n, unit, zero = _vector(centre.x, centre.y, centre.z), *_one_and_zero(centre.distance)
@@ -51,7 +54,10 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
 
 
 def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Vector, constants: Constants) -> tuple[Array, Array]:
-    """Compute the derivative of the normal force over ḋ, and the drag of a contact that moves along the socket."""
+    """Compute the damping coefficients of the contact, along the load and across it, in N s/mm.
+
+    The first is the derivative of the normal force by ḋ, the second the drag of a contact that moves along the socket.
+    """
     lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
     force = contact.normal + lossy * _normal_speed(centre, velocity)
     if constants.smoothing > 0.0:
@@ -65,7 +71,7 @@ def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Vector, consta
 def _potential_curvature(
     centre: BallCentre, slip: Sliding, directions: Vector, rates: tuple[Array, Array], constants: Constants
 ) -> Array:
-    """Compute half of the second derivatives of q² over velocity and spin: (..., 6, 6)."""
+    """Compute half of the second derivatives of the squared slip speed q² by velocity and spin: (..., 6, 6)."""
     xp = arrays.namespace(rates[0])
     (translation, turning, drilling), (v, b), kappa = directions, rates, friction.tilt_share(versine(centre))
     share, drill = kappa * kappa, slip.lever_squared * slip.spin * slip.spin
@@ -103,7 +109,7 @@ def _project(directions: Array, rates: Array) -> Array:
 
 
 def _friction_fall(slip: Sliding, constants: Constants) -> Array:
-    """Compute the derivative of the friction rate over q."""
+    """Compute the derivative of the friction rate by the effective slip speed q."""
     q = slip.speed
     mu = friction.coefficient_at(q, constants.sliding, constants.static, constants.stribeck_speed)
     mu_slope = -2.0 * (mu - constants.sliding) * q / (constants.stribeck_speed * constants.stribeck_speed)
@@ -123,7 +129,7 @@ def _vector(*components: Array) -> Any:
 
 
 def matrix(rows: Any) -> Any:
-    """Stack rows of components along the last two axes of an array."""
+    """Join rows of components to matrices along the last two axes of an array."""
     stacked = [_vector(*row) for row in rows]
     return arrays.namespace(*stacked).stack(stacked, axis=-2)
 

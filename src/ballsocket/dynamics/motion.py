@@ -1,4 +1,4 @@
-"""Motion of a ball in its socket over time, with the balances of energy and angular momentum."""
+"""Motion of a ball in its socket over time, with its balances of energy and angular momentum."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TONNE = 1e-3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Motion:
-    """Motion of a ball over time.
+    """Simulated motion of a ball over time.
 
     Without bristles and adhesion it is computed by a method of order 2: errors of positions and phases fall with the
     square of the step. Energy and angular momentum are conserved to rounding at any step, see `drift` and
@@ -69,35 +69,40 @@ class Motion:
 
     @cached_property
     def load(self) -> Load:
-        """Load at each step."""
+        """Contact load at each time."""
         return self.element(self.position, self.velocity, self.spin, self.deflection, self.attached)
 
     @cached_property
     def kinetic(self) -> Numbers:
-        """Kinetic energy in N mm: (steps,)."""
+        """Kinetic energy of translation and rotation in N mm: (steps,)."""
         with numpy.errstate(over="ignore"):
             rotation = self.inertia * numpy.sum(self.spin**2, axis=1)
             return TONNE / 2 * (self.mass * numpy.sum(self.velocity**2, axis=1) + rotation)
 
     @cached_property
     def total(self) -> Numbers:
-        """Elastic, kinetic and dissipated energy minus the work of the pull in N mm: (steps,), constant to rounding."""
+        """Balance of energies in N mm: (steps,), constant to rounding.
+
+        It is the elastic, kinetic and dissipated energy minus the work of the pull.
+        """
         return self.energy + self.kinetic + self.lost - self.work
 
     @property
     def drift(self) -> float:
-        """Largest change of the total energy relative to the largest kinetic or elastic energy."""
+        """Largest change of the total energy, relative to the largest kinetic or elastic energy."""
         with numpy.errstate(all="ignore"):
             return float(numpy.max(abs(self.total - self.total[0])) / max(self.kinetic.max(), self.energy.max()))
 
     @cached_property
     def angular_momentum(self) -> Numbers:
-        """Angular momentum of the ball's centre about the socket's centre, in N mm s: (steps, 3)."""
+        """Angular momentum m r x v of the ball about the socket's centre in N mm s: (steps, 3)."""
         return TONNE * self.mass * numpy.cross(self.position, self.velocity)
 
     @property
     def angular_drift(self) -> float | None:
-        """Largest change of the angular momentum less `pull_moment` over the largest product m r v; 0 but for rounding.
+        """Largest relative error of the angular momentum; 0 but for rounding.
+
+        It is the largest change of the angular momentum less `pull_moment`, over the largest product m r v.
 
         In a cup it is the component about the dome axis. None where the angular momentum is not conserved: friction,
         bristles and a retarded liner have a moment about the socket's centre.
@@ -117,7 +122,7 @@ class Motion:
         return numpy.linalg.norm(self.position, axis=1) - float(self.element.joint.clearance)
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary for JSON, in s, mm, N and N mm."""
+        """Return the results of the motion as a dictionary for JSON, in s, mm, N and N mm."""
         force = numpy.linalg.norm(self.load.force, axis=1)
         ends = {"stored": self.energy, "kinetic": self.kinetic, "lost": self.lost, "work": self.work}
         return {

@@ -1,4 +1,4 @@
-"""Formulas of the force element on components, for numbers and arrays, compiled functions and exported programs.
+"""Formulas of the force element by components, for numbers, arrays, compiled functions and exported programs.
 
 r = (x, y, z) is the position of the ball centre relative to the socket centre, in axes fixed to the socket. From it
 follow e = |r|, n = r/e and d = e - c. All forces act on the ball, and all moments about its centre. `Load` gives force
@@ -18,7 +18,7 @@ Vector = tuple[Array, Array, Array]
 
 
 class Constants(NamedTuple):
-    """Numbers of a force element except those of its potential: lengths in mm, speeds in mm/s, times in s.
+    """Constants of a force element except its potential: lengths in mm, speeds in mm/s, times in s.
 
     `rim` is the polar angle of the cup rim in rad, 0 without a rim. `dome` is the unit vector to the pole of the bore.
     """
@@ -57,7 +57,7 @@ class BallCentre(NamedTuple):
 
 
 class Elastic(NamedTuple):
-    """Elastic contact at a position of the ball.
+    """Elastic contact forces and stiffnesses at a position of the ball.
 
     `energy` is U, `normal` the force dU/de to the socket centre, and `stiffness` is d²U/de². Damping is proportional to
     `damped_force` and `damped_stiffness`, which lack the gradient of the rim. `covered` is the angle to the rim over
@@ -92,13 +92,13 @@ def centre_of(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
 
 
 def elastic(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
-    """Compute the elastic contact at a position, with first touch rounded off over ± `smoothing`."""
+    """Compute the elastic contact at a position, with a first touch smoothed over ± `smoothing`."""
     rounded = ramp(centre.indentation, constants.smoothing)
     return elastic_from_slopes(centre, rounded, potential(rounded[0]), constants)
 
 
 def elastic_from_slopes(centre: BallCentre, rounded: Vector, slopes: Vector, constants: Constants) -> Elastic:
-    """Compute the elastic contact from energy, force and stiffness at the rounded indentation."""
+    """Compute the elastic contact from energy, force and stiffness at the smoothed indentation."""
     d = centre.indentation
     depth, slope, bend = rounded
     energy, force, stiffness = slopes
@@ -114,7 +114,10 @@ def elastic_from_slopes(centre: BallCentre, rounded: Vector, slopes: Vector, con
 def elastic_at_rim(
     centre: BallCentre, depth: Array, slope: Array, bend: Array, U: Array, F: Array, k: Array, constants: Constants
 ) -> Elastic:
-    """Compute the elastic contact in a cup, with the energy U W(s) for s = (rim - γ)/ε and cos ε = c/(c + d)."""
+    """Compute the elastic contact in a cup, whose rim cuts part of the contact.
+
+    The energy is U W(s) with s = (rim - γ)/ε and cos ε = c/(c + d).
+    """
     lean, across, ax, ay, az = dome_angle(centre, constants)
     gamma = atan2(across, lean)
     touching = depth > 0.0
@@ -150,7 +153,10 @@ def elastic_at_rim(
 
 
 def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute cos γ, sin γ and sin γ times the direction of increasing γ, the angle from the dome axis to the ball."""
+    """Compute cosine, sine and direction of the angle γ from the dome axis to the ball.
+
+    The last three results are sin γ times the direction of increasing γ.
+    """
     lean = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
     ax, ay, az = (
         lean * centre.x - constants.dome_x,
@@ -161,7 +167,7 @@ def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, 
 
 
 def pressed(elastic: Elastic, speed: Array, constants: Constants) -> Array:
-    """Compute the normal force towards the socket centre, F + (χ F + τ k) ḋ, which damping never makes negative."""
+    """Compute the damped normal force F + (χ F + τ k) ḋ towards the socket centre in N; damping causes no tension."""
     lossy = constants.hysteresis * elastic.damped_force + constants.time * elastic.damped_stiffness
     force = elastic.normal + lossy * speed
     if constants.smoothing > 0.0:
@@ -171,7 +177,7 @@ def pressed(elastic: Elastic, speed: Array, constants: Constants) -> Array:
 
 
 def undamped_pull(contact: Elastic) -> Elastic:
-    """Remove damping from a contact in tension, where it would generate energy."""
+    """Remove the damping of a contact in tension, where it would generate energy."""
     pressing = clip(contact.damped_force, 0.0, float("inf"))
     return contact._replace(damped_force=pressing, damped_stiffness=clip(contact.damped_stiffness, 0.0, float("inf")))
 
@@ -181,7 +187,7 @@ SMOOTHING_SHARE = 0.1
 
 
 class Sliding(NamedTuple):
-    """Slip of a ball and its friction.
+    """Slip of the ball on the contact patch, with the rate of its friction.
 
     (`x`, `y`, `z`) is the velocity v across the load and (`bx`, `by`, `bz`) is b = R1 ω x n, both in mm/s. `spin` is
     the angular velocity about the load in rad/s, and `lever_squared` is in mm². `normal` is N, and `speed` the
@@ -207,7 +213,7 @@ class Sliding(NamedTuple):
 
 
 def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, constants: Constants) -> Sliding:
-    """Compute the slip of the ball on the patch and the rate of friction, from velocity and spin."""
+    """Compute the slip of the ball on the contact patch and the rate of friction."""
     (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
     speed, turning = vx * nx + vy * ny + vz * nz, wx * nx + wy * ny + wz * nz
@@ -231,14 +237,17 @@ def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, co
 
 
 def versine(centre: BallCentre) -> Array:
-    """Compute the versine 1 - cos ε = d/e of the overlap of ball and socket."""
+    """Compute the versine 1 - cos ε = d/e of the overlap of ball and socket; 0 without contact.
+
+    e is the distance of the centres.
+    """
     return where(centre.indentation > 0.0, centre.indentation * centre.over, 0.0)
 
 
 def reaction(
     centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants
 ) -> tuple[Array, ...]:
-    """Compute force (N) and moment (N mm) on the ball about its centre: six components."""
+    """Compute force (N) and moment (N mm) on the ball about its centre, as six components."""
     (vx, vy, vz), nx, ny, nz = velocity, centre.x, centre.y, centre.z
     speed = vx * nx + vy * ny + vz * nz
     normal = pressed(contact, speed, constants)
@@ -267,7 +276,7 @@ def reaction(
 
 
 def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Array:
-    """Compute the power dissipated by damping, liner and friction in N mm/s."""
+    """Compute the power in N mm/s dissipated by damping, liner and friction."""
     vx, vy, vz = velocity
     speed = vx * centre.x + vy * centre.y + vz * centre.z
     normal = pressed(contact, speed, constants)
@@ -282,7 +291,7 @@ def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Ve
 
 
 def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple[Array, ...]:
-    """Compute the tangent stiffness ∂²U/∂r² in N/mm: xx, yy, zz, xy, yz, zx."""
+    """Compute the components xx, yy, zz, xy, yz, zx of the tangent stiffness ∂²U/∂r² in N/mm."""
     nx, ny, nz, px, py, pz = centre.x, centre.y, centre.z, contact.px, contact.py, contact.pz
     # where the centres coincide, without clearance, the stiffness is isotropic
     across = where(centre.distance > 0.0, contact.normal * centre.over, contact.stiffness)
@@ -302,7 +311,7 @@ def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple
 
 
 def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
-    """Compute max(y, 0) and its two derivatives, rounded off between -width and width by a polynomial."""
+    """Compute a smoothed max(y, 0) and its two derivatives; a polynomial replaces the corner at ± `width`."""
     if width == 0.0:
         zero = 0.0 * y
         return where(y > 0.0, y, zero), where(y >= 0.0, zero + 1.0, zero), zero
@@ -312,7 +321,7 @@ def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
 
 
 def positive(y: Array, width: Array) -> Array:
-    """Compute the value of `ramp` for a width that may be an array, 0 included."""
+    """Compute a smoothed max(y, 0) like `ramp`, for a width that may be an array and 0."""
     span = where(width > 0.0, width, 1.0)
     t = clip((y + width) / (2.0 * span), 0.0, 1.0)
     return where(y >= width, y, 2.0 * width * _rounded(t))
@@ -324,7 +333,7 @@ def _rounded(t: Array) -> Array:
 
 
 def rim_share(centre: Array) -> tuple[Array, Array, Array]:
-    """Compute the energy share W(s) of a contact cut by a straight rim, with its first and second derivative.
+    """Compute the fraction W(s) of the contact energy inside a straight rim, with its two derivatives.
 
     s is the distance of the rim from the patch centre over the half angle. W is 1 for s >= 1, and 0 for s <= -1. It is
     the marginal of (1 - x² - y²)² over a disc, the energy density of radial springs under a small patch.

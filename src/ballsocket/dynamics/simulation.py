@@ -1,4 +1,4 @@
-"""Simulation of a ball in its socket, by energy-momentum steps or with the internal state of the contact."""
+"""Simulation of a ball in its socket, by energy-momentum steps or by integration of the contact's internal state."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def simulate(
     duration: float,
     step: float,
 ) -> Motion:
-    """Simulate a ball in a socket at rest, by steps that conserve energy and angular momentum to rounding.
+    """Simulate a ball in a fixed socket, by time steps that conserve energy and angular momentum.
 
     The method is of order 2: halving the step divides the errors of positions and phases by four. Conserved energy
     does not bound these errors. Bristles and adhesion have a state; with them the motion is integrated by
@@ -85,7 +85,7 @@ _MAX_STEPS = 1e8
 
 @dataclass(frozen=True)
 class _InitialValueProblem:
-    """Initial state of a ball, and `count` steps of `step` seconds."""
+    """Initial value problem of a ball: initial state, pull, and `count` time steps of `step` seconds."""
 
     element: Any
     plain: ForceElement
@@ -97,7 +97,7 @@ class _InitialValueProblem:
     count: int
 
     def failure(self) -> Motion:
-        """Return the motion of a ball whose initial state has no load."""
+        """Return the motion without a step, for an initial state that has no load."""
         states, none = numpy.array([self.initial]), numpy.zeros(1)
         return self._motion(
             states, self.plain(states[:, :3]), lost=none, work=none, ended=_failure_note(self.plain, states[0])
@@ -120,7 +120,7 @@ class _InitialValueProblem:
         return self._motion(states, self.plain(position), lost=lost, ended=ended, **sums)
 
     def with_contact_state(self) -> Motion:
-        """Simulate by LSODA a contact with bristles or adhesion."""
+        """Simulate a contact with bristles or adhesion by LSODA."""
         ball = StatefulIntegrator(
             element=self.plain, mass=TONNE * self.mass, inertia=TONNE * self.inertia, pull=pull_of(self.pull)
         )
@@ -134,6 +134,7 @@ class _InitialValueProblem:
         return self._motion(results.states, load, lost=results.dissipated, work=results.work, **contact_state)
 
     def _motion(self, states: Numbers, load: Load, **results: Any) -> Motion:
+        """Make the motion from states (steps, 9), the contact load, and further results."""
         return Motion(
             element=self.plain,
             mass=self.mass,
@@ -148,14 +149,14 @@ class _InitialValueProblem:
 
 
 def _pulls(pull: Any, time: Numbers) -> Numbers:
-    """Return the pull at times: (times, 3)."""
+    """Evaluate the pull in N at the given times: (times, 3)."""
     if callable(pull):
         return numpy.array([components(pull(instant), "a pull") for instant in time.tolist()])
     return numpy.tile(numpy.array(components(pull, "a pull")), (len(time), 1))
 
 
 def _failure_note(element: ForceElement, state: Numbers, time: float = 0.0, step: float = 0.0) -> str:
-    """Describe the reason for the end of a motion, with the state after the last step."""
+    """Describe the reason for the early end of a motion, with its time and state."""
     x, y, z, *rates = state.tolist()
     notes = element((x, y, z), rates[:3], rates[3:]).notes
     return f"after {time:g} s: {'; '.join(notes) or f'a step of {step:g} s did not converge'}"

@@ -1,4 +1,4 @@
-"""Time steps of a ball in its socket: of second order, with energy and angular momentum conserved to rounding.
+"""Time steps of a ball in its socket: second order, conserving energy and angular momentum to rounding.
 
 The elastic force is the discrete gradient of Gonzalez in the invariants of the contact: the distance e = |r| of the
 centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly the decrease of the energy.
@@ -45,7 +45,10 @@ class BallState(NamedTuple):
 
 
 class StepResult(NamedTuple):
-    """Result of a step: the ball, the dissipated energy (N mm), and True for a converged step that ends in the cup."""
+    """Result of a time step: the ball, the dissipated energy in N mm, and convergence.
+
+    `converged` is True for a converged step that ends in the cup.
+    """
 
     ball: BallState
     dissipated: float
@@ -55,7 +58,7 @@ class StepResult(NamedTuple):
 def advance(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pull: Vector, h: float
 ) -> StepResult:
-    """Advance a ball by a step of h seconds.
+    """Advance the state of a ball by a time step of h seconds.
 
     `mass` is in t (N s²/mm), `inertia` in t mm², and `pull` is a constant force in N. The unknowns are velocity and
     spin at the midpoint of the step. Each iteration solves for them with constant stiffness and rate of friction.
@@ -114,7 +117,7 @@ For a shorter path the mean gradient is exact to rounding.
 
 
 class Midpoint(NamedTuple):
-    """Velocity and spin at the midpoint of a step."""
+    """Velocity (mm/s) and spin (rad/s) at the midpoint of a time step."""
 
     x: float
     y: float
@@ -125,7 +128,7 @@ class Midpoint(NamedTuple):
 
 
 class MeanContact(NamedTuple):
-    """Elastic contact at the mean of the invariants of both ends of a step.
+    """Elastic contact at the mean position of a time step, between its start and its end.
 
     `centre` has the direction of the midpoint of the step and the mean distance. `end` is the position after the step.
     `shortening` is the distance at the midpoint over the mean distance. The force of the rim acts along (`qx`, `qy`,
@@ -145,7 +148,7 @@ class MeanContact(NamedTuple):
 
 
 class StepResidual(NamedTuple):
-    """Residuals of force (N) and moment (N mm) in the balance of a step, with the contact at its midpoint."""
+    """Residuals of force (N) and moment (N mm) in the balance of a time step, with its mean contact."""
 
     x: float
     y: float
@@ -160,7 +163,7 @@ class StepResidual(NamedTuple):
 
 
 def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
-    """Compute the ball after a step from velocity and spin at its midpoint."""
+    """Compute the state of the ball after a time step from velocity and spin at the midpoint."""
     ax, ay, az, bx, by, bz = midpoint
     return BallState(
         ball.x + h * ax, ball.y + h * ay, ball.z + h * az,
@@ -170,7 +173,7 @@ def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
 
 
 def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
-    """Compute the speed of the ball plus that of its turning surface, in mm/s."""
+    """Compute a bound of the surface speed of the ball in mm/s, from translation and rotation."""
     turning = abs(midpoint.wx) + abs(midpoint.wy) + abs(midpoint.wz)
     return abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z) + constants.ball_radius * turning
 
@@ -178,7 +181,9 @@ def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
 def mean_contact(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, midpoint: Midpoint, distance: float, h: float
 ) -> MeanContact:
-    """Compute the elastic contact at the mean of both ends of a step, for the distance of the centres at its start.
+    """Compute the elastic contact at the mean position of a time step.
+
+    `distance` is the distance of the centres at the start.
 
     The mean is that of e and of r·dome. To third order the difference of the energy is the gradient at the mean times
     the differences of the invariants, also for a step that hardly changes them.
@@ -221,7 +226,10 @@ def residual_of(  # type: ignore[no-untyped-def]
     pull: Vector,
     h: float,
 ) -> StepResidual:
-    """Compute the residual at a midpoint: inertia minus the discrete gradient, damping, friction and pull."""
+    """Compute the residual of the equations of motion at a trial midpoint of a time step.
+
+    It is the inertia minus the discrete gradient of the energy, damping, friction and pull.
+    """
     ax, ay, az, bx, by, bz = midpoint
     mean = mean_contact(potential, constants, ball, midpoint, distance, h)
     centre, end, contact = mean.centre, mean.end, mean.contact
@@ -267,7 +275,10 @@ def newton_correction(
     inertia_rate: float,
     h: float,
 ) -> tuple[Midpoint, float]:
-    """Solve for the midpoint with constant stiffness and rate of friction; return it with its change in mm/s."""
+    """Solve the linearised equations of a time step for a new midpoint; also return its change in mm/s.
+
+    The stiffness and the rate of friction are constant in this solution.
+    """
     centre, contact, R1 = residual.centre, residual.contact, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
     push, mixed, rotation, drill = 0.0, 0.0, 0.0, 0.0
@@ -307,7 +318,9 @@ def newton_correction(
 def march(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pulls, h: float, states, dissipated
 ) -> int:
-    """Advance a ball, write `states` (steps + 1, 9) and `dissipated` (steps + 1,), and return the converged steps.
+    """Advance a ball over all time steps, fill `states` and `dissipated`, and return the number of converged steps.
+
+    `states` is (steps + 1, 9) and `dissipated` (steps + 1,), in N mm.
 
     `pulls` (steps, 3) is the pull in each step. In Python it is a list, which is faster than an array.
     """

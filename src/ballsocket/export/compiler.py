@@ -1,4 +1,4 @@
-"""C compiler, and the platform of the libraries that it builds."""
+"""C compiler, and target platforms of the libraries that it builds."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _BITS = {"x86_64": 64, "aarch64": 64, "x86": 32}
 
 @dataclass(frozen=True, kw_only=True)
 class Platform:
-    """Operating system and processor of a library, named as in FMI 3.
+    """Operating system and processor of a library, with the names of FMI 3.
 
     Attributes
     ----------
@@ -64,11 +64,11 @@ _MACH_O_PROCESSORS: Mapping[int, str] = {0x01000007: "x86_64", 0x0100000C: "aarc
 
 
 class NoCompiler(RuntimeError):  # noqa: N818 - a sentence for people
-    """Missing or failing C compiler."""
+    """Error for a missing or failing C compiler."""
 
 
 def compiler() -> list[str]:
-    """Return the command of the C compiler: the variable CC, or the first of cc, gcc and clang.
+    """Return the command of the C compiler: the variable CC, else the first of cc, gcc and clang.
 
     Raises
     ------
@@ -90,7 +90,9 @@ def compiler() -> list[str]:
 
 
 def compile_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Platform:
-    """Compile sources of a folder into a shared library; CC and CFLAGS of the environment apply.
+    """Compile C sources of a folder into a shared library, and return its platform.
+
+    The environment variables CC and CFLAGS apply.
 
     Returns
     -------
@@ -130,7 +132,7 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
 
 
 def shared_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Path:
-    """Compile sources of a folder into a shared library for this machine.
+    """Compile C sources of a folder into a shared library that runs on this machine.
 
     Raises
     ------
@@ -145,7 +147,7 @@ def shared_library(sources: Sequence[str], library: Path, folder: Path, options:
 
 
 def library_platform(header: bytes) -> Platform:
-    """Read the platform of a library from its first bytes: ELF, PE or Mach-O.
+    """Determine the platform of a library from its first bytes (ELF, PE or Mach-O).
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Programs that a joint can be exported to, and the files written for each of them."""
+"""Registry of export targets, and the files of each target program."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _module(job: ExportJob) -> dict[str, str]:
 
 
 def _library(job: ExportJob, folder: Path) -> str:
-    """Compile the library that the Python module loads; return a note if that fails."""
+    """Compile the library that the Python module loads; return a note if compilation fails."""
     try:
         shared_library([f"{job.name}.c"], Path(job.template_context["library"]), folder)
     except NoCompiler as error:
@@ -34,6 +34,7 @@ def _library(job: ExportJob, folder: Path) -> str:
 
 
 def _opensim(job: ExportJob) -> Texts:
+    """Write the OpenSim file with an expression force."""
     fit, element = job.expression, job.element
     accuracy = fit.range_note or f"within {100 * fit.error:.1g} % of the law"
     hysteresis = element.damping.hysteresis if element.damping else 0.0
@@ -57,7 +58,7 @@ def _mujoco(job: ExportJob) -> Texts:
 
 
 def _plugin(job: ExportJob, folder: Path) -> str:
-    """Compile the library, and the plug-in if MuJoCo is installed; return a note if one is missing."""
+    """Compile the library, and the plug-in if MuJoCo is installed; return a note on a missing one."""
     missing, mujoco = _library(job, folder), find_spec("mujoco")
     if missing or mujoco is None or not mujoco.submodule_search_locations:
         return missing or "the plug-in is not compiled: mujoco, whose headers it needs, is not installed"
@@ -77,6 +78,7 @@ def _drake(job: ExportJob) -> Texts:
 
 
 def _exudyn(job: ExportJob) -> Texts:
+    """Write the Exudyn module and its fitted power law."""
     power, constants = job.power, job.element.constants
     fit = {
         "stiffness": repr(power.stiffness * 1e3**power.exponent),
@@ -90,6 +92,7 @@ def _exudyn(job: ExportJob) -> Texts:
 
 
 def _modelica(job: ExportJob) -> Texts:
+    """Write the Modelica package around the C program."""
     constants = job.element.constants
     declarations = "\n".join(
         f'    parameter Real {number.name}(unit="{number.si_unit}", min=0) = {start * number.si!r} "{number.meaning}";'
@@ -122,7 +125,7 @@ _COLUMNS = ("indentation_mm", "force_N", "stiffness_N/mm", "energy_N_mm", "half_
 
 
 def _law_table(element: ForceElement, depth: float) -> str:
-    """Write the law up to a depth in mm as CSV."""
+    """Write the force law up to an indentation in mm as CSV."""
     d = numpy.linspace(0.0, depth, _TABLE_ROWS)
     energy, force, stiffness = element.potential(d)
     angle = numpy.degrees(element.half_angle(d))
@@ -132,7 +135,7 @@ def _law_table(element: ForceElement, depth: float) -> str:
 
 
 def _power_law(element: ForceElement, fit: PowerFit, version: str) -> str:
-    """Write k and n, their error, and the expressions for Adams, MotionSolve and Simpack; in mm, N, s."""
+    """Write the fitted power law, its error, and expressions for Adams, MotionSolve and Simpack, in mm, N and s."""
     c, k, n = element.constants.clearance, fit.stiffness, fit.exponent
     return f"""# F = k d^n of a ball in a socket, in mm, N and s; written by ballsocket {version}
 # {element.model.name}: error up to {fit.depth:.4g} mm at most {100 * fit.error:.2g} % of the force at that depth

@@ -19,7 +19,7 @@ from .modulus import Modulus, hess_forsbach
 
 
 def _adhesion_number(model: AdhesiveSocket, contact: Any) -> Array:
-    """Return the adhesion number of a contact."""
+    """Return the adhesion number η = u_c/c of a contact."""
     return model.adhesion_number(contact.joint)
 
 
@@ -63,7 +63,7 @@ class AdhesiveSocket(ClosedForm):
 
     @property
     def parameters(self) -> tuple[Array, ...]:
-        """Work of adhesion and constants of the modulus."""
+        """Work of adhesion in N/mm, followed by the constants of the modulus."""
         return (self.work_of_adhesion, *self.modulus.constants)
 
     name: ClassVar[str] = "adhesive"
@@ -94,12 +94,12 @@ class AdhesiveSocket(ClosedForm):
         return sqrt(2 * self.work_of_adhesion / self.modulus.of(joint))
 
     def adhesion_number(self, joint: Joint) -> Array:
-        """Compute the adhesion number η = u_c/c."""
+        """Compute the adhesion number η = u_c/c, the critical stretch over the clearance."""
         c = joint.clearance
         return where(c > 0, self.critical_stretch(joint) / safe_divisor(c), inf)
 
     def pull_off(self, joint: Joint) -> Array:
-        """Compute the pull-off force in N, positive; NaN where η is 1 or more.
+        """Compute the pull-off force, the largest tensile contact force, in N (positive); NaN for η of 1 or more.
 
         -F = π R2² K c [1 - (1 - η)^(2/3) (1 + 2η)^(1/3)], about 2π w R2²/c for small η.
         """
@@ -111,7 +111,7 @@ class AdhesiveSocket(ClosedForm):
         return float(pull) if isinstance(pull, float) else pull
 
     def _factor(self, joint: Joint) -> Array:
-        """Compute 2π R2² K in N/mm²."""
+        """Compute the factor 2π R2² K in N/mm² between the scaled force in mm and the force in N."""
         return 2 * pi * joint.socket_radius**2 * self.modulus.of(joint)
 
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -128,6 +128,7 @@ class AdhesiveSocket(ClosedForm):
         return self._factor(joint) / 2 * where(u < c, partial, d * (d - c) / 3)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
+        """Compute the indentation d in mm of a force in N, by a bracketed Newton iteration."""
         # between the springs without adhesion (too stiff) and with the full hemisphere in contact (too compliant);
         # a contact that is small against the clearance has F = π R2² K (d² - u_c²)/c, from which it starts
         R2, c, K = joint.socket_radius, joint.clearance, self.modulus.of(joint)
@@ -155,7 +156,7 @@ class AdhesiveSocket(ClosedForm):
         return self.modulus.of(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        """Compute the pressure in MPa, which is negative (tension) towards the edge."""
+        """Compute the pressure p(φ) in MPa, negative (tension) near the edge and 0 outside the contact."""
         versine = versine_of(angle)
         u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
         _, edge = _edge_cosine(indentation, joint.clearance, self.critical_stretch(joint))
@@ -163,25 +164,28 @@ class AdhesiveSocket(ClosedForm):
 
 
 def _edge_cosine(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
-    """Compute k = cos ε, which is 0 if the full hemisphere adheres, and m = 1 - k."""
+    """Compute cos ε and 1 - cos ε at the edge of the adhering region; cos ε is 0 if the full hemisphere adheres.
+
+    ε is the half angle of the contact, with the springs under tension included.
+    """
     e = safe_divisor(c + d)
     return clip((c - stretch) / e, 0.0, 1.0), clip((d + stretch) / e, 0.0, 1.0)
 
 
 def _force(d: Array, c: Array, stretch: Array) -> Array:
-    """Compute F/(2π R2² K)."""
+    """Compute the scaled force F/(2π R2² K) in mm of an adhesive contact."""
     # F/(2π R2² K) = e (1 - k³)/3 - c (1 - k²)/2, with m = 1 - k taken out
     k, m = _edge_cosine(d, c, stretch)
     return m * (d * (1 + k) / 2 - (c + d) * m * (1 + 2 * k) / 6)
 
 
 def _stiffness(d: Array, c: Array, stretch: Array) -> Array:
-    """Compute the derivative of `_force` by d."""
+    """Compute the scaled stiffness, the derivative of the scaled force by the indentation."""
     # the edge moves: dF/de + dF/dk dk/de
     k, m = _edge_cosine(d, c, stretch)
     return m * (1 + k + k * k) / 3 - k * k * stretch / safe_divisor(c + d)
 
 
 def _force_and_stiffness(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
-    """Compute F/(2π R2² K) and its derivative by d."""
+    """Compute the scaled force F/(2π R2² K) in mm and its derivative by the indentation."""
     return _force(d, c, stretch), _stiffness(d, c, stretch)

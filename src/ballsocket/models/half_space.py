@@ -19,7 +19,9 @@ from .closed_form import ClosedForm
 
 
 class HalfSpace(ClosedForm):
-    """Contact of two elastic half-spaces with the gap A r^(2n); r is the arc from the pole, a = R2 ε at the edge.
+    """Contact of two elastic half-spaces whose gap is the power law A r^(2n).
+
+    The radius r is the arc from the pole, and a = R2 ε is its value at the edge.
 
     d = κ A a^(2n) with κ = (2n)!!/(2n - 1)!!. The gap is the parabola of the two spheres at r = R2, so n = 1 is Hertz:
     A = R2^(2 - 2n)/(2 R*), R* = R1 R2/c.
@@ -37,14 +39,14 @@ class HalfSpace(ClosedForm):
     @property
     @abstractmethod
     def order(self) -> int:
-        """Exponent n of the gap."""
+        """Half of the gap's exponent: n for the gap A r^(2n)."""
 
     @property
     def validity(self) -> tuple[Range, ...]:
         return _FIRST_TOUCH
 
     def _profile(self, joint: Joint) -> Array:
-        """Compute κ A in mm^(1 - 2n)."""
+        """Compute the coefficient κ A in mm^(1 - 2n) that relates indentation and contact radius, d = κ A a^(2n)."""
         n = self.order
         kappa = 4**n * factorial(n) ** 2 / factorial(2 * n)
         R2 = joint.socket_radius
@@ -93,6 +95,7 @@ class HalfSpace(ClosedForm):
         return _peak(self.order)[0] * self.half_angle(joint, indentation)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         # p = (E*/π) κ A 2n ∫ t^(2n - 1)/sqrt(t² - r²) dt over r..a, a polynomial in y = sqrt(a² - r²)
         n = self.order
         r = angle * joint.socket_radius
@@ -110,7 +113,10 @@ class HalfSpace(ClosedForm):
 
 @cache
 def _peak(order: int) -> tuple[float, float]:
-    """Compute the position r/a of the largest pressure and its ratio to p0; for n = 2 they are 1/√2 and √2."""
+    """Compute the relative radius r/a of the largest pressure, and the ratio of that pressure to p0.
+
+    For n = 2 they are 1/√2 and √2.
+    """
     if order == 1:
         return 0.0, 1.0
     # the pressure as a polynomial in y = sqrt(1 - r²/a²), its only maximum inside
@@ -139,7 +145,7 @@ _PROMISE = Promise(within=0.15)
 
 @dataclass(frozen=True, kw_only=True)
 class Hertz(HalfSpace):
-    """Contact of Hertz 1882 with R* = R1 R2/c, valid at first touch only in a close socket.
+    """Hertz contact (1882) with R* = R1 R2/c; in a close-fitting socket valid at small loads only.
 
     References
     ----------
@@ -158,7 +164,7 @@ class Hertz(HalfSpace):
 
 @dataclass(frozen=True, kw_only=True)
 class Steuermann(HalfSpace):
-    """Contact of Steuermann 1939: two half-spaces with a gap r^(2n), flatter at the pole than Hertz's parabola.
+    """Contact after Steuermann 1939: two half-spaces with a gap r^(2n), flatter at the pole than a parabola.
 
     Parameters
     ----------

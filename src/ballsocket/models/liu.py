@@ -17,7 +17,7 @@ from .kinematics import angle_of, linear_indentation_of_versine, linear_versine,
 
 @dataclass(frozen=True, kw_only=True)
 class LiuReconstruction(ClosedForm):
-    """Contact with F = (4π λ/3) E* R2 d²/(c + d): a reconstruction, not the published formula.
+    """Reconstruction of Liu's contact model, F = (4π λ/3) E* R2 d²/(c + d); not the published formula.
 
     The model is a rigid cone on a plane Winkler layer as thick as the socket's radius, with an ellipsoidal pressure
     over the contact circle a = R2 sin ε, cos ε = c/(c + d). The text of Liu et al. 2006 and its coefficients were not
@@ -49,6 +49,7 @@ class LiuReconstruction(ClosedForm):
 
     @property
     def validity(self) -> tuple[Range, ...]:
+        """Validity ranges of the model; none of its results is validated."""
         same = "made for ball and socket of one material"
         massive = "made for a massive socket: the liner's thickness does not enter"
         return (
@@ -59,7 +60,7 @@ class LiuReconstruction(ClosedForm):
         )
 
     def _factor(self, joint: Joint) -> Array:
-        """Compute (4π λ/3) E* R2."""
+        """Compute the force factor (4π λ/3) E* R2 in N/mm."""
         return 4 * pi * self.coefficient / 3 * joint.effective_modulus * joint.socket_radius
 
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -88,7 +89,7 @@ class LiuReconstruction(ClosedForm):
         return linear_indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
     def _square_sine(self, joint: Joint, indentation: Array) -> Array:
-        """Compute sin² ε."""
+        """Compute sin² ε of the contact's half angle."""
         # sin² ε = d (2c + d)/(c + d)²
         e = safe_divisor(joint.clearance + indentation)
         return indentation / e * (1 + joint.clearance / e)

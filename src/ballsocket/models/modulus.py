@@ -23,7 +23,7 @@ Formula = Callable[..., Array]
 
 @dataclass(frozen=True, kw_only=True)
 class Modulus:
-    """Foundation modulus, a function from Joint to MPa/mm, with its source, its domain and its validity.
+    """Foundation modulus K in MPa/mm as a function of the joint, with its source, domain and validity.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class Modulus:
     promise: Promise | None = None
 
     def __call__(self, joint: Joint) -> Array:
-        """Compute K in MPa/mm.
+        """Compute the foundation modulus K of a joint in MPa/mm.
 
         Raises
         ------
@@ -68,7 +68,7 @@ class Modulus:
             return self.of(joint)
 
     def of(self, joint: Joint) -> Array:
-        """Compute K in MPa/mm without checks."""
+        """Compute the foundation modulus K of a joint in MPa/mm without checking the domain."""
         R2, L, E, nu = joint.socket_radius, joint.liner_thickness, joint.liner.young, joint.liner.poisson
         if type(R2) is float and type(L) is float and type(E) is float and type(nu) is float and not self.constants:
             return _of_numbers(self.formula, R2, L, E, nu)
@@ -80,12 +80,12 @@ class Modulus:
 
 @lru_cache(maxsize=256)
 def _of_numbers(formula: Formula, R2: float, L: float, E: float, nu: float) -> float:
-    """Compute K of plain numbers, cached because all laws of a joint use it."""
+    """Compute the foundation modulus K in MPa/mm from plain numbers, cached because all laws of a joint use it."""
     return float(formula(R2, L, E, nu))
 
 
 def vessel_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
-    """Compute K_B of a spherical vessel."""
+    """Compute the foundation modulus K_B of a thick spherical vessel in MPa/mm."""
     # Eq. (14), K_B, with 1 - κ³ = (1 - κ)(1 + κ + κ²) and 1 - κ = L/(R2 + L)
     ratio = R2 / L
     kappa = ratio / (1 + ratio)
@@ -94,40 +94,40 @@ def vessel_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
 
 
 def layer_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
-    """Compute K_BL of a bonded layer."""
+    """Compute the foundation modulus K_BL of a bonded layer (constrained column) in MPa/mm."""
     # Eq. (15), K_BL
     return (1 - nu) / ((1 + nu) * (1 - 2 * nu)) * E / L
 
 
 def polynomial_formula(R2: Array, L: Array, E: Array, nu: Array, c1: Array, c2: Array, c3: Array) -> Array:
-    """Compute K by Eq. (18) with constants."""
+    """Compute the foundation modulus K in MPa/mm from the polynomial of Eq. (18) in R2/L."""
     return E / R2 * eq_18((c1, c2, c3), R2 / L)
 
 
 def corrected_vessel_formula(R2: Array, L: Array, E: Array, nu: Array, a0: Array, a1: Array, a2: Array) -> Array:
-    """Compute the vessel modulus K_B times a quadratic polynomial of κ = R2/(R2 + L)."""
+    """Compute the foundation modulus of a vessel, corrected by a quadratic polynomial of κ = R2/(R2 + L), in MPa/mm."""
     ratio = R2 / L
     kappa = ratio / (1 + ratio)
     return vessel_formula(R2, L, E, nu) * (a0 + kappa * (a1 + kappa * a2))
 
 
 def constant_formula(R2: Array, L: Array, E: Array, nu: Array, K: Array) -> Array:
-    """Return the constant K in the shape of the joint."""
+    """Return a constant foundation modulus in MPa/mm, broadcast to the shape of the joint."""
     return K + 0.0 * R2
 
 
 def _poisson(low: float, high: float, why: str) -> Range:
-    """Make a range of the liner's Poisson's ratio."""
+    """Make a validity range of the liner's Poisson's ratio."""
     return Range(quantity="joint.liner.poisson", low=low, high=high, why=why)
 
 
 def _thickness_ratio(low: float, high: float, why: str) -> Range:
-    """Make a range of R2/L."""
+    """Make a validity range of the thickness ratio R2/L."""
     return Range(quantity="joint.thickness_ratio", low=low, high=high, why=why)
 
 
 def _contact_width(low: float, why: str) -> Range:
-    """Make a lower limit of the contact width over the liner thickness."""
+    """Make a validity range with a smallest ratio of contact width to liner thickness."""
     return Range(quantity="width_ratio", low=low, why=why)
 
 
@@ -179,7 +179,9 @@ bonded_layer = Modulus(
 
 
 def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
-    """Make a modulus K R2/E = c1 + c2 (R2/L) + c3 (R2/L)², Eq. (18) of Heß & Forsbach 2021 with custom constants.
+    """Make a foundation modulus from Eq. (18) of Heß & Forsbach 2021 with custom constants.
+
+    The modulus is K R2/E = c1 + c2 (R2/L) + c3 (R2/L)².
 
     Parameters
     ----------
@@ -204,7 +206,9 @@ def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
 
 
 def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Modulus:
-    """Make a modulus K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L): the vessel corrected for non-uniform pressure.
+    """Make the foundation modulus of a vessel, corrected for non-uniform pressure by custom constants.
+
+    The modulus is K_B (a0 + a1 κ + a2 κ²) with κ = R2/(R2 + L).
 
     The idea is Imado's (2005); the factor is custom, for instance fitted with `calibrate`.
 
@@ -258,7 +262,10 @@ def constant(modulus: Array) -> Modulus:
 
 
 def _bulge(contact: Any) -> Array:
-    """Compute (ν - 0.43) a/L, a measure of volume constraint; 0 for compressible liners."""
+    """Compute (ν - 0.43) a/L, a measure of the volume constraint in a nearly incompressible liner.
+
+    It is 0 for a compressible liner.
+    """
     excess = contact.joint.liner.poisson - 0.43
     return clip(excess, 0.0, inf) * contact.width_ratio
 

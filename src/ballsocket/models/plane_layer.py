@@ -1,4 +1,4 @@
-"""Rigid ball on a plane elastic layer bonded to a rigid base: numerical, and exact for that plane problem."""
+"""Rigid ball on a plane elastic layer bonded to a rigid base: a numerical solution, exact for the plane problem."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ MAX_THICKNESS_RATIO = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class PlaneLayer(Model):
-    """Jin's (2000) ball in a socket: a paraboloid of R* = R1 R2/c on a plane layer of the liner's thickness.
+    """Jin's (2000) model of a ball in a socket: a paraboloid of R* = R1 R2/c on a plane layer of liner thickness.
 
     In Abel space the layer's Hankel kernel 2(1 - ν²)/E Φ(kL)/k gives an integral equation of the second kind for H(t)
     on [0, a]. It is solved with Gauss-Legendre points (see the docs, theory):
@@ -93,6 +93,7 @@ class PlaneLayer(Model):
     promise: ClassVar[Promise] = Promise(within=0.15)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve for force and indentation from loads of one kind, and mark contacts that did not converge."""
         solution = _solution(joint, kind, load)
         force, indentation = solution.values
         reached = indentation if kind == "indentation" else force
@@ -106,7 +107,10 @@ class PlaneLayer(Model):
 
 
 def layer_ratio(x: Array, poisson: Array) -> Array:
-    """Compute Φ(x) - 1 of the bonded layer: Φ = [2 k0 sinh 2x - 4x]/[2 k0 cosh 2x + 1 + k0² + 4x²], k0 = 3 - 4ν."""
+    """Compute the kernel Φ(x) - 1 of a bonded layer, the deviation of its response from that of a half-space.
+
+    Φ = [2 k0 sinh 2x - 4x]/[2 k0 cosh 2x + 1 + k0² + 4x²], k0 = 3 - 4ν, and x is the wave number times L.
+    """
     k0 = 3 - 4 * poisson
     decay = exp(-2 * x)
     denominator = k0 * (1 + decay * decay) + (1 + k0 * k0 + 4 * x * x) * decay
@@ -115,7 +119,9 @@ def layer_ratio(x: Array, poisson: Array) -> Array:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LayerSolution:
-    """Scaled solution at the contact width α = a/L: H = (a²/(R* C)) (δ h1 - h2), δ = d R*/a², C = 2(1 - ν²)/E.
+    """Solution of the plane layer at the contact width α = a/L, with the quantities of a `Contact`.
+
+    The scaled solution is H = (a²/(R* C)) (δ h1 - h2), with δ = d R*/a² and C = 2(1 - ν²)/E.
 
     h1 and h2 solve for the right-hand sides 1 and x², x = t/a. The quadrature is accurate for widths up to `widest`. A
     `Contact` delegates its quantities to this class.
@@ -127,19 +133,24 @@ class LayerSolution:
 
     @cached_property
     def _points(self) -> tuple[Array, Array, Array, Array]:
-        """Quadrature in the caller's array library: x, its weights, k L, its weights."""
+        """Quadrature points x in the radius and k L in the wave number, each with its weights.
+
+        They are arrays of the caller's library: x, weights of x, k L, weights of k L.
+        """
         like = {"dtype": self.width.dtype, "device": arrays.device(self.width)}
         return tuple(arrays.namespace(self.width).asarray(part, **like) for part in _quadrature(self.widest))
 
     @cached_property
     def _kernel(self) -> Array:
-        """Weighted Φ - 1 at the points in k L."""
+        """Kernel Φ - 1 at the quadrature points of the wave number, times their weights."""
         _, _, k, wk = self._points
         return layer_ratio(k, self.joint.liner.poisson[..., None]) * wk
 
     @cached_property
     def _transforms(self) -> tuple[Array, Array, Array, Array]:
-        """Integrals of h1 and h2 (last axis): the transform ∫ h cos(k x α) dx, the edge value h(1), ∫ h dx, ∫ h x² dx.
+        """Integrals of h1 and h2 (last axis): cosine transform, edge value h(1), ∫ h dx and ∫ h x² dx.
+
+        The transform is ∫ h cos(k x α) dx.
 
         They are computed in blocks, since the waves of all contacts together may exceed the memory.
         """
@@ -155,7 +166,7 @@ class LayerSolution:
         return transform, edge, mean, second
 
     def _block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
-        """Solve a block of contacts."""
+        """Solve the integral equations of a block of contacts; return the four parts of `_transforms`."""
         xp = arrays.namespace(width)
         x, wx, k, _ = self._points
         alpha = width[:, None, None]
@@ -172,7 +183,7 @@ class LayerSolution:
 
     @cached_property
     def _scaled_indentation(self) -> Array:
-        """Scaled indentation δ."""
+        """Scaled indentation δ = d R*/a²."""
         edge = self._transforms[1]
         return edge[..., 1] / edge[..., 0]
 
@@ -188,11 +199,11 @@ class LayerSolution:
 
     @property
     def _compliance(self) -> Array:
-        """Plane compliance C in 1/MPa."""
+        """Plane compliance C = 2(1 - ν²)/E in 1/MPa."""
         return 2 * (1 - self.joint.liner.poisson**2) / self.joint.liner.young
 
     def _steepness(self, x: Array) -> Array:
-        """Compute -H'(x)/x in units of a²/(R* C): 4/π on a half-space."""
+        """Compute the scaled slope -H'(x)/x in units of a²/(R* C): 4/π on a half-space."""
         xp = arrays.namespace(self.width)
         kernel, k, transform = self._kernel, self._points[2], self._transforms[0]
         wave = k * self.width[..., None]
@@ -204,7 +215,7 @@ class LayerSolution:
 
     @cached_property
     def values(self) -> tuple[Array, Array]:
-        """Force F and indentation d."""
+        """Force F in N and indentation d in mm."""
         mean = self._transforms[2]
         delta, a = self._scaled_indentation, self._radius
         force = 2 * pi * a**3 / (self._compliance * self._effective_radius) * (delta * mean[..., 0] - mean[..., 1])
@@ -212,7 +223,7 @@ class LayerSolution:
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:
-        """Derivatives dF/da and dd/da: a wider contact adds a flat punch of its radius."""
+        """Derivatives dF/da in N/mm and dd/da by the contact radius: a wider contact adds a flat punch."""
         steep = self._steepness(self.width**0)
         deepening = self._radius / self._effective_radius * steep / self._transforms[1][..., 0]
         return self.stiffness * deepening, deepening
@@ -272,7 +283,7 @@ TRACED_WIDTH = 8.0
 
 @cache
 def _quadrature(widest: float) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray]:
-    """Compute points and weights along the radius (0 to 1) and in k L, to 1e-10 for a width a/L of `widest`."""
+    """Compute points and weights along the radius (0 to 1) and in k L, accurate to 1e-10 up to a width a/L."""
     x, wx = map(numpy.array, gauss_legendre(20 + 4 * ceil(widest)))
     k, wk = map(numpy.array, gauss_legendre(60 + 14 * ceil(widest)))
     return x, wx, 22 * k, 22 * wk  # Φ - 1 is below 1e-16 beyond k L = 22
@@ -283,7 +294,7 @@ _POWERS = {"force": (8.0, 3.4, 2.0), "indentation": (4.0, 1.6, 0.8)}
 
 
 def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
-    """Solve for the width of the load; NaN where the half angle would exceed π/2."""
+    """Solve for the contact width of a load; NaN where the half angle would exceed π/2."""
     shape = (load, *joint.numbers())
     widest = broadcast(pi / 2 * clip(joint.thickness_ratio, 0.0, MAX_THICKNESS_RATIO), *shape)
     if arrays.concrete_values(widest) is None:
@@ -312,6 +323,6 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
 
 
 def _reach(width: Array) -> float:
-    """Return the width for a quadrature that is accurate for all widths; a constant one inside a traced call."""
+    """Return the largest width a/L as the accuracy range of a quadrature; a constant inside a traced call."""
     widths = arrays.concrete_values(width)
     return TRACED_WIDTH if widths is None else float(ceil(numpy.max(widths, initial=0.0, where=numpy.isfinite(widths))))

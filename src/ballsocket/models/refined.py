@@ -1,4 +1,4 @@
-"""Rigid ball in a bonded liner in closed form, from the liner's compliance at four wavelengths of the contact."""
+"""Refined model: a rigid ball in a bonded liner in closed form, from the liner's compliance at four wavelengths."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _FITTED = "fitted in this range with a rigid ball"
 
 @dataclass(frozen=True, kw_only=True)
 class Refined(Model):
-    """The paper's model with the liner's modes in place of a fitted modulus, and with a compliant edge.
+    """Refined foundation model, with a modulus from the liner's modal compliance and a compliant edge.
 
     cos ε = (c + λ d)/(c + d), p0 = K d, p = p0 sqrt(1 - y)(1 + β y), y = sin²(φ/2)/sin²(ε/2). K, λ and the force
     come from the compliance of the bonded liner at four wavelengths; 23 numbers are fitted to the exact solution (see
@@ -74,29 +74,33 @@ class Refined(Model):
     promise: ClassVar[Promise] = Promise(within=0.02)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve for the half angle of loads of one kind."""
         edge = _limit_half_angle(joint, load) if kind == "half_angle" else _solve_edge(joint, kind, load)
         return make_answer(RefinedSolution(joint=joint, edge=edge), kind, load)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RefinedSolution:
-    """Solution at the half angle `edge` (0: no load, NaN: no solution), with the quantities of a `Contact`."""
+    """Solution of the refined model at a half angle, with the quantities of a `Contact`.
+
+    `edge` is the half angle in rad: 0 without load, NaN without a solution.
+    """
 
     joint: Joint
     edge: Array
 
     @cached_property
     def _liner(self) -> Liner:
-        """Coefficients of the liner."""
+        """Compliance coefficients of the liner."""
         return _liner(self.joint)
 
     @cached_property
     def _scaled_contact(self) -> ScaledContact:
-        """Scaled contact at the half angle."""
+        """Dimensionless contact quantities at the half angle."""
         return scaled_contact(safe_divisor(self.edge), self._liner)
 
     def _or_zero(self, value: Array) -> Array:
-        """Replace values without load by 0."""
+        """Replace values of contacts without load by 0."""
         return where(self.edge > 0, value, 0.0 * self.edge)
 
     @property
@@ -105,7 +109,10 @@ class RefinedSolution:
         return self.joint.liner.young * self.joint.socket_radius * self._scaled_contact.secant
 
     def loads(self, kind: str, load: Array) -> tuple[Array, Array]:
-        """Compute F and d; the applied one is returned unchanged."""
+        """Compute the force F in N and the indentation d in mm from a load of one kind.
+
+        The applied load is returned unchanged.
+        """
         if kind == "force":
             d = load / self._secant
             return self._or_zero(load), self._or_zero(d)
@@ -113,7 +120,7 @@ class RefinedSolution:
         return self._or_zero(d * self._secant), self._or_zero(d)
 
     def relative_residual(self, indentation: Array) -> Array:
-        """Compute the relative error of the half angle for an indentation."""
+        """Compute the relative error of the half angle that solves for an indentation in mm."""
         d = self._scaled_contact.indentation
         error = abs(1 - indentation / (self.joint.clearance * d)) / self._scaled_contact.indentation_rate
         return where(self.edge > 0, error, 0.0)
@@ -135,6 +142,7 @@ class RefinedSolution:
 
     @cached_property
     def energy(self) -> Array:
+        """Elastic energy in N mm, integrated over the half angle."""
         # ∫ F (dd/dε) dε; the points are dense near the edge, where d increases fast
         edge = safe_divisor(self.edge)
         rate = self._scaled_contact.indentation_rate / edge
@@ -164,7 +172,7 @@ class RefinedSolution:
 
     @property
     def _peak_position(self) -> Array:
-        """Position y of the largest pressure: 0, the pole, for β up to 1/2."""
+        """Position y = sin²(φ/2)/sin²(ε/2) of the largest pressure: 0, the pole, for β up to 1/2."""
         fullness = self._fullness
         return where(fullness > 0.5, (2 * fullness - 1) / where(fullness > 0.5, 3 * fullness, 1.0), 0.0)
 
@@ -178,12 +186,15 @@ class RefinedSolution:
 
     @property
     def _edge_share(self) -> Array:
-        """Value sin²(ε/2)."""
+        """Squared sine sin²(ε/2) of half the half angle."""
         return sin(safe_divisor(self.edge) / 2) ** 2
 
     @cached_property
     def _fullness(self) -> Array:
-        """Coefficient β of the profile, from 2π R2² ∫ p cos φ sin φ dφ = F."""
+        """Shape coefficient β of the pressure profile, from the balance of pressure and force.
+
+        The balance is 2π R2² ∫ p cos φ sin φ dφ = F.
+        """
         S = self._edge_share
         mean = self._scaled_contact.secant * self._scaled_contact.compliance / (4 * pi * S)
         return (mean - 2 / 3 + 8 * S / 15) / (4 / 15 - 32 * S / 105)
@@ -194,7 +205,7 @@ class RefinedSolution:
         return ring * self.pole_pressure * (2 / 3 + 4 * self._fullness / 15)
 
     def _profile(self, y: Array) -> Array:
-        """Compute p/p0 at y up to 1."""
+        """Compute the pressure ratio p/p0 at the position y = sin²(φ/2)/sin²(ε/2), 0 to 1."""
         return arrays.sqrt(clip(1 - y, 0.0, 1.0)) * (1 + self._fullness * y)
 
     def pressure(self, angle: Array) -> Array:
@@ -203,26 +214,26 @@ class RefinedSolution:
 
 
 def _limit_half_angle(joint: Joint, half_angle: Array) -> Array:
-    """Return the half angle, NaN beyond the largest one."""
+    """Return the half angle in rad, replaced by NaN beyond the largest one that the model solves."""
     edge = broadcast(half_angle, half_angle, *joint.numbers())
     d = RefinedSolution(joint=joint, edge=edge)._scaled_contact.indentation
     return where((edge == 0) | ((edge <= MAX_HALF_ANGLE) & (d > 0)), edge, nan)
 
 
 def _solve_edge(joint: Joint, kind: str, load: Array) -> Array:
-    """Solve for the half angle of F or d, NaN beyond the largest one."""
+    """Solve for the half angle in rad of a force or an indentation; NaN beyond the largest half angle."""
     find = edge_of_force if kind == "force" else edge_of_indentation
     return where(load > 0, find(scaled_load(joint, kind, load), _liner(joint)), 0.0 * load)
 
 
 def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
-    """Compute F/(E R2 c) or d/c, with a positive value in place of no load."""
+    """Compute the dimensionless load F/(E R2 c) or d/c; a zero load is replaced by a positive number."""
     scale = joint.clearance * (joint.liner.young * joint.socket_radius if kind == "force" else 1.0)
     return broadcast(safe_divisor(load) / scale, load, *joint.numbers())
 
 
 def make_answer(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
-    """Make the solver result of a solution for loads of one kind."""
+    """Make the solver result of a solution, with its convergence check."""
     force, indentation = solution.loads(kind, load)
     return SolverResult(
         laws=solution,
@@ -237,12 +248,12 @@ def make_answer(solution: RefinedSolution, kind: str, load: Array) -> SolverResu
 
 
 def _liner(joint: Joint) -> Liner:
-    """Return the liner coefficients of a joint."""
+    """Return the compliance coefficients of a joint's liner."""
     nu, b = joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius
     return _liner_of_numbers(nu, b) if type(nu) is float and type(b) is float else liner_of(nu, b)
 
 
 @lru_cache(maxsize=256)
 def _liner_of_numbers(nu: float, b: float) -> Liner:
-    """Compute liner coefficients of plain numbers, cached for further loads."""
+    """Compute the compliance coefficients of a liner from plain numbers, cached for further loads."""
     return liner_of(nu, b)

@@ -1,4 +1,4 @@
-"""Files of the FMI cross-check: inputs, reference results of the Python element, and options of the run."""
+"""Files of the FMI cross-check: inputs, reference results of the Python element, and simulation options."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MM, _MPA = 1e-3, 1e6
 
 
 def write_cross_check(element: ForceElement, path: Path) -> tuple[Path, Path, Path]:
-    """Write NAME_in.csv, NAME_ref.csv and NAME_ref.opt beside the unit NAME.fmu.
+    """Write the files of the FMI cross-check, NAME_in.csv, NAME_ref.csv and NAME_ref.opt, beside NAME.fmu.
 
     Raises
     ------
@@ -37,7 +37,10 @@ def write_cross_check(element: ForceElement, path: Path) -> tuple[Path, Path, Pa
 
 
 def trajectory(element: ForceElement, time: Numbers) -> Numbers:
-    """Return states (times, 9) in mm, mm/s, rad/s of a ball that touches, slides, spins and separates."""
+    """Compute a test trajectory of a ball that touches, slides, spins and separates: states (times, 9).
+
+    The units are mm, mm/s and rad/s.
+    """
     constants = element.constants
     depth = 0.01 * min(constants.clearance, constants.wall) or 0.001 * constants.socket_radius
     phase = 2 * numpy.pi * time / STOP
@@ -52,12 +55,12 @@ def trajectory(element: ForceElement, time: Numbers) -> Numbers:
 
 
 def in_si(state: Numbers) -> Numbers:
-    """Convert states to m, m/s and rad/s."""
+    """Convert states from mm, mm/s and rad/s to m, m/s and rad/s."""
     return numpy.hstack([_MM * state[:, :6], state[:, 6:]])
 
 
 def reference_loads(element: ForceElement, state: Numbers) -> Numbers:
-    """Compute the outputs of the Python element, in their order and in SI units."""
+    """Compute the reference outputs of the Python element at states, in the order and units of the FMU."""
     load = element(state[:, :3], state[:, 3:6], state[:, 6:])
     scalars = (_MM * load.energy, load.half_angle, _MPA * load.max_pressure)
     return numpy.hstack([load.force, _MM * load.moment, numpy.stack(scalars, axis=-1)])

@@ -28,7 +28,7 @@ STOP, STEP = 0.1, 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class UnitInformation:
-    """Name, identifier and texts of a unit in its description."""
+    """Name, identifier and texts of an FMU for its description."""
 
     name: str
     guid: str
@@ -38,7 +38,7 @@ class UnitInformation:
 
 
 def fmi2_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
-    """Write the description for FMI 2.0."""
+    """Write `modelDescription.xml` for FMI 2.0, as bytes."""
     root = _root("2.0", information, {"guid": information.guid, "numberOfEventIndicators": "0"})
     files = SubElement(root[1], "SourceFiles")
     for parent in (SubElement(root[0], "SourceFiles"), files):
@@ -62,7 +62,7 @@ def fmi2_description(information: UnitInformation, variables: Sequence[Variable]
 
 
 def fmi3_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
-    """Write the description for FMI 3.0."""
+    """Write `modelDescription.xml` for FMI 3.0, as bytes."""
     root = _root("3.0", information, {"instantiationToken": information.guid})
     _units(root)
     _categories(SubElement(root, "LogCategories"))
@@ -83,7 +83,7 @@ def fmi3_description(information: UnitInformation, variables: Sequence[Variable]
 
 
 def build_description(information: UnitInformation) -> bytes:
-    """Write `buildDescription.xml`, the list of source files for FMI 3.0."""
+    """Write `buildDescription.xml`, the list of source files for FMI 3.0, as bytes."""
     root = Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = SubElement(root, "BuildConfiguration", modelIdentifier=information.name)
     files = SubElement(configuration, "SourceFileSet", language="C99")
@@ -93,6 +93,7 @@ def build_description(information: UnitInformation) -> bytes:
 
 
 def _root(version: str, information: UnitInformation, identifiers: dict[str, str]) -> Element:
+    """Make the root element of a description, with the capabilities of the unit."""
     texts = {
         "description": information.text,
         "generationTool": information.tool,
@@ -124,6 +125,7 @@ def _categories(parent: Element) -> None:
 
 
 def _attributes(variable: Variable) -> dict[str, str]:
+    """Return the XML attributes of a variable."""
     parameter = variable.causality == "parameter"
     attributes = {
         "name": variable.name,

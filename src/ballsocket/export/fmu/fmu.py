@@ -29,7 +29,7 @@ _ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)
 
 @dataclass(frozen=True, kw_only=True)
 class Standard:
-    """Version of FMI; `folder` returns the name of the folder with the binaries of a platform."""
+    """Version of the FMI standard; `folder` returns the folder name for the binaries of a platform."""
 
     version: str
     wrapper: str
@@ -49,7 +49,7 @@ STANDARDS: Mapping[int, Standard] = {
 
 @dataclass(frozen=True, kw_only=True)
 class FmuFile:
-    """Path of the archive, and a note on a missing binary; empty if the archive is complete."""
+    """Written FMU archive: its path, and a note on a missing binary; empty if the archive is complete."""
 
     path: Path
     missing: str = ""
@@ -57,7 +57,7 @@ class FmuFile:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fmu:
-    """Force element as a functional mock-up unit for model exchange and co-simulation, in SI units.
+    """Force element as an FMU (functional mock-up unit) for model exchange and co-simulation, in SI units.
 
     Inputs are position, velocity and spin; outputs are force, moment, energy, half angle and largest pressure. The unit
     has no states. Damping and friction are tunable parameters.
@@ -86,12 +86,12 @@ class Fmu:
 
     @property
     def standard(self) -> Standard:
-        """FMI standard of the version."""
+        """FMI standard of the unit."""
         return STANDARDS[self.version]
 
     @cached_property
     def sources(self) -> Mapping[str, str]:
-        """Contents of the files in the folder `sources`, by name."""
+        """Source files of the unit: contents by name."""
         values = {
             "name": self.name,
             "NAME": self.name.upper(),
@@ -103,7 +103,7 @@ class Fmu:
 
     @cached_property
     def guid(self) -> str:
-        """Identifier that links description and binary; it changes with every number."""
+        """Identifier that links description and binary; it depends on all numbers of the unit."""
         parts = (*self._program.values(), *self._numbers.values(), self.standard.version, self.name)
         return f"{{{UUID(bytes=sha256(''.join(parts).encode()).digest()[:16])}}}"
 
@@ -114,6 +114,7 @@ class Fmu:
 
     @cached_property
     def _numbers(self) -> dict[str, str]:
+        """Numbers and texts of the C wrapper, by the names in its template."""
         element, constants = self.element, self.element.constants
         deepest = valid_depth(element)
         beyond = f"{element.model.name} is not valid beyond an indentation of {deepest:.4g} mm"
@@ -129,7 +130,7 @@ class Fmu:
 
     @property
     def information(self) -> UnitInformation:
-        """Name, identifier and texts for the description."""
+        """Name, identifier and texts of the unit for its description."""
         texts = [name for name in self.sources if name.endswith(".c")]
         text = f"ball in a socket, {self.element.model.title}"
         return UnitInformation(
@@ -137,7 +138,7 @@ class Fmu:
         )
 
     def write(self, path: Path) -> FmuFile:
-        """Write the archive; `missing` states the binary that it lacks.
+        """Write the FMU archive; the result names a binary that is missing.
 
         Raises
         ------

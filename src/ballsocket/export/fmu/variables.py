@@ -1,4 +1,4 @@
-"""Variables of the unit for both versions of the standard: real numbers in SI units."""
+"""Variables of the FMU for both versions of the standard: real numbers in SI units."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ UNITS: Mapping[str, Mapping[str, int]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Variable:
-    """Input, output or parameter; `reference` is its number in the standard, `needs` are the inputs it depends on."""
+    """Input, output or parameter of the FMU.
+
+    `reference` is its number in the standard, and `needs` are the inputs that it depends on.
+    """
 
     reference: int
     name: str
@@ -55,7 +58,7 @@ _STATE, _POSITION = tuple(range(1, 10)), (1, 2, 3)
 
 
 def variables(element: ForceElement) -> tuple[Variable, ...]:
-    """List the variables of an element in the order of their references, from 1."""
+    """List the variables of an FMU in the order of their references, from 1."""
     parts = [*_inputs(), *_outputs(), *_parameters(element)]
     return tuple(Variable(reference=number, **part) for number, part in enumerate(parts, 1))
 
