@@ -12,7 +12,7 @@ import ballsocket as bs
 from ballsocket.dynamics import Damping, ForceElement, Friction
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.fmu import Fmu, write_cross_check
-from ballsocket.export.fmu.cross_check import in_si, reference_loads, trajectory
+from ballsocket.export.fmu.variables import in_si, reference_loads, trajectory
 
 from ..cli.command import run
 from ..joints import HIP

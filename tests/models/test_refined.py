@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.models.liner_compliance import liner_of, log_compliance, log_compliance_anywhere
+from ballsocket.models.liner_compliance import liner_coefficients, log_compliance, log_compliance_any_wave
 from ballsocket.models.refined_state import NUMBERS
 
 from ..joints import HIP, random_joint
@@ -140,10 +140,10 @@ def shell_compliance(k: mpmath.mpf, nu: float, b: float) -> mpmath.mpf:
 def test_the_compliance_is_that_of_the_shell(poisson, thickness):
     """At q = 1 too, where the closed expression is 0/0 and its two forms meet."""
     numbers = np.sqrt([0.05, 0.3, 0.6999, 0.7001, 0.74, 0.75, 0.75 + 1e-13, 0.76, 0.7999, 0.8001, 2.0, 12.0, 400.0])
-    liner = liner_of(poisson, 1 + thickness)
+    liner = liner_coefficients(poisson, 1 + thickness)
     with mpmath.workdps(40):
         for number in numbers:
-            log_c, rate = log_compliance_anywhere(float(number), liner)
+            log_c, rate = log_compliance_any_wave(float(number), liner)
             exact = mpmath.mpf(float(number)) + mpmath.mpf("1e-18")  # not on the 0/0
             value = shell_compliance(exact, poisson, 1 + thickness)
             step = mpmath.mpf("1e-7")
@@ -157,7 +157,7 @@ def test_integer_modes_are_those_of_the_exact_model():
 
     n = np.arange(1, 40)
     k = np.sqrt(n * (n + 1.0))
-    found = np.exp(log_compliance(k, liner_of(0.4, 1 + 6.75 / 18.0))[0]) * 18.0 / 1000.0
+    found = np.exp(log_compliance(k, liner_coefficients(0.4, 1 + 6.75 / 18.0))[0]) * 18.0 / 1000.0
     np.testing.assert_allclose(found, socket_of(HIP).compliance(n), rtol=1e-12)
 
 

@@ -26,10 +26,10 @@ from ..elasticity.exact.tabulated.model import Tabulated
 from ..models import kinematics, liner_compliance, refined_state
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import Kinematics
-from ..models.liner_compliance import liner_of
+from ..models.liner_compliance import liner_coefficients
 from ..models.modulus import Formula
-from ..models.refined import RefinedSolution, make_answer, scaled_load
-from ..models.refined_state import ScaledContact, edge_of_force, edge_of_indentation, scaled_contact
+from ..models.refined import RefinedSolution, make_solver_result, scaled_load
+from ..models.refined_state import ScaledContact, half_angle_of_force, half_angle_of_indentation, scaled_contact
 from ..models.table_3 import eq_18
 from ..problem import Joint
 from .overloads import as_row, compile_loop, inline_formula, jit_formula, pick
@@ -114,7 +114,7 @@ def _angle_polynomial(versine: float) -> float:
 
 
 def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
-    """Solve the model `Refined` in one compiled loop, for loads of one kind on a joint of arrays."""
+    """Solve the model `Refined` in one compiled loop, for arrays of forces or indentations."""
     shape = numpy.broadcast_shapes(*(number.shape for number in (*joint.numbers(), load)))
     widening = 1 + joint.liner_thickness / joint.socket_radius
     inputs = (load, scaled_load(joint, kind, load), joint.liner.poisson, widening)
@@ -123,18 +123,18 @@ def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
     edge, *state = (output.reshape(shape) for output in outputs)
     solution = RefinedSolution(joint=joint, edge=edge)
     vars(solution)["_scaled_contact"] = ScaledContact(*state)
-    return make_answer(solution, kind, load)
+    return make_solver_result(solution, kind, load)
 
 
 @cache
 def _refined_kernel(kind: str) -> Any:
-    """Return the compiled loop over contacts of `Refined` for loads of one kind."""
-    solve = edge_of_force if kind == "force" else edge_of_indentation
+    """Return the compiled loop over contacts of `Refined` for given forces or indentations."""
+    solve = half_angle_of_force if kind == "force" else half_angle_of_indentation
 
     def run(load, scaled, poisson, widening, outputs):  # type: ignore[no-untyped-def]
         """Solve each contact; write its half angle and the fields of `ScaledContact`."""
         for i in range(outputs.shape[1]):
-            liner = liner_of(pick(poisson, i), pick(widening, i))
+            liner = liner_coefficients(pick(poisson, i), pick(widening, i))
             edge = solve(pick(scaled, i), liner) if pick(load, i) > 0 else 0.0
             state = scaled_contact(edge if edge > 0 else 1.0, liner)
             outputs[0, i] = edge
@@ -146,11 +146,11 @@ def _refined_kernel(kind: str) -> Any:
 
 @overload(refined_state.log_compliances, strict=False)
 def _overload_log_compliances(half_angle: Any, liner: Any, waves: Any) -> Callable[..., Any]:
-    return refined_state.log_compliances_of_number
+    return refined_state.scalar_log_compliances
 
 
 def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> SolverResult:
-    """Solve the model `Tabulated` in one compiled loop, for loads of one kind on a joint of arrays."""
+    """Solve the model `Tabulated` in one compiled loop, for arrays of forces or indentations."""
 
     def read(curves: JointCurves, load: Numbers) -> tuple[Numbers, ...]:
         """Compute half angle, indentation, force, pole pressure and stiffness of contacts: five arrays (contacts,)."""
@@ -164,7 +164,7 @@ def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) ->
 
 @cache
 def _tabulated_kernel(kind: str) -> Any:
-    """Return the compiled loop over contacts of `Tabulated` for loads of one kind."""
+    """Return the compiled loop over contacts of `Tabulated` for given forces or indentations."""
     solve = angle_of_force if kind == "force" else angle_of_indentation
 
     def run(load, ratio, clearance, area, compliance, series, outputs):  # type: ignore[no-untyped-def]
@@ -228,26 +228,26 @@ for _formula in (
     inline_formula(_formula)
 
 for _long_formula in (
-    liner_compliance.liner_of,
+    liner_compliance.liner_coefficients,
     liner_compliance.log_compliance,
     liner_compliance._scaled_polynomial,
-    liner_compliance.log_compliance_anywhere,
+    liner_compliance.log_compliance_any_wave,
     liner_compliance._log_compliance_near,
     liner_compliance._reduced_polynomial,
     liner_compliance._decay_mean,
     liner_compliance._polynomial,
-    refined_state.log_compliances_of_number,
+    refined_state.scalar_log_compliances,
     refined_state.log_slopes,
     refined_state._log_compliance,
-    refined_state._edge,
-    refined_state._exponent,
+    refined_state._edge_displacement,
+    refined_state._pressure_exponent,
     refined_state.angle_derivative,
     refined_state.scaled_contact,
-    refined_state._solve_edge,
+    refined_state._solve_half_angle,
     refined_state._indentation_residual,
     refined_state._force_residual,
-    refined_state.edge_of_indentation,
-    refined_state.edge_of_force,
+    refined_state.half_angle_of_indentation,
+    refined_state.half_angle_of_force,
     chebyshev.angle_root,
     formulas.angle_derivative,
     formulas.opening,

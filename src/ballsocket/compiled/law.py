@@ -91,7 +91,7 @@ def compiled_law(law: ForceLaw) -> CompiledLaw:
 @cache
 def _foundation_function(motion: Kinematics) -> Any:
     """Return the compiled force law of a radial foundation with one kinematics."""
-    force, stiffness, answered = (
+    force, stiffness, finite_or_nan = (
         jit_formula(motion.force),
         jit_formula(motion.stiffness),
         jit_formula(formulas.finite_or_nan),
@@ -102,7 +102,7 @@ def _foundation_function(motion: Kinematics) -> Any:
         """Compute the force in N and the stiffness in N/mm at an indentation in mm; 0 without contact."""
         if indentation < 0:
             return 0.0, 0.0
-        return answered(force(R2, c, K, indentation), stiffness(R2, c, K, indentation))
+        return finite_or_nan(force(R2, c, K, indentation), stiffness(R2, c, K, indentation))
 
     return force_and_tangent
 
@@ -122,7 +122,7 @@ class _LawType(types.Type):
 
 
 @typeof_impl.register(CompiledLaw)
-def _type_of(law: CompiledLaw, _: Any) -> _LawType:
+def _law_type(law: CompiledLaw, _: Any) -> _LawType:
     return _LawType(law.function, typeof(law.numbers))
 
 
@@ -136,7 +136,7 @@ make_attribute_wrapper(_LawType, "numbers", "numbers")
 
 
 @unbox(_LawType)
-def _unboxed(kind: _LawType, value: Any, context: Any) -> NativeValue:
+def _unbox_law(kind: _LawType, value: Any, context: Any) -> NativeValue:
     numbers = context.pyapi.object_getattr_string(value, "numbers")
     native = context.unbox(kind.numbers, numbers)
     context.pyapi.decref(numbers)
@@ -146,12 +146,12 @@ def _unboxed(kind: _LawType, value: Any, context: Any) -> NativeValue:
 
 
 @overload_method(_LawType, "__call__")
-def _called(law, indentation):  # type: ignore[no-untyped-def]
+def _overload_call(law, indentation):  # type: ignore[no-untyped-def]
     function = law.function
     return lambda law, indentation: function(indentation, *law.numbers)
 
 
 @lower_builtin(_LawType, _LawType, types.Any)
-def _lowered(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+def _lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     """Generate the machine code of a call of a law; numba requests this separately from the type."""
-    return context.compile_internal(builder, _called(*signature.args), signature, arguments)
+    return context.compile_internal(builder, _overload_call(*signature.args), signature, arguments)

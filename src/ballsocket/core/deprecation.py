@@ -122,6 +122,8 @@ MOVED = {
     "ballsocket.export.slopes": "ballsocket.export.recorder",
     "ballsocket.export.tables": "ballsocket.export.targets",
     "ballsocket.export.trusted": "ballsocket.export.validity_depth",
+    "ballsocket.export.fmu.cross_check": "ballsocket.export.fmu.variables",
+    "ballsocket.export.fmu.description": "ballsocket.export.fmu.fmu",
 }
 """New path of each package or module that moved; the modules of a package move with it."""
 

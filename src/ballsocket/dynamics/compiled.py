@@ -64,9 +64,9 @@ class CompiledElement:
     element: ForceElement
 
     def __post_init__(self) -> None:
-        if self.element.remembers:
+        if self.element.internal_state:
             raise ValueError(
-                f"{self.element.remembers}; compiled elements support no internal state, use the ForceElement"
+                f"{self.element.internal_state}; compiled elements support no internal state, use the ForceElement"
             )
 
     def __call__(self, position: Any, velocity: Any = (0.0, 0.0, 0.0), spin: Any = (0.0, 0.0, 0.0)) -> Load:
@@ -119,13 +119,13 @@ def compiled_potential(element: ForceElement) -> CompiledLaw:
     curve = (
         energy_law.curve
         if isinstance(energy_law, CurvePotential)
-        else _curve_of(element.joint, element.model.law(element.joint))
+        else _energy_curve(element.joint, element.model.law(element.joint))
     )
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
     return CompiledLaw(function=_compiled_slopes(), numbers=(*ends, curve.pieces))
 
 
-def _curve_of(joint: Joint, law: ForceLaw) -> Any:
+def _energy_curve(joint: Joint, law: ForceLaw) -> Any:
     return energy_curve(law, 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius)
 
 
@@ -143,7 +143,7 @@ def _springs(motion: Kinematics) -> Any:
 
 @cache
 def _compiled_slopes() -> Any:
-    return njit(error_model="numpy", fastmath={"contract"})(potential.slopes_of_number)
+    return njit(error_model="numpy", fastmath={"contract"})(potential.energy_derivatives_of_number)
 
 
 def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
@@ -152,12 +152,12 @@ def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no
     The components of the tangent stiffness are xx, yy, zz, xy, yz, zx.
     """
     centre = reaction.centre_of(position[0], position[1], position[2], constants.clearance)
-    return load_from_contact(centre, reaction.elastic(potential, centre, constants), velocity, spin, constants)
+    return load_from_contact(centre, reaction.elastic_contact(potential, centre, constants), velocity, spin, constants)
 
 
 def load_from_contact(centre, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
     """Compute force, moment, energy and tangent stiffness from the elastic contact of a state."""
-    fx, fy, fz, mx, my, mz = reaction.reaction(centre, contact, velocity, spin, constants)
+    fx, fy, fz, mx, my, mz = reaction.force_and_moment(centre, contact, velocity, spin, constants)
     return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(centre, contact, constants)
 
 
@@ -203,28 +203,28 @@ for _formula in (
     kinematics.linear_energy,
     kinematics.circular_energy,
     reaction.ramp,
-    reaction.positive,
+    reaction.ramp_value,
     reaction._rounded,
     reaction.rim_share,
     friction.widening_factor,
     friction.drill_lever,
-    friction.coefficient_at,
-    friction.tilt_share,
+    friction.friction_coefficient,
+    friction.rolling_slip_ratio,
     friction.effective_slip,
     reaction.centre_of,
-    reaction.elastic,
+    reaction.elastic_contact,
     reaction.elastic_at_rim,
     reaction.dome_angle,
-    reaction.pressed,
-    reaction.sliding,
+    reaction.normal_force,
+    reaction.sliding_state,
     reaction.versine,
-    reaction.reaction,
+    reaction.force_and_moment,
     reaction.dissipation,
     reaction.tangent,
     stepping.end_state,
     stepping.surface_speed,
     stepping.mean_contact,
-    stepping.residual_of,
+    stepping.step_residual,
     stepping.newton_correction,
     stepping.advance,
     loads_at,

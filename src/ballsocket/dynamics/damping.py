@@ -49,10 +49,10 @@ class Damping:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
-        _set_checked(
+        _store_checked(
             self, "hysteresis", "damping must be at least 0 and finite; negative damping would generate energy"
         )
-        _set_checked(self, "time", "a retardation time (s) must be at least 0 and finite")
+        _store_checked(self, "time", "a retardation time (s) must be at least 0 and finite")
 
     def restitution(self, speed: float) -> float:
         """Compute the coefficient of restitution at an impact speed in mm/s from the hysteresis χ alone.
@@ -62,13 +62,13 @@ class Damping:
         return restitution_of(self.hysteresis * speed)
 
 
-def _set_checked(damping: Damping, name: str, allowed: str) -> None:
+def _store_checked(damping: Damping, name: str, allowed: str) -> None:
     value = check_number(name, getattr(damping, name))
     require(name, value, 0.0 <= value < math.inf, allowed)
     object.__setattr__(damping, name, value)
 
 
-def of_restitution(relation: Relation, restitution: float, impact_speed: float) -> Damping:
+def damping_from_restitution(relation: Relation, restitution: float, impact_speed: float) -> Damping:
     """Compute the damping that gives a coefficient of restitution at an impact speed, by a published relation.
 
     Parameters
@@ -91,11 +91,11 @@ def of_restitution(relation: Relation, restitution: float, impact_speed: float) 
     return Damping(hysteresis=chi, sources=relation.sources)
 
 
-def _constructor(relation: Relation) -> Callable[..., Damping]:
+def _damping_constructor(relation: Relation) -> Callable[..., Damping]:
     """Make the function that computes damping from a coefficient of restitution by one relation."""
 
     def damping(*, restitution: float, impact_speed: float) -> Damping:
-        return of_restitution(relation, restitution, impact_speed)
+        return damping_from_restitution(relation, restitution, impact_speed)
 
     damping.__doc__ = f"""Compute the damping for a coefficient of restitution by the relation of {relation.name}.
 
@@ -114,8 +114,8 @@ def _constructor(relation: Relation) -> Callable[..., Damping]:
     return damping
 
 
-HuntCrossley = _constructor(relations.hunt_crossley)
-LankaraniNikravesh = _constructor(relations.lankarani_nikravesh)
-Flores = _constructor(relations.flores)
-Gonthier = _constructor(relations.gonthier)
-Restitution = _constructor(relations.exact)
+HuntCrossley = _damping_constructor(relations.hunt_crossley)
+LankaraniNikravesh = _damping_constructor(relations.lankarani_nikravesh)
+Flores = _damping_constructor(relations.flores)
+Gonthier = _damping_constructor(relations.gonthier)
+Restitution = _damping_constructor(relations.exact)

@@ -14,6 +14,7 @@ from ..contact.law import CurveLaw, curve_law
 from ..core import arrays
 from ..core.arrays import Array, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
+from ..core.deprecation import RenamedAttribute
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
@@ -22,8 +23,17 @@ from .damping import Damping
 from .friction import Friction
 from .load import Load, apply_bristles
 from .matrices import vector
-from .potential import Potential, adhesion_potential, potential_of, slopes_of_array
-from .reaction import APART, BallCentre, Constants, Vector, centre_of, elastic, reaction, undamped_pull
+from .potential import Potential, adhesion_potential, energy_derivatives_of_array, potential_of
+from .reaction import (
+    NO_CONTACT,
+    BallCentre,
+    Constants,
+    Vector,
+    centre_of,
+    elastic_contact,
+    force_and_moment,
+    remove_tension_damping,
+)
 from .validity_monitor import ValidityMonitor
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
@@ -108,11 +118,13 @@ class ForceElement:
         return getattr(self.potential, "stretch", 0.0)
 
     @property
-    def remembers(self) -> str:
+    def internal_state(self) -> str:
         """Note on the internal state of the contact (bristles or adhesion); empty without one."""
         if isinstance(self.friction, Bristles):
             return "bristles have a state"
         return "an adhesive ball has a state" if self.stretch > 0.0 else ""
+
+    remembers = RenamedAttribute("internal_state")
 
     def _constants(self, smoothing: float) -> Constants:
         """Collect the constants of joint, damping, friction and cup."""
@@ -128,7 +140,7 @@ class ForceElement:
             hysteresis=damping.hysteresis,
             time=damping.time,
             sliding=friction.coefficient,
-            static=friction.static,
+            static=friction.breakaway_coefficient,
             transition_speed=friction.transition_speed,
             stribeck_speed=friction.stribeck_speed,
             viscous=friction.viscous,
@@ -166,15 +178,15 @@ class ForceElement:
             A vector without three components.
         """
         if type(position) in _SEQUENCES:
-            load = self._of_numbers(components(position), components(velocity), components(spin), attached)
+            load = self._load_of_numbers(components(position), components(velocity), components(spin), attached)
         else:
-            load = self._of_arrays(position, velocity, spin, attached)
+            load = self._load_of_arrays(position, velocity, spin, attached)
         if not isinstance(self.friction, Bristles):
             return load
         with numpy.errstate(all="ignore"):
             return apply_bristles(load, self.friction, deflection)
 
-    def _of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
+    def _load_of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
         """Compute the load at a single state of plain numbers."""
         constants = self.constants
         centre = centre_of(*position, constants.clearance)
@@ -182,28 +194,28 @@ class ForceElement:
         if sticks:
             centre = self._attached_centre(centre, attached)
         if centre.indentation <= -constants.smoothing and centre.distance > 0.0:
-            return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, APART, position, velocity, spin)
+            return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, NO_CONTACT, position, velocity, spin)
         if centre.indentation > self._monitor.limit:
             self._monitor.check(centre.indentation)
-        contact = elastic(self.potential, centre, constants)
+        contact = elastic_contact(self.potential, centre, constants)
         if sticks:
-            contact = undamped_pull(contact)
-        fx, fy, fz, mx, my, mz = reaction(centre, contact, velocity, spin, constants)
+            contact = remove_tension_damping(contact)
+        fx, fy, fz, mx, my, mz = force_and_moment(centre, contact, velocity, spin, constants)
         return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, centre, contact, position, velocity, spin)
 
-    def _of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
+    def _load_of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
         """Compute the loads at an array of states."""
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
         position = check_vectors("position", position, axes[0])
         states = [_as_array_like(position, value) for value in (position, velocity, spin)]
-        r, v, w = (_split(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
+        r, v, w = (_split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
         with numpy.errstate(all="ignore"):  # states without a result have a status
             centre = self._attached_centre(centre_of(*r, self.constants.clearance), attached)
             self._monitor.check_array(centre.indentation)
-            contact = elastic(self.potential, centre, self.constants)
-            contact = undamped_pull(contact) if self.stretch > 0.0 else contact
-            loads = reaction(centre, contact, v, w, self.constants)
+            contact = elastic_contact(self.potential, centre, self.constants)
+            contact = remove_tension_damping(contact) if self.stretch > 0.0 else contact
+            loads = force_and_moment(centre, contact, v, w, self.constants)
         force, moment = vector(object, *loads[:3]), vector(object, *loads[3:])
         return Load(force, moment, contact.energy, self, centre, contact, r, v, w)
 
@@ -233,11 +245,11 @@ class ForceElement:
 
     def half_angle(self, indentation: Array) -> Array:
         """Compute the half angle in rad at an indentation in mm; 0 without contact."""
-        return _read(self.curves[0], indentation)
+        return _evaluate_curve(self.curves[0], indentation)
 
     def max_pressure(self, indentation: Array) -> Array:
         """Compute the largest pressure in MPa at an indentation in mm; 0 without contact."""
-        return _read(self.curves[1], indentation)
+        return _evaluate_curve(self.curves[1], indentation)
 
 
 def components(value: Any, name: str = "a state") -> Vector:
@@ -263,7 +275,7 @@ def _as_array_like(position: Any, value: Any) -> Any:
     return arrays.namespace(like).asarray(value, dtype=like.dtype, device=arrays.device(like))
 
 
-def _split(value: Any) -> Vector:
+def _split_components(value: Any) -> Vector:
     return value[..., 0], value[..., 1], value[..., 2]
 
 
@@ -276,9 +288,9 @@ def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
     )
 
 
-def _read(curve: CurveLaw, indentation: Array) -> Array:
+def _evaluate_curve(curve: CurveLaw, indentation: Array) -> Array:
     """Evaluate a curve at indentations in mm: 0 without contact, NaN beyond its end."""
     if type(indentation) is float:
         return curve(indentation)[0]
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return where(indentation > 0.0, slopes_of_array(indentation, *ends, curve.pieces)[0], 0.0)
+    return where(indentation > 0.0, energy_derivatives_of_array(indentation, *ends, curve.pieces)[0], 0.0)

@@ -12,18 +12,21 @@ from dataclasses import dataclass
 
 from ..core.arrays import Array, exp
 from ..core.checks import check_number, require
+from ..core.deprecation import RenamedAttribute
 
 
-class Coulomb:
+class CoulombCoefficients:
     """Coulomb coefficients of sliding and static friction."""
 
     coefficient: float
     static_coefficient: float | None
 
     @property
-    def static(self) -> float:
-        """Coefficient of friction at vanishing slip."""
+    def breakaway_coefficient(self) -> float:
+        """Coefficient of friction at the onset of sliding, by default that of sliding."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
+
+    static = RenamedAttribute("breakaway_coefficient")
 
     def check_static(self) -> None:
         """Raise ValueError if the static coefficient is below the sliding coefficient."""
@@ -33,7 +36,7 @@ class Coulomb:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Friction(Coulomb):
+class Friction(CoulombCoefficients):
     """Regularised Coulomb friction: smooth in the slip speed, and nearly μ N above the transition speed.
 
     Sliding, turning and drilling share one limit. q is the effective slip speed of the patch, rounded off by the
@@ -115,13 +118,13 @@ def drill_lever(versine: Array) -> Array:
     return 8 / 15 + m * (0.165042 + m * (0.054402 + m * (0.015167 + m * (0.019374 + m * (0.009834 * m - 0.011755)))))
 
 
-def coefficient_at(speed: Array, sliding: Array, static: Array, stribeck_speed: Array) -> Array:
+def friction_coefficient(speed: Array, sliding: Array, static: Array, stribeck_speed: Array) -> Array:
     """Compute the coefficient of friction μ at a slip speed in mm/s, with the Stribeck effect."""
     share = speed / stribeck_speed
     return sliding + (static - sliding) * exp(-share * share)
 
 
-def tilt_share(versine: Array) -> Array:
+def rolling_slip_ratio(versine: Array) -> Array:
     """Compute the ratio κ of mean slip to surface speed for a ball that rolls without slip at the pole.
 
     κ = ∫ p sin²(φ/2) dA/N.

@@ -17,7 +17,7 @@ from ..core.deprecation import RenamedAttribute
 from . import reaction as formulas
 from .bristles import Bristles, Deflections, bristle_forces
 from .matrices import damping_matrix, matrix, vector
-from .reaction import BallCentre, Constants, Elastic, Vector, pressed, sliding
+from .reaction import BallCentre, Constants, Elastic, Vector, normal_force, sliding_state
 
 
 class ContactState(IntEnum):
@@ -183,9 +183,9 @@ class Load(NamedTuple):
         names = ("force", "moment", "socket_force", "socket_moment", "energy", "dissipation", "indentation")
         return {
             "status": status.name.lower() if isinstance(status, ContactState) else to_list(status),
-            **{name: _plain(getattr(self, name)) for name in names},
-            "half_angle_deg": _plain(self.half_angle * degrees(1.0)),
-            "max_pressure": _plain(self.max_pressure),
+            **{name: _plain_value(getattr(self, name)) for name in names},
+            "half_angle_deg": _plain_value(self.half_angle * degrees(1.0)),
+            "max_pressure": _plain_value(self.max_pressure),
             "notes": list(self.notes),
         }
 
@@ -218,17 +218,17 @@ _OLD_DISSIPATION.__set_name__(Load, "rubbed")
 setattr(Load, "rubbed", _OLD_DISSIPATION)  # noqa: B010 (mypy refuses to assign to a class)
 
 
-def _plain(value: Any) -> Any:
+def _plain_value(value: Any) -> Any:
     return [to_list(part) for part in value] if type(value) is tuple else to_list(value)
 
 
-def status_of(centre: BallCentre, contact: Elastic, known: Array, constants: Constants) -> ContactState | Array:
+def status_of(centre: BallCentre, contact: Elastic, is_finite: Array, constants: Constants) -> ContactState | Array:
     """Determine the state of the contact: a `ContactState`, or an array of its codes.
 
-    `known` is False for states that are not finite.
+    `is_finite` is False for states that are not finite.
     """
-    d, s = centre.indentation, contact.covered
-    none = 0.0 * where(known, d, 0.0)
+    d, s = centre.indentation, contact.rim_margin
+    none = 0.0 * where(is_finite, d, 0.0)
     touching = d > -constants.smoothing
     code = where(touching, none + 1.0, none)
     code = where(touching & (s < 1.0), none + float(ContactState.AT_RIM), code)
@@ -238,7 +238,7 @@ def status_of(centre: BallCentre, contact: Elastic, known: Array, constants: Con
         code,
     )
     code = where(touching & (s <= -1.0), none + float(ContactState.OVER_RIM), code)
-    code = where(known, code, none + float(ContactState.NO_NUMBER))
+    code = where(is_finite, code, none + float(ContactState.NO_NUMBER))
     if type(code) is float:
         return ContactState(int(code))
     xp = arrays.namespace(code)
@@ -267,7 +267,7 @@ def apply_bristles(load: Load, bristles: Bristles, deflection: Any) -> Load:
     """Add force, moment and dissipated power of the bristles to a load without friction."""
     centre, constants = load.centre, load.element.constants
     speed = sum(rate * component for rate, component in zip(load.velocity, centre[1:4], strict=True))
-    slip = sliding(centre, pressed(load.contact, speed, constants), load.velocity, load.spin, constants)
+    slip = sliding_state(centre, normal_force(load.contact, speed, constants), load.velocity, load.spin, constants)
     force, rate, dissipated = bristle_forces(centre, slip, _four_deflections(load, deflection), bristles)
     N, R1, n = slip.normal, constants.ball_radius, centre[1:4]
     rubbing = [-N * part for part in force[:3]]

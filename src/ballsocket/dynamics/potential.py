@@ -84,11 +84,11 @@ class CurvePotential:
         curve = self.curve
         ends = curve.shallowest, curve.deepest, curve.first, curve.density
         if type(indentation) is float:
-            return slopes_of_number(indentation, *ends, self._pieces)
-        return slopes_of_array(indentation, *ends, curve.pieces)
+            return energy_derivatives_of_number(indentation, *ends, self._pieces)
+        return energy_derivatives_of_array(indentation, *ends, curve.pieces)
 
 
-def slopes_of_number(
+def energy_derivatives_of_number(
     indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float, float]:
     """Evaluate the curve of a `CurvePotential` at one indentation in mm: energy, force and stiffness."""
@@ -117,7 +117,7 @@ _MIN_INDENTATION = 1e-150
 """Smallest indentation in mm whose energy does not underflow in an intermediate result."""
 
 
-def slopes_of_array(
+def energy_derivatives_of_array(
     indentation: Array, shallowest: float, deepest: float, first: float, density: float, pieces: Numbers
 ) -> Slopes:
     """Evaluate the curve of a `CurvePotential` at an array of indentations: energy, force and stiffness."""

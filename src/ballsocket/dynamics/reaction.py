@@ -53,14 +53,14 @@ class BallCentre(NamedTuple):
     y: Array
     z: Array
     indentation: Array
-    over: Array
+    inverse_distance: Array
 
 
 class Elastic(NamedTuple):
     """Elastic contact forces and stiffnesses at a position of the ball.
 
     `energy` is U, `normal` the force dU/de to the socket centre, and `stiffness` is d²U/de². Damping is proportional to
-    `damped_force` and `damped_stiffness`, which lack the gradient of the rim. `covered` is the angle to the rim over
+    `damped_force` and `damped_stiffness`, which lack the gradient of the rim. `rim_margin` is the angle to the rim over
     the half angle, 1 or more away from the rim. (`px`, `py`, `pz`) is the direction to the nearest rim. `polar` is the
     force along it, and `mixed`, `along` and `around` are components of the tangent.
     """
@@ -70,7 +70,7 @@ class Elastic(NamedTuple):
     stiffness: Array
     damped_force: Array
     damped_stiffness: Array
-    covered: Array
+    rim_margin: Array
     polar: Array
     mixed: Array
     along: Array
@@ -80,7 +80,7 @@ class Elastic(NamedTuple):
     pz: Array
 
 
-APART = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NO_CONTACT = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Elastic contact of a ball that does not touch the socket."""
 
 
@@ -91,7 +91,7 @@ def centre_of(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
     return BallCentre(distance, x * over, y * over, z * over, distance - clearance, over)
 
 
-def elastic(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
+def elastic_contact(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
     """Compute the elastic contact at a position, with a first touch smoothed over ± `smoothing`."""
     rounded = ramp(centre.indentation, constants.smoothing)
     return elastic_from_slopes(centre, rounded, potential(rounded[0]), constants)
@@ -134,14 +134,14 @@ def elastic_at_rim(
     by_depth = F * W + U * W1 * s1
     by_both = (U * W1 * first / epsilon - F * W1 - U * W2 * s1) / epsilon
     by_angle = -U * W1 / epsilon
-    over, nearer = 1.0 / safe_divisor(across), centre.over
+    over, nearer = 1.0 / safe_divisor(across), centre.inverse_distance
     return Elastic(
         energy=U * W,
         normal=by_depth * slope,
         stiffness=(k * W + 2.0 * F * W1 * s1 + U * (W2 * s1 * s1 + W1 * s2)) * slope * slope + by_depth * bend,
         damped_force=F * W * slope,
         damped_stiffness=W * (k * slope * slope + F * bend),
-        covered=s,
+        rim_margin=s,
         polar=-by_angle * nearer,
         mixed=(by_both * slope - by_angle * nearer) * nearer,
         along=U * W2 * (nearer * nearer / (epsilon * epsilon)),
@@ -166,17 +166,17 @@ def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, 
     return lean, sqrt(ax * ax + ay * ay + az * az), ax, ay, az
 
 
-def pressed(elastic: Elastic, speed: Array, constants: Constants) -> Array:
+def normal_force(elastic: Elastic, speed: Array, constants: Constants) -> Array:
     """Compute the damped normal force F + (χ F + τ k) ḋ towards the socket centre in N; damping causes no tension."""
     lossy = constants.hysteresis * elastic.damped_force + constants.time * elastic.damped_stiffness
     force = elastic.normal + lossy * speed
     if constants.smoothing > 0.0:
-        return positive(force, SMOOTHING_SHARE * elastic.damped_force)
+        return ramp_value(force, SMOOTHING_SHARE * elastic.damped_force)
     least = where(elastic.normal < 0.0, elastic.normal, 0.0)  # negative for an adhesive ball
     return where(force < least, least, force)  # keeps NaN
 
 
-def undamped_pull(contact: Elastic) -> Elastic:
+def remove_tension_damping(contact: Elastic) -> Elastic:
     """Remove the damping of a contact in tension, where it would generate energy."""
     pressing = clip(contact.damped_force, 0.0, float("inf"))
     return contact._replace(damped_force=pressing, damped_stiffness=clip(contact.damped_stiffness, 0.0, float("inf")))
@@ -212,7 +212,7 @@ class Sliding(NamedTuple):
     drill: Array
 
 
-def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, constants: Constants) -> Sliding:
+def sliding_state(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, constants: Constants) -> Sliding:
     """Compute the slip of the ball on the contact patch and the rate of friction."""
     (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
@@ -220,7 +220,7 @@ def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, co
     ax, ay, az = vx - speed * nx, vy - speed * ny, vz - speed * nz
     bx, by, bz = R1 * (wy * nz - wz * ny), R1 * (wz * nx - wx * nz), R1 * (wx * ny - wy * nx)
     m = versine(centre)
-    lever, kappa = constants.socket_radius * friction.drill_lever(m), friction.tilt_share(m)
+    lever, kappa = constants.socket_radius * friction.drill_lever(m), friction.rolling_slip_ratio(m)
     squared, share = lever * lever * m * (2.0 - m), kappa * kappa
     aa, bb, cross = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, 2.0 * (ax * bx + ay * by + az * bz)
     both, transition_squared = aa + bb, constants.transition_speed * constants.transition_speed
@@ -229,7 +229,7 @@ def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, co
         both + cross, share * (both - cross), drilled, twisted, transition_squared, share, m
     )
     q, tilt, twist = sqrt(q2), share * tilt, kappa * twist
-    mu = friction.coefficient_at(q, constants.sliding, constants.static, constants.stribeck_speed)
+    mu = friction.friction_coefficient(q, constants.sliding, constants.static, constants.stribeck_speed)
     N = force * friction.widening_factor(m)
     rate, mean = N * (mu / q + constants.viscous), slope + tilt
     push, rotation = mean + twist, mean - twist
@@ -241,27 +241,27 @@ def versine(centre: BallCentre) -> Array:
 
     e is the distance of the centres.
     """
-    return where(centre.indentation > 0.0, centre.indentation * centre.over, 0.0)
+    return where(centre.indentation > 0.0, centre.indentation * centre.inverse_distance, 0.0)
 
 
-def reaction(
+def force_and_moment(
     centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants
 ) -> tuple[Array, ...]:
     """Compute force (N) and moment (N mm) on the ball about its centre, as six components."""
     (vx, vy, vz), nx, ny, nz = velocity, centre.x, centre.y, centre.z
     speed = vx * nx + vy * ny + vz * nz
-    normal = pressed(contact, speed, constants)
+    normal = normal_force(contact, speed, constants)
     fx, fy, fz = -normal * nx, -normal * ny, -normal * nz
     if constants.rim > 0.0:
         P = contact.polar
         fx, fy, fz = fx + P * contact.px, fy + P * contact.py, fz + P * contact.pz
     if constants.time > 0.0:
-        drag = constants.time * contact.damped_force * centre.over
+        drag = constants.time * contact.damped_force * centre.inverse_distance
         fx, fy, fz = fx - drag * (vx - speed * nx), fy - drag * (vy - speed * ny), fz - drag * (vz - speed * nz)
     if constants.static + constants.viscous == 0.0:
         zero = 0.0 * normal
         return fx, fy, fz, zero, zero, zero
-    ax, ay, az, bx, by, bz, twirl, lever, _, rate, _, push, mixed, rotation, drill = sliding(
+    ax, ay, az, bx, by, bz, twirl, lever, _, rate, _, push, mixed, rotation, drill = sliding_state(
         centre, normal, velocity, spin, constants
     )
     push, mixed = -rate * push, -rate * mixed
@@ -279,9 +279,9 @@ def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Ve
     """Compute the power in N mm/s dissipated by damping, liner and friction."""
     vx, vy, vz = velocity
     speed = vx * centre.x + vy * centre.y + vz * centre.z
-    normal = pressed(contact, speed, constants)
-    slip = sliding(centre, normal, velocity, spin, constants)
-    drag = constants.time * contact.damped_force * centre.over
+    normal = normal_force(contact, speed, constants)
+    slip = sliding_state(centre, normal, velocity, spin, constants)
+    drag = constants.time * contact.damped_force * centre.inverse_distance
     aa = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z
     cross = slip.x * slip.bx + slip.y * slip.by + slip.z * slip.bz
     bb = slip.bx * slip.bx + slip.by * slip.by + slip.bz * slip.bz
@@ -294,7 +294,7 @@ def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple
     """Compute the components xx, yy, zz, xy, yz, zx of the tangent stiffness ∂²U/∂r² in N/mm."""
     nx, ny, nz, px, py, pz = centre.x, centre.y, centre.z, contact.px, contact.py, contact.pz
     # where the centres coincide, without clearance, the stiffness is isotropic
-    across = where(centre.distance > 0.0, contact.normal * centre.over, contact.stiffness)
+    across = where(centre.distance > 0.0, contact.normal * centre.inverse_distance, contact.stiffness)
     radial = contact.stiffness - across
     xx, yy, zz = across + radial * nx * nx, across + radial * ny * ny, across + radial * nz * nz
     xy, yz, zx = radial * nx * ny, radial * ny * nz, radial * nz * nx
@@ -320,7 +320,7 @@ def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
     return where(y >= width, y, 2.0 * width * _rounded(t)), t * t * t * (10.0 - 15.0 * t + 6.0 * t * t), bend
 
 
-def positive(y: Array, width: Array) -> Array:
+def ramp_value(y: Array, width: Array) -> Array:
     """Compute a smoothed max(y, 0) like `ramp`, for a width that may be an array and 0."""
     span = where(width > 0.0, width, 1.0)
     t = clip((y + width) / (2.0 * span), 0.0, 1.0)

@@ -89,7 +89,7 @@ def _exit_balance(h: float, e: float) -> float:
     return h + math.log1p(-h * e) + h * e - math.log1p(h) if h * e < 1.0 else -math.inf
 
 
-def _exact(e: float) -> float:
+def _exact_damping(e: float) -> float:
     """Solve for the dimensionless damping h of a coefficient of restitution e by bisection."""
     if e == 1.0:
         return 0.0
@@ -105,7 +105,7 @@ def _exact(e: float) -> float:
 exact = Relation(
     name="the exact solution",
     law="h (1 + e) = ln[(1 + h)/(1 - h e)]",
-    formula=_exact,
+    formula=_exact_damping,
     sources=(Source("gonthier2004"),),
 )
 """h (1 + e) = ln[(1 + h)/(1 - h e)]."""

@@ -100,7 +100,7 @@ class StatefulIntegrator:
         def rates(time: float, state: Numbers) -> list[float]:
             """Compute the time derivatives of the unknowns; raise `_NoLoad` at a state without a load."""
             load, pull = self._load(state, attached), self.pull(time)
-            if load.force[0] != load.force[0] or load.contact.covered <= -1.0:
+            if load.force[0] != load.force[0] or load.contact.rim_margin <= -1.0:
                 raise _NoLoad(load)
             acceleration = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
             angular_acceleration = [a / self.inertia for a in load.moment]
@@ -142,7 +142,7 @@ class StatefulIntegrator:
         return float(brentq(distance, path.t_old, path.t, xtol=1e-15)) if changes else inf
 
 
-def pull_of(pull: Any) -> Callable[[float], Vector]:
+def pull_function(pull: Any) -> Callable[[float], Vector]:
     """Return the pull in N as a function of the time in s."""
     if callable(pull):
         return lambda time: components(pull(time), "a pull")

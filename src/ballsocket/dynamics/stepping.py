@@ -20,10 +20,10 @@ from .reaction import (
     centre_of,
     dissipation,
     dome_angle,
-    elastic,
-    pressed,
-    reaction,
-    sliding,
+    elastic_contact,
+    force_and_moment,
+    normal_force,
+    sliding_state,
 )
 
 MAX_ITERATIONS = 60
@@ -75,13 +75,13 @@ def advance(  # type: ignore[no-untyped-def]
     )
     if initial.indentation + h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z)) < -constants.smoothing:
         return StepResult(end_state(ball, midpoint, h), 0.0, True)
-    start = elastic(potential, initial, constants)
+    start = elastic_contact(potential, initial, constants)
     push = start.normal / mass_rate
     ax, ay, az, bx, by, bz = midpoint
     midpoint = Midpoint(ax - push * initial.x, ay - push * initial.y, az - push * initial.z, bx, by, bz)
     size, best, change = 1e-300, 1e300, 1e300
     for _ in range(MAX_ITERATIONS):
-        residual = residual_of(
+        residual = step_residual(
             potential, constants, ball, midpoint, initial.distance, start.energy, mass_rate, inertia_rate, pull, h
         )
         after, change = newton_correction(residual, midpoint, constants, mass_rate, inertia_rate, h)
@@ -196,7 +196,7 @@ def mean_contact(  # type: ignore[no-untyped-def]
     shortening, depth = half.distance * over, mean - constants.clearance
     centre = BallCentre(mean, nx, ny, nz, depth, over)
     if constants.rim == 0.0:
-        contact = elastic(potential, centre, constants)
+        contact = elastic_contact(potential, centre, constants)
         return MeanContact(centre, end, contact, shortening, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     cosine, sine, px, py, pz = dome_angle(half, constants)
     lean, across = shortening * cosine, 1.0 / safe_divisor(sine)
@@ -205,7 +205,7 @@ def mean_contact(  # type: ignore[no-untyped-def]
     gx, gy, gz = constants.dome_x, constants.dome_y, constants.dome_z
     kx, ky, kz = lean * gx, lean * gy, lean * gz
     kx, ky, kz = kx + stretch * (nx - cosine * gx), ky + stretch * (ny - cosine * gy), kz + stretch * (nz - cosine * gz)
-    contact = elastic(potential, BallCentre(mean, kx, ky, kz, depth, over), constants)
+    contact = elastic_contact(potential, BallCentre(mean, kx, ky, kz, depth, over), constants)
     tilt = lean * shortening
     return MeanContact(
         centre, end, contact, shortening,
@@ -214,7 +214,7 @@ def mean_contact(  # type: ignore[no-untyped-def]
     )  # fmt: skip
 
 
-def residual_of(  # type: ignore[no-untyped-def]
+def step_residual(  # type: ignore[no-untyped-def]
     potential,
     constants: Constants,
     ball: BallState,
@@ -233,8 +233,8 @@ def residual_of(  # type: ignore[no-untyped-def]
     ax, ay, az, bx, by, bz = midpoint
     mean = mean_contact(potential, constants, ball, midpoint, distance, h)
     centre, end, contact = mean.centre, mean.end, mean.contact
-    fx, fy, fz, mx, my, mz = reaction(centre, contact, (ax, ay, az), (bx, by, bz), constants)
-    after = elastic(potential, end, constants)
+    fx, fy, fz, mx, my, mz = force_and_moment(centre, contact, (ax, ay, az), (bx, by, bz), constants)
+    after = elastic_contact(potential, end, constants)
     nx, ny, nz = centre.x, centre.y, centre.z
     speed = ax * nx + ay * ny + az * nz
     normal, polar = mean.shortening * contact.normal, contact.polar
@@ -263,7 +263,7 @@ def residual_of(  # type: ignore[no-untyped-def]
         centre,
         contact,
         abs(fx) + abs(fy) + abs(fz),
-        after.covered > -1.0 or end.indentation <= -constants.smoothing,
+        after.rim_margin > -1.0 or end.indentation <= -constants.smoothing,
     )
 
 
@@ -285,11 +285,11 @@ def newton_correction(
     if constants.static + constants.viscous > 0.0:
         speed = midpoint.x * nx + midpoint.y * ny + midpoint.z * nz
         velocity, spin = (midpoint.x, midpoint.y, midpoint.z), (midpoint.wx, midpoint.wy, midpoint.wz)
-        slip = sliding(centre, pressed(contact, speed, constants), velocity, spin, constants)
+        slip = sliding_state(centre, normal_force(contact, speed, constants), velocity, spin, constants)
         push, mixed, rotation = slip.rate * slip.push, slip.rate * slip.mixed, slip.rate * slip.rotation
         drill = slip.rate * slip.drill * slip.lever_squared
     lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
-    across = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.over
+    across = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.inverse_distance
     outward = residual.x * nx + residual.y * ny + residual.z * nz
     turning = residual.wx * nx + residual.wy * ny + residual.wz * nz
     dn = -outward / (mass_rate + lossy + 0.5 * h * abs(contact.stiffness))

@@ -183,7 +183,7 @@ class Viscoelastic:
         """Compute the force in N by the hereditary integral ∫ g(t - s) dF, valid while the contact grows."""
         time, depth = _check_history(time, depth)
         rise = numpy.diff(self.instantaneous_force(depth))
-        return numpy.append(0.0, numpy.sum(self._weights(time) * rise, axis=1))
+        return numpy.append(0.0, numpy.sum(self._mean_relaxation(time) * rise, axis=1))
 
     def cycle_force(self, time: Numbers, depth: Numbers) -> Numbers:
         """Compute the force in N of a single loading and unloading, after Ting.
@@ -207,7 +207,7 @@ class Viscoelastic:
             "depth", depth, _mask_until(len(depth), top, again), "it must rise once and then fall; use `spring_force`"
         )
         force = self.hereditary_force(time, depth)
-        weights, bed = self._weights(time), numpy.maximum(depth, 0.0)
+        weights, bed = self._mean_relaxation(time), numpy.maximum(depth, 0.0)
         for number in range(top + 1, len(time)):
             force[number] = self._unloading_force(weights[number - 1], bed, top, number)
         return force
@@ -228,7 +228,7 @@ class Viscoelastic:
         forces = self.instantaneous_force(numpy.append(depth[: last + 1], edge))
         return float(numpy.sum(weights[: last + 1] * numpy.diff(forces)))
 
-    def _weights(self, time: Numbers) -> Numbers:
+    def _mean_relaxation(self, time: Numbers) -> Numbers:
         """Compute the mean relaxation modulus over past intervals: (instants - 1, intervals), 0 for future ones."""
         late, early = time[1:, None] - time[None, :-1], time[1:, None] - time[None, 1:]
         return numpy.where(early >= 0, self.modulus.mean(numpy.maximum(early, 0.0), numpy.maximum(late, 1e-300)), 0.0)
@@ -259,7 +259,7 @@ class Viscoelastic:
         m = width * (numpy.arange(rings) + 0.5)
         ball = numpy.maximum(depth, -c)[:, None] * (1.0 - m) - c * m  # d cos φ - c (1 - cos φ)
         pressure = _maxwell_pressures(self.modulus, time, ball)
-        factor = 2 * numpy.pi * joint.socket_radius**2 * float(self.model.modulus.of(joint)) * width
+        factor = 2 * numpy.pi * joint.socket_radius**2 * float(self.model.modulus.evaluate(joint)) * width
         return factor * (pressure @ (1.0 - m))
 
 

@@ -76,7 +76,7 @@ class Recording:
 
     @cached_property
     def contact(self) -> Elastic:
-        return reaction.elastic(self._potential, self.centre, self.constants)
+        return reaction.elastic_contact(self._potential, self.centre, self.constants)
 
     def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
         if ENERGY in self.curves:
@@ -87,11 +87,11 @@ class Recording:
     @cached_property
     def load(self) -> Outputs:
         """Recorded force, moment and energy."""
-        parts = reaction.reaction(self.centre, self.contact, *self.state[1:], self.constants)
+        parts = reaction.force_and_moment(self.centre, self.contact, *self.state[1:], self.constants)
         return {**_numbered("force", parts[:3]), **_numbered("moment", parts[3:]), "*energy": self.contact.energy}
 
     @cached_property
-    def pressed(self) -> Outputs:
+    def contact_size(self) -> Outputs:
         """Recorded half angle and largest pressure."""
         depth = self.centre.indentation
         angle, pressure = (self.tape.curve(name, depth, 1)[0] for name in (HALF_ANGLE, MAX_PRESSURE))
@@ -113,7 +113,9 @@ class Recording:
         """Recorded derivatives of load, half angle and pressure in a direction of the state space."""
         names = (f"way[{number}]" for number in range(9))
         direction = {part: self.tape.input(name) for part, name in zip(chain(*self.state), names, strict=True)}
-        return _numbered("slope", directional_derivatives([*self.load.values(), *self.pressed.values()], direction))
+        return _numbered(
+            "slope", directional_derivatives([*self.load.values(), *self.contact_size.values()], direction)
+        )
 
 
 def _numbered(name: str, parts: Any) -> Outputs:
@@ -160,8 +162,8 @@ class CElement:
             raise ValueError(
                 f"name must start with a letter or _ and hold letters, digits and _, got {self.name!r:.60}"
             )
-        if self.element.remembers:
-            raise ValueError(f"{self.element.remembers}; exported elements have no state")
+        if self.element.internal_state:
+            raise ValueError(f"{self.element.internal_state}; exported elements have no state")
 
     @cached_property
     def recording(self) -> Recording:
@@ -192,7 +194,7 @@ class CElement:
             checks="\n".join(_range_check(parameter.name, parameter.above) for parameter in TUNABLES),
             first_touch=c_number(constants.clearance - constants.smoothing),
             load=c_statements({**recording.status, **recording.load}),
-            pressed=c_statements({**recording.status, **recording.pressed}),
+            pressed=c_statements({**recording.status, **recording.contact_size}),
             tangent=c_statements({**recording.status, **recording.tangent}),
             slope=c_statements({**recording.status, **recording.slope}),
             sentences="\n".join(f'    case {touch.value}: return "{touch.sentence}";' for touch in ContactState),

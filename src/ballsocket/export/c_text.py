@@ -23,7 +23,7 @@ def c_number(value: float) -> str:
 def c_statements(targets: Mapping[str, Part]) -> str:
     """Translate recorded steps to C statements that assign each target."""
     steps = _required_steps(list(targets.values()))
-    lines = [line for step in steps for line in _statements(step)]
+    lines = [line for step in steps for line in _step_statements(step)]
     lines += [f"{name} = {_c_operand(part)};" for name, part in targets.items()]
     return "\n".join(f"    {line}" for line in lines)
 
@@ -40,7 +40,7 @@ def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
     return [required[number] for number in sorted(required)]
 
 
-def _statements(step: Recorded) -> Iterator[str]:
+def _step_statements(step: Recorded) -> Iterator[str]:
     """Yield the C statements of a recorded step."""
     if step.step == "input":
         return
@@ -49,10 +49,10 @@ def _statements(step: Recorded) -> Iterator[str]:
         yield f"{step.about}({_c_operand(step.parts[0])}, {_c_operand(step)});"
         return
     kind = "int" if step.step in BOOLEAN else "double"
-    yield f"const {kind} {_c_operand(step)} = {_expression(step, [_c_operand(part) for part in step.parts])};"
+    yield f"const {kind} {_c_operand(step)} = {_step_expression(step, [_c_operand(part) for part in step.parts])};"
 
 
-def _expression(step: Recorded, parts: list[str]) -> str:
+def _step_expression(step: Recorded, parts: list[str]) -> str:
     """Return the C expression of a recorded step, with its operands as text."""
     if step.step == "where":
         return "{} ? {} : {}".format(*parts)

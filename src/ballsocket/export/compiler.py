@@ -75,7 +75,7 @@ def compiler() -> list[str]:
     NoCompiler
         No compiler is installed.
     """
-    chosen = _arguments("CC")
+    chosen = _environment_arguments("CC")
     if chosen and shutil.which(chosen[0]):
         return chosen
     installed = next(filter(None, map(shutil.which, _COMPILER_NAMES)), None)
@@ -104,7 +104,7 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
     NoCompiler
         A missing compiler, a failed one (with its first error message), or an unknown output format.
     """
-    flags = _arguments("CFLAGS")
+    flags = _environment_arguments("CFLAGS")
     command = [
         *compiler(),
         "-std=c99",
@@ -168,7 +168,7 @@ def library_platform(header: bytes) -> Platform:
     return Platform(system=system, processor=machines[machine])
 
 
-def _arguments(name: str) -> list[str]:
+def _environment_arguments(name: str) -> list[str]:
     """Split an environment variable into the arguments of a command."""
     value = os.environ.get(name, "")
     try:

@@ -112,7 +112,7 @@ class ExpressionFit:
         """Compute the force in N at distances between the centres in m."""
         d = numpy.maximum(distance - self.clearance, 0.0)
         if not self.coefficients:
-            return self.scale * _springs(d, self.clearance)
+            return self.scale * _spring_shape(d, self.clearance)
         fitted = numpy.minimum(d, self.depth)
         t = numpy.sqrt(fitted / (fitted + self.length))
         exponential = numpy.exp(numpy.polyval((*self.coefficients[::-1], 0.0), t))
@@ -145,7 +145,7 @@ class ExpressionFit:
         )
 
 
-def _springs(d: Numbers, c: float) -> Numbers:
+def _spring_shape(d: Numbers, c: float) -> Numbers:
     return d * d * (3.0 * c + 2.0 * d) / (c + d) ** 2
 
 
@@ -158,7 +158,7 @@ def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
     fitted_depth = max(depth, valid_depth(element))
     d = numpy.geomspace(1e-3 * fitted_depth, fitted_depth, 997)
     forces = element.potential(d)[1]
-    ratio = forces / _springs(d, c)
+    ratio = forces / _spring_shape(d, c)
     lengths = {"clearance": 1e-3 * c, "depth": 1e-3 * fitted_depth}
     if c > 0.0 and numpy.ptp(ratio) < 1e-12 * ratio[0]:
         fit = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **lengths)

@@ -34,7 +34,7 @@ class Tape:
     """Recorded steps of a calculation in their order, without duplicates."""
 
     steps: list[Recorded] = field(default_factory=list)
-    _known: dict[tuple[Any, ...], Recorded] = field(default_factory=dict)
+    _steps_by_key: dict[tuple[Any, ...], Recorded] = field(default_factory=dict)
 
     def input(self, name: str, tunable: bool = False) -> Recorded:
         """Record an input of the calculation.
@@ -45,19 +45,19 @@ class Tape:
 
     def curve(self, name: str, x: Recorded, slopes: int) -> tuple[Recorded, ...]:
         """Record the evaluation of a tabulated curve, and return its value and derivatives."""
-        looked_up = self.record("curve", (x,), name)
-        return tuple(self.record("slope", (looked_up,), order) for order in range(slopes))
+        evaluation = self.record("curve", (x,), name)
+        return tuple(self.record("slope", (evaluation,), order) for order in range(slopes))
 
     def record(self, step: str, parts: tuple[Part, ...], about: Any = None, *, tunable: bool | None = None) -> Recorded:
         """Return the step with an operation and its parts; record it if it is new."""
         key = (step, about, *((id(part) if isinstance(part, Recorded) else ("number", part)) for part in parts))
-        if key not in self._known:
+        if key not in self._steps_by_key:
             if tunable is None:
                 tunable = all(part.tunable for part in parts if isinstance(part, Recorded))
-            made = Recorded(self, len(self.steps), step, parts, about, tunable)
-            self.steps.append(made)
-            self._known[key] = made
-        return self._known[key]
+            recorded = Recorded(self, len(self.steps), step, parts, about, tunable)
+            self.steps.append(recorded)
+            self._steps_by_key[key] = recorded
+        return self._steps_by_key[key]
 
 
 class Recorded:

@@ -20,11 +20,11 @@ _LINE_OF_CENTRES = tuple(name for name in FEATURES if name != "damping")
 """Features that one force along the line of centres cannot represent."""
 
 
-def _module(job: ExportJob) -> dict[str, str]:
+def _python_module(job: ExportJob) -> dict[str, str]:
     return {**job.program_texts(), f"{job.name}.py": fill_template("module.py.txt", **job.template_context)}
 
 
-def _library(job: ExportJob, folder: Path) -> str:
+def _compile_library(job: ExportJob, folder: Path) -> str:
     """Compile the library that the Python module loads; return a note if compilation fails."""
     try:
         shared_library([f"{job.name}.c"], Path(job.template_context["library"]), folder)
@@ -50,16 +50,16 @@ def _opensim(job: ExportJob) -> Texts:
 def _mujoco(job: ExportJob) -> Texts:
     radius = repr(1e-3 * job.element.constants.ball_radius)
     return {
-        **_module(job),
+        **_python_module(job),
         f"{job.name}_mujoco.c": fill_template("mujoco.c", **job.template_context),
         f"{job.name}_mujoco.py": fill_template("mujoco.py.txt", **job.template_context),
         f"{job.name}.xml": fill_template("mujoco.xml", ball_radius=radius, **job.template_context),
     }
 
 
-def _plugin(job: ExportJob, folder: Path) -> str:
+def _compile_plugin(job: ExportJob, folder: Path) -> str:
     """Compile the library, and the plug-in if MuJoCo is installed; return a note on a missing one."""
-    missing, mujoco = _library(job, folder), find_spec("mujoco")
+    missing, mujoco = _compile_library(job, folder), find_spec("mujoco")
     if missing or mujoco is None or not mujoco.submodule_search_locations:
         return missing or "the plug-in is not compiled: mujoco, whose headers it needs, is not installed"
     package = Path(mujoco.submodule_search_locations[0])
@@ -74,7 +74,7 @@ def _plugin(job: ExportJob, folder: Path) -> str:
 
 
 def _drake(job: ExportJob) -> Texts:
-    return {**_module(job), f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context)}
+    return {**_python_module(job), f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context)}
 
 
 def _exudyn(job: ExportJob) -> Texts:
@@ -88,7 +88,10 @@ def _exudyn(job: ExportJob) -> Texts:
         "ball_radius": repr(1e-3 * constants.ball_radius),
         "socket_radius": repr(1e-3 * constants.socket_radius),
     }
-    return {**_module(job), f"{job.name}_exudyn.py": fill_template("exudyn.py.txt", **fit, **job.template_context)}
+    return {
+        **_python_module(job),
+        f"{job.name}_exudyn.py": fill_template("exudyn.py.txt", **fit, **job.template_context),
+    }
 
 
 def _modelica(job: ExportJob) -> Texts:
@@ -162,9 +165,9 @@ TARGETS: Mapping[str, Target] = {
             note=lambda job: job.expression.range_note,
             without=_LINE_OF_CENTRES,
         ),
-        Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco, compiled=_plugin),
-        Target(name="drake", title="a LeafSystem", texts=_drake, compiled=_library),
-        Target(name="exudyn", title="a user function and its hollow sphere", texts=_exudyn, compiled=_library),
+        Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco, compiled=_compile_plugin),
+        Target(name="drake", title="a LeafSystem", texts=_drake, compiled=_compile_library),
+        Target(name="exudyn", title="a user function and its hollow sphere", texts=_exudyn, compiled=_compile_library),
         Target(name="modelica", title="a package around the law in C", texts=_modelica),
         Target(
             name="table",

@@ -106,7 +106,7 @@ class ClosedForm(Model):
         return where(force > 0, scale * arrays.exp(root), 0.0 * root)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve for force and indentation from loads of one kind, and mark contacts without a solution."""
+        """Solve contacts for given forces, indentations or half angles, and mark those without a solution."""
         if kind == "force":
             d = self.indentation(joint, load)
             F = load

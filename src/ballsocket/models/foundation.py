@@ -69,21 +69,23 @@ class RadialFoundation(ClosedForm):
         return self.modulus.constants
 
     def force(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation)
+        return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.stiffness(joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation)
+        return self.kinematics.stiffness(
+            joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
+        )
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation)
+        return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
         return self.kinematics.pressure_integral(
-            joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation
+            joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
         )
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        return self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus.of(joint), force)
+        return self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), force)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         versine = self.kinematics.versine(joint.socket_radius, joint.clearance, indentation)
@@ -93,18 +95,18 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
     def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
-        return self.modulus.of(joint) * indentation
+        return self.modulus.evaluate(joint) * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        return self.modulus.of(joint) + 0.0 * indentation
+        return self.modulus.evaluate(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         u = self.kinematics.displacement(joint.socket_radius, joint.clearance, indentation, versine_of(angle))
         inside = (u > 0) & (cos(angle) > 0)
-        return where(inside, self.modulus.of(joint) * u, 0.0)
+        return where(inside, self.modulus.evaluate(joint) * u, 0.0)
 
     def _law(self, joint: Joint) -> ForceLaw:
-        R2, c, K = joint.socket_radius, joint.clearance, float(self.modulus.of(joint))
+        R2, c, K = joint.socket_radius, joint.clearance, float(self.modulus.evaluate(joint))
         return FoundationLaw(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=K)
 
 

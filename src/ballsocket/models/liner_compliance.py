@@ -36,7 +36,7 @@ class Liner(NamedTuple):
     denominator: tuple[Array, ...]
 
 
-def liner_of(nu: Array, b: Array) -> Liner:
+def liner_coefficients(nu: Array, b: Array) -> Liner:
     """Compute the compliance coefficients of a liner from its Poisson's ratio ν and radius ratio b = 1 + L/R2."""
     k0, g, t, z = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 2 * nu, 1 / (b * b)
     bent, none = 4 - 6 * nu, 0.0 * nu
@@ -95,7 +95,7 @@ def _scaled_polynomial(
     return even + odd + middle + back, slope
 
 
-def log_compliance_anywhere(k: Array, liner: Liner) -> Pair:
+def log_compliance_any_wave(k: Array, liner: Liner) -> Pair:
     """Compute the log modal compliance ln(c E/R2) and its slope by ln k, for all wave numbers.
 
     Near q = 1 (k² = 3/4), where N and D vanish, it uses the reduced polynomials.

@@ -124,9 +124,9 @@ class LineContact(Outcome):
 
         `angle` in rad broadcasts against the contact's shape.
         """
-        return self._mask_failed(lambda: self.line_load / self._numbers.socket_radius * self._profile(angle))
+        return self._mask_failed(lambda: self.line_load / self._numbers.socket_radius * self._scaled_pressure(angle))
 
-    def _profile(self, angle: Array) -> Array:
+    def _scaled_pressure(self, angle: Array) -> Array:
         """Compute the scaled pressure p R2/Q at a polar angle, with the line load Q."""
         square = tan(self.half_angle / 2) ** 2
         y = tan(angle / 2) ** 2

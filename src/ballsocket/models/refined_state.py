@@ -12,7 +12,7 @@ from typing import NamedTuple
 from ..contact.roots import Increasing, increasing_root
 from ..core import arrays
 from ..core.arrays import Array, cos, exp, log, sin, where
-from .liner_compliance import Liner, Pair, log_compliance, log_compliance_anywhere
+from .liner_compliance import Liner, Pair, log_compliance, log_compliance_any_wave
 
 
 class Fit(NamedTuple):
@@ -100,7 +100,7 @@ def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledCon
     s_, v_, w_ = log_slopes(-rise1, -rise2, -rise3, -rise4, fit.spans)
     slopes = s_, v_, w_, S * S_rate
     level = _log_compliance(c2, s, v, w, S, fit)
-    edge, exponent = _edge(s, v, w, S, fit.edge), _exponent(s, v, w, S, fit.exponent)
+    edge, exponent = _edge_displacement(s, v, w, S, fit.edge), _pressure_exponent(s, v, w, S, fit.exponent)
     m, m_slope = exponent[0], angle_derivative(exponent, slopes)
     deficit = 2 * S / (m + 2)
     secant_rate = (
@@ -127,20 +127,18 @@ def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -
     Only the smallest wave number may come near q = 1.
     """
     if arrays.is_plain(half_angle):
-        return log_compliances_of_number(half_angle, liner, waves)
+        return scalar_log_compliances(half_angle, liner, waves)
     xp = arrays.namespace(half_angle)
     short = xp.asarray(waves[1:], dtype=half_angle.dtype, device=arrays.device(half_angle))
     values, slopes = log_compliance(xp.reshape(short, (-1, *(1 for _ in half_angle.shape))) / half_angle, liner)
     second, third, fourth = ((values[i, ...], slopes[i, ...]) for i in range(3))
-    return log_compliance_anywhere(waves[0] / half_angle, liner), second, third, fourth
+    return log_compliance_any_wave(waves[0] / half_angle, liner), second, third, fourth
 
 
-def log_compliances_of_number(
-    half_angle: Array, liner: Liner, waves: tuple[float, ...]
-) -> tuple[Pair, Pair, Pair, Pair]:
+def scalar_log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
     """Compute the log compliance ln c and its slope by ln k at the four wave numbers of a scalar half angle."""
     return (
-        log_compliance_anywhere(waves[0] / half_angle, liner),
+        log_compliance_any_wave(waves[0] / half_angle, liner),
         log_compliance(waves[1] / half_angle, liner),
         log_compliance(waves[2] / half_angle, liner),
         log_compliance(waves[3] / half_angle, liner),
@@ -175,7 +173,7 @@ def _log_compliance(c2: Array, s: Array, v: Array, w: Array, S: Array, fit: Fit)
     )
 
 
-def _edge(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
+def _edge_displacement(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
     """Compute the relative edge displacement λ = u(ε)/d and its slopes by s, v, w and S."""
     L1, L2, L3, L4, L5, L6, L7, L8, L9, L10 = fit
     by_s = 0.5 + L3 * v + L4 * w + S * (L9 + L10 * v)
@@ -189,7 +187,7 @@ def _edge(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> Val
     )
 
 
-def _exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
+def _pressure_exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
     """Compute the exponent m of the pressure profile and its slopes by s, v, w and S."""
     M1, M2, M3, M4, M5 = fit
     by_s = -0.5 + S * (M4 + M5 * v)
@@ -219,17 +217,17 @@ _LOG_OFFSET = -1.0
 """Value of the unknown, a shifted ln ε, at the widest contact; the shift keeps it away from zero."""
 
 
-def edge_of_indentation(load: Array, liner: Liner) -> Array:
+def half_angle_of_indentation(load: Array, liner: Liner) -> Array:
     """Solve for the half angle ε in rad of a dimensionless indentation d/c; NaN beyond the largest half angle."""
-    return _solve_edge(_indentation_residual, load, log(1.5 * load / (1 + load)) / 2, liner)
+    return _solve_half_angle(_indentation_residual, load, log(1.5 * load / (1 + load)) / 2, liner)
 
 
-def edge_of_force(load: Array, liner: Liner) -> Array:
+def half_angle_of_force(load: Array, liner: Liner) -> Array:
     """Solve for the half angle ε in rad of a dimensionless force F/(E R2 c); NaN beyond the largest half angle."""
-    return _solve_edge(_force_residual, load, log(load / (2.5 + load / 3)) / 3, liner)
+    return _solve_half_angle(_force_residual, load, log(load / (2.5 + load / 3)) / 3, liner)
 
 
-def _solve_edge(residual: Increasing, load: Array, start: Array, liner: Liner) -> Array:
+def _solve_half_angle(residual: Increasing, load: Array, start: Array, liner: Liner) -> Array:
     """Solve for the half angle ε in rad by Newton's method from the estimate ln ε = `start`."""
     start = start + (_LOG_OFFSET - ln(MAX_HALF_ANGLE))
     end = 0.0 * start + (_LOG_OFFSET + 1e-12)  # includes the widest contact itself
