@@ -72,7 +72,9 @@ class ClosedForm(Model):
         return where(indentation == 0, numpy.inf, quotient)  # a point contact: p0 ~ d^(1/2n), n >= 1
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        """Integrate p dA over the spherical contact, in N, by quadrature."""
+        """Integrate p dA over the contact, in N: by quadrature on a sphere, and equal to the force on a plane."""
+        if self.planar:
+            return self.force(joint, indentation)
         edge = self.half_angle(joint, indentation)
 
         def ring(x: float) -> Array:
