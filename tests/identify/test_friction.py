@@ -14,6 +14,7 @@ from ballsocket.identify.synthetic import trials
 from ballsocket.studies import Normal
 
 from ..cli.command import run
+from ..extent import either
 
 JOINT = bs.joints["hess-forsbach"]
 MODEL = bs.HessForsbach()
@@ -53,9 +54,9 @@ def test_estimate_and_band_are_those_of_weighted_linear_regression():
 
 
 def test_bands_of_95_percent_contain_the_coefficient_in_most_trials():
-    tried = trials(bs.identify(MODEL, JOINT, torques(), RANGE), 40, seed=3)
-    assert 0.9 <= tried.coverage["friction_coefficient"] <= 1.0
-    assert abs(tried.bias["friction_coefficient"]) < 0.2
+    tried = trials(bs.identify(MODEL, JOINT, torques(), RANGE), either(quick=10, long=100), seed=3)
+    assert tried.coverage["friction_coefficient"] >= either(quick=0.8, long=0.9)
+    assert abs(tried.bias["friction_coefficient"]) < either(quick=0.3, long=0.1)
 
 
 def test_friction_and_clearance_are_identified_from_torques_and_indentations():
