@@ -136,7 +136,7 @@ def test_solutions_of_one_contact_need_one_contact():
 
 
 @pytest.mark.parametrize("peak", [0.0, 0.3, 0.62, 0.9])
-def test_the_largest_pressure_is_found_on_a_profile(peak):
+def test_the_largest_pressure_is_located_on_a_profile(peak):
     """Pressure falls with the squared distance from its peak, relative to the half angle."""
     edge = np.array([0.5, 1.0, 1.2])
 

@@ -69,7 +69,7 @@ def test_bounds_of_the_stress_contain_the_fit():
     assert strength.von_mises_bounds(free, 5.0) == (0.0, inf)
 
 
-def test_elastic_limit_asks_for_stresses_only_where_bounds_do_not_decide():
+def test_elastic_limit_solves_for_stresses_only_where_bounds_do_not_decide():
     solved = []
 
     def utilisation_at(mask):

@@ -97,7 +97,7 @@ def test_renamed_names_attributes_and_arguments_warn():
         work(progress=2, listen=1)
 
 
-def test_a_renamed_field_is_accepted_and_given_with_a_warning():
+def test_a_renamed_field_is_accepted_and_read_with_a_warning():
     with pytest.warns(DeprecationWarning, match=r"^argument 'told' of Note\(\) is deprecated: use 'text'"):
         note = Note(told="loose")
     with pytest.warns(DeprecationWarning, match=r"^Note.told is deprecated: use text"):

@@ -102,7 +102,7 @@ def test_sources_have_authors_and_year():
     assert several
 
 
-def test_publications_are_found_in_texts():
+def test_publications_are_recognized_in_texts():
     key = bs.HessForsbach().sources[0].key
     assert list(named_in("E of Heß & Forsbach 2021, Table 2")) == [key]
     assert list(named_in("doi 10.3390/app112311170")) == [key]

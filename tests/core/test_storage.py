@@ -103,7 +103,7 @@ def test_draft_folders_of_killed_processes_are_removed(tmp_path):
     assert names(tmp_path) == [".a.txt.young.draft", "a.txt"]
 
 
-def test_a_locked_draft_folder_is_kept_at_any_age(tmp_path):
+def test_a_locked_draft_folder_is_not_removed_at_any_age(tmp_path):
     with make_draft_folder(tmp_path / "a.txt") as folder:
         os.utime(folder, (0, 0))
         write_text(tmp_path / "a.txt", "x")
@@ -111,7 +111,7 @@ def test_a_locked_draft_folder_is_kept_at_any_age(tmp_path):
     assert names(tmp_path) == ["a.txt"]
 
 
-def test_draft_folders_of_other_files_are_kept(tmp_path):
+def test_draft_folders_of_other_files_are_not_removed(tmp_path):
     folder = tmp_path / ".b.txt.x.draft"
     folder.mkdir()
     os.utime(folder, (0, 0))

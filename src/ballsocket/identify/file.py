@@ -25,21 +25,22 @@ from .columns import Gaps, read_measured, uncertainty_of
 from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
 from .measured import MEASURED, Measured
-from .observables import FREQUENCY, CustomObservable, oscillation
+from .observables import FILE_OBSERVABLES, CustomObservable
 from .registry import FREE_NUMBERS, MACHINE_ERRORS
 from .result import IdentificationResult
 from .scatter import HeavyTailed, NormalScatter, ScatterModel
 from .unknowns import Prior
 
 _FILE_KEYS = ("file", "quantities", "load", "gaps")
-_VALUE_KEYS = ("quantity", "values", "angle", "mass", "order", *LOADS)
+_OBSERVABLE_KEYS = {name: observable.argument for name, observable in FILE_OBSERVABLES.items()}
+_VALUE_KEYS = ("quantity", "values", "angle", *_OBSERVABLE_KEYS.values(), "order", *LOADS)
 _COMMON_KEYS = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
 _TABLES: Mapping[str, tuple[str, ...]] = {
     "": (*PARTS, "model", "scatter", "free", "machine", "data"),
     "data": (*_FILE_KEYS, *_VALUE_KEYS, *_COMMON_KEYS),
 }
 FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
-_QUANTITIES = {**MEASURED, FREQUENCY.name: FREQUENCY}
+_QUANTITIES = {**MEASURED, **{name: observable.described for name, observable in FILE_OBSERVABLES.items()}}
 _SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
 
 
@@ -77,7 +78,8 @@ def read_identify(path: str | Path) -> IdentifyFile:
       `{median, factor}`. The names are those of the joint and of the model.
     - `[[data]]` with a `file` (CSV, heads with units), its measured `quantities`, its `load`, and `gaps` ("refuse",
       "leave-out"). Paths are relative to the folder of the TOML file.
-    - `[[data]]` with a `quantity`, `values` (one or a list) and its load; a "frequency" needs its `mass`.
+    - `[[data]]` with a `quantity`, `values` (one or a list) and its load. A "frequency" needs its `mass`; a
+      "friction_torque" has an `axis_angle` to the load, by default 90 degrees.
     - Both kinds of data have `uncertainty` ("1 um", "2 %"), `load_uncertainty`, `saturation` and `machine`.
     - `[machine.NAME]`: `compliance`, `offset` and `drift` per reading, each a number or two ends. Readings are counted
       by rows of the file, or by `order`.
@@ -206,10 +208,18 @@ def _data_from_values(table: Mapping[str, Any], machine: Machine) -> Measured:
 
 
 def _parse_observable(name: str, table: Mapping[str, Any]) -> CustomObservable | None:
-    """Return the custom observable of a frequency; None for a quantity of a contact."""
-    if (name == FREQUENCY.name) != ("mass" in table):
-        raise ValueError("[[data]] of a frequency needs its mass, and other data take none")
-    return oscillation(parse("mass", table["mass"], Kind.MASS)) if "mass" in table else None
+    """Return the custom observable of a quantity such as a frequency; None for a quantity of a contact."""
+    for quantity, argument in _OBSERVABLE_KEYS.items():
+        if argument in table and quantity != name:
+            raise ValueError(f"{argument} belongs to [[data]] of a {quantity}, not of {name}")
+    if name not in FILE_OBSERVABLES:
+        return None
+    observable = FILE_OBSERVABLES[name]
+    if observable.argument in table:
+        return observable.make(parse(observable.argument, table[observable.argument], observable.kind))
+    if observable.default is None:
+        raise ValueError(f"[[data]] of a {name} needs its {observable.argument}")
+    return observable.make(observable.default)
 
 
 def _saturation_argument(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -25,7 +25,7 @@ _NEWTON_ITERATIONS = 3  # for the force of a compliant machine; its compliance i
 
 
 def split_numbers(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Select the numbers of the joint and those of the model by name; those of a machine are in neither."""
+    """Select the numbers of the joint and those of the model by name; others are in neither."""
     joint = {name: value for name, value in values.items() if name in JOINT_NUMBERS}
     return joint, {name: value for name, value in values.items() if name in MODEL_NUMBERS}
 
@@ -107,11 +107,11 @@ class ForwardModel:
 
 @dataclass(frozen=True, eq=False)
 class _PressedPoints:
-    """Joints, model and errors of machines at many values of the unknowns."""
+    """Joints, model, errors of machines and numbers of observables at many values of the unknowns."""
 
     model: Model
     joint: Joint
-    errors: Columns
+    numbers: Columns
 
     def press(self, kind: str, load: Array) -> Contact | None:
         """Press by one kind of load; None if the model has no result for any of the points."""
@@ -125,7 +125,7 @@ class _PressedPoints:
         """Compute the readings of a data set from its span of `count` contacts."""
         if contact is None:
             return numpy.full((1, len(measured)), numpy.nan)
-        return _quantity(contact, count, measured, span) + self._added(measured, contact, span)
+        return self._quantity(contact, count, measured, span) + self._added(measured, contact, span)
 
     def at_read_indentation(self, measured: Measured, factor: float) -> Array:
         """Compute results at measured indentations, corrected for the errors of the machine."""
@@ -140,6 +140,17 @@ class _PressedPoints:
                 force = force - (force - contact.force) / (1 + self._error_slope(measured, force) * stiffness)
         return self.reading(contact, len(measured), measured, slice(None))
 
+    def _quantity(self, contact: Contact, count: int, measured: Measured, span: slice) -> Array:
+        """Read the quantity of a data set from its span of `count` contacts."""
+        if measured.observable is not None:
+            numbers = {name: self.numbers[name] for name in measured.observable.numbers}
+            return _as_rows(measured.observable.read(contact, **numbers))[:, span]
+        if measured.quantity != "pressure":
+            return _as_rows(getattr(contact, measured.quantity))[:, span]
+        angle = numpy.zeros(count)
+        angle[span] = measured.angle
+        return _as_rows(contact.pressure(arrays.namespace(contact.force).asarray(angle)))[:, span]
+
     def _added(self, measured: Measured, contact: Contact, span: slice) -> Array:
         """Compute the addition of the machine to an indentation."""
         if measured.quantity != "indentation" or not measured.machine.name:
@@ -150,7 +161,7 @@ class _PressedPoints:
     def _error(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
         """Sum the errors of the machine that depend on the force, or those that do not."""
         return sum(
-            self.errors[measured.machine.key(name)] * error.effect(force, measured.order)
+            self.numbers[measured.machine.key(name)] * error.effect(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
             if (error.slope is not None) == depends_on_force
         )
@@ -158,7 +169,7 @@ class _PressedPoints:
     def _error_slope(self, measured: Measured, force: Array) -> Array:
         """Compute the derivative of the errors of the machine with respect to the force."""
         return sum(
-            self.errors[measured.machine.key(name)] * error.slope(force, measured.order)
+            self.numbers[measured.machine.key(name)] * error.slope(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
             if error.slope is not None
         )
@@ -172,17 +183,6 @@ def _is_load_read_by_machine(measured: Measured) -> bool:
 def _not_negative(indentation: Array) -> Array:
     """Replace negative indentations by 0."""
     return arrays.clip(indentation, 0.0, inf)
-
-
-def _quantity(contact: Contact, count: int, measured: Measured, span: slice) -> Array:
-    """Read the quantity of a data set from its span of `count` contacts."""
-    if measured.observable is not None:
-        return _as_rows(measured.observable.read(contact))[:, span]
-    if measured.quantity != "pressure":
-        return _as_rows(getattr(contact, measured.quantity))[:, span]
-    angle = numpy.zeros(count)
-    angle[span] = measured.angle
-    return _as_rows(contact.pressure(arrays.namespace(contact.force).asarray(angle)))[:, span]
 
 
 def _as_rows(values: Array) -> Array:

@@ -72,7 +72,12 @@ class ClosedForm(Model):
         return where(indentation == 0, numpy.inf, quotient)  # a point contact: p0 ~ d^(1/2n), n >= 1
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the integral of the pressure over the spherical contact area in N, by quadrature."""
+        """Compute the integral of the pressure over the contact area in N.
+
+        On a sphere by quadrature; models of planar contact return their force.
+        """
+        if self.planar:
+            return self.force(joint, indentation)
         edge = self.half_angle(joint, indentation)
 
         def ring(x: float) -> Array:

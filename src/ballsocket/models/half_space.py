@@ -106,10 +106,6 @@ class HalfSpace(ClosedForm):
             series = series + comb(n - 1, j) / (2 * j + 1) * r ** (2 * (n - 1 - j)) * y ** (2 * j + 1)
         return where(r < a, joint.effective_modulus / pi * self._gap_coefficient(joint) * 2 * n * series, 0.0)
 
-    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        # on a plane the pressure has one direction
-        return self.force(joint, indentation)
-
 
 @cache
 def _peak_position_and_ratio(order: int) -> tuple[float, float]:
