@@ -86,12 +86,14 @@ class Comparison(Mapping[str, Contact]):
         if exact is None or name == reference.name or name not in self.contacts:
             return None
         contact = self.contacts[name]
-        return {column.name: relative_deviation(column.of(contact), column.of(exact)) for column in COLUMNS}
+        return {
+            column.name: relative_deviation(column.values_of(contact), column.values_of(exact)) for column in COLUMNS
+        }
 
     def rows(self) -> list[tuple[str, ...]]:
         """Return the rows of a table as text, with the columns of `COLUMN_HEADS`."""
         return [
-            (name, *(number_text(column.of(contact), 5, "-") for column in _SHOWN), count_text(contact.valid))
+            (name, *(number_text(column.values_of(contact), 5, "-") for column in _SHOWN), count_text(contact.valid))
             for name, contact in self.contacts.items()
         ]
 
@@ -247,12 +249,12 @@ _MAX_HALF_ANGLE = radians(84.9)
 """Largest half angle of a short curve in rad."""
 
 
-def is_slow(model: Model, joint: Joint) -> bool:
+def is_curve_slow(model: Model, joint: Joint) -> bool:
     """Return True if a curve of this model takes seconds, since thin liners need many terms; for one joint."""
     return model.seconds_a_press > _NUMERICAL_SECONDS and float(joint.thickness_ratio) > THIN_LINER_RATIO
 
 
-def short_curve(contact: Contact, model: Model) -> Contact:
+def press_short_curve(contact: Contact, model: Model) -> Contact:
     """Press 12 half angles up to 1.15 times that of a contact, for which no load must be searched."""
     max_half_angle = min(1.15 * float(contact.half_angle), _MAX_HALF_ANGLE)
     return model.press(contact.joint, half_angle=max_half_angle * _SHORT_STEPS)
@@ -278,8 +280,8 @@ def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -
     def curve(contact: Contact, model: Model) -> Contact:
         if model.seconds_a_press > _MESH_SECONDS:
             return model.press(contact.joint, indentation=max_indentation * _MESH_STEPS)
-        if is_slow(model, contact.joint):
-            return short_curve(contact, model)
+        if is_curve_slow(model, contact.joint):
+            return press_short_curve(contact, model)
         return model.press(contact.joint, indentation=max_indentation * _FINE_STEPS)
 
     return {name: curve(contact, models[name]) for name, contact in contacts.items()}

@@ -48,15 +48,15 @@ def check_joint(joint: Any) -> None:
     raise TypeError(f"joint must be a Joint, got {shown(joint)}{hint}")
 
 
-def check_load(**loads: Array | None) -> tuple[str, Array]:
+def select_and_check_load(**loads: Array | None) -> tuple[str, Array]:
     """Select the single load that is not None, check it and return its name and value."""
     kind, load = select_load(**loads)
-    return kind, LOADS[kind].checked(load)
+    return kind, LOADS[kind].check(load)
 
 
 def broadcast_load(load: Array, strengths: tuple[Array, ...]) -> Array:
     """Broadcast a load against the strengths of the materials, so that stresses can be compared with them."""
-    if all(map(arrays.is_plain, strengths)):
+    if all(map(arrays.is_plain_number, strengths)):
         return load
     return arrays.broadcast(*arrays.to_common_arrays(load, *strengths))
 
@@ -74,7 +74,7 @@ def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Join
         The joint and the load of arrays.
     """
     numbers = (*joint.numbers(), load)
-    plain = all(arrays.is_plain(number) for number in (*numbers, *parameters))
+    plain = all(arrays.is_plain_number(number) for number in (*numbers, *parameters))
     joint_numbers = arrays.to_common_arrays(*numbers, *parameters)[: len(numbers)]
     return plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
 

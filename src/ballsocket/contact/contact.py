@@ -57,7 +57,7 @@ def _law_property(name: str) -> Any:
     law = attrgetter(name)
 
     quantity = QUANTITIES[name]
-    compute.__doc__ = f"{quantity.capital(Unit(''))} in {quantity.unit}. {quantity.meaning}"
+    compute.__doc__ = f"{quantity.input_label(Unit(''))} in {quantity.unit}. {quantity.meaning}"
     compute.__name__ = name
     return cached_property(compute)
 
@@ -218,8 +218,8 @@ class Contact(Outcome):
         """
         angle = check_numeric("angle", angle)
         # the angle at the edge is NaN where there is no contact
-        QUANTITIES["angle"].checked(arrays.where(angle == angle, angle, 0.0))
-        if self._is_plain and arrays.is_plain(angle):
+        QUANTITIES["angle"].check(arrays.where(angle == angle, angle, 0.0))
+        if self._is_plain and arrays.is_plain_number(angle):
             return self._evaluate(lambda laws: laws.pressure(float(angle)))
         _, angle = arrays.to_common_arrays(self.indentation, angle)
         return self._evaluate(lambda laws: laws.pressure(angle))
@@ -304,7 +304,7 @@ class Contact(Outcome):
 
     def summary(self) -> dict[str, Any]:
         """Return a dictionary for JSON in N, mm, MPa and degrees; arrays become lists, missing numbers None."""
-        return describe.summary(self)
+        return describe.to_summary(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return `summary()`."""
@@ -318,7 +318,7 @@ class Contact(Outcome):
         ImportError
             pandas is not installed.
         """
-        return describe.frame(self)
+        return describe.to_frame(self)
 
     def plot(self) -> Any:
         """Plot pressure over angle and force over indentation of a single contact.
@@ -335,10 +335,10 @@ class Contact(Outcome):
         return load_plot("contacts")({self.model.name: self})
 
     def __repr__(self) -> str:
-        return describe.text(self)
+        return describe.to_text(self)
 
     def _repr_html_(self) -> str:
-        return describe.html(self)
+        return describe.to_html(self)
 
 
 _ELASTIC = strength.ElasticLimit()

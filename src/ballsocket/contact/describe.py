@@ -72,7 +72,7 @@ class Column:
         """Title, symbol and unit, the label of an axis."""
         return self.quantity.label(self.reading)
 
-    def of(self, contact: Any) -> Array:
+    def values_of(self, contact: Any) -> Array:
         """Return the values of a contact in `unit`; -0 becomes 0."""
         return getattr(contact, self.attribute) * self.factor + 0.0
 
@@ -87,18 +87,18 @@ UTILISATION_NOTE = "utilisation_note"
 """Key in JSON of the reason why the utilisation does not cover the liner."""
 
 
-def summary(contact: Any) -> dict[str, Any]:
+def to_summary(contact: Any) -> dict[str, Any]:
     """Return a dictionary for JSON of a contact."""
-    numbers = {column.name: arrays.to_list(column.of(contact)) for column in COLUMNS}
+    numbers = {column.name: arrays.to_list(column.values_of(contact)) for column in COLUMNS}
     strength = {
-        UTILISATION.name: arrays.to_list(UTILISATION.of(contact)),
+        UTILISATION.name: arrays.to_list(UTILISATION.values_of(contact)),
         UTILISATION_NOTE: contact.utilisation_note or None,
     }
     valid = arrays.to_list(contact.valid)
     return {"model": contact.model.name, **numbers, **strength, "valid": valid, "notes": list(contact.notes)}
 
 
-def frame(contact: Any) -> pandas.DataFrame:
+def to_frame(contact: Any) -> pandas.DataFrame:
     """Return a data frame of one row per point.
 
     Raises
@@ -109,27 +109,27 @@ def frame(contact: Any) -> pandas.DataFrame:
     needs("study", "pandas")
     import pandas
 
-    columns = {column.quantity.column: arrays.to_numpy(column.of(contact)).ravel() for column in COLUMNS}
+    columns = {column.quantity.column: arrays.to_numpy(column.values_of(contact)).ravel() for column in COLUMNS}
     return pandas.DataFrame({**columns, "valid": arrays.to_numpy(contact.valid).ravel()})
 
 
-def text(contact: Any) -> str:
+def to_text(contact: Any) -> str:
     """Format a contact as aligned lines: model, joint, quantities and notes."""
     if arrays.all_true(contact.indentation == contact.indentation) is None:
         return f"<Contact of {contact.model.name}, traced>"
-    rows = _rows(contact)
+    rows = _format_rows(contact)
     width = max(len(number) for _, number, _ in rows)
     lines = [f"{contact.model.name} on {contact.joint}"]
     lines += [f"  {name:<19}{number:>{width}} {unit}".rstrip() for name, number, unit in rows]
     return "\n".join([*lines, *(f"  note: {note}" for note in contact.notes)])
 
 
-def html(contact: Any) -> str:
+def to_html(contact: Any) -> str:
     """Format a contact as an HTML table for a notebook."""
     align = "style='text-align:left'"
     rows = "".join(
         f"<tr><td {align}>{name.replace('_', ' ')}</td><td>{escape(number)}</td><td {align}>{unit}</td></tr>"
-        for name, number, unit in _rows(contact)
+        for name, number, unit in _format_rows(contact)
     )
     notes = "".join(f"<div>{escape(note)}</div>" for note in contact.notes)
     return f"<b>{escape(contact.model.name)}</b><div>{escape(str(contact.joint))}</div><table>{rows}</table>{notes}"
@@ -151,16 +151,19 @@ def number_text(value: Array, digits: int, gap: str) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _rows(contact: Any) -> list[tuple[str, str, str]]:
+def _format_rows(contact: Any) -> list[tuple[str, str, str]]:
     """Return name, number and unit of each printed quantity."""
     digits = 6 if arrays.to_numpy(contact.indentation).size == 1 else 5
-    rows = [(column.attribute, number_text(column.of(contact), digits, "no answer"), column.unit) for column in COLUMNS]
-    return [*rows, *_utilisation_row(contact), ("valid", count_text(contact.valid), "")]
+    rows = [
+        (column.attribute, number_text(column.values_of(contact), digits, "no answer"), column.unit)
+        for column in COLUMNS
+    ]
+    return [*rows, *_format_utilisation_row(contact), ("valid", count_text(contact.valid), "")]
 
 
-def _utilisation_row(contact: Any) -> list[tuple[str, str, str]]:
+def _format_utilisation_row(contact: Any) -> list[tuple[str, str, str]]:
     """Return the row of the utilisation of a single contact, if it is known."""
     if arrays.to_numpy(contact.indentation).size != 1 or not contact.joint.strengths():
         return []
-    value = UTILISATION.of(contact)
+    value = UTILISATION.values_of(contact)
     return [] if value != value else [(UTILISATION.attribute, number_text(value, 3, ""), "")]

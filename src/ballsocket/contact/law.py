@@ -104,7 +104,7 @@ _END_TOLERANCE = 1e-6
 """Relative tolerance of the deepest indentation that has a load."""
 
 
-def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
+def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
     """Fit a curve to the loads at many indentations, and add pieces until the last terms of ln F are small.
 
     Parameters

@@ -22,12 +22,12 @@ from .assembly import (
     as_arrays,
     broadcast_load,
     check_joint,
-    check_load,
     make_contact,
     make_scalar_contact,
+    select_and_check_load,
 )
 from .contact import Contact, Laws
-from .law import CurveLaw, ForceLaw, curve_law
+from .law import CurveLaw, ForceLaw, fit_curve_law
 from .model_info import ModelInfo
 
 
@@ -112,7 +112,7 @@ class Model(ModelInfo):
         """
         reject_unnamed_loads(unnamed)
         check_joint(joint)
-        kind, value = check_load(force=force, indentation=indentation, half_angle=half_angle)
+        kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         value = broadcast_load(value, joint.strengths())
         if self._can_press_floats(joint, value):
             try:
@@ -129,7 +129,7 @@ class Model(ModelInfo):
     def _can_press_floats(self, joint: Joint, load: Array) -> bool:
         """Return True if all numbers are plain and the formulas of the model take floats."""
         plain_parameters = (type(number) in (float, int) for number in self.parameters)
-        plain = all(map(arrays.is_plain, (*joint.numbers(), load)))
+        plain = all(map(arrays.is_plain_number, (*joint.numbers(), load)))
         return self.accepts_floats and plain and all(plain_parameters)
 
     def _press_floats(self, joint: Joint, kind: str, load: float) -> Contact:
@@ -176,7 +176,7 @@ class Model(ModelInfo):
         ValueError
             A joint outside the model's domain.
         """
-        if not all(map(arrays.is_plain, (*joint.numbers(), *self.parameters))):
+        if not all(map(arrays.is_plain_number, (*joint.numbers(), *self.parameters))):
             raise TypeError("a law needs one joint: the numbers of joint and model must be plain, not arrays")
         float_joint = joint.with_floats()
         check_domain((*self.fits, *self.domain), float_joint, self.name)
@@ -189,7 +189,7 @@ class Model(ModelInfo):
     def curve(self, joint: Joint) -> CurveLaw:
         """Fit a curve to presses of a joint, up to an indentation of the socket's radius."""
         shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
-        return curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, joint.socket_radius)
+        return fit_curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, joint.socket_radius)
 
     def in_cup(self, cup: Cup) -> Model:
         """Return this model in a cup; by default its validity then ends near the rim (`RimLimited`)."""

@@ -57,7 +57,7 @@ class JointContacts:
     reached: numpy.ndarray
     error: dict[str, numpy.ndarray]
 
-    def spread(self, values: numpy.ndarray) -> numpy.ndarray:
+    def expand(self, values: numpy.ndarray) -> numpy.ndarray:
         """Expand values of the touching contacts to all loads: 0 without a load, NaN without a solution."""
         expanded = numpy.zeros((*values.shape[:-1], len(self.load)))
         expanded[..., self.touching] = numpy.where(self.reached, values, numpy.nan)
@@ -88,8 +88,8 @@ def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *para
         Traced numbers without a value (inside `jax.jit`, `jax.grad`).
     """
     joint = joint.without_strengths()
-    numbers = [_values(model, number) for number in joint.numbers()]
-    varying = [_values(model, value) for value in (load, *parameters)]
+    numbers = [_to_concrete(model, number) for number in joint.numbers()]
+    varying = [_to_concrete(model, value) for value in (load, *parameters)]
     shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, *varying)))
     loads = [numpy.broadcast_to(value, shape).ravel().astype(float) for value in varying]
     pieces = []
@@ -121,7 +121,7 @@ def joint_at(joint: Joint, shape: tuple[int, ...], index: int) -> Joint:
     return joint.with_numbers([float(number.flat[index]) for number in broadcast])
 
 
-def _values(model: Model, number: Array) -> numpy.ndarray:
+def _to_concrete(model: Model, number: Array) -> numpy.ndarray:
     """Convert a number to NumPy; raise TypeError for a traced one."""
     values = arrays.concrete_values(number)
     if values is None:
@@ -133,7 +133,7 @@ def _combined_property(name: str) -> Any:
     """Make a cached property that combines a quantity of the solved contacts of all joints."""
 
     def combine(self: CombinedSolution) -> Array:
-        return self.spread(lambda piece: getattr(piece.state, name))
+        return self.combine(lambda piece: getattr(piece.state, name))
 
     combine.__name__ = name
     return cached_property(combine)
@@ -157,13 +157,13 @@ class CombinedSolution:
     shape: tuple[int, ...]
     pieces: tuple[tuple[numpy.ndarray, JointContacts], ...]
 
-    def spread(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
+    def combine(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
         """Combine the values of all joints into the shape (*rows, *shape); NaN at points without a solution."""
-        return self._like_load(self._combine_joints(lambda indices, piece: quantity(piece), prod(rows)), rows)
+        return self._match_load_array(self._combine_joints(lambda indices, piece: quantity(piece), prod(rows)), rows)
 
-    def located(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
+    def combine_by_index(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
         """Combine the values of all joints for a quantity that depends on the indices of the points."""
-        return self._like_load(self._combine_joints(quantity))
+        return self._match_load_array(self._combine_joints(quantity))
 
     def _combine_joints(
         self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: int = 1
@@ -171,27 +171,27 @@ class CombinedSolution:
         """Combine the values of all joints into a NumPy array (rows, points); NaN at points without a solution."""
         combined = numpy.full((rows, prod(self.shape)), numpy.nan)
         for indices, piece in self.pieces:
-            combined[:, indices] = piece.spread(quantity(indices, piece))
+            combined[:, indices] = piece.expand(quantity(indices, piece))
         return combined
 
-    def _like_load(self, values: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
+    def _match_load_array(self, values: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
         """Convert NumPy values to the shape, library, dtype and device of the load."""
         values = values.reshape((*shape, *self.shape))
         xp = arrays.namespace(self.like)
         return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
 
-    def _error(self, name: str) -> Array:
-        return self.spread(lambda piece: piece.error[name])
+    def _combine_error(self, name: str) -> Array:
+        return self.combine(lambda piece: piece.error[name])
 
     @property
-    def worst(self) -> Array:
+    def max_error(self) -> Array:
         """Largest of the estimated errors of each point."""
-        return self.spread(lambda piece: numpy.max(list(piece.error.values()), axis=0))
+        return self.combine(lambda piece: numpy.max(list(piece.error.values()), axis=0))
 
     @property
     def error(self) -> dict[str, Array]:
         """Estimated relative error of each quantity."""
-        return {name: self._error(name) for name in QUANTITIES}
+        return {name: self._combine_error(name) for name in QUANTITIES}
 
     force = _combined_property("force")
     indentation = _combined_property("indentation")
@@ -220,7 +220,7 @@ class CombinedSolution:
             values: numpy.ndarray = piece.state.pressure(rows[:, indices[piece.touching]])
             return values
 
-        return self._like_load(self._combine_joints(pressure, rows=len(rows)), front)
+        return self._match_load_array(self._combine_joints(pressure, rows=len(rows)), front)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -243,7 +243,7 @@ class SolvedContact(Contact):
         return self._match_load(low), self._match_load(high)
 
     def _compute_von_mises(self) -> Array:
-        return self.laws.located(self._joint_von_mises)
+        return self.laws.combine_by_index(self._joint_von_mises)
 
     @renamed_arguments(asked="mask")
     def utilisation_at(self, mask: Array) -> Array:
@@ -254,7 +254,7 @@ class SolvedContact(Contact):
             masked = replace(piece, reached=piece.reached & flat_mask[indices][piece.touching])
             return self._joint_von_mises(indices, masked)
 
-        return self._compute_utilisation(self._match_load(self.laws.located(masked_von_mises)))
+        return self._compute_utilisation(self._match_load(self.laws.combine_by_index(masked_von_mises)))
 
     @abstractmethod
     def _joint_von_mises(self, indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:

@@ -27,10 +27,10 @@ def increasing_root(
 ) -> Array:
     """Solve `law(x, *arguments)[0] == target` for an increasing law, element by element, in the bracket [low, high].
 
-    Newton's method with the slope `law(x, *arguments)[1]`, see `bracketed`. It stops after `steps` evaluations, or
-    once no element moves by more than `tolerance` times its value. The error is then of the order of the squared
-    tolerance. Inside `jax.jit` it always takes all steps. Automatic differentiation gives the derivatives of the root
-    by the implicit function theorem.
+    Newton's method with the slope `law(x, *arguments)[1]`, see `bracketed_newton_step`. It stops after `steps`
+    evaluations, or once no element moves by more than `tolerance` times its value. The error is then of the order of
+    the squared tolerance. Inside `jax.jit` it always takes all steps. Automatic differentiation gives the derivatives
+    of the root by the implicit function theorem.
 
     Parameters
     ----------
@@ -51,10 +51,10 @@ def increasing_root(
         The root, or the nearest end of the bracket where there is none.
     """
     if type(start) is float:
-        return root_of_number(law, target, low, high, start, arguments, steps, tolerance)
+        return scalar_increasing_root(law, target, low, high, start, arguments, steps, tolerance)
 
     def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
-        return bracketed(law, target, arguments, tolerance, *state[:-1])
+        return bracketed_newton_step(law, target, arguments, tolerance, *state[:-1])
 
     x = _iterate(step, (start, low, high, start < high, start == start), steps)
     if namespace(x) is numpy:
@@ -66,7 +66,7 @@ def increasing_root(
     return x
 
 
-def root_of_number(
+def scalar_increasing_root(
     law: Increasing,
     target: float,
     low: float,
@@ -76,7 +76,7 @@ def root_of_number(
     steps: int,
     tolerance: float,
 ) -> float:
-    """Solve for one number with the steps of `bracketed`."""
+    """Solve for one number with the steps of `bracketed_newton_step`."""
     x, fresh = start, start < high
     for _ in range(steps):
         value, slope = law(x, *arguments)
@@ -94,7 +94,7 @@ def root_of_number(
     return x
 
 
-def bracketed(
+def bracketed_newton_step(
     law: Increasing,
     target: Array,
     arguments: tuple[Any, ...],

@@ -51,7 +51,7 @@ def fit_variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> 
 
 
 @cache
-def _terms() -> tuple[tuple[float, int, int, int], ...]:
+def _read_terms() -> tuple[tuple[float, int, int, int], ...]:
     table = tomllib.loads((files("ballsocket") / "data" / "von_mises.toml").read_text(encoding="utf-8"))
     return tuple((number, *powers) for number, *powers in table["terms"])
 
@@ -72,7 +72,7 @@ def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -
         R2/L.
     """
     x, y, nu = fit_variables(half_angle, poisson, thickness_ratio)
-    return clip(sum(number * x**i * y**j * nu**k for number, i, j, k in _terms()), _MIN_RATIO, _MAX_RATIO)
+    return clip(sum(number * x**i * y**j * nu**k for number, i, j, k in _read_terms()), _MIN_RATIO, _MAX_RATIO)
 
 
 def ball_stress_ratio(poisson: Array) -> Array:
@@ -152,7 +152,7 @@ def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
     """Yield masks of points below a limit of a material, each with the note for the other points."""
     joint, pressure = contact.joint, contact.max_pressure
     if joint.liner.proportional_limit is not None:
-        yield from _linearity_remarks("liner", joint.liner, _estimate(contact))
+        yield from _linearity_remarks("liner", joint.liner, _estimate_von_mises(contact))
     if joint.liner.strengths:
         yield from _limit_remarks(
             "liner", joint.liner, contact.von_mises_bounds[1], lambda: contact.von_mises, pressure
@@ -166,7 +166,7 @@ def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
             yield logical_not(stress > _SAFE_STRAIN * joint.ball.young), _BALL_UNCHECKED
 
 
-def _estimate(contact: Any) -> Array:
+def _estimate_von_mises(contact: Any) -> Array:
     """Estimate the largest von Mises stress in the liner; solve for it only where no estimate exists."""
     low, high = contact.von_mises_bounds
     middle = (low + high) / 2

@@ -29,7 +29,7 @@ _NUMPY_TYPES = (float, int, numpy.ndarray, numpy.generic)
 """Types whose array library is NumPy."""
 
 
-def is_plain(value: Any) -> bool:
+def is_plain_number(value: Any) -> bool:
     """Return True for a Python or NumPy number, which takes the library and dtype of the other operands."""
     return isinstance(value, int | float)
 
@@ -44,7 +44,7 @@ def namespace(*values: Array) -> Any:
     """
     if all(isinstance(value, _NUMPY_TYPES) for value in values):
         return numpy
-    arrays = [value for value in values if not is_plain(value)]
+    arrays = [value for value in values if not is_plain_number(value)]
     try:
         return array_api_compat.array_namespace(*arrays)
     except TypeError as error:
@@ -52,14 +52,14 @@ def namespace(*values: Array) -> Any:
         raise TypeError(f"all arrays must be of one library, got {', '.join(kinds)}") from error
 
 
-def _elementwise(name: str, of_number: Callable[[float], float]) -> Callable[[Array], Array]:
+def _make_elementwise(name: str, scalar_function: Callable[[float], float]) -> Callable[[Array], Array]:
     """Return the elementwise function of that name for Python numbers and arrays."""
 
     def function(x: Array) -> Array:
         if type(x) is not float:
             return getattr(namespace(x), name)(x)
         try:
-            return of_number(x)
+            return scalar_function(x)
         except (ValueError, OverflowError):
             with numpy.errstate(all="ignore"):
                 return float(getattr(numpy, name)(x))
@@ -68,15 +68,15 @@ def _elementwise(name: str, of_number: Callable[[float], float]) -> Callable[[Ar
     return function
 
 
-exp = _elementwise("exp", math.exp)
-log = _elementwise("log", math.log)
-log1p = _elementwise("log1p", math.log1p)
-sin = _elementwise("sin", math.sin)
-cos = _elementwise("cos", math.cos)
-tan = _elementwise("tan", math.tan)
-atan = _elementwise("atan", math.atan)
-asinh = _elementwise("asinh", math.asinh)
-asin = _elementwise("asin", math.asin)
+exp = _make_elementwise("exp", math.exp)
+log = _make_elementwise("log", math.log)
+log1p = _make_elementwise("log1p", math.log1p)
+sin = _make_elementwise("sin", math.sin)
+cos = _make_elementwise("cos", math.cos)
+tan = _make_elementwise("tan", math.tan)
+atan = _make_elementwise("atan", math.atan)
+asinh = _make_elementwise("asinh", math.asinh)
+asin = _make_elementwise("asin", math.asin)
 
 
 def sqrt(x: Array) -> Array:
@@ -178,17 +178,17 @@ def to_common_arrays(*values: Array) -> tuple[Array, ...]:
     """
     listed = [numpy.asarray(value) if isinstance(value, list | tuple) else value for value in values]
     xp = namespace(*listed)
-    arrays = [value for value in listed if not is_plain(value)]
+    arrays = [value for value in listed if not is_plain_number(value)]
     floating = [value for value in arrays if xp.isdtype(value.dtype, "real floating")]
     dtype = xp.result_type(*floating) if floating else xp.asarray(1.0).dtype
     device = array_api_compat.device(arrays[0]) if arrays else None
 
-    def converted(value: Array) -> Array:
-        if is_plain(value):
+    def convert(value: Array) -> Array:
+        if is_plain_number(value):
             return xp.asarray(float(value), dtype=dtype, device=device)
         return value if value.dtype == dtype else xp.astype(value, dtype)
 
-    return tuple(converted(value) for value in listed)
+    return tuple(convert(value) for value in listed)
 
 
 def broadcast(x: Array, *values: Array) -> Array:

@@ -11,7 +11,7 @@ from unicodedata import category
 
 import numpy
 
-from .arrays import Array, all_true, is_plain, namespace, to_common_arrays
+from .arrays import Array, all_true, is_plain_number, namespace, to_common_arrays
 
 Value = TypeVar("Value")
 
@@ -45,22 +45,22 @@ def require(name: str, value: Array, good: Array, allowed: str) -> None:
     """
     if all_true(good) is not False:
         return
-    raise ValueError(f"{name}{_invalid_element(value, good)} is not allowed: {allowed}")
+    raise ValueError(f"{name}{_format_invalid_element(value, good)} is not allowed: {allowed}")
 
 
 def first_invalid(value: Array, good: Array) -> float:
     """Return the first element of `value` for which `good` is false."""
     if not _shape(value):
         return value
-    return float(namespace(value).reshape(value, (-1,))[_first_false(good)[0]])
+    return float(namespace(value).reshape(value, (-1,))[_find_first_false(good)[0]])
 
 
-def _invalid_element(value: Array, good: Array) -> str:
+def _format_invalid_element(value: Array, good: Array) -> str:
     """Format index and value of the first invalid element, and the number of further ones."""
     shape = _shape(value)
     if not shape:
         return f" = {shown(value) if isinstance(value, int) else format(float(value), 'g')}"
-    first, count = _first_false(good)
+    first, count = _find_first_false(good)
     index, remainder = [], first
     for size in reversed(shape):
         index.append(remainder % size)
@@ -73,7 +73,7 @@ def _shape(value: Array) -> tuple[int, ...]:
     return tuple(getattr(value, "shape", ()))
 
 
-def _first_false(good: Array) -> tuple[int, int]:
+def _find_first_false(good: Array) -> tuple[int, int]:
     """Return the flat index of the first false element, and the number of false elements."""
     xp = namespace(good)
     bad = ~xp.reshape(good, (-1,))
@@ -92,10 +92,14 @@ def check_numeric(name: str, value: Any) -> Array:
     """
     if isinstance(value, list | tuple):
         value = _list_to_array(name, value)
-    if is_plain(value) and not isinstance(value, bool):
+    if is_plain_number(value) and not isinstance(value, bool):
         return _check_integer(name, value)
-    if not hasattr(value, "dtype") or isinstance(value, numpy.ma.MaskedArray | numpy.matrix) or not _is_real(value):
-        raise TypeError(_type_message(name, value))
+    if (
+        not hasattr(value, "dtype")
+        or isinstance(value, numpy.ma.MaskedArray | numpy.matrix)
+        or not _has_real_numbers(value)
+    ):
+        raise TypeError(_format_type_error(name, value))
     return to_common_arrays(value)[0]  # sums of small integers would overflow
 
 
@@ -136,11 +140,11 @@ def _list_to_array(name: str, value: Any) -> numpy.ndarray:
     try:
         listed = numpy.asarray(value)
     except (ValueError, OverflowError) as error:  # rows of different lengths
-        raise TypeError(_type_message(name, value)) from error
+        raise TypeError(_format_type_error(name, value)) from error
     return listed.astype(float) if listed.dtype.kind in "iuf" else listed
 
 
-def _is_real(value: Any) -> bool:
+def _has_real_numbers(value: Any) -> bool:
     """Return True for an array of integers, or of floats of single or double precision."""
     xp = namespace(value)
     if xp.isdtype(value.dtype, "integral"):
@@ -148,7 +152,7 @@ def _is_real(value: Any) -> bool:
     return bool(xp.isdtype(value.dtype, "real floating")) and xp.finfo(value.dtype).bits >= 32
 
 
-def _type_message(name: str, value: Any) -> str:
+def _format_type_error(name: str, value: Any) -> str:
     """Format the message of a value that is neither a number nor an array of real numbers."""
     text = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
     for kind, title in _REJECTED_ARRAYS.items():

@@ -159,7 +159,7 @@ class _MovedModules(MetaPathFinder):
         return ModuleSpec(name, _MovedModule(moved), is_package=True)
 
 
-def keep_old_paths() -> None:
+def register_old_paths() -> None:
     """Let the import system find moved modules by their old paths."""
     if not any(isinstance(finder, _MovedModules) for finder in sys.meta_path):
         sys.meta_path.insert(0, _MovedModules())
@@ -204,7 +204,7 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         @functools.wraps(function)
-        def accepting(*args: P.args, **kwargs: P.kwargs) -> T:
+        def wrapper(*args: P.args, **kwargs: P.kwargs) -> T:
             for old in names.keys() & kwargs.keys():
                 new = names[old]
                 if new in kwargs:
@@ -213,7 +213,7 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
                 kwargs[new] = kwargs.pop(old)
             return function(*args, **kwargs)
 
-        return accepting
+        return wrapper
 
     return decorate
 
@@ -229,13 +229,13 @@ def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
         arguments = {old: new for old, new in names.items() if new in owner.__dict__.get("__dataclass_fields__", {})}
 
         @functools.wraps(initialise)
-        def accepting(self: T, *args: Any, **kwargs: Any) -> None:
+        def wrapper(self: T, *args: Any, **kwargs: Any) -> None:
             for old in arguments.keys() & kwargs.keys():
                 _warn(f"argument {old!r} of {owner.__name__}()", repr(arguments[old]))
                 kwargs[arguments[old]] = kwargs.pop(old)
             initialise(self, *args, **kwargs)
 
-        setattr(owner, "__init__", accepting)  # noqa: B010 (mypy refuses to assign to a method)
+        setattr(owner, "__init__", wrapper)  # noqa: B010 (mypy refuses to assign to a method)
         for old, new in names.items():
             attribute = RenamedAttribute(new)
             attribute.__set_name__(owner, old)

@@ -1,7 +1,7 @@
 """Access to input files: every reader opens the files of users here.
 
-A server restricts its processes to certain folders by the environment variable of `restricted`. Child processes inherit
-this variable. The command line reads any file of its user.
+A server restricts its processes to certain folders by the environment variable of `restriction_variables`. Child
+processes inherit this variable. The command line reads any file of its user.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ class AllowedFolders:
         ValueError
             A path outside the folders.
         """
-        resolved = resolved_path(path)
+        resolved = resolve_path(path)
         if not any(resolved.is_relative_to(folder) for folder in self.folders):
             raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
         return resolved
 
 
-def restricted(folders: Iterable[Path]) -> Mapping[str, str]:
+def restriction_variables(folders: Iterable[Path]) -> Mapping[str, str]:
     """Return the environment variable that restricts a process and its child processes to the given folders."""
-    return {_VARIABLE: json.dumps([str(resolved_path(folder)) for folder in folders])}
+    return {_VARIABLE: json.dumps([str(resolve_path(folder)) for folder in folders])}
 
 
 def resolve_input(path: Path) -> Path:
@@ -87,7 +87,7 @@ def open_input(path: Path) -> BinaryIO:
 
 
 @contextmanager
-def recorded_inputs() -> Iterator[list[Path]]:
+def record_inputs() -> Iterator[list[Path]]:
     """Record the paths of all input files that are opened in this context, each once."""
     opened: list[Path] = []
     token = _opened.set(opened)
@@ -100,7 +100,7 @@ def recorded_inputs() -> Iterator[list[Path]]:
             outer += [path for path in opened if path not in outer]
 
 
-def resolved_path(path: Path) -> Path:
+def resolve_path(path: Path) -> Path:
     """Resolve a path; raise ValueError where the system cannot resolve it."""
     try:
         return path.resolve()

@@ -28,16 +28,16 @@ class Source:
     @property
     def doi(self) -> str:
         """DOI, or an empty text if the entry has none."""
-        return _field(bibliography()[self.key], "doi")
+        return _read_field(bibliography()[self.key], "doi")
 
     @property
     def short(self) -> str:
         """Authors and year."""
         entry = bibliography()[self.key]
-        people = _field(entry, "author") or _field(entry, "editor")
+        people = _read_field(entry, "author") or _read_field(entry, "editor")
         names = [person.split(",")[0] for person in people.split(" and ")]
         authors = f"{names[0]} et al." if len(names) > 2 else " & ".join(names)
-        return f"{authors} {_field(entry, 'year')}"
+        return f"{authors} {_read_field(entry, 'year')}"
 
     def __str__(self) -> str:
         return f"{self.short}, {self.place}" if self.place else self.short
@@ -76,16 +76,16 @@ def cite(*used: Any) -> str:
     >>> "10.3390/app112311170" in bs.cite(bs.HessForsbach())
     True
     """
-    keys = dict.fromkeys(key for item in used for key in _keys(item))
+    keys = dict.fromkeys(key for item in used for key in _list_keys(item))
     return "\n\n".join(bibliography()[key] for key in keys)
 
 
-def _keys(item: Any) -> list[str]:
+def _list_keys(item: Any) -> list[str]:
     """List the keys of an item; raise TypeError if it cannot be cited."""
     if isinstance(item, Source):
         return [item.key]
     if isinstance(item, type) or not any(hasattr(item, mark) for mark in ("sources", "source", "model")):
-        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_describe(item)}")
+        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_format_item(item)}")
     keys = list(_collect_keys(item))
     if not keys and hasattr(item, "source"):
         raise TypeError(f"no known publication is named in the source of {item}: {item.source!r}")
@@ -95,7 +95,7 @@ def _keys(item: Any) -> list[str]:
 def _collect_keys(item: Any) -> Iterator[str]:
     """Yield the keys of an item and of its model, joint, materials and layers."""
     yield from (source.key for source in getattr(item, "sources", ()))
-    yield from named_in(str(getattr(item, "source", "")))
+    yield from find_cited_keys(str(getattr(item, "source", "")))
     for layer in getattr(item, "backing", ()):
         yield from _collect_keys(layer)
     for attribute in ("model", "joint", "liner", "ball", "material"):
@@ -103,7 +103,7 @@ def _collect_keys(item: Any) -> Iterator[str]:
             yield from _collect_keys(getattr(item, attribute))
 
 
-def named_in(text: str) -> Iterator[str]:
+def find_cited_keys(text: str) -> Iterator[str]:
     """Yield the keys of the publications that a text names, such as "Plank et al. 2007"."""
     for key in bibliography() if text else ():
         source = Source(key)
@@ -111,12 +111,12 @@ def named_in(text: str) -> Iterator[str]:
             yield key
 
 
-def _describe(item: Any) -> str:
+def _format_item(item: Any) -> str:
     name = getattr(item, "__name__", "")
     return f"the class or function {name}; use {name}()" if name and callable(item) else f"{item!r:.60}"
 
 
-def _field(entry: str, name: str) -> str:
+def _read_field(entry: str, name: str) -> str:
     """Extract a field of a BibTeX entry as plain text."""
     match = re.search(rf"^\s*{name}\s*=\s*\{{(.*)\}},?\s*$", entry, flags=re.MULTILINE)
     text = match.group(1) if match else ""

@@ -12,6 +12,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
+from .deprecation import RenamedAttribute
 from .kinds import Unit
 from .quantities import QUANTITIES
 
@@ -105,18 +106,20 @@ class Range:
             object.__setattr__(self, "symbol", QUANTITIES[name].symbol if name in QUANTITIES else name)
 
     @cached_property
-    def of(self) -> Callable[[Any], Array]:
+    def quantity_of(self) -> Callable[[Any], Array]:
         """Function that returns the quantity of a contact."""
         return self.quantity if callable(self.quantity) else attrgetter(self.quantity)
 
+    of = RenamedAttribute("quantity_of")
+
     def holds(self, contact: Any) -> Array:
         """Return the mask of the points inside the closed range."""
-        value = self.of(contact)
+        value = self.quantity_of(contact)
         return (value >= self.low) & (value <= self.high)
 
     def strictly_holds(self, contact: Any) -> Array:
         """Return the mask of the points inside the open range."""
-        value = self.of(contact)
+        value = self.quantity_of(contact)
         return (value > self.low) & (value < self.high)
 
     @property
@@ -126,7 +129,7 @@ class Range:
 
     def value_text(self, joint: Any) -> str:
         """Format the quantity of a joint with its symbol."""
-        value = to_numpy(self.of(SimpleNamespace(joint=joint))).ravel()
+        value = to_numpy(self.quantity_of(SimpleNamespace(joint=joint))).ravel()
         return f"{self.symbol} = {value[0]:g}" + (f" (and {value.size - 1} more)" if value.size > 1 else "")
 
     def __str__(self) -> str:
@@ -178,7 +181,7 @@ class NeverValid(Range):
 
     def holds(self, contact: Any) -> Array:
         """Return False for each point."""
-        return self.of(contact) != self.of(contact)
+        return self.quantity_of(contact) != self.quantity_of(contact)
 
     def __str__(self) -> str:
         return "nothing"

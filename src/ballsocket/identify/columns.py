@@ -42,7 +42,7 @@ class Head:
     factor: float
 
 
-def head_of(text: str) -> Head:
+def parse_head(text: str) -> Head:
     """Read a head such as "force_N", "indentation_um", "area [mm2]", "max_pressure_uncertainty_MPa".
 
     Raises
@@ -123,8 +123,8 @@ def read_measured(
         The file cannot be read.
     """
     path = Path(path)
-    columns = _columns(path)
-    kind = _load_of(columns, load, path.name)
+    columns = _read_columns(path)
+    kind = _choose_load(columns, load, path.name)
     chosen = list(quantities) or [name for name in columns if name in MEASURED and name != kind]
     if not chosen:
         raise ValueError(f"{path.name} has no column of a measured quantity{f' besides {kind}' if kind else ''}")
@@ -138,36 +138,36 @@ def read_measured(
             Measured(
                 quantity=name,
                 values=rows[name],
-                uncertainty=_uncertainty(path.name, name, rows, uncertainty),
+                uncertainty=_choose_uncertainty(path.name, name, rows, uncertainty),
                 saturation=saturation,
                 machine=machine if "indentation" in (name, kind) else IDEAL_MACHINE,
                 order=order,
                 name=path.name,
-                **_load_columns(kind, rows, load_uncertainty),
+                **_load_arguments(kind, rows, load_uncertainty),
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
         )
     return tuple(sets)
 
 
-def _columns(path: Path) -> dict[str, Numbers]:
+def _read_columns(path: Path) -> dict[str, Numbers]:
     """Read the columns by name, in mm, N, MPa, rad."""
     heads: dict[str, Head] = {}
 
-    def check(texts: Sequence[str]) -> None:
+    def parse_heads(texts: Sequence[str]) -> None:
         for text in texts:
             try:
-                heads[text] = head_of(text)
+                heads[text] = parse_head(text)
             except ValueError as error:
                 raise ValueError(f"{path.name}: {error}") from error
         names = [head.name for head in heads.values()]
         if len(names) < len(texts) or len(set(names)) < len(names):
             raise ValueError(f"{path.name} has two columns with the same name: {', '.join(texts)}")
 
-    return {heads[text].name: heads[text].factor * column for text, column in read_columns(path, check).items()}
+    return {heads[text].name: heads[text].factor * column for text, column in read_columns(path, parse_heads).items()}
 
 
-def _load_of(columns: Mapping[str, Numbers], load: str, title: str) -> str:
+def _choose_load(columns: Mapping[str, Numbers], load: str, title: str) -> str:
     """Choose the load: the stated one, or the first that has a column; empty without one."""
     if load:
         if load not in LOADS or load not in columns:
@@ -192,7 +192,7 @@ def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple
     return {name: column[~rows] for name, column in columns.items()}, numpy.flatnonzero(~rows).astype(float)
 
 
-def _uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
+def _choose_uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
     """Return the uncertainty of a quantity from its column, or as it is stated for the file."""
     if name + _UNCERTAINTY in rows:
         return rows[name + _UNCERTAINTY]
@@ -200,10 +200,10 @@ def _uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stated: flo
         raise ValueError(
             f"{title}: the uncertainty of {name} is missing; add a column {name}{_UNCERTAINTY}_..., or an uncertainty"
         )
-    return uncertainty_of(_QUANTITIES[name], stated, rows[name])
+    return parse_uncertainty(_QUANTITIES[name], stated, rows[name])
 
 
-def uncertainty_of(quantity: Quantity, stated: float | str, values: Numbers) -> Any:
+def parse_uncertainty(quantity: Quantity, stated: float | str, values: Numbers) -> Any:
     """Convert an uncertainty from "2 %" of each value, or from text or a number of the values' kind."""
     name = f"{quantity.name}{_UNCERTAINTY}"
     percentage = re.fullmatch(r"\s*([-+.\deE]+)\s*%\s*", stated) if isinstance(stated, str) else None
@@ -212,7 +212,7 @@ def uncertainty_of(quantity: Quantity, stated: float | str, values: Numbers) -> 
     return parse(name, stated, quantity.kind)
 
 
-def _load_columns(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:
+def _load_arguments(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:
     """Return load and load uncertainty as arguments of `Measured`."""
     if not kind:
         return {}

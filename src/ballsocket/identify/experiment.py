@@ -159,32 +159,32 @@ def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = Non
     Chaloner & Verdinelli 1995, Stat. Sci. 10, 273.
     """
     chosen = standard_candidates(fitted) if candidates is None else tuple(candidates)
-    rows = _slopes(fitted, chosen)
+    rows = _candidate_slopes(fitted, chosen)
     valid = [(candidate, row) for candidate, row in zip(chosen, rows, strict=True) if numpy.isfinite(row).all()]
-    gains = [_gain(fitted, candidate, row) for candidate, row in valid]
+    gains = [_compute_gain(fitted, candidate, row) for candidate, row in valid]
     return Experiment(tuple(sorted(gains, key=lambda gain: -gain.bits)), fitted.information.unidentifiable)
 
 
 def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
     """List the default candidates; see `experiment`."""
-    forces = _forces(fitted)
+    forces = _candidate_forces(fitted)
     pairs = [
         (quantity, None) if quantity in OF_JOINT else (quantity, force)
         for quantity in STANDARD_QUANTITIES
         for force in forces
     ]
     candidates = [
-        Candidate(quantity, 1.0, force, *_machine(fitted, quantity)) for quantity, force in dict.fromkeys(pairs)
+        Candidate(quantity, 1.0, force, *_choose_machine(fitted, quantity)) for quantity, force in dict.fromkeys(pairs)
     ]
-    values = _results(fitted, candidates)
+    values = _candidate_results(fitted, candidates)
     return tuple(
-        replace(candidate, uncertainty=_uncertainty(fitted, candidate.quantity, value))
+        replace(candidate, uncertainty=_estimate_uncertainty(fitted, candidate.quantity, value))
         for candidate, value in zip(candidates, values.tolist(), strict=True)
         if value > 0
     )
 
 
-def _forces(fitted: FittedModel) -> list[float]:
+def _candidate_forces(fitted: FittedModel) -> list[float]:
     """Return equally spaced forces up to one and a half times the largest of the data."""
     rows = [measured.loads for measured in fitted.data if measured.load == "force"]
     rows += [row for measured, row in zip(fitted.data, fitted.results, strict=True) if measured.quantity == "force"]
@@ -192,7 +192,7 @@ def _forces(fitted: FittedModel) -> list[float]:
     return numpy.linspace(0.0, _LOAD_FACTOR * (largest or _DEFAULT_FORCE), _N_LOADS + 1)[1:].tolist()
 
 
-def _machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
+def _choose_machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
     """Choose the machine of the present indentations, and the number of its next reading."""
     orders = {measured.machine: measured.order for measured in fitted.data if measured.machine is not IDEAL_MACHINE}
     if quantity != "indentation" or not orders:
@@ -201,7 +201,7 @@ def _machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
     return machine, float(order.max()) + 1
 
 
-def _uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
+def _estimate_uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
     """Estimate an uncertainty from the data, absolute or relative, whichever varied less; 2 % of a new quantity."""
     rows = [(measured.uncertainty, abs(measured.values)) for measured in fitted.data if measured.quantity == quantity]
     if not rows:
@@ -212,19 +212,19 @@ def _uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
     return float(numpy.median(absolute) if constant else numpy.median(relative) * value)
 
 
-def _results(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
+def _candidate_results(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
     """Compute the results of the candidates at the best point, (candidates,)."""
     forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
-    return forward.at(numpy.atleast_2d(fitted.transform.values(fitted.best.theta)))[0]
+    return forward.results_at(numpy.atleast_2d(fitted.transform.to_values(fitted.best.theta)))[0]
 
 
-def _slopes(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
+def _candidate_slopes(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
     """Compute the derivatives of the candidates with respect to theta, (candidates, unknowns)."""
     forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
     return fitted.misfit.slopes(forward, fitted.transform, fitted.best.theta)[1]
 
 
-def _gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) -> Gain:
+def _compute_gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) -> Gain:
     """Compute the gain of a candidate by a rank-one update of the covariance."""
     before = fitted.information.covariance
     row = slopes * (fitted.misfit.scatter.information**0.5 / candidate.uncertainty)

@@ -21,7 +21,7 @@ from ..problem import Joint
 from ..studies.file import named_model
 from ..studies.phrases import ends_of
 from ..studies.scatter import distribution_of
-from .columns import Gaps, read_measured, uncertainty_of
+from .columns import Gaps, parse_uncertainty, read_measured
 from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
 from .measured import MEASURED, Measured
@@ -63,7 +63,7 @@ class IdentifyFile:
     free: dict[str, Prior]
     scatter: ScatterModel
 
-    def identified(self) -> IdentificationResult:
+    def identify_unknowns(self) -> IdentificationResult:
         """Identify the unknowns from the measurements."""
         return identify(self.model, self.joint, self.data, self.free, scatter=self.scatter)
 
@@ -195,7 +195,7 @@ def _data_from_values(table: Mapping[str, Any], machine: Machine) -> Measured:
     return Measured(
         quantity=name,
         values=values,
-        uncertainty=uncertainty_of(_QUANTITIES[name], table["uncertainty"], values),
+        uncertainty=parse_uncertainty(_QUANTITIES[name], table["uncertainty"], values),
         observable=_parse_observable(name, table),
         load_uncertainty=_parse_load_uncertainty(table, next((kind for kind in LOADS if kind in table), "force")),
         machine=machine,

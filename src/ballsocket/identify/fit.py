@@ -60,7 +60,7 @@ class FittedModel:
     @cached_property
     def point(self) -> dict[str, float]:
         """Best values by unknown in mm, N, MPa, rad; other values fit as well where an unknown is unidentifiable."""
-        values = self.transform.values(self.best.theta).tolist()
+        values = self.transform.to_values(self.best.theta).tolist()
         return dict(zip(self.transform.names, values, strict=True))
 
     @property
@@ -78,7 +78,7 @@ class FittedModel:
         unknown, information = self.transform.unknowns[index], self.information
         interval, name = information.intervals[index], unknown.name
         ends = (interval.low, interval.high)
-        low, high = (_snapped(unknown, self.transform.values(end.theta)[index]) for end in ends)
+        low, high = (_snap_to_range(unknown, self.transform.to_values(end.theta)[index]) for end in ends)
         value = float("nan") if name in information.unidentifiable else self.point[name]
         width, limits = information.deviations[name], information.limited_by(name)
         return Estimate(name, unknown.quantity.unit, value, low, high, width, limits)
@@ -90,8 +90,8 @@ class FittedModel:
     @cached_property
     def results(self) -> tuple[Numbers, ...]:
         """Results of the model at the best point, a row for each set of data."""
-        results = self.misfit.forward.at(self.transform.values(self.best.theta[None]))[0]
-        return self._by_set(results)
+        results = self.misfit.forward.results_at(self.transform.to_values(self.best.theta[None]))[0]
+        return self._split_by_data_set(results)
 
     @renamed_arguments(place="index")
     def curve(self, index: int, count: int = 60) -> tuple[Numbers, Numbers]:
@@ -118,15 +118,15 @@ class FittedModel:
         order = numpy.interp(loads, measured.loads[ascending], measured.order[ascending])
         row = replace(measured, uncertainty=1.0, load_uncertainty=0.0, order=order, **changes)
         forward = replace(self.misfit.forward, data=(row,))
-        return loads, forward.at(self.transform.values(self.best.theta[None]))[0]
+        return loads, forward.results_at(self.transform.to_values(self.best.theta[None]))[0]
 
     @property
     def residuals(self) -> tuple[Numbers, ...]:
         """Values less results in stated uncertainties, a row for each set; for a saturated value its shortfall."""
-        z = self.misfit.widening * self.misfit.standard(numpy.concatenate(self.results))
-        return self._by_set(numpy.where(self.misfit.saturated, numpy.maximum(-z, 0.0), -z))
+        z = self.misfit.widening * self.misfit.standardised_residuals(numpy.concatenate(self.results))
+        return self._split_by_data_set(numpy.where(self.misfit.saturated, numpy.maximum(-z, 0.0), -z))
 
-    def _by_set(self, row: Numbers) -> tuple[Numbers, ...]:
+    def _split_by_data_set(self, row: Numbers) -> tuple[Numbers, ...]:
         """Split numbers (data,) into a row for each set."""
         return tuple(numpy.split(row, numpy.cumsum([len(measured) for measured in self.data])[:-1]))
 
@@ -147,6 +147,6 @@ class FittedModel:
         return not self.information.unidentifiable
 
 
-def _snapped(unknown: Unknown, value: float) -> float:
+def _snap_to_range(unknown: Unknown, value: float) -> float:
     """Return the end of a band, snapped to the end of the range within rounding."""
     return next((end for end in (unknown.low, unknown.high) if abs(value - end) <= 1e-9 * abs(end)), float(value))

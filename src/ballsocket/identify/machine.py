@@ -8,6 +8,7 @@ from math import inf
 from typing import Any
 
 from ..core.checks import nearest, require, shown
+from ..core.deprecation import RenamedAttribute
 from .machine_errors import MachineError
 from .registry import MACHINE_ERRORS
 
@@ -73,13 +74,16 @@ class Machine:
         return f"{self.name}.{error}"
 
     @property
-    def unknowns(self) -> dict[str, tuple[float, float]]:
+    def unknown_errors(self) -> dict[str, tuple[float, float]]:
         """Ends of the unknown errors, by key."""
         return {self.key(error): size for error, size in self.errors if isinstance(size, tuple)}
 
-    def known(self) -> dict[str, float]:
+    def known_errors(self) -> dict[str, float]:
         """Return the known errors by key."""
         return {self.key(error): size for error, size in self.errors if not isinstance(size, tuple)}
+
+    known = RenamedAttribute("known_errors")
+    unknowns = RenamedAttribute("unknown_errors")
 
     @property
     def has_zero_error(self) -> bool:

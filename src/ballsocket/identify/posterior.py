@@ -112,7 +112,7 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
     """
     needs("identify", "emcee")
     require("samples", samples, samples >= 100, "a posterior has 100 samples or more")
-    ensembles = [_ensemble(fitted, seed + number) for number in range(_N_ENSEMBLES)]
+    ensembles = [_start_ensemble(fitted, seed + number) for number in range(_N_ENSEMBLES)]
     steps = ceil(samples / (_N_WALKERS * _N_ENSEMBLES))
     for _ in range(_MAX_ROUNDS):
         for sampler in ensembles:
@@ -122,17 +122,19 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
         steps = ceil(0.5 * chains.shape[1])
         if chains[..., 0].size >= samples * times.max() and chains.shape[1] > 10 * times.max():
             break
-    return _posterior(fitted, ensembles, chains, times, samples)
+    return _select_samples(fitted, ensembles, chains, times, samples)
 
 
-def _posterior(fitted: FittedModel, ensembles: list[Any], chains: Numbers, times: Numbers, samples: int) -> Posterior:
+def _select_samples(
+    fitted: FittedModel, ensembles: list[Any], chains: Numbers, times: Numbers, samples: int
+) -> Posterior:
     """Select equally spaced samples of all chains, with their quality."""
     names = fitted.transform.names
     flat = chains.reshape(-1, chains.shape[-1])
     selected = flat[numpy.linspace(0, len(flat) - 1, samples).round().astype(int)]
     return Posterior(
         names=names,
-        samples=fitted.transform.values(selected),
+        samples=fitted.transform.to_values(selected),
         acceptance=float(numpy.mean([sampler.acceptance_fraction.mean() for sampler in ensembles])),
         autocorrelation=dict(zip(names, times.tolist(), strict=True)),
         effective=dict(zip(names, (len(flat) / times).tolist(), strict=True)),
@@ -140,7 +142,7 @@ def _posterior(fitted: FittedModel, ensembles: list[Any], chains: Numbers, times
     )
 
 
-def _ensemble(fitted: FittedModel, seed: int) -> Any:
+def _start_ensemble(fitted: FittedModel, seed: int) -> Any:
     """Return a sampler after burn-in, with proposals that match the first chains."""
     random = numpy.random.RandomState(seed)
     guess = _StudentProposal(fitted.best.theta, numpy.linalg.cholesky(fitted.information.covariance))
@@ -148,19 +150,19 @@ def _ensemble(fitted: FittedModel, seed: int) -> Any:
     transform = fitted.transform
     anywhere = transform.low + (transform.high - transform.low) * random.random_sample(start.shape)
     start = numpy.where((start > transform.low) & (start < transform.high), start, anywhere)
-    first = _sampler(fitted, guess, random)
+    first = _make_sampler(fitted, guess, random)
     start = first.run_mcmc(start, _BURN_IN, skip_initial_state_check=True).coords
     chain = first.get_chain(discard=_BURN_IN // 2, flat=True)
     count = len(transform.names)
     covariance = numpy.cov(chain.T).reshape(2 * [count]) + 1e-12 * numpy.eye(count)
-    second = _sampler(fitted, _StudentProposal(chain.mean(axis=0), numpy.linalg.cholesky(covariance)), random)
+    second = _make_sampler(fitted, _StudentProposal(chain.mean(axis=0), numpy.linalg.cholesky(covariance)), random)
     state = second.run_mcmc(start, _BURN_IN // 2, skip_initial_state_check=True)
     second.reset()
     second.run_mcmc(state, 1, skip_initial_state_check=True)
     return second
 
 
-def _sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
+def _make_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
     """Return an ensemble sampler of emcee with three kinds of moves."""
     from emcee import EnsembleSampler
     from emcee.moves import DEMove, MHMove, StretchMove

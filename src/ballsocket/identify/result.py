@@ -102,7 +102,7 @@ class IdentificationResult(FittedModel):
         }
 
     def __repr__(self) -> str:
-        rows = [f"{estimate.name} {_value_and_band(estimate)}" for estimate in self.estimates.values()]
+        rows = [f"{estimate.name} {_format_estimate(estimate)}" for estimate in self.estimates.values()]
         products = [
             f"{product.name} = {product.value:.4g} {product.unit} ({product.low:.4g} to {product.high:.4g})"
             for product in self.information.products
@@ -110,7 +110,7 @@ class IdentificationResult(FittedModel):
         return "\n".join([*rows, *products, *self.notes])
 
 
-def _value_and_band(estimate: Estimate) -> str:
+def _format_estimate(estimate: Estimate) -> str:
     """Write a value and its band with their unit."""
     unit = f" {estimate.unit}" if estimate.unit != "1" else ""
     band = f"{estimate.low:.4g} to {estimate.high:.4g}{unit}"
@@ -191,7 +191,7 @@ def _range_notes(result: IdentificationResult) -> Iterator[str]:
     theta = result.best.theta
     for index, unknown in enumerate(result.transform.unknowns):
         for side, end in ((-1, unknown.low), (1, unknown.high)):
-            at_end = abs(theta[index] - unknown.to_scale(end) / unknown.span) < _END_TOLERANCE
+            at_end = abs(theta[index] - unknown.to_scale(end) / unknown.prior_deviation) < _END_TOLERANCE
             if at_end and not unknown.is_physical(side, theta[index]):
                 yield f"the best {unknown.name} is {end:g}, the end of its range: widen the range, or check the data"
 

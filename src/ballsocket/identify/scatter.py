@@ -64,7 +64,7 @@ class NormalScatter:
         from scipy.special import log_ndtr
 
         logarithm = log_ndtr(z)
-        return _censored(logarithm, numpy.exp(self.constant - z * z / 2 - logarithm))
+        return _censored_residual(logarithm, numpy.exp(self.constant - z * z / 2 - logarithm))
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
         """Draw normal readings."""
@@ -126,7 +126,9 @@ class HeavyTailed:
         from scipy.special import stdtr
 
         probability = numpy.maximum(stdtr(self.degrees, z), 1e-300)
-        return _censored(numpy.log(probability), numpy.exp(self.constant - self.misfit(z) ** 2 / 2) / probability)
+        return _censored_residual(
+            numpy.log(probability), numpy.exp(self.constant - self.misfit(z) ** 2 / 2) / probability
+        )
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
         """Draw readings of Student's t."""
@@ -136,7 +138,7 @@ class HeavyTailed:
     told = RenamedAttribute("information")
 
 
-def _censored(logarithm: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
+def _censored_residual(logarithm: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
     """Compute r and dr/dz from ln P and its derivative."""
     r = numpy.sqrt(-2 * numpy.minimum(logarithm, 0.0))
     return r, numpy.where(r > 1e-150, -hazard / numpy.maximum(r, 1e-150), 0.0)

@@ -23,7 +23,7 @@ def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
     ValueError
         The model has no result for all data at any point within the ranges.
     """
-    ends = [minimise(misfit, start) for start in _starts(misfit, seed)]
+    ends = [minimise(misfit, start) for start in _choose_starts(misfit, seed)]
     best = _choose_fit(misfit, ends)
     distant = [end for end in ends if numpy.max(abs(end.theta - best.theta)) > _SAME_POINT]
     rivals = tuple(end.theta for end in distant if end.cost < best.cost + _RIVAL_COST)
@@ -37,7 +37,7 @@ def _choose_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
     return min(lowest, key=lambda end: float(numpy.max(abs(end.theta - middle))))
 
 
-def _starts(misfit: Misfit, seed: int) -> list[Numbers]:
+def _choose_starts(misfit: Misfit, seed: int) -> list[Numbers]:
     """Return the best point of a Sobol sequence, and the best point that is far from it."""
     from scipy.stats import qmc
 

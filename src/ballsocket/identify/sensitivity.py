@@ -65,10 +65,10 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
     if not cases:
         return ()
     theta, transform, forward = fitted.best.theta, fitted.transform, fitted.misfit.forward
-    values = transform.values(theta[None])
-    results = forward.at(values)[0]
+    values = transform.to_values(theta[None])
+    results = forward.results_at(values)[0]
     errors = numpy.stack([_result_change(fitted, machine, error, values, results) for machine, error in cases])
-    moves = fitted.information.covariance @ fitted.misfit.shifts(theta, errors)
+    moves = fitted.information.covariance @ fitted.misfit.project_errors(theta, errors)
     shifts = transform.derivatives(theta)[:, None] * moves
     unidentifiable = [name in fitted.information.unidentifiable for name in transform.names]
     shifts[unidentifiable] = numpy.nan
@@ -84,7 +84,7 @@ def _neglected_errors(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]
     errors = sorted(MACHINE_ERRORS.values(), key=lambda error: -error.assumed * abs(error.effect(_TYPICAL_FORCE, 1.0)))
     for name, machine in machines.items():
         for error in errors:
-            if machine.key(error.name) not in machine.unknowns:
+            if machine.key(error.name) not in machine.unknown_errors:
                 yield name, error
 
 
@@ -96,14 +96,14 @@ def _reads_indentation(measured: Measured) -> bool:
 def _result_change(fitted: FittedModel, name: str, error: MachineError, values: Numbers, results: Numbers) -> Numbers:
     """Compute the change of the results by an error of a machine, (data,)."""
     data = tuple(
-        _with_error(measured, error) if _reads_indentation(measured) and measured.machine.name == name else measured
+        _add_error(measured, error) if _reads_indentation(measured) and measured.machine.name == name else measured
         for measured in fitted.data
     )
-    changed = replace(fitted.misfit.forward, data=data).at(values)[0]
+    changed = replace(fitted.misfit.forward, data=data).results_at(values)[0]
     return (changed - results) / _RELATIVE_STEP
 
 
-def _with_error(measured: Measured, error: MachineError) -> Measured:
+def _add_error(measured: Measured, error: MachineError) -> Measured:
     """Return the data set with an error added to its machine."""
     machine = measured.machine if measured.machine.name else Machine(name=_DEFAULT_NAME)
     size: dict[str, Any] = {error.name: getattr(machine, error.name) + _RELATIVE_STEP * error.assumed}

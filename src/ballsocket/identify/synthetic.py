@@ -36,7 +36,7 @@ class Trials:
     high: Numbers
 
     @property
-    def half(self) -> Numbers:
+    def half_widths(self) -> Numbers:
         """Half widths of the bands."""
         return (self.high - self.low) / 2
 
@@ -49,7 +49,7 @@ class Trials:
     @property
     def bias(self) -> dict[str, float]:
         """Mean error of the estimates in widths of the band, by unknown: 0 is right."""
-        bias = (self.middle - self.truth).mean(axis=0) / (2 * self.half.mean(axis=0))
+        bias = (self.middle - self.truth).mean(axis=0) / (2 * self.half_widths.mean(axis=0))
         return dict(zip(self.names, bias.tolist(), strict=True))
 
     def summary(self) -> dict[str, Any]:
@@ -84,7 +84,7 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
     stated = replace(fitted.misfit, uncertainty=widened, widening=1.0)
     middle, low, high = [], [], []
     for number in range(count):
-        misfit = replace(stated, forward=replace(stated.forward, data=drawn(fitted, random)))
+        misfit = replace(stated, forward=replace(stated.forward, data=draw_data_sets(fitted, random)))
         _, best, information = compute_bands(misfit, find_best_fit(misfit, seed + number))
         middle.append(best.theta)
         low.append([interval.low.theta[index] for index, interval in enumerate(information.intervals)])
@@ -93,18 +93,18 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
 
 
 @renamed_arguments(found="fitted")
-def drawn(fitted: FittedModel, random: numpy.random.Generator) -> tuple[Measured, ...]:
+def draw_data_sets(fitted: FittedModel, random: numpy.random.Generator) -> tuple[Measured, ...]:
     """Draw synthetic measurements for the joint of the best point; load errors are included in the values."""
     widened = fitted.misfit.widening * fitted.misfit.uncertainty
     uncertainties = numpy.split(widened, numpy.cumsum([len(measured) for measured in fitted.data])[:-1])
     scatter = fitted.misfit.scatter
     return tuple(
-        replace(measured, values=_readings(measured, results, uncertainty * scatter.draw(len(measured), random)))
+        replace(measured, values=_add_noise(measured, results, uncertainty * scatter.draw(len(measured), random)))
         for measured, results, uncertainty in zip(fitted.data, fitted.results, uncertainties, strict=True)
     )
 
 
-def _readings(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
+def _add_noise(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
     """Add noise to results, limited by saturation, and by 0 except for a machine."""
     readings = results + noise
     return numpy.minimum(readings if measured.machine.name else numpy.maximum(readings, 0.0), measured.saturation)

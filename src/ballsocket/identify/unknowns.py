@@ -56,19 +56,19 @@ class Unknown:
     of_machine: bool = False
 
     @property
-    def known(self) -> bool:
+    def has_distribution(self) -> bool:
         """True if the prior is a distribution, and not only a range."""
         return not isinstance(self.prior, Rectangular)
 
     @property
-    def middle(self) -> float:
+    def prior_mean(self) -> float:
         """Scaled mean of the prior, in its standard deviations; 0 for a range."""
         if isinstance(self.prior, Rectangular):
             return 0.0
-        return (self.prior.mean if isinstance(self.prior, Normal) else log(self.prior.median)) / self.span
+        return (self.prior.mean if isinstance(self.prior, Normal) else log(self.prior.median)) / self.prior_deviation
 
     @property
-    def span(self) -> float:
+    def prior_deviation(self) -> float:
         """Standard deviation of the prior on the scale of the search."""
         if isinstance(self.prior, Normal):
             return self.prior.deviation
@@ -80,7 +80,7 @@ class Unknown:
         """Check if a scaled value lies at a physical limit of the range, such as a compliance of 0."""
         end = self.high if side > 0 else self.low
         beyond = end + side * 1e-6 * max(abs(end), 1e-12)
-        return abs(theta - self.to_scale(end) / self.span) < 1e-6 and not self.quantity.allows(beyond)
+        return abs(theta - self.to_scale(end) / self.prior_deviation) < 1e-6 and not self.quantity.allows(beyond)
 
     def to_scale(self, value: Array) -> Array:
         """Convert a value to the scale of the search: its logarithm, or the value itself."""
@@ -95,7 +95,7 @@ class Unknown:
         return numpy.exp(scaled) if self.logarithmic else numpy.ones_like(scaled)
 
 
-def unknowns_of(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
+def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
     """Collect the unknowns: free numbers of joint and model by name, and the unknown errors of machines.
 
     Parameters
@@ -118,7 +118,7 @@ def unknowns_of(free: Mapping[str, Prior], machines: Iterable[Machine], model: M
     for name in priors:
         if name in MODEL_NUMBERS:
             _check_model(MODEL_NUMBERS[name], model)
-    numbers = [_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
+    numbers = [_make_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
     return (*numbers, *_unknown_errors(machines))
 
 
@@ -136,17 +136,17 @@ def _unknown_errors(machines: Iterable[Machine]) -> list[Unknown]:
         if by_name.setdefault(machine.name, machine) != machine:
             raise ValueError(f"two machines have the name {shown(machine.name)}; use different names")
     return [
-        _unknown(machine.key(error), MACHINE_ERRORS[error].quantity, size, of_machine=True)
+        _make_unknown(machine.key(error), MACHINE_ERRORS[error].quantity, size, of_machine=True)
         for machine in by_name.values()
         for error, size in machine.errors
         if isinstance(size, tuple)
     ]
 
 
-def _unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = False) -> Unknown:
+def _make_unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = False) -> Unknown:
     """Make an unknown with its search range and scale; raise ValueError for ends that are not allowed."""
-    prior = _prior(name, stated)
-    low, high = _ends(prior, quantity)
+    prior = _make_prior(name, stated)
+    low, high = _search_range(prior, quantity)
     for end in (low, high):
         require(name, end, quantity.allows(end), quantity.allowed)
     ratios = isinstance(prior, Rectangular) and low > 0 and quantity.kind is not Kind.NUMBER
@@ -161,7 +161,7 @@ def _unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = Fa
     )
 
 
-def _prior(name: str, stated: Prior) -> Distribution:
+def _make_prior(name: str, stated: Prior) -> Distribution:
     """Convert two ends to a distribution."""
     if isinstance(stated, Distribution):
         return stated
@@ -176,7 +176,7 @@ def _prior(name: str, stated: Prior) -> Distribution:
     return Rectangular(low=low, high=high)
 
 
-def _ends(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
+def _search_range(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
     """Compute the ends of the search: those of the range, or a few standard deviations about a mean, if allowed."""
     if isinstance(prior, Rectangular):
         return prior.low, prior.high
@@ -207,40 +207,42 @@ class ParameterTransform:
     @property
     def low(self) -> Numbers:
         """Lower ends of the search, as theta."""
-        return self.theta([unknown.low for unknown in self.unknowns])
+        return self.to_theta([unknown.low for unknown in self.unknowns])
 
     @property
     def high(self) -> Numbers:
         """Upper ends of the search, as theta."""
-        return self.theta([unknown.high for unknown in self.unknowns])
+        return self.to_theta([unknown.high for unknown in self.unknowns])
 
-    def theta(self, values: Any) -> Numbers:
+    def to_theta(self, values: Any) -> Numbers:
         """Convert values (..., unknowns) to theta."""
         columns = numpy.moveaxis(numpy.asarray(values, dtype=float), -1, 0)
         pairs = zip(self.unknowns, columns, strict=True)
-        return numpy.stack([unknown.to_scale(column) / unknown.span for unknown, column in pairs], axis=-1)
+        return numpy.stack([unknown.to_scale(column) / unknown.prior_deviation for unknown, column in pairs], axis=-1)
 
-    def values(self, theta: Numbers) -> Numbers:
+    def to_values(self, theta: Numbers) -> Numbers:
         """Convert theta (..., unknowns) to values."""
         pairs = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
-        return numpy.stack([unknown.from_scale(column * unknown.span) for unknown, column in pairs], axis=-1)
+        return numpy.stack([unknown.from_scale(column * unknown.prior_deviation) for unknown, column in pairs], axis=-1)
 
     def derivatives(self, theta: Numbers) -> Numbers:
         """Compute the derivatives of the values with respect to theta, (..., unknowns)."""
         pairs = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
-        columns = [unknown.derivative(column * unknown.span) * unknown.span for unknown, column in pairs]
+        columns = [
+            unknown.derivative(column * unknown.prior_deviation) * unknown.prior_deviation for unknown, column in pairs
+        ]
         return numpy.stack(columns, axis=-1)
 
     def prior_residuals(self, theta: Numbers) -> Numbers:
         """Compute the distance of each unknown from the mean of its prior in standard deviations; 0 for a range."""
-        known = numpy.array([unknown.known for unknown in self.unknowns])
-        return numpy.where(known, theta - [unknown.middle for unknown in self.unknowns], 0.0)
+        known = numpy.array([unknown.has_distribution for unknown in self.unknowns])
+        return numpy.where(known, theta - [unknown.prior_mean for unknown in self.unknowns], 0.0)
 
 
 def log_prior(transform: ParameterTransform, theta: Numbers) -> Numbers:
     """Compute ln of the prior density of theta; -inf outside the ranges, within which all values are equally likely."""
     inside = numpy.all((theta >= transform.low) & (theta <= transform.high), axis=-1)
-    flat = numpy.array([0.0 if unknown.known else 1.0 for unknown in transform.unknowns])
+    flat = numpy.array([0.0 if unknown.has_distribution else 1.0 for unknown in transform.unknowns])
     stretch = numpy.sum(flat * numpy.log(transform.derivatives(theta)), axis=-1)
     square = numpy.sum(transform.prior_residuals(theta) ** 2, axis=-1) / 2
     return numpy.where(inside, stretch - square, -inf)

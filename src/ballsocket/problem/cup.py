@@ -10,7 +10,7 @@ from enum import Enum
 from math import cos, pi, sin
 
 from ..core import arrays
-from ..core.arrays import Array, is_plain
+from ..core.arrays import Array, is_plain_number
 from ..core.checks import check_numeric, require, shown
 from ..core.quantities import CUP
 
@@ -98,7 +98,7 @@ class Cup:
 
     def __post_init__(self) -> None:
         for name, quantity in CUP.items():
-            if not is_plain(quantity.checked(getattr(self, name))):
+            if not is_plain_number(quantity.check(getattr(self, name))):
                 raise TypeError(f"{name} must be one number, got {shown(getattr(self, name))}")
         for name, kind in _ENUMERATIONS.items():
             if not isinstance(getattr(self, name), kind):
@@ -171,7 +171,7 @@ class Cup:
         length = arrays.sqrt(along**2 + across**2)
         require("the length of direction", length, length > 0, "a direction points somewhere")
         angle = arrays.atan2(across, along)
-        return float(angle) if is_plain(angle) else angle
+        return float(angle) if is_plain_number(angle) else angle
 
     def edge_distance(self, radius: Array, half_angle: Array, direction: Array = UP) -> Array:
         """Compute the shortest arc in mm from the edge of a contact to the rim; negative if the rim cuts the contact.

@@ -8,7 +8,7 @@ from math import floor, log10
 from types import MappingProxyType
 from typing import TypedDict
 
-from ..core.arrays import Array, is_plain
+from ..core.arrays import Array, is_plain_number
 from ..core.checks import check_names, require
 from ..core.quantities import FIT, JOINT
 
@@ -115,7 +115,7 @@ def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], 
         A length that is neither a number nor an array.
     """
     check_names(lengths, LENGTHS, "among the lengths of a joint")
-    numbers = {name: LENGTHS[name].checked(value) for name, value in lengths.items()}
+    numbers = {name: LENGTHS[name].check(value) for name, value in lengths.items()}
     check_unique_lengths(numbers)
     if not current:
         _check_enough(numbers)
@@ -128,7 +128,7 @@ def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], 
         good = numbers["interference"] <= _MAX_INTERFERENCE * stored["ball_radius"]
         require("interference", numbers["interference"], good, "it is at most a tenth of the ball's radius")
     unchecked = {"clearance"} if {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers) else set()
-    return {name: length if name in unchecked else JOINT[name].checked(length) for name, length in stored.items()}
+    return {name: length if name in unchecked else JOINT[name].check(length) for name, length in stored.items()}
 
 
 def derive_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], shell: Array) -> dict[str, Array]:
@@ -180,6 +180,6 @@ def _check_enough(names: Iterable[str]) -> None:
 
 def _difference(larger: Array, smaller: Array) -> Array:
     """Subtract; round plain numbers to the digits of the minuend, so that 18 - 17.9 is 0.1."""
-    if not (is_plain(larger) and is_plain(smaller) and 0 < larger < float("inf")):
+    if not (is_plain_number(larger) and is_plain_number(smaller) and 0 < larger < float("inf")):
         return larger - smaller
     return round(larger - smaller, 14 - floor(log10(larger)))

@@ -78,23 +78,23 @@ class CircularGap:
 
     def displacement(self, angle: Numbers, d: Numbers | float) -> Numbers:
         """Compute u(φ) in mm at angles in rad and indentations in mm; NaN beyond the ball."""
-        return self._parts(2 * numpy.sin(angle / 2) ** 2, d)[0]
+        return self._gap_derivatives(2 * numpy.sin(angle / 2) ** 2, d)[0]
 
     def transform(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute the Abel transform A[u](t)."""
-        return _transform(t, lambda w: self._parts(w, d)[:2])
+        return _transform(t, lambda w: self._gap_derivatives(w, d)[:2])
 
     def slope(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute the derivative d A[u]/dt."""
-        return _transform_slope(t, lambda w: self._parts(w, d))
+        return _transform_slope(t, lambda w: self._gap_derivatives(w, d))
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute A[∂u/∂d](t)."""
-        return _transform(t, lambda w: self._indentation_parts(w, d))
+        return _transform(t, lambda w: self._indentation_derivatives(w, d))
 
     deepening = RenamedAttribute("indentation_derivative")
 
-    def _parts(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
+    def _gap_derivatives(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
         """Compute u and its first two derivatives with respect to w; NaN beyond the ball."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         dropped = e * e * w * (2 - w)
@@ -102,7 +102,7 @@ class CircularGap:
         tilt = e * e * (1 - w) / root
         return d - e * w - dropped / (R1 + root), -e - tilt, (e * e - tilt * tilt) / root
 
-    def _indentation_parts(self, w: Numbers, d: Numbers) -> tuple[Numbers, Numbers]:
+    def _indentation_derivatives(self, w: Numbers, d: Numbers) -> tuple[Numbers, Numbers]:
         """Compute ∂u/∂d and its derivative with respect to w."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         sine = w * (2 - w)
@@ -132,27 +132,33 @@ Derivatives = Callable[[Numbers], tuple[Numbers, ...]]
 """Function of w that returns u and its derivatives with respect to w."""
 
 
-def _at_nodes(t: Numbers, derivatives: Derivatives) -> tuple[Numbers, tuple[Numbers, ...]]:
+def _evaluate_at_nodes(t: Numbers, derivatives: Derivatives) -> tuple[Numbers, tuple[Numbers, ...]]:
     """Compute sin θ along a new first axis, and u and its derivatives at w = (1 - cos t) sin² θ."""
     sine = _SINES.reshape(-1, *(1 for _ in numpy.shape(t)))
     return sine, derivatives(2 * numpy.sin(t / 2) ** 2 * sine**2)
 
 
-def _mean(values: Numbers) -> Numbers:
+def _sine_weighted_mean(values: Numbers) -> Numbers:
     """Compute ∫ values sin θ dθ over [0, π/2]."""
     return numpy.tensordot(_ANGLE_WEIGHTS * _SINES, values, axes=1)
 
 
 def _transform(t: Numbers, derivatives: Derivatives) -> Numbers:
     """Compute A[u] = cos(t/2) ∫ u sin θ dθ + 2 sin(t/2) sin t ∫ u' sin³ θ dθ over [0, π/2]."""
-    sine, (u, u1) = _at_nodes(t, derivatives)
-    return numpy.cos(t / 2) * _mean(u) + 2 * numpy.sin(t / 2) * numpy.sin(t) * _mean(sine**2 * u1)
+    sine, (u, u1) = _evaluate_at_nodes(t, derivatives)
+    return numpy.cos(t / 2) * _sine_weighted_mean(u) + 2 * numpy.sin(t / 2) * numpy.sin(t) * _sine_weighted_mean(
+        sine**2 * u1
+    )
 
 
 def _transform_slope(t: Numbers, derivatives: Derivatives) -> Numbers:
     """Compute the derivative of `_transform` with respect to t."""
-    sine, (u, u1, u2) = _at_nodes(t, derivatives)
+    sine, (u, u1, u2) = _evaluate_at_nodes(t, derivatives)
     half = numpy.sin(t / 2)
     first = 2 * numpy.cos(t / 2) * numpy.sin(t) + 2 * half * numpy.cos(t)
     second = 2 * half * numpy.sin(t) ** 2
-    return -half / 2 * _mean(u) + first * _mean(sine**2 * u1) + second * _mean(sine**4 * u2)
+    return (
+        -half / 2 * _sine_weighted_mean(u)
+        + first * _sine_weighted_mean(sine**2 * u1)
+        + second * _sine_weighted_mean(sine**4 * u2)
+    )

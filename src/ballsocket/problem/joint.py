@@ -10,7 +10,7 @@ from itertools import chain
 from math import inf
 from typing import Any, Unpack
 
-from ..core.arrays import Array, is_plain, to_list, where
+from ..core.arrays import Array, is_plain_number, to_list, where
 from ..core.checks import check_names, require, shown
 from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
 from .material import Layer, Material
@@ -102,8 +102,8 @@ class Joint(Dimensions):
             raise TypeError(f"ball must be a Material, or None for a rigid ball, got {shown(ball)}")
         if not isinstance(support, Support):
             raise TypeError(f"support must be Support.FIXED or Support.FREE, got {shown(support)}")
-        layers = _checked_backing(backing)
-        set_fields(self, **resolve_lengths(lengths, {}, _shell(layers)))
+        layers = _check_backing(backing)
+        set_fields(self, **resolve_lengths(lengths, {}, _shell_thickness(layers)))
         set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
         for name, inner in self._thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
@@ -116,7 +116,7 @@ class Joint(Dimensions):
     @property
     def shell(self) -> Array:
         """Thickness in mm of the layer right behind the liner; 0 without a layer, or if it is infinite."""
-        return _shell(self.backing)
+        return _shell_thickness(self.backing)
 
     @property
     def thickness_ratio(self) -> Array:
@@ -144,7 +144,7 @@ class Joint(Dimensions):
         if self.support is Support.FIXED:
             return softest
         _, outermost = self._thicknesses()[-1]
-        if is_plain(outermost):
+        if is_plain_number(outermost):
             return softest if outermost == inf else inf + softest
         return where(outermost < inf, inf, softest)
 
@@ -224,9 +224,9 @@ class Joint(Dimensions):
         lengths = {name: value for name, value in changes.items() if name in LENGTHS}
         new_attributes = {name: value for name, value in changes.items() if name not in LENGTHS}
         current = {name: getattr(self, name) for name in STORED_LENGTHS}
-        shell = _shell(_checked_backing(new_attributes.get("backing", self.backing)))
+        shell = _shell_thickness(_check_backing(new_attributes.get("backing", self.backing)))
         stored = resolve_lengths(lengths, current, shell)
-        if is_plain(stored["clearance"]) and stored["clearance"] < 0:
+        if is_plain_number(stored["clearance"]) and stored["clearance"] < 0:
             stored["interference"] = -stored.pop("clearance")
         varied_name = f"{self.name.removesuffix(_VARIED)}{_VARIED}"
         names = {"name": varied_name, "source": ""} if changes and self.name else {}
@@ -268,17 +268,17 @@ _VARIED = ", varied"
 """End of the name of a changed joint."""
 
 
-def _shell(backing: Sequence[Layer]) -> Array:
+def _shell_thickness(backing: Sequence[Layer]) -> Array:
     """Return the thickness of the first layer; 0 without layers, or if it is infinite."""
     if not backing:
         return 0.0
     thickness = backing[0].thickness
-    if is_plain(thickness):
+    if is_plain_number(thickness):
         return thickness if thickness < inf else 0.0
     return where(thickness < inf, thickness, 0.0)
 
 
-def _checked_backing(backing: Any) -> tuple[Layer, ...]:
+def _check_backing(backing: Any) -> tuple[Layer, ...]:
     """Return a list of layers as a tuple; raise TypeError for anything else."""
     if not isinstance(backing, list | tuple):
         raise TypeError(f"backing must be a tuple of Layers from the liner outwards, got {shown(backing)}")

@@ -51,8 +51,8 @@ class Material:
     allowable_pressure: Array | None = None
 
     def __post_init__(self) -> None:
-        elastic = {name: quantity.checked(getattr(self, name)) for name, quantity in MATERIAL.items()}
-        limits = {name: STRESS_LIMITS[name].checked(limit) for name, limit in self.stress_limits.items()}
+        elastic = {name: quantity.check(getattr(self, name)) for name, quantity in MATERIAL.items()}
+        limits = {name: STRESS_LIMITS[name].check(limit) for name, limit in self.stress_limits.items()}
         set_fields(self, **elastic, **limits)
 
     @property
@@ -112,7 +112,7 @@ class Layer:
     material: Material
 
     def __post_init__(self) -> None:
-        thickness = LAYER["thickness"].checked(self.thickness)
+        thickness = LAYER["thickness"].check(self.thickness)
         if not isinstance(self.material, Material):
             raise TypeError(f"material must be a Material, got {shown(self.material)}")
         set_fields(self, thickness=thickness)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..core.arrays import Array, is_plain, where
+from ..core.arrays import Array, is_plain_number, where
 
 
 def make_unchecked(cls: Any, **fields: Any) -> Any:
@@ -31,4 +31,4 @@ def short_text(value: Array) -> str:
 
 def larger(x: Array, y: Array) -> Array:
     """Return the larger of two values, element by element."""
-    return max(x, y) if is_plain(x) and is_plain(y) else where(x > y, x, y)
+    return max(x, y) if is_plain_number(x) and is_plain_number(y) else where(x > y, x, y)
