@@ -127,7 +127,7 @@ MOVED = {
 
 
 def new_path(name: str) -> str | None:
-    """Return the present path of a module by its path in version 1.0, or None if it has not moved."""
+    """Return the present path of a module from its path in version 1.0; None if it has not moved."""
     parent = name
     while "." in parent:
         if parent in MOVED:
@@ -137,6 +137,8 @@ def new_path(name: str) -> str | None:
 
 
 class _MovedModule(Loader):
+    """Loader of a module that has moved, under its old path."""
+
     def __init__(self, path: str) -> None:
         self._path = path
 
@@ -150,6 +152,8 @@ class _MovedModule(Loader):
 
 
 class _MovedModules(MetaPathFinder):
+    """Finder that maps old module paths to the present ones."""
+
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
@@ -160,17 +164,18 @@ class _MovedModules(MetaPathFinder):
 
 
 def register_old_paths() -> None:
-    """Let the import system find moved modules by their old paths."""
+    """Register the old paths of moved modules with the import system."""
     if not any(isinstance(finder, _MovedModules) for finder in sys.meta_path):
         sys.meta_path.insert(0, _MovedModules())
 
 
 def _warn(old: str, new: str) -> None:
+    """Issue a DeprecationWarning that states the new name."""
     warnings.warn(f"{old} is deprecated: use {new}; removed in 2.0", DeprecationWarning, stacklevel=3)
 
 
 def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
-    """Return a module's `__getattr__` that finds renamed functions and classes by their old names.
+    """Make the `__getattr__` of a module that resolves old names of functions and classes.
 
     `names` maps each old name to the present one, in the same module or with the path of another.
     """
@@ -186,7 +191,10 @@ def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
 
 
 class RenamedAttribute:
-    """Old name of a method or attribute: `listen = RenamedAttribute("progress")` in the body of a class."""
+    """Descriptor for the old name of a method or attribute; each access warns.
+
+    Example in the body of a class: `listen = RenamedAttribute("progress")`.
+    """
 
     def __init__(self, new: str) -> None:
         self._new = new
@@ -200,9 +208,14 @@ class RenamedAttribute:
 
 
 def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Return a decorator that accepts keyword arguments by their old names: `@renamed_arguments(listen="progress")`."""
+    """Make a decorator that accepts keyword arguments by their old names.
+
+    Example: `@renamed_arguments(listen="progress")`.
+    """
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        """Wrap a function that translates old argument names."""
+
         @functools.wraps(function)
         def wrapper(*args: P.args, **kwargs: P.kwargs) -> T:
             for old in names.keys() & kwargs.keys():
@@ -219,12 +232,13 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
 
 
 def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
-    """Return a decorator that keeps old names of a dataclass: fields, other attributes and methods.
+    """Make a decorator of dataclasses that accepts old names of fields, attributes and methods.
 
     An old name of a field replaces the value under the new name, which `dataclasses.replace` passes as well.
     """
 
     def decorate(owner: type[T]) -> type[T]:
+        """Wrap the initialiser of a class, and add its old attribute names."""
         initialise: Any = owner.__init__
         arguments = {old: new for old, new in names.items() if new in owner.__dict__.get("__dataclass_fields__", {})}
 

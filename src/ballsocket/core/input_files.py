@@ -34,7 +34,9 @@ class AllowedFolders:
     folders: tuple[Path, ...]
 
     def resolve(self, path: Path, name: str) -> Path:
-        """Resolve all symbolic links and ".." of a path; `name` stands for it in the message.
+        """Resolve symbolic links and ".." in a path, and check that the folders contain it.
+
+        `name` replaces the path in the message.
 
         Raises
         ------
@@ -48,12 +50,14 @@ class AllowedFolders:
 
 
 def restriction_variables(folders: Iterable[Path]) -> Mapping[str, str]:
-    """Return the environment variable that restricts a process and its child processes to the given folders."""
+    """Return the environment variables that restrict a process and its children to some input folders."""
     return {_VARIABLE: json.dumps([str(resolve_path(folder)) for folder in folders])}
 
 
 def resolve_input(path: Path) -> Path:
-    """Resolve and check the path of an input file, before any access to the file.
+    """Resolve the path of an input file, and check that it lies in the allowed folders.
+
+    The file is not accessed.
 
     Raises
     ------
@@ -88,7 +92,7 @@ def open_input(path: Path) -> BinaryIO:
 
 @contextmanager
 def record_inputs() -> Iterator[list[Path]]:
-    """Record the paths of all input files that are opened in this context, each once."""
+    """Record the path of each input file that is opened within the block."""
     opened: list[Path] = []
     token = _opened.set(opened)
     try:
@@ -101,7 +105,7 @@ def record_inputs() -> Iterator[list[Path]]:
 
 
 def resolve_path(path: Path) -> Path:
-    """Resolve a path; raise ValueError where the system cannot resolve it."""
+    """Resolve symbolic links and ".." in a path; raise ValueError if the system cannot."""
     try:
         return path.resolve()
     except (OSError, RuntimeError) as error:  # a circle of links, a name that is too long

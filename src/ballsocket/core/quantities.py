@@ -18,6 +18,7 @@ from .kinds import Kind, Unit
 
 
 def _is_not_nan(x: Array) -> Array:
+    """Return a mask of the elements that are not NaN."""
     return x == x
 
 
@@ -26,31 +27,37 @@ _MIN_THICKNESS = 1e-300
 
 
 def _is_positive(x: Array) -> Array:
+    """Return a mask of the elements that are positive and finite."""
     return (x > 0) & (x < inf)
 
 
 def _is_positive_or_infinite(x: Array) -> Array:
+    """Return a mask of the elements that are positive, infinite ones included."""
     return x > _MIN_THICKNESS
 
 
 def _is_not_negative(x: Array) -> Array:
+    """Return a mask of the elements that are 0 or more and finite."""
     return (x >= 0) & (x < inf)
 
 
 def _is_below_quarter_turn(x: Array) -> Array:
+    """Return a mask of the angles from 0 to below π/2."""
     return (x >= 0) & (x < pi / 2)
 
 
 def _is_within_half_turn(x: Array) -> Array:
+    """Return a mask of the angles from -π to π."""
     return abs(x) <= pi * (1 + 1e-6)  # single precision rounds pi up
 
 
 def _is_poisson_ratio(x: Array) -> Array:
+    """Return a mask of the possible Poisson's ratios, above -1 and up to 0.5."""
     return (x > -1) & (x <= 0.5)
 
 
 def _angle_limits(subject: str, low: float, high: float) -> dict[str, Any]:
-    """Return the limits of an angle between two angles in degrees, as arguments of `Quantity`."""
+    """Make the arguments `allows` and `allowed` of an angle between two limits in degrees."""
     minimum, maximum = radians(low), radians(high)
     allowed = f"{subject} is {low:g} to {high:g} degrees, which are {minimum:.4g} to {maximum:.4g} radians"
     return {"allows": lambda x: (x >= minimum) & (x <= maximum), "allowed": allowed}
@@ -58,7 +65,7 @@ def _angle_limits(subject: str, low: float, high: float) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Quantity of a contact, a joint, a load or a cup.
+    """Physical quantity of a contact, joint, load or cup, with its symbol, unit and allowed values.
 
     Attributes
     ----------
@@ -97,44 +104,50 @@ class Quantity:
 
     @property
     def unit(self) -> str:
-        """Internal unit in the spelling of the CF conventions."""
+        """Internal unit in the spelling of the CF conventions, such as "mm2"."""
         return self.kind.unit
 
     @property
     def key(self) -> str:
-        """Name in JSON, which ends in "_deg" for angles."""
+        """Key in JSON: the name, which ends in "_deg" for an angle."""
         return f"{self.name}_deg" if self.kind is Kind.ANGLE else self.name
 
     @property
     def column(self) -> str:
-        """Name of the column in CSV and data frames, which ends in the unit, such as "max_pressure_MPa"."""
+        """Column name in CSV and data frames, with the unit at its end, such as "max_pressure_MPa"."""
         return f"{self.name}_{self.kind.suffix}" if self.kind.suffix else self.name
 
     @property
     def written(self) -> Unit:
-        """Unit in JSON, in files and in tables of plain numbers."""
+        """Unit in JSON, files and plain tables."""
         return self.kind.written
 
     @property
     def shown(self) -> Unit:
-        """Unit on axes, in the explorer and in a terminal."""
+        """Unit displayed on axes, in the explorer and in a terminal."""
         return self.display_unit or self.kind.written
 
     def input_label(self, unit: Unit | None = None) -> str:
-        """Format the label of an input, such as "Radial clearance c [mm]"."""
+        """Format the label of an input field, such as "Radial clearance c [mm]"."""
         label = self.label(unit)
         return label[:1].upper() + label[1:]
 
     def head(self, unit: Unit | None = None) -> str:
-        """Format the head of a column in `shown` or another unit, such as "pmax [MPa]"."""
+        """Format a column head of symbol and unit, such as "pmax [MPa]".
+
+        The unit is `shown` by default.
+        """
         return f"{self.symbol}{(unit or self.shown).bracketed}".strip()
 
     def label(self, unit: Unit | None = None) -> str:
-        """Format the label of an axis in `shown` or another unit, such as "largest pressure pmax [MPa]"."""
+        """Format an axis label of title, symbol and unit, such as "largest pressure pmax [MPa]".
+
+        The unit is `shown` by default.
+        """
         return f"{self.title} {self.head(unit)}".strip()
 
     def check(self, value: Any) -> Array:
-        """Return a number or an array of allowed numbers.
+        """Check that a number or array has only allowed values, and return it.
 
         Raises
         ------
@@ -150,18 +163,22 @@ class Quantity:
         return number
 
     def radian_hint(self, value: float) -> str:
-        """Return a hint in radians if an invalid angle would be valid in degrees."""
+        """Format a hint on radians for an invalid angle that would be valid in degrees; otherwise empty."""
         if self.kind is not Kind.ANGLE or not self.allows(radians(value)):
             return ""
         return f"; {degrees_hint(value)}"
 
 
 def _make_table(*quantities: Quantity) -> Mapping[str, Quantity]:
+    """Make a read-only table of quantities by name."""
     return MappingProxyType({quantity.name: quantity for quantity in quantities})
 
 
 def _make_body_quantities(body: str, symbols: tuple[str, str, str]) -> Mapping[str, Quantity]:
-    """Return moduli and yield stress of liner or ball, with the name of the body in their names."""
+    """Make the moduli and yield stress of one body, such as "liner_young".
+
+    `symbols` are those of E, ν and σy.
+    """
     return _make_table(
         *(
             replace(quantity, name=f"{body}_{quantity.name}", symbol=symbol, title=f"{quantity.title} of the {body}")

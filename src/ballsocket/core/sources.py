@@ -12,7 +12,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Source:
-    """Publication and the position in it.
+    """Reference to a publication, with the equations or tables used.
 
     Attributes
     ----------
@@ -27,12 +27,12 @@ class Source:
 
     @property
     def doi(self) -> str:
-        """DOI, or an empty text if the entry has none."""
+        """DOI of the publication; empty if its entry has none."""
         return _read_field(bibliography()[self.key], "doi")
 
     @property
     def short(self) -> str:
-        """Authors and year."""
+        """Authors and year, such as "Plank et al. 2007"."""
         entry = bibliography()[self.key]
         people = _read_field(entry, "author") or _read_field(entry, "editor")
         names = [person.split(",")[0] for person in people.split(" and ")]
@@ -45,7 +45,7 @@ class Source:
 
 @cache
 def bibliography() -> dict[str, str]:
-    """Read the BibTeX entries of the project by key."""
+    """Read the BibTeX entries of the project's bibliography, by key."""
     text = (files("ballsocket") / "data" / "references.bib").read_text(encoding="utf-8")
     return {entry.split("{", 1)[1].split(",", 1)[0]: entry.strip() for entry in re.split(r"\n(?=@)", text.strip())}
 
@@ -81,7 +81,7 @@ def cite(*used: Any) -> str:
 
 
 def _list_keys(item: Any) -> list[str]:
-    """List the keys of an item; raise TypeError if it cannot be cited."""
+    """List the BibTeX keys of an item; raise TypeError if the item cannot be cited."""
     if isinstance(item, Source):
         return [item.key]
     if isinstance(item, type) or not any(hasattr(item, mark) for mark in ("sources", "source", "model")):
@@ -93,7 +93,7 @@ def _list_keys(item: Any) -> list[str]:
 
 
 def _collect_keys(item: Any) -> Iterator[str]:
-    """Yield the keys of an item and of its model, joint, materials and layers."""
+    """Yield the BibTeX keys of an item, its model, joint, materials and layers."""
     yield from (source.key for source in getattr(item, "sources", ()))
     yield from find_cited_keys(str(getattr(item, "source", "")))
     for layer in getattr(item, "backing", ()):
@@ -104,7 +104,7 @@ def _collect_keys(item: Any) -> Iterator[str]:
 
 
 def find_cited_keys(text: str) -> Iterator[str]:
-    """Yield the keys of the publications that a text names, such as "Plank et al. 2007"."""
+    """Find the BibTeX keys of the publications that a text cites, such as "Plank et al. 2007"."""
     for key in bibliography() if text else ():
         source = Source(key)
         if (source.doi and source.doi in text) or re.search(rf"(?<!& )\b{re.escape(source.short)}\b", text):
@@ -112,12 +112,13 @@ def find_cited_keys(text: str) -> Iterator[str]:
 
 
 def _format_item(item: Any) -> str:
+    """Format an item that cannot be cited, for a message."""
     name = getattr(item, "__name__", "")
     return f"the class or function {name}; use {name}()" if name and callable(item) else f"{item!r:.60}"
 
 
 def _read_field(entry: str, name: str) -> str:
-    """Extract a field of a BibTeX entry as plain text."""
+    """Read a field of a BibTeX entry as plain text; empty if it is missing."""
     match = re.search(rf"^\s*{name}\s*=\s*\{{(.*)\}},?\s*$", entry, flags=re.MULTILINE)
     text = match.group(1) if match else ""
     for latex, letter in _LETTERS.items():

@@ -28,7 +28,7 @@ _LIMIT_TOLERANCE = 1e-9  # distance from the end of a range, in deviations of th
 
 
 def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, Information]:
-    """Widen the uncertainties by the observed scatter, and compute the information with its profile intervals.
+    """Compute the 95 % bands of all unknowns, with uncertainties widened by the observed scatter.
 
     The factor is Birge's ratio, the root of χ² over the degrees of freedom, if above 1. Student's quantile
     replaces the normal quantile if the probability of the scatter is below 5 %.
@@ -72,14 +72,17 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
 def _combine_ends(
     index: int, unknown: Unknown, band: tuple[ProfileEnd, ProfileEnd], wide: tuple[ProfileEnd, ProfileEnd]
 ) -> Interval:
-    """Combine the band of 95 % with the interval of 99 %, which may be open."""
+    """Make the interval of an unknown from the ends of its 95 % band and its 99 % interval.
+
+    The 99 % interval may be open.
+    """
     ends = zip(wide, (-1, 1), strict=True)
     closed = all(end.closed or unknown.is_physical(side, float(end.theta[index])) for end, side in ends)
     return Interval(*band, closed)
 
 
 def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
-    """Compute the factor, 1 or more, by which the scatter of the data exceeds the stated uncertainties.
+    """Compute the ratio of observed scatter to stated uncertainties, at least 1.
 
     This is the most likely factor for the distribution of the scatter, with the degrees of freedom as the number of
     values. For a normal scatter it is the root of χ² over the degrees of freedom.
@@ -102,7 +105,10 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
 
 
 def _band_quantile(factor: float, freedom: int) -> float:
-    """Return Student's quantile for a scatter that is improbably large, else the normal quantile."""
+    """Return the half width of a 95 % band in standard deviations.
+
+    It is Student's quantile for an improbably large scatter, else the normal quantile.
+    """
     from scipy.stats import chi2, t
 
     improbable = freedom > 0 and chi2.sf(factor**2 * freedom, freedom) < _SIGNIFICANCE
@@ -111,7 +117,7 @@ def _band_quantile(factor: float, freedom: int) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Profiles:
-    """Ends of profile intervals, and the best point on all paths.
+    """Ends of all profile likelihood intervals, and the best point found on the way.
 
     Attributes
     ----------
@@ -130,7 +136,7 @@ class Profiles:
 
 @dataclass(eq=False)
 class _Path:
-    """Path along the profile of one unknown to one of its ends."""
+    """State of the search for one end of a profile interval."""
 
     index: int
     side: int
@@ -143,7 +149,7 @@ class _Path:
 
 @dataclass(frozen=True, eq=False)
 class _Point:
-    """Quadratic model of χ² about a point of a path."""
+    """Quadratic approximation of χ² about a point of a path."""
 
     rise: float
     gradient: Numbers
@@ -151,7 +157,7 @@ class _Point:
 
 
 def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: Sequence[float]) -> Profiles:
-    """Find both ends of the profile interval of each unknown.
+    """Find both ends of the profile likelihood interval of each unknown.
 
     All ends are computed together: an iteration needs one array call of the model.
 
@@ -201,12 +207,15 @@ def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: 
 
 
 def _next_outermost_end(ends: Iterator[ProfileEnd], count: int, index: int, side: int) -> ProfileEnd:
-    """Read the next ends, one for each start, and choose the outermost."""
+    """Return the outermost of the next `count` ends, one for each start."""
     return max([next(ends) for _ in range(count)], key=lambda end: side * float(end.theta[index]))
 
 
 def _limiting_unknowns(path: _Path, point: _Point, move: Numbers, low: Numbers, high: Numbers) -> tuple[int, ...]:
-    """Find the other unknowns at an end of their ranges whose gradient of χ² points outward."""
+    """Find the other unknowns whose range limits an interval, at its end.
+
+    The gradient of χ² points outward there.
+    """
     theta = numpy.clip(path.theta + move, low, high)
     new_gradient = point.gradient + point.hessian @ move
     outward = _is_limited_by_range(theta, new_gradient, low, high)
@@ -217,17 +226,17 @@ def _limiting_unknowns(path: _Path, point: _Point, move: Numbers, low: Numbers, 
 
 
 def _is_limited_by_range(theta: Numbers, gradient: Numbers, low: Numbers, high: Numbers) -> Numbers:
-    """Find the unknowns at an end of their ranges beyond which χ² would decrease."""
+    """Return a mask of the unknowns at an end of their range beyond which χ² would decrease."""
     return ((theta - low < _LIMIT_TOLERANCE) & (gradient > 0)) | ((high - theta < _LIMIT_TOLERANCE) & (gradient < 0))
 
 
 def _misfit_decrease(hessian: Numbers, gradient: Numbers, free: list[int]) -> float:
-    """Compute the decrease of χ² to its minimum over the free unknowns, by the quadratic model."""
+    """Compute the decrease of χ² to its minimum over the free unknowns, in the quadratic approximation."""
     return float(gradient[free] @ numpy.linalg.solve(hessian[numpy.ix_(free, free)], gradient[free]))
 
 
 def _advance_path(path: _Path, residual: Numbers, slope: Numbers, best: float, low: Numbers, high: Numbers) -> None:
-    """Take one Newton step towards the end, or cut the step to a quarter where the model has no result."""
+    """Compute the next Newton step of a path, or cut the last step to a quarter if the model failed."""
     if not (numpy.isfinite(residual).all() and numpy.isfinite(slope).all()):
         path.step /= 4
         path.theta = path.previous + (path.theta - path.previous) / 4
@@ -253,7 +262,9 @@ def _advance_path(path: _Path, residual: Numbers, slope: Numbers, best: float, l
 
 
 def _newton_step(path: _Path, point: _Point, low: Numbers, high: Numbers) -> tuple[Numbers, float, float]:
-    """Solve the quadratic model for the end; return the step, the rise of χ² on the profile, and the gain.
+    """Compute the Newton step towards the end of a profile interval.
+
+    Returns the step, the rise of χ² on the profile, and the gain.
 
     The other unknowns minimise χ² within their ranges.
     """

@@ -28,7 +28,7 @@ _UNCERTAINTY = "_uncertainty"
 
 
 class Gaps(Enum):
-    """Treatment of rows in which a number is missing."""
+    """Treatment of rows with a missing number: refuse, or leave out."""
 
     REFUSE = "refuse"
     LEAVE_OUT = "leave-out"
@@ -36,14 +36,14 @@ class Gaps(Enum):
 
 @dataclass(frozen=True)
 class Head:
-    """Head of a column: name of the quantity, and factor from its unit to mm, N, MPa, rad."""
+    """Parsed column head: name of the quantity, and factor from its unit to mm, N, MPa, rad."""
 
     name: str
     factor: float
 
 
 def parse_head(text: str) -> Head:
-    """Read a head such as "force_N", "indentation_um", "area [mm2]", "max_pressure_uncertainty_MPa".
+    """Parse a column head with a unit, such as "force_N", "indentation_um" or "area [mm2]".
 
     Raises
     ------
@@ -69,7 +69,7 @@ def parse_head(text: str) -> Head:
 
 
 def _without_brackets(head: str) -> str:
-    """Rewrite a unit in brackets at the end of a head as a part of its name."""
+    """Rewrite a head with a unit in brackets, "area [mm2]" to "area_mm2"."""
     start = min((head.index(bracket) for bracket in "[(" if bracket in head), default=-1)
     if start < 0 or head[-1] not in "])":
         return head
@@ -87,7 +87,7 @@ def read_measured(
     machine: Machine = IDEAL_MACHINE,
     gaps: Gaps = Gaps.REFUSE,
 ) -> tuple[Measured, ...]:
-    """Read sets of measurements from a CSV or Parquet file, one for each measured quantity.
+    """Read measurements from a CSV or Parquet file, one data set for each measured quantity.
 
     Heads are names of `ballsocket.identify.MEASURED` with units: "force_N", "indentation_um", "half_angle_deg",
     "area_mm2", "max_pressure_MPa". A column "pressure_MPa" needs a column "angle_deg". Columns of uncertainties (k = 1)
@@ -151,10 +151,11 @@ def read_measured(
 
 
 def _read_columns(path: Path) -> dict[str, Numbers]:
-    """Read the columns by name, in mm, N, MPa, rad."""
+    """Read the columns of a file by name, converted to mm, N, MPa, rad."""
     heads: dict[str, Head] = {}
 
     def parse_heads(texts: Sequence[str]) -> None:
+        """Parse all column heads; raise ValueError for duplicates."""
         for text in texts:
             try:
                 heads[text] = parse_head(text)
@@ -168,7 +169,7 @@ def _read_columns(path: Path) -> dict[str, Numbers]:
 
 
 def _choose_load(columns: Mapping[str, Numbers], load: str, title: str) -> str:
-    """Choose the load: the stated one, or the first that has a column; empty without one."""
+    """Choose the load column: the stated one, or the first load with a column; empty without a load."""
     if load:
         if load not in LOADS or load not in columns:
             raise ValueError(f"{title} has no load {shown(load)}: it needs a column of {', '.join(_LOADS)}")
@@ -177,7 +178,7 @@ def _choose_load(columns: Mapping[str, Numbers], load: str, title: str) -> str:
 
 
 def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple[dict[str, Numbers], Numbers]:
-    """Select the rows without gaps, and return their numbers from 0."""
+    """Select the rows without gaps, and return the columns with the row numbers, which start at 0."""
     missing = numpy.isnan(numpy.stack(list(columns.values())))
     rows = missing.any(axis=0)
     if rows.any() and gaps is Gaps.REFUSE:
@@ -193,7 +194,7 @@ def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple
 
 
 def _choose_uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
-    """Return the uncertainty of a quantity from its column, or as it is stated for the file."""
+    """Return the uncertainties of a quantity, from its column or as stated for the file."""
     if name + _UNCERTAINTY in rows:
         return rows[name + _UNCERTAINTY]
     if stated is None:
@@ -204,7 +205,7 @@ def _choose_uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stat
 
 
 def parse_uncertainty(quantity: Quantity, stated: float | str, values: Numbers) -> Any:
-    """Convert an uncertainty from "2 %" of each value, or from text or a number of the values' kind."""
+    """Parse an uncertainty: "2 %" of each value, a text with a unit, or a number."""
     name = f"{quantity.name}{_UNCERTAINTY}"
     percentage = re.fullmatch(r"\s*([-+.\deE]+)\s*%\s*", stated) if isinstance(stated, str) else None
     if percentage:
@@ -213,7 +214,7 @@ def parse_uncertainty(quantity: Quantity, stated: float | str, values: Numbers) 
 
 
 def _load_arguments(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:
-    """Return load and load uncertainty as arguments of `Measured`."""
+    """Return load and load uncertainty as keyword arguments of `Measured`."""
     if not kind:
         return {}
     return {kind: rows[kind], "load_uncertainty": rows.get(kind + _UNCERTAINTY, load_uncertainty)}

@@ -25,13 +25,16 @@ _NEWTON_ITERATIONS = 3  # for the force of a compliant machine; its compliance i
 
 
 def split_numbers(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Select the numbers of the joint and those of the model by name; those of a machine are in neither."""
+    """Split values of unknowns into those of the joint and those of the model, by name.
+
+    Errors of a machine are in neither.
+    """
     joint = {name: value for name, value in values.items() if name in JOINT_NUMBERS}
     return joint, {name: value for name, value in values.items() if name in MODEL_NUMBERS}
 
 
 def insert_numbers(model: Model, values: Mapping[str, Array]) -> Model:
-    """Return the model with other values of its numbers, by name."""
+    """Return a copy of the model with new values of its numbers, by name."""
     for name, value in values.items():
         model = MODEL_NUMBERS[name].insert_into(model, value)
     return model
@@ -39,7 +42,9 @@ def insert_numbers(model: Model, values: Mapping[str, Array]) -> Model:
 
 @dataclass(frozen=True, eq=False)
 class ForwardModel:
-    """Results of a model in the order of the data, one data set after the other.
+    """Forward model of an identification: results for all data from values of the unknowns.
+
+    The results are in the order of the data sets.
 
     Attributes
     ----------
@@ -64,7 +69,9 @@ class ForwardModel:
         object.__setattr__(self, "_known_errors", known)
 
     def results_at(self, values: Array, load_perturbation: float = 0.0) -> Array:
-        """Compute the results (points, data) at values (points, unknowns); NaN where the model has no result.
+        """Compute the model results (points, data) from values of the unknowns (points, unknowns).
+
+        A result is NaN where the model has none.
 
         Values may be of any array library. `load_perturbation` is a relative change of every load.
         """
@@ -78,7 +85,10 @@ class ForwardModel:
         return arrays.where(possible, xp.concat(rows, axis=1), float("nan"))
 
     def _compute_rows(self, pressed: _PressedPoints, factor: float) -> list[Array]:
-        """Compute the results of each data set; sets with the same kind of load share one press."""
+        """Compute the results of each data set.
+
+        Data sets with the same kind of load share one press.
+        """
         rows: dict[int, Array] = {}
         for kind in dict.fromkeys(measured.load for measured in self.data):
             indices = [index for index, measured in enumerate(self.data) if measured.load == kind]
@@ -95,6 +105,7 @@ class ForwardModel:
     def _compute_rows_of_one_press(
         self, pressed: _PressedPoints, kind: str, indices: list[int], factor: float
     ) -> dict[int, Array]:
+        """Compute the results of data sets with the same kind of load by one press."""
         loads = factor * numpy.concatenate([self.data[index].loads for index in indices])
         contact, rows, start = pressed.press(kind, loads), {}, 0
         for index in indices:
@@ -107,14 +118,14 @@ class ForwardModel:
 
 @dataclass(frozen=True, eq=False)
 class _PressedPoints:
-    """Joints, model and errors of machines at many values of the unknowns."""
+    """Joints, model and machine errors at many values of the unknowns."""
 
     model: Model
     joint: Joint
     errors: Columns
 
     def press(self, kind: str, load: Array) -> Contact | None:
-        """Press by one kind of load; None if the model has no result for any of the points."""
+        """Compute the contacts under one kind of load; None if no point has a result."""
         load_by_kind = {kind: arrays.namespace(*self.joint.numbers()).asarray(load)}
         try:
             return self.model.press(self.joint, **load_by_kind)
@@ -122,13 +133,13 @@ class _PressedPoints:
             return None
 
     def compute_readings(self, contact: Contact | None, count: int, measured: Measured, span: slice) -> Array:
-        """Compute the readings of a data set from its span of `count` contacts."""
+        """Compute the readings of one data set: its slice of `count` contacts plus machine errors."""
         if contact is None:
             return numpy.full((1, len(measured)), numpy.nan)
         return _read_quantity(contact, count, measured, span) + self._added_error(measured, contact, span)
 
     def compute_at_read_indentation(self, measured: Measured, factor: float) -> Array:
-        """Compute results at measured indentations, corrected for the errors of the machine."""
+        """Compute the results at measured indentations, corrected for machine errors."""
         zero = self._sum_errors(measured, 0.0, depends_on_force=False)
         force: Array = measured.values if measured.quantity == "force" else 0.0 * measured.values
         contact = self.press("indentation", _clip_negative(factor * measured.loads - zero))
@@ -141,7 +152,7 @@ class _PressedPoints:
         return self.compute_readings(contact, len(measured), measured, slice(None))
 
     def _added_error(self, measured: Measured, contact: Contact, span: slice) -> Array:
-        """Compute the addition of the machine to an indentation."""
+        """Compute the machine error in mm that adds to the indentations of a data set; 0 for other quantities."""
         if measured.quantity != "indentation" or not measured.machine.name:
             return 0.0
         force = _add_point_axis(contact.force)[:, span]
@@ -150,7 +161,7 @@ class _PressedPoints:
         )
 
     def _sum_errors(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
-        """Sum the errors of the machine that depend on the force, or those that do not."""
+        """Sum the machine errors in mm that depend on the force, or those that do not."""
         return sum(
             self.errors[measured.machine.key(name)] * error.effect(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
@@ -158,7 +169,7 @@ class _PressedPoints:
         )
 
     def _sum_error_slopes(self, measured: Measured, force: Array) -> Array:
-        """Compute the derivative of the errors of the machine with respect to the force."""
+        """Sum the derivatives of the machine errors with respect to the force, in mm/N."""
         return sum(
             self.errors[measured.machine.key(name)] * error.slope(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
@@ -167,7 +178,7 @@ class _PressedPoints:
 
 
 def _is_load_read_by_machine(measured: Measured) -> bool:
-    """Check if the loads of a data set are indentations with errors of a machine."""
+    """Check if the loads of a data set are indentations read by a machine with errors."""
     return measured.load == "indentation" and bool(measured.machine.name)
 
 
@@ -177,7 +188,7 @@ def _clip_negative(indentation: Array) -> Array:
 
 
 def _read_quantity(contact: Contact, count: int, measured: Measured, span: slice) -> Array:
-    """Read the quantity of a data set from its span of `count` contacts."""
+    """Read the measured quantity of a data set from its slice of `count` contacts."""
     if measured.observable is not None:
         return _add_point_axis(measured.observable.read(contact))[:, span]
     if measured.quantity != "pressure":
@@ -188,12 +199,12 @@ def _read_quantity(contact: Contact, count: int, measured: Measured, span: slice
 
 
 def _add_point_axis(values: Array) -> Array:
-    """Add an axis of points to values that are equal for all points."""
+    """Add a leading axis of points to values that are equal for all points."""
     return values[None, :] if len(values.shape) == 1 else values
 
 
 def _read_joint_number(joint: Joint, measured: Measured) -> Array:
-    """Read a number of the joint, once for each value of the data set."""
+    """Read a measured number of the joint, repeated for each value of the data set."""
     if measured.quantity in PARTS:
         part, _, number = measured.quantity.partition("_")
         value = getattr(getattr(joint, part), number)

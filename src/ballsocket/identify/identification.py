@@ -38,7 +38,7 @@ def identify(
     slopes: Slopes = by_differences,
     seed: int = 0,
 ) -> IdentificationResult:
-    """Identify joint parameters from measurements, with bands and identifiability.
+    """Identify parameters of a joint from measurements, with 95 % bands and identifiability.
 
     The method is maximum likelihood, with the stated distributions of unknowns, by least squares after a global search.
     Bands of 95 % come from the profile likelihood. They widen if the data scatter more than stated.
@@ -104,7 +104,10 @@ def identify(
 
 
 def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
-    """Combine the uncertainties of values and loads, by the slope of the results with respect to the loads."""
+    """Combine the uncertainties of values and loads.
+
+    The slope of the results over the load converts those of the loads.
+    """
     data, values = misfit.forward.data, misfit.transform.to_values(best.theta[None])
     above, below = (misfit.forward.results_at(values, load_perturbation=side * _LOAD_STEP)[0] for side in (1, -1))
     slope = (above - below) / (2 * _LOAD_STEP)  # by ln of the load
@@ -114,7 +117,7 @@ def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
 
 
 def _relative_load_uncertainty(measured: Measured) -> Numbers:
-    """Compute the uncertainty of the loads over the loads; 0 for a quantity of the joint."""
+    """Compute the relative uncertainty of the loads; 0 for a quantity of the joint."""
     if not measured.load:
         return numpy.zeros(len(measured))
     loads = measured.loads
@@ -122,12 +125,12 @@ def _relative_load_uncertainty(measured: Measured) -> Numbers:
 
 
 def _concatenate(rows: Iterable[Numbers]) -> Numbers:
-    """Join the rows of all data sets to one array (data,)."""
+    """Concatenate the arrays of all data sets to one array (data,)."""
     return numpy.concatenate(list(rows))
 
 
 def _check_data_sets(data: Any) -> tuple[Measured, ...]:
-    """Return the data sets as a tuple; raise TypeError for anything but `Measured`."""
+    """Check that the data are sets of `Measured`, and return them as a tuple."""
     sets = tuple(data) if isinstance(data, list | tuple) else (data,)
     if not sets:
         raise ValueError("data must have at least one set of measurements, got none")
@@ -138,7 +141,7 @@ def _check_data_sets(data: Any) -> tuple[Measured, ...]:
 
 
 def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
-    """Raise ValueError without unknowns, with impossible areas, or with fewer values than unknowns."""
+    """Check that there are unknowns, enough values and possible areas; raise ValueError otherwise."""
     if not unknowns:
         raise ValueError("free has no unknowns: name at least one with two ends, such as clearance")
     for measured in data:

@@ -15,7 +15,7 @@ from .unknowns import ParameterTransform
 
 
 def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute results and derivatives by JAX.
+    """Compute model results and their derivatives by automatic differentiation with JAX.
 
     The first call for a set of data compiles the model, which takes seconds.
 
@@ -55,7 +55,7 @@ def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numb
 
 @lru_cache(maxsize=8)
 def _compile(forward: ForwardModel) -> Callable[[Numbers], tuple[Any, Any]]:
-    """Compile results and derivatives of a forward model."""
+    """Compile results and derivatives of a forward model with JAX."""
     import jax
 
     def results(values: Any) -> Any:

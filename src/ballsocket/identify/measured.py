@@ -38,7 +38,9 @@ _NOT_NEGATIVE = "the value must be 0 or more and finite"  # rule in a message
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Measured:
-    """Measured values of one quantity, at loads or of the joint itself.
+    """Data set: measured values of one quantity with uncertainties and loads.
+
+    A quantity of the joint itself has no load.
 
     Parameters
     ----------
@@ -100,6 +102,7 @@ class Measured:
     own = RenamedAttribute("observable")
 
     def __post_init__(self) -> None:
+        """Check all fields, and convert them to arrays."""
         if not isinstance(self.machine, Machine):
             raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
         if self.observable is None:
@@ -126,14 +129,15 @@ class Measured:
         self._set_field("order", self._check_order(values))
 
     def _set_field(self, name: str, value: Any) -> None:
+        """Set a field of this frozen instance."""
         object.__setattr__(self, name, value)
 
     def _format_label(self, quantity: str) -> str:
-        """Return the name of a quantity in messages, with the name of the data set."""
+        """Format the name of a quantity with the name of the data set, for messages."""
         return f"{self.name}: {quantity}" if self.name else quantity
 
     def _check_order(self, values: Numbers) -> Numbers:
-        """Return the numbers of the readings; 0, 1, 2, ... by default."""
+        """Check the numbers of the readings, and return them; 0, 1, 2, ... by default."""
         if self.order is None:
             return numpy.arange(float(values.size))
         order = self._broadcast("order", self.order, values)
@@ -141,7 +145,7 @@ class Measured:
         return order
 
     def _check_values(self, values: Numbers) -> None:
-        """Raise ValueError for a missing value, or one that is not allowed."""
+        """Check that no value is missing or not allowed; raise ValueError otherwise."""
         gaps = numpy.flatnonzero(numpy.isnan(values))
         if len(gaps):
             rows = ", ".join(str(gap + 1) for gap in gaps[:8])
@@ -157,7 +161,7 @@ class Measured:
             require(self._format_label(self.quantity), values, allowed, self.described.allowed)
 
     def _broadcast(self, name: str, numbers: Any, values: Numbers) -> Numbers:
-        """Return one number per value, from one number for all values or one for each."""
+        """Broadcast one number to all values, or check that there is one number per value."""
         row = _to_row(self._format_label(name), numbers)
         if row.size not in (1, values.size):
             raise ValueError(f"{self._format_label(name)} must have 1 or {values.size} numbers, got {row.size}")
@@ -166,7 +170,7 @@ class Measured:
         return numpy.broadcast_to(row, values.shape)
 
     def _set_load(self, values: Numbers) -> None:
-        """Check and store the load with its uncertainty."""
+        """Check the load with its uncertainty, and store both."""
         kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
         if kind == self.quantity:
             raise ValueError(
@@ -183,7 +187,7 @@ class Measured:
         self._check_unloaded(row, values)
 
     def _check_unloaded(self, load: Numbers, values: Numbers) -> None:
-        """Raise ValueError for a value without a load, except from a machine with a zero error."""
+        """Check that values at zero load are 0, unless the machine has a zero error."""
         if not self.machine.has_zero_error:
             rule = f"at first touch the {self.described.title} is 0, except with a zero error of the machine"
             require(self._format_label(self.load), load, (load > 0) | (values == 0), rule)
@@ -193,16 +197,16 @@ class Measured:
 
     @property
     def loads(self) -> Numbers:
-        """Loads; empty for a quantity of the joint."""
+        """Loads in N, mm or rad; empty for a quantity of the joint."""
         return getattr(self, self.load) if self.load else numpy.zeros(0)
 
     @property
     def saturated(self) -> Numbers:
-        """Mask of the values that are lower bounds."""
+        """Mask of the saturated values, which are lower bounds."""
         return numpy.asarray(self.values >= self.saturation)
 
     def check_area(self, joint: Joint) -> None:
-        """Raise ValueError for an area larger than half of the ball."""
+        """Check that measured contact areas are smaller than half of the ball; raise ValueError otherwise."""
         if self.quantity == "area":
             half = 2 * pi * float(joint.ball_radius) ** 2
             rule = f"a contact area is below half of the ball, 2π R1² = {half:.4g} mm²"
@@ -210,7 +214,7 @@ class Measured:
 
 
 def _to_row(name: str, numbers: Any) -> Numbers:
-    """Convert numbers to an array (values,)."""
+    """Convert numbers to an array (values,); raise ValueError if this is impossible."""
     try:
         plain = numpy.asarray(numbers)
         row = numpy.atleast_1d(plain.astype(float, casting="safe" if plain.dtype.kind == "c" else "unsafe"))

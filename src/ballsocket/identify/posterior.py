@@ -24,7 +24,7 @@ CONVERGED = 1.01
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Samples of the posterior distribution, with their quality.
+    """Samples of the posterior distribution of the unknowns, with convergence measures.
 
     Attributes
     ----------
@@ -50,22 +50,22 @@ class Posterior:
 
     @property
     def converged(self) -> bool:
-        """True if R-hat of every unknown is at most `CONVERGED`."""
+        """True if the chains have converged: R-hat of every unknown is at most `CONVERGED`."""
         return max(self.r_hat.values()) <= CONVERGED
 
     @renamed_arguments(share="probability")
     def band(self, name: str, probability: float = 0.95) -> tuple[float, float]:
-        """Compute the central interval that holds an unknown with a probability."""
+        """Compute the central credible interval of an unknown for a given probability."""
         column = self.samples[:, self.names.index(name)]
         low, high = numpy.quantile(column, [(1 - probability) / 2, (1 + probability) / 2])
         return float(low), float(high)
 
     def median(self, name: str) -> float:
-        """Compute the median of an unknown."""
+        """Compute the posterior median of an unknown."""
         return float(numpy.median(self.samples[:, self.names.index(name)]))
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
+        """Return a dictionary of the posterior for JSON."""
         return {
             "samples": len(self.samples),
             "acceptance": self.acceptance,
@@ -82,7 +82,7 @@ class Posterior:
 
 @renamed_arguments(found="fitted")
 def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Posterior:
-    """Sample the posterior distribution by two ensembles of Markov chains.
+    """Sample the posterior distribution of the unknowns by Markov chain Monte Carlo.
 
     Half of the proposals are independent draws about the best point, with the covariance there. The others are moves
     between walkers, which follow a curved posterior. The chains end when the number of independent samples suffices.
@@ -128,7 +128,7 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
 def _select_samples(
     fitted: FittedModel, ensembles: list[Any], chains: Numbers, times: Numbers, samples: int
 ) -> Posterior:
-    """Select equally spaced samples of all chains, with their quality."""
+    """Select equally spaced samples from all chains, and compute their convergence measures."""
     names = fitted.transform.names
     flat = chains.reshape(-1, chains.shape[-1])
     selected = flat[numpy.linspace(0, len(flat) - 1, samples).round().astype(int)]
@@ -143,7 +143,7 @@ def _select_samples(
 
 
 def _start_ensemble(fitted: FittedModel, seed: int) -> Any:
-    """Return a sampler after burn-in, with proposals that match the first chains."""
+    """Return an ensemble sampler after burn-in, with proposals adapted to the first chains."""
     random = numpy.random.RandomState(seed)
     guess = _StudentProposal(fitted.best.theta, numpy.linalg.cholesky(fitted.information.covariance))
     start = guess.draw(_N_WALKERS, random)
@@ -163,7 +163,7 @@ def _start_ensemble(fitted: FittedModel, seed: int) -> Any:
 
 
 def _make_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
-    """Return an ensemble sampler of emcee with three kinds of moves."""
+    """Make an ensemble sampler of emcee with three kinds of moves."""
     from emcee import EnsembleSampler
     from emcee.moves import DEMove, MHMove, StretchMove
 
@@ -176,31 +176,34 @@ def _make_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) 
 
 @dataclass(frozen=True, eq=False)
 class _StudentProposal:
-    """Proposals by Student's t about a centre, independent of the walkers."""
+    """Proposal distribution of Markov chains: Student's t about a centre."""
 
     centre: Numbers
     root: Numbers
 
     def draw(self, count: int, random: Any) -> Numbers:
-        """Draw `count` proposals of the scaled parameters theta: (count, unknowns)."""
+        """Draw proposals of the scaled parameters theta: (count, unknowns)."""
         size = len(self.centre)
         scale = numpy.sqrt(_PROPOSAL_FREEDOM / random.chisquare(_PROPOSAL_FREEDOM, (count, 1)))
         return self.centre + scale * random.standard_normal((count, size)) @ self.root.T
 
     def log_density(self, theta: Numbers) -> Numbers:
-        """Compute ln of the density up to a constant, (points,)."""
+        """Compute the logarithm of the proposal density up to a constant: (points,)."""
         standard = numpy.linalg.solve(self.root, (theta - self.centre).T)
         exponent = -(_PROPOSAL_FREEDOM + len(self.centre)) / 2
         return exponent * numpy.log1p(numpy.sum(standard**2, axis=0) / _PROPOSAL_FREEDOM)
 
     def __call__(self, theta: Numbers, random: Any) -> tuple[Numbers, Numbers]:
-        """Return a proposal for each walker, and ln of the ratio of the proposal densities."""
+        """Propose a new point for each walker, with the log ratio of the proposal densities."""
         new = self.draw(len(theta), random)
         return new, self.log_density(theta) - self.log_density(new)
 
 
 def _autocorrelation_time(chains: Numbers) -> float:
-    """Compute the integrated autocorrelation time of chains (ensembles, steps, walkers) over Sokal's window."""
+    """Compute the integrated autocorrelation time in steps, over Sokal's window.
+
+    The chains are (ensembles, steps, walkers).
+    """
     steps = chains.shape[1]
     deviations = chains - chains.mean()
     power = abs(numpy.fft.rfft(deviations, 2 * steps, axis=1)) ** 2
@@ -212,7 +215,10 @@ def _autocorrelation_time(chains: Numbers) -> float:
 
 
 def _r_hat(chains: Numbers) -> float:
-    """Compute the split R-hat of chains (ensembles, steps, walkers): each ensemble is cut in halves."""
+    """Compute the split R-hat convergence measure of chains (ensembles, steps, walkers).
+
+    Each ensemble is cut into halves.
+    """
     steps = chains.shape[1] // 2
     halves = numpy.concatenate([chains[:, :steps], chains[:, -steps:]]).reshape(2 * len(chains), -1)
     count = halves.shape[1]

@@ -222,7 +222,7 @@ def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
 
 
 def make_solver_result(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
-    """Make the solver result of a solution for loads of one kind."""
+    """Make the `SolverResult` of a refined solution for loads of one kind; mark points that have not converged."""
     force, indentation = solution.loads(kind, load)
     return SolverResult(
         laws=solution,

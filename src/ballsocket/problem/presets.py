@@ -106,6 +106,7 @@ materials: dict[str, Material] = NamedItems(
 def _make_joint(
     name: str, radius: float, clearance: float, thickness: float, pair: tuple[Material, Material], source: str
 ) -> Joint:
+    """Make a preset joint from lengths in mm and the pair (ball material, liner material)."""
     ball, liner = pair
     return Joint(
         ball_radius=radius,

@@ -120,7 +120,7 @@ _NEAR_HEMISPHERE = NearHemisphere()
 
 
 def make_solver_result(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
-    """Make the solver result of a solution; errors beyond the tolerance count as not converged."""
+    """Make the `SolverResult` of a solution; points whose error exceeds the tolerance have not converged."""
     return SolverResult(
         laws=solution,
         force=solution.force,

@@ -61,7 +61,10 @@ class ContactBracket:
         }
 
     def lies_below(self, kind: str, load: float) -> bool:
-        """Check that no sample is missing and that the load exceeds that of the widest contact."""
+        """Check if the load exceeds that of the widest contact of the bracket.
+
+        This is False if a sample is missing.
+        """
         return len(self._samples) == _SAMPLES and bool(getattr(self._samples[-1], kind) < load)
 
     def estimate_angle(self, kind: str, load: float) -> float | None:
