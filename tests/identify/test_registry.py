@@ -112,7 +112,7 @@ def test_a_machine_has_every_registered_error():
     machine = Machine(**dict.fromkeys(MACHINE_ERRORS, 1e-06), name="press")
     assert machine.known_errors() == {f"press.{name}": 1e-6 for name in MACHINE_ERRORS}
     assert Machine().known_errors() == {f"machine.{name}": 0.0 for name in MACHINE_ERRORS}
-    assert Machine(offset=(-1.0, 2.0)).unknowns == {"machine.offset": (-1.0, 2.0)}
+    assert Machine(offset=(-1.0, 2.0)).unknown_errors == {"machine.offset": (-1.0, 2.0)}
     assert Machine(offset=0.1) == Machine(offset=0.1)
     assert Machine(offset=0.1) != Machine(drift=0.1)
     assert repr(Machine(offset=0.1)) == "Machine(compliance=0.0, offset=0.1, drift=0.0, name='machine')"

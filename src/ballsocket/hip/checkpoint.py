@@ -12,7 +12,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.storage.array_files import read_arrays, write_arrays
-from ..core.storage.fingerprint import digest_of
+from ..core.storage.fingerprint import hash_inputs
 from .hip_setup import HipSetup
 from .history import Report
 
@@ -122,4 +122,4 @@ def checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
         use.creep,
         use.seconds,
     )
-    return Checkpoint(folder=folder, identity=digest_of(_VERSION, loads, inputs))
+    return Checkpoint(folder=folder, identity=hash_inputs(_VERSION, loads, inputs))

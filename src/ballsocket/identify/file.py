@@ -135,11 +135,13 @@ def _parse_machine(name: str, table: Any) -> Machine:
     if not isinstance(table, Mapping):
         raise ValueError(f"machine.{name} = {shown(table)} must be a table: [machine.{name}]")
     check_names(table, MACHINE_ERRORS, f"in [machine.{name}]")
-    sizes: dict[str, Any] = {error: _number_or_range(f"{name}.{error}", value, error) for error, value in table.items()}
+    sizes: dict[str, Any] = {
+        error: _parse_error_size(f"{name}.{error}", value, error) for error, value in table.items()
+    }
     return Machine(name=name, **sizes)
 
 
-def _number_or_range(name: str, value: Any, error: str) -> NumberOrRange:
+def _parse_error_size(name: str, value: Any, error: str) -> NumberOrRange:
     """Parse the size of a machine error: a number, or two ends."""
     kind = MACHINE_ERRORS[error].quantity.kind
     return ends_of(name, value, kind) if isinstance(value, str) and ".." in value else parse(name, value, kind)
@@ -158,10 +160,10 @@ def _parse_data_table(table: Mapping[str, Any], machines: Mapping[str, Machine],
     if ("file" in table) == ("values" in table):
         raise ValueError("[[data]] needs either a file, or a quantity with its values")
     machine = machines[known_name("machine", table["machine"], machines)] if "machine" in table else IDEAL_MACHINE
-    return _data_from_file(table, machine, folder) if "file" in table else (_data_from_values(table, machine),)
+    return _read_data_file(table, machine, folder) if "file" in table else (_parse_listed_values(table, machine),)
 
 
-def _data_from_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[Measured, ...]:
+def _read_data_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[Measured, ...]:
     """Read the data sets of a [[data]] table that names a CSV or Parquet file."""
     check_names(table, (*_FILE_KEYS, *_COMMON_KEYS), "in [[data]] with a file")
     listed = table.get("quantities", [])
@@ -176,11 +178,11 @@ def _data_from_file(table: Mapping[str, Any], machine: Machine, folder: Path) ->
         load_uncertainty=_parse_load_uncertainty(table, load or "force"),
         machine=machine,
         gaps=Gaps(gaps),
-        **_saturation_argument(table),
+        **_parse_saturation(table),
     )
 
 
-def _data_from_values(table: Mapping[str, Any], machine: Machine) -> Measured:
+def _parse_listed_values(table: Mapping[str, Any], machine: Machine) -> Measured:
     """Parse the data set of a [[data]] table that lists its values."""
     check_names(table, (*_VALUE_KEYS, *_COMMON_KEYS), "in [[data]] with values")
     for key in ("quantity", "uncertainty"):
@@ -204,7 +206,7 @@ def _data_from_values(table: Mapping[str, Any], machine: Machine) -> Measured:
         machine=machine,
         name=check_text("name", table.get("name", "")),
         **loads,
-        **_saturation_argument(table),
+        **_parse_saturation(table),
     )
 
 
@@ -215,7 +217,7 @@ def _parse_observable(name: str, table: Mapping[str, Any]) -> CustomObservable |
     return oscillation(parse("mass", table["mass"], Kind.MASS)) if "mass" in table else None
 
 
-def _saturation_argument(table: Mapping[str, Any]) -> dict[str, Any]:
+def _parse_saturation(table: Mapping[str, Any]) -> dict[str, Any]:
     """Parse the saturation to a keyword argument of `Measured`; empty if it is not stated."""
     return {"saturation": parse("saturation", table["saturation"], Kind.MODULUS)} if "saturation" in table else {}
 

@@ -65,6 +65,7 @@ def oscillation(mass: float) -> CustomObservable:
     require("mass", mass, 0 < mass < inf, "a mass (kg) is above 0 and finite")
 
     def read(contact: Contact) -> Array:
+        """Compute the frequency in Hz for a contact."""
         return (1e3 * contact.stiffness / mass) ** 0.5 / (2 * pi)  # 1e3 from N/mm to N/m
 
     return CustomObservable(FREQUENCY, read)

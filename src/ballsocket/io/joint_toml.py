@@ -105,7 +105,7 @@ def _with_units(part: Any) -> Any:
 
 def _text(name: str, value: Any) -> Any:
     """A number with its unit, if it has any; the names of joints and materials have none."""
-    unit = QUANTITIES[name].kind.typed if name in QUANTITIES else ""
+    unit = QUANTITIES[name].kind.assumed_unit if name in QUANTITIES else ""
     return f"{value!r} {unit}" if unit and not isinf(value) else value
 
 

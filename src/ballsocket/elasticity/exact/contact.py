@@ -16,8 +16,8 @@ from ...contact.closed_sphere import (
     NOTED_CHANGE,
     POISSON_RANGE,
     THICKNESS_RATIO_RANGE,
-    indentation_change,
-    largest_change,
+    hemisphere_indentation_change,
+    max_hemisphere_change,
 )
 from ...contact.per_joint import JointContacts, SolvedContact
 from ...core import arrays
@@ -163,7 +163,7 @@ class ElasticContact(SolvedContact):
         has_formula = not self.joint.backing and self.joint.support is Support.FIXED
         if not has_formula or not all(arrays.all_true(limit.holds(self)) for limit in _FITTED_RANGES):
             return inf
-        estimate = indentation_change(self) if name == "indentation" else largest_change(self)
+        estimate = hemisphere_indentation_change(self) if name == "indentation" else max_hemisphere_change(self)
         return _SAFETY * float(numpy.max(arrays.to_numpy(estimate), where=~arrays.to_numpy(self._failed), initial=0.0))
 
     @cached_property

@@ -146,7 +146,7 @@ class OffAxisContact(SolvedContact):
         notes = list(super().notes)
         if self._is_plain and self.status is Status.DISLOCATED:
             notes.append(self._dislocation_note)
-        if not self._failed_everywhere:
+        if not self._all_points_failed:
             unbounded = self.laws.combine(lambda piece: piece.state.unbounded) == 1
             notes += self._note(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
             notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _RIM_NOTE)
