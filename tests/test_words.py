@@ -72,7 +72,7 @@ def test_every_source_is_in_the_bibliography():
     for model in (*bs.catalogue.values(), bs.PinInHole()):
         for source in model.sources:
             assert source.key in bibliography()
-            assert source.short
+            assert source.authors_and_year
             assert "\\" not in str(source)
     assert bs.HessForsbach().sources[0].doi == "10.3390/app112311170"
 

@@ -17,7 +17,7 @@ from ..core.quantities import Quantity
 
 @dataclass(frozen=True)
 class CustomObservable:
-    """A custom quantity that is computed from a contact.
+    """Custom measured quantity that is computed from a contact.
 
     Attributes
     ----------
@@ -45,7 +45,9 @@ FREQUENCY = Quantity(
 
 
 def oscillation(mass: float) -> CustomObservable:
-    """Return the frequency in Hz of a mass on a contact, sqrt(dF/dd / m) / 2π, as a custom observable.
+    """Make a custom observable for the oscillation frequency in Hz of a mass on the contact.
+
+    The frequency is sqrt(dF/dd / m) / 2π.
 
     Parameters
     ----------
@@ -67,6 +69,7 @@ def oscillation(mass: float) -> CustomObservable:
     require("mass", mass, 0 < mass < inf, "a mass (kg) is above 0 and finite")
 
     def read(contact: Contact) -> Array:
+        """Compute the frequency in Hz for a contact."""
         return (1e3 * contact.stiffness / mass) ** 0.5 / (2 * pi)  # 1e3 from N/mm to N/m
 
     return CustomObservable(FREQUENCY, read)

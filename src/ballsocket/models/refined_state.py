@@ -126,7 +126,7 @@ def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -
 
     Only the smallest wave number may come near q = 1.
     """
-    if arrays.is_plain(half_angle):
+    if arrays.is_plain_number(half_angle):
         return scalar_log_compliances(half_angle, liner, waves)
     xp = arrays.namespace(half_angle)
     short = xp.asarray(waves[1:], dtype=half_angle.dtype, device=arrays.device(half_angle))
