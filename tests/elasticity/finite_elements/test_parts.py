@@ -131,7 +131,7 @@ def test_work_of_a_full_contact_is_the_strain_energy(pair):
     assert tangent._partial_work(narrow) == pytest.approx(narrow.strain_energy, rel=2e-3)
 
 
-def test_solving_a_full_contact_for_its_force(pair):
+def test_a_full_contact_is_solved_for_its_force(pair):
     for gap in (LinearGap(clearance=0.1, socket_radius=18.0), CircularGap(clearance=0.1, socket_radius=18.0)):
         contact = load_curve._solve_full_contact("force", 9000.0, pair, gap)
         assert contact.force == pytest.approx(9000.0, rel=1e-10)
@@ -148,8 +148,8 @@ def test_a_bracket_finds_the_contacts_between_its_ends(pair):
         assert bracket.estimate_angle(kind, 0.99 * first) is None
         assert bracket.solve(kind, 1.01 * last) is None
         assert bracket.estimate_angle(kind, 1.01 * last) is None
-        assert bracket.is_exceeded(kind, 1.01 * last)
-        assert not bracket.is_exceeded(kind, 0.99 * last)
+        assert bracket.lies_below(kind, 1.01 * last)
+        assert not bracket.lies_below(kind, 0.99 * last)
         for fraction in (0.0, 0.3, 0.9, 1.0):
             load = first ** (1 - fraction) * last**fraction
             load = min(max(load, first * (1 + 1e-12)), last * (1 - 1e-12))
@@ -201,7 +201,7 @@ def test_lagrange_polynomials_interpolate():
         np.testing.assert_allclose(surface.nodal_sums(angle, np.arange(5.0)), shapes.T @ np.arange(5.0), atol=1e-14)
 
 
-def test_bisection_and_joining_of_points():
+def test_points_are_bisected_and_joined():
     np.testing.assert_allclose(mesh.bisect_intervals(np.array([0.0, 1.0, 3.0])), [0.0, 0.5, 1.0, 2.0, 3.0])
     np.testing.assert_allclose(mesh.join_points([np.array([0.0, 1.0]), np.array([1.0, 2.0, 4.0])]), [0, 1, 2, 4])
 
@@ -409,15 +409,15 @@ def test_chamfers_leave_a_tenth_of_the_liner_and_half_of_the_bore(chamfer, thick
 
 def test_elements_of_one_size_fit_the_layers_and_the_bore():
     backed = replace(RIGID, backing=(bs.Layer(thickness=1.0, material=bs.TITANIUM),))
-    solver._check_size(0.5, backed, 28.0)
+    solver._check_element_size(0.5, backed, 28.0)
     with pytest.raises(ValueError, match=r"backing\[0\].thickness = 1 is not allowed: .* two elements of 0.51 mm"):
-        solver._check_size(0.51, backed, 28.0)
+        solver._check_element_size(0.51, backed, 28.0)
     for size, allowed in ((28.0 / 23.9, False), (28.0 / 24.1, True), (2.9e-4, True), (2.7e-4, False)):
         if allowed:
-            solver._check_size(size, RIGID, 28.0)
+            solver._check_element_size(size, RIGID, 28.0)
         else:
             with pytest.raises(ValueError, match="the bore of 28 mm allows 24 to 100000 elements"):
-                solver._check_size(size, RIGID, 28.0)
+                solver._check_element_size(size, RIGID, 28.0)
 
 
 @pytest.mark.parametrize(("elements", "allowed"), [(22, False), (24, True), (25, False), (26, True), (27, False)])
