@@ -130,11 +130,11 @@ def test_a_contact_is_near_the_hemisphere_up_to_fifteen_percent():
     for indentation, pressure, near in ((0.14, -0.14, True), (0.16, 0.0, False), (0.0, -0.16, False)):
         contact = SimpleNamespace(
             hemisphere={"indentation": indentation, "max_pressure": pressure},
-            hemisphere_at_most=lambda name: inf,
+            hemisphere_change_bound=lambda name: inf,
             indentation=0.1,
         )
         assert limit.holds(contact) == near
-        contact.hemisphere_at_most = lambda name: 0.15
+        contact.hemisphere_change_bound = lambda name: 0.15
         assert limit.holds(contact)
 
 

@@ -13,10 +13,12 @@ from ballsocket.elasticity.finite_elements import load_curve, memory, mesh, solv
 from ballsocket.elasticity.finite_elements.bodies import socket_body
 from ballsocket.elasticity.finite_elements.condensation import nested_dissection
 from ballsocket.elasticity.finite_elements.decks import calculix
+from ballsocket.elasticity.finite_elements.elasticity import shape_functions
 from ballsocket.elasticity.finite_elements.full_contact import FullContact
 from ballsocket.elasticity.finite_elements.harmonics import Harmonics, socket_harmonics
 from ballsocket.elasticity.finite_elements.load_search import ContactBracket
 from ballsocket.elasticity.finite_elements.round_contact import partial_contact, pressure_at_pole
+from ballsocket.elasticity.finite_elements.section import _superconvergent_points as superconvergent_points
 from ballsocket.elasticity.finite_elements.shapes import Resolution, SocketShape, ball_corners, socket_shape
 from ballsocket.elasticity.finite_elements.solver import Settings, load_curve_of
 from ballsocket.elasticity.finite_elements.surfaces import ContactSurface, lagrange
@@ -185,6 +187,17 @@ def test_a_contact_of_few_elements_has_a_pole_pressure(pair, elements):
     assert contact.last <= 3
     exact = bs.Exact().press(RIGID, half_angle=half_angle)
     assert contact.pole_pressure == pytest.approx(exact.pole_pressure, rel=0.02)
+
+
+def test_stresses_are_extrapolated_bilinearly_to_the_nodes():
+    corners = np.array([[0.0, 1.0, 1.0, 0.0, 0.5, 1.0, 0.5, 0.0, 0.5], [0.0, 0.0, 1.0, 1.0, 0.0, 0.5, 1.0, 0.5, 0.5]])
+    assert shape_functions(2, corners)[0] == pytest.approx(np.eye(9), abs=1e-14)
+    points, extrapolation = superconvergent_points(2)
+    for function in (lambda x, y: 1.0 + 0 * x, lambda x, y: x, lambda x, y: y, lambda x, y: x * y):
+        assert function(*points) @ extrapolation == pytest.approx(function(*corners), abs=1e-14)
+    points, extrapolation = superconvergent_points(1)
+    assert points.ravel().tolist() == [0.5, 0.5]
+    assert (np.array([3.0]) @ extrapolation).tolist() == [3.0] * 4
 
 
 def test_lagrange_polynomials_interpolate():
@@ -520,7 +533,7 @@ def test_a_bracket_ends_before_the_perfect_fit(soft_pair, count):
     low = fit / ratio ** (count - 0.5)
     bracket = ContactBracket(pair=soft_pair, gap=gap, low=low, high=low * ratio**9)
     assert len(bracket._samples) == count
-    assert not bracket.is_exceeded("force", 1e12)
+    assert not bracket.lies_below("force", 1e12)
     if count == 1:
         assert bracket.solve("force", bracket._samples[0].force * 1.001) is None
         assert bracket.estimate_angle("force", bracket._samples[0].force * 1.001) is None
