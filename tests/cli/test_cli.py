@@ -13,7 +13,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket import cli
-from ballsocket.cli.words import echo_json
+from ballsocket.cli.json_answers import echo_json
 
 from ..places import EXAMPLES
 from .command import run, run_process
@@ -312,7 +312,7 @@ def test_figure(tmp_path, ending):
             ["press", EXAMPLE, "--figure", "/no/such/folder/a.png"],
             "cannot write a.png: '/no/such/folder' is not a folder",
         ),
-        (["press", "no/joint.toml"], "'no/joint.toml' is no file: there is no folder 'no'"),
+        (["press", "no/joint.toml"], "'no/joint.toml' does not exist: there is no folder 'no'"),
         (["map", EXAMPLE, "--figure", "no/a.png"], "cannot write a.png: 'no' is not a folder"),
         (["study", EXAMPLE, "--out", "no/a.csv"], "cannot write a.csv: 'no' is not a folder"),
         (["press", EXAMPLE, "--model", "fem", "--vtk", "no/a.vtu"], "cannot write a.vtu: 'no' is not a folder"),

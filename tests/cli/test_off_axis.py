@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.cli import off_axis
+from ballsocket.cli import elasticity_options
 
 from ..places import EXAMPLES
 from .command import run
@@ -64,7 +64,7 @@ def test_so_does_an_interference():
 
 @pytest.mark.parametrize(("distance", "loaded"), [(0.02, True), (-0.02, True), (0.02, False)])
 def test_nothing_is_minus_nothing(distance, loaded):
-    assert "-0.0" not in off_axis._rim(SimpleNamespace(edge_distance=distance, edge_loaded=loaded))
+    assert "-0.0" not in elasticity_options._rim_text(SimpleNamespace(edge_distance=distance, edge_loaded=loaded))
 
 
 def test_a_file_says_where_the_load_points_and_the_words_win():

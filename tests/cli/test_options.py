@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from ballsocket.cli.groups import grouped
+from ballsocket.cli.options import expand_groups
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +24,7 @@ def called():
     app, calls = typer.Typer(rich_markup_mode=None), []
 
     @app.command()
-    @grouped
+    @expand_groups
     def both(
         *,
         name: Annotated[str, typer.Argument(help="Of it")],
