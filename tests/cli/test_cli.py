@@ -340,7 +340,7 @@ def test_figure(tmp_path, ending):
             ["press", *NUMBERS[:8], "--poisson", "0.5", "--force", "1", "--model", "bonded-layer"],
             "bonded-layer has no answer for ν = 0.5: the modulus is unbounded",
         ),
-        (["evidence"], "either a question file is needed, or --check with a folder of evidence"),
+        (["evidence"], "a question file is needed, or --check with the folder of a pack"),
         (["evidence", "--check", "."], "holds no pack of evidence: checksums.txt is missing"),
         (["pres"], "No such command 'pres'"),
         (["cite", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),

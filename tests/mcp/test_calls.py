@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from ballsocket.cli.root import load_commands
+from ballsocket.cli.servers import LIMITED_PROGRAM
 from ballsocket.core.input_files import restriction_variables
 from ballsocket.mcp import call
 from ballsocket.mcp.run import run as run_tool
@@ -145,7 +146,7 @@ def test_a_process_of_a_call_is_restricted(tmp_path, secret):
     room.mkdir()
     name, content = OUTSIDE["table"]
     words = command_line(name, {"content": content.format(f"{PADDING}../secret")}, room)
-    told = asyncio.run(run_tool(words, room, 60.0))
+    told = asyncio.run(run_tool([*LIMITED_PROGRAM, *words], room, 60.0))
     assert told.answer is None
     assert "lies outside the folder of this server" in told.refusal
 
@@ -164,7 +165,7 @@ def test_a_process_ends_with_its_parent_even_where_no_thread_runs(tmp_path):
     )
     parent = (
         "import asyncio, pathlib; from ballsocket.mcp import run; "
-        f"run._COMMAND = ('-c', {busy!r}); asyncio.run(run.run([], pathlib.Path(), 600.0))"
+        f"asyncio.run(run.run(['-c', {busy!r}], pathlib.Path(), 600.0))"
     )
     note = tmp_path / "child"
     with subprocess.Popen([sys.executable, "-c", parent], cwd=tmp_path) as server:
@@ -189,7 +190,7 @@ def is_running(process):
 
 def test_a_call_is_bounded_and_ends(tmp_path):
     long = command_line("sensitivity", {**PRESS, "model": "fem", "spread": ["clearance=0.05..0.15 mm"]}, tmp_path)
-    told = asyncio.run(run_tool(long, tmp_path, 0.5))
+    told = asyncio.run(run_tool([*LIMITED_PROGRAM, *long], tmp_path, 0.5))
     assert (told.answer, told.refusal[:19]) == (None, "stopped after 0.5 s")
 
 
@@ -198,7 +199,7 @@ def test_an_assistant_hears_what_the_shell_says(tmp_path):
     from ballsocket.mcp.server import server
 
     async def asked():
-        async with mcp.Client(server(tmp_path, 60.0, COMMANDS)) as client:
+        async with mcp.Client(server(tmp_path, 60.0, COMMANDS, LIMITED_PROGRAM)) as client:
             listed = await client.list_tools()
             half = await client.call_tool("press", {"joint": "hip-36", "force": 1e12, "model": ["bartel"]})
             refusal = await client.call_tool("press", {"forces": 1})

@@ -31,7 +31,9 @@ def deck(
     ] = 8,
     scale: Annotated[
         float,
-        typer.Option(help="Factor on clearance and indentation; 1: contact on the deformed shape."),
+        typer.Option(
+            help="Factor on clearance and indentation: small for contact on the undeformed shape, 1 on the deformed one."
+        ),
     ] = 1e-3,
     tilt: Annotated[
         str | None, typer.Option(help="Angle between load and cup axis: '45 deg'. Writes a three-dimensional model.")

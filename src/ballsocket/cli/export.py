@@ -31,7 +31,7 @@ class ForceElementOptions:
     model: ModelName = None
     hysteresis: Annotated[
         float | None,
-        typer.Option(help="Damping factor in s/mm: damping force over force and speed. Default: no damping."),
+        typer.Option(help="Damping factor in s/mm: damping force / (contact force * speed). Default: no damping."),
     ] = None
     restitution: Annotated[
         float | None,

@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 JointName = Annotated[str | None, typer.Argument(help="Joint file (TOML), or name of a preset.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, not a table.")]
-Workers = Annotated[int | None, typer.Option(help="Number of worker processes on this machine.")]
+Workers = Annotated[
+    int | None, typer.Option(help="Number of worker processes on this machine. Default: 1, or as in the file.")
+]
 Scheduler = Annotated[
     str | None, typer.Option(help="Address of a Dask scheduler that distributes the work: 'tcp://host:8786'.")
 ]

@@ -13,6 +13,9 @@ import typer
 from ..core.checks import needs
 from .root import app, load_commands
 
+LIMITED_PROGRAM = ("-P", "-m", "ballsocket.cli.limited")
+"""Arguments of Python for a call of a tool; -P: a file in the folder that is named like a module is not imported."""
+
 
 @app.command(name="app")
 def explorer(
@@ -75,4 +78,4 @@ def serve_mcp(
         raise ValueError(f"folder {str(folder)!r} does not exist")
     from ..mcp.server import serve
 
-    asyncio.run(serve(folder.resolve(), longest, load_commands()))
+    asyncio.run(serve(folder.resolve(), longest, load_commands(), LIMITED_PROGRAM))

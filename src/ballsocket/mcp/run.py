@@ -29,12 +29,12 @@ class CallResult:
 
 
 async def run(arguments: Sequence[str], folder: Path, longest: float) -> CallResult:
-    """Run a command in a separate process, and return its result.
+    """Run a command in a separate Python process, and return its result.
 
     Parameters
     ----------
     arguments : sequence of str
-        Name of the command and its arguments.
+        Arguments of Python: those of the program, the name of the command and its arguments.
     folder : Path
         Working folder of the process.
     longest : float
@@ -43,7 +43,6 @@ async def run(arguments: Sequence[str], folder: Path, longest: float) -> CallRes
     with _lifeline() as stdin:
         process = await asyncio.create_subprocess_exec(
             sys.executable,
-            *_COMMAND,
             *arguments,
             cwd=folder,
             env={**os.environ, **restriction_variables((folder, cache_folder()))},
@@ -61,9 +60,6 @@ async def run(arguments: Sequence[str], folder: Path, longest: float) -> CallRes
             await process.wait()
     return _call_result(process.returncode, out, err.decode("utf-8", errors="replace"))
 
-
-_COMMAND = ("-P", "-m", "ballsocket.cli.limited")
-"""Arguments of Python; -P: a file of the folder that is named like a module is not imported."""
 
 _RESUME = "; the finished parts of an evidence pack are stored: call the tool again to resume"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -39,11 +39,14 @@ class ToolCalls:
         Time limit of a call in seconds, without the time in the queue.
     commands : mapping
         Functions of the commands by name.
+    program : sequence of str
+        Arguments of Python that run a command, before its name.
     """
 
     folder: Path
     longest: float
     commands: Commands
+    program: Sequence[str]
     _slots: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(available_cores()))
 
     async def call(self, name: str, arguments: Mapping[str, Any]) -> CallResult:
@@ -53,12 +56,12 @@ class ToolCalls:
         except (ValueError, OSError) as error:
             return CallResult(None, " ".join(str(error).split()))
         async with self._slots:
-            return await run(command, self.folder, self.longest)
+            return await run([*self.program, *command], self.folder, self.longest)
 
 
-def server(folder: Path, longest: float, commands: Commands) -> Server[Any]:
+def server(folder: Path, longest: float, commands: Commands, program: Sequence[str]) -> Server[Any]:
     """Return a server of the tools; see `ToolCalls` for the parameters."""
-    calls = ToolCalls(folder, longest, commands)
+    calls = ToolCalls(folder, longest, commands, program)
 
     async def list_tools(context: Any, request: Any) -> types.ListToolsResult:
         """Return the tools with their schemas."""
@@ -73,9 +76,9 @@ def server(folder: Path, longest: float, commands: Commands) -> Server[Any]:
     )
 
 
-async def serve(folder: Path, longest: float, commands: Commands) -> None:
+async def serve(folder: Path, longest: float, commands: Commands, program: Sequence[str]) -> None:
     """Serve the tools until standard input closes; see `ToolCalls` for the parameters."""
-    tool_server = server(folder, longest, commands)
+    tool_server = server(folder, longest, commands, program)
     async with stdio_server() as (requests, answers):
         await tool_server.run(requests, answers, tool_server.create_initialization_options())
 
