@@ -32,7 +32,7 @@ def deck(
     scale: Annotated[
         float,
         typer.Option(
-            help="Factor on clearance and indentation: small for contact on the undeformed shape, 1 on the deformed one."
+            help="Factor on clearance and indentation; small: contact on the undeformed shape, 1: on the deformed."
         ),
     ] = 1e-3,
     tilt: Annotated[

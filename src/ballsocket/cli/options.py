@@ -74,7 +74,7 @@ class JointOptions:
         ),
     ] = None
     ball_young: Annotated[
-        str | None, typer.Option(help="Young's modulus of the ball: '230 GPa'. Default: rigid ball.")
+        str | None, typer.Option(help="Young's modulus of the ball: '230 GPa'. Default: as in the file, or rigid.")
     ] = None
     ball_poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the ball, from 0 to 0.5.")] = None
     ball: Annotated[
