@@ -1,4 +1,4 @@
-"""The tools for assistants: what they take, what they refuse, and that a call is bounded."""
+"""Tools for assistants: schemas, refusals, command lines, and limits of a call."""
 
 import asyncio
 import json
@@ -30,13 +30,13 @@ def command_line(name, arguments, folder):
 
 
 @pytest.mark.parametrize("name", TOOLS)
-def test_a_tool_says_what_it_takes_and_names_no_file_to_write(name):
+def test_a_tool_describes_its_arguments_and_offers_no_file_to_write(name):
     properties = schema(TOOLS[name], COMMANDS)["properties"]
     assert all(each["description"] for each in properties.values())
     assert not {"figure", "out", "store", "section", "view", "vtk", "report", "scheduler"} & set(properties)
 
 
-def test_numbers_of_a_tool_have_their_units():
+def test_descriptions_of_numbers_state_units():
     properties = schema(TOOLS["press"], COMMANDS)["properties"]
     units = {"ball_radius": "[mm]", "force": "[N]", "young": "[MPa]", "half_angle": "[°]"}
     assert all(unit in properties[name]["description"] for name, unit in units.items())
@@ -64,12 +64,12 @@ def test_numbers_of_a_tool_have_their_units():
         ("identify", {"content": "x" * 100_001}, "the content is larger than 100000 bytes"),
     ],
 )
-def test_a_call_that_is_wrong_is_told_how(name, arguments, message, tmp_path):
+def test_a_wrong_call_is_refused_with_the_reason(name, arguments, message, tmp_path):
     with pytest.raises(ValueError, match=message):
         command_line(name, arguments, tmp_path)
 
 
-def test_a_link_does_not_lead_out_of_the_folder(tmp_path):
+def test_a_link_to_a_file_outside_the_folder_is_refused(tmp_path):
     (tmp_path / "room").mkdir()
     (tmp_path / "joint.toml").write_text("[joint]", encoding="utf-8")
     try:
@@ -80,7 +80,7 @@ def test_a_link_does_not_lead_out_of_the_folder(tmp_path):
         command_line("press", {"joint": "joint.toml", "force": 1}, tmp_path / "room")
 
 
-def test_words_are_those_of_the_shell(tmp_path):
+def test_the_command_line_of_a_call_is_that_of_a_shell(tmp_path):
     words = command_line("press", {**PRESS, "force": 3000.0, "model": ["hertz", "exact"]}, tmp_path)
     assert words == ["press", "hip-36", "--force=3000", "--model=hertz", "--model=exact", "--json"]
     assert command_line("press", {"joint": "--help"}, tmp_path)[1] == "./--help"
@@ -133,7 +133,7 @@ def test_files_named_by_files_stay_inside_the_folder(kind, form, room, secret):
     assert not any(word in done.stderr for word in ("777", "0.123", "12.3456", "secret head"))
 
 
-def test_files_that_are_not_toml_name_no_file_outside(room):
+def test_a_path_outside_the_folder_in_other_files_is_refused(room):
     (room / "x.txt").write_text(OUTSIDE["cycle"][1].format("../secret"), encoding="utf-8")
     question = (EXAMPLES / "evidence.toml").read_text(encoding="utf-8").split("[wear]")[0]
     content = f'{question}\n[wear]\nfile = "x.txt"\n'
@@ -151,13 +151,13 @@ def test_a_process_of_a_call_is_restricted(tmp_path, secret):
     assert "lies outside the folder of this server" in told.refusal
 
 
-def test_a_file_named_as_an_option_is_a_file(tmp_path):
+def test_a_file_named_like_an_option_is_read_as_a_file(tmp_path):
     (tmp_path / "--help.toml").write_text('joint = "hip-28"\n[axes]\nforce = 1000\n', encoding="utf-8")
     words = command_line("study", {"file": "--help.toml"}, tmp_path)
     assert words[1] == "./--help.toml"
 
 
-def test_a_process_ends_with_its_parent_even_where_no_thread_runs(tmp_path):
+def test_a_busy_process_ends_with_its_parent(tmp_path):
     """The child is inside one instruction of Python, which lets no thread run, for hours."""
     busy = (
         "import os, sys; from ballsocket.core.executors.processes import exit_with_parent as leave; leave(); "
@@ -188,13 +188,13 @@ def is_running(process):
     return status.exists() and "State:\tZ" not in status.read_text(encoding="ascii")
 
 
-def test_a_call_is_bounded_and_ends(tmp_path):
+def test_a_call_beyond_the_time_limit_is_stopped(tmp_path):
     long = command_line("sensitivity", {**PRESS, "model": "fem", "spread": ["clearance=0.05..0.15 mm"]}, tmp_path)
     told = asyncio.run(run_tool([*LIMITED_PROGRAM, *long], tmp_path, 0.5))
     assert (told.answer, told.refusal[:19]) == (None, "stopped after 0.5 s")
 
 
-def test_an_assistant_hears_what_the_shell_says(tmp_path):
+def test_a_tool_returns_what_the_command_prints(tmp_path):
     mcp = pytest.importorskip("mcp", reason="the extra for assistants is not installed")
     from ballsocket.mcp.server import server
 
@@ -214,7 +214,7 @@ def test_an_assistant_hears_what_the_shell_says(tmp_path):
     assert refusal.content[0].text.startswith("'forces' in a call of press is not known")
 
 
-def test_without_the_extra_it_is_said_what_to_install(tmp_path, monkeypatch):
+def test_a_missing_extra_is_reported_with_the_install_command(tmp_path, monkeypatch):
     monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
     done = run("serve-mcp", "--folder", str(tmp_path))
     assert (done.returncode, done.stderr) == (2, "ballsocket: mcp is not installed: pip install 'ballsocket[mcp]'\n")

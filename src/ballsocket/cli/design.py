@@ -195,8 +195,9 @@ def sensitivity(
     spread: Annotated[
         list[str],
         typer.Option(
-            help="Scatter of a parameter: tolerance 'clearance=0.10+-0.05 mm' (normal distribution, 3 standard "
-            "deviations to each end) or range 'liner_poisson=0.38..0.46' (uniform distribution). Repeat for several."
+            help="Scatter of a parameter: tolerance 'clearance=0.10+-0.05 mm' (or ±; normal distribution, 3 "
+            "standard deviations to each end) or range 'liner_poisson=0.38..0.46' (uniform distribution). Repeat for "
+            "several."
         ),
     ],
     press_options: PressOptions,
