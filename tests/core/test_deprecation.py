@@ -107,10 +107,17 @@ def test_a_renamed_field_is_accepted_and_given_with_a_warning():
         assert replace(note, told="tight").text == "tight"
 
 
-def test_warnings_point_to_the_line_that_uses_the_old_name():
-    find = renamed_names(__name__, {"Socket": "Cup"})
-    note = Note(text="loose")
-    for use in (lambda: find("Socket"), lambda: Cup().old, lambda: work(listen=1), lambda: note.told):
-        with pytest.warns(DeprecationWarning) as caught:
-            use()
-        assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, use.__code__.co_firstlineno)]
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda: renamed_names(__name__, {"Socket": "Cup"})("Socket"),
+        lambda: Cup().old,
+        lambda: work(listen=1),
+        lambda: Note(told="loose"),
+    ],
+    ids=["name", "attribute", "argument", "field"],
+)
+def test_a_warning_points_to_the_line_that_uses_the_old_name(use):
+    with pytest.warns(DeprecationWarning, match="is deprecated: use") as caught:
+        use()
+    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, use.__code__.co_firstlineno)]
