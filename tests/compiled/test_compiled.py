@@ -14,9 +14,11 @@ pytest.importorskip("numba")
 import numba
 
 from ballsocket.compiled import Compiled, compiled_law
-from ballsocket.compiled.kernels import _angle_polynomial
+from ballsocket.compiled.kernels import _angle_polynomial, _evaluate_functions
 from ballsocket.contact.roots import increasing_root
 from ballsocket.core.deprecation import RenamedAttribute
+from ballsocket.elasticity.exact.tabulated.chebyshev import angle_root
+from ballsocket.elasticity.exact.tabulated.formulas import CurveCoefficients
 from ballsocket.models.kinematics import angle_of
 
 KINEMATICS = (bs.linear_kinematics, bs.exact_kinematics, bs.cosine_kinematics)
@@ -84,6 +86,21 @@ def test_failures_are_the_same_failures():
 def test_angle_polynomial():
     for versine in np.linspace(0.0, 1.0, 4001):
         assert _angle_polynomial(float(versine)) == pytest.approx(angle_of(versine), rel=6e-16, abs=0)
+
+
+@pytest.mark.parametrize("angle", [0.05, 0.6, 1.4])
+def test_functions_of_a_table_are_chebyshev_series_with_their_slopes(angle):
+    functions = np.random.default_rng(6).normal(size=(3, 7))
+    curve = CurveCoefficients(2.5, functions, functions)
+
+    def series(angle):
+        return np.polynomial.chebyshev.chebval(2 * angle_root(angle, 2.5) - 1, functions.T)
+
+    step = 1e-5
+    slopes = (series(angle * np.exp(step)) - series(angle * np.exp(-step))) / (2 * step)
+    values = _evaluate_functions(angle, curve)
+    np.testing.assert_allclose([value for value, _ in values], series(angle), rtol=1e-12)
+    np.testing.assert_allclose([slope for _, slope in values], slopes, rtol=1e-7, atol=1e-8)
 
 
 def liners(size: int, ball: bs.Material | None = None) -> bs.Joint:
