@@ -270,6 +270,30 @@ def test_validity_warning_is_logged_for_numbers_and_for_arrays(position, caplog)
     assert message.startswith("hertz at an indentation of 0.05 mm")
 
 
+def test_half_angle_of_springs_has_its_cosine_down_to_a_millionth_of_the_clearance():
+    """ε is acos[c/(c + d)], and the largest pressure K d."""
+    element = bs.ForceElement(bs.HessForsbach(), HIP)
+    for depth in (1e-7, 1e-6, 1e-3, 0.05, 1.0):
+        versine = depth / (C + depth)
+        assert 2 * np.sin(element.half_angle(depth) / 2) ** 2 == pytest.approx(versine, rel=1e-8)
+        assert element.max_pressure(depth) == pytest.approx(bs.hess_forsbach(HIP) * depth, rel=1e-8)
+    assert element.half_angle(0.0) == element.max_pressure(-1.0) == 0.0
+    assert element.half_angle(np.array([-1.0, 0.0, 0.05])).tolist()[:2] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("state", "message"),
+    [
+        ((np.zeros((5, 2)),), r"position .*x, y, z \(mm\)"),
+        ((np.zeros((5, 3)), np.zeros((5, 2))), r"velocity .*x, y, z \(mm/s\)"),
+        ((np.zeros((5, 3)), np.zeros((5, 3)), np.zeros(4)), r"spin .*x, y, z \(rad/s\)"),
+    ],
+)
+def test_arrays_without_three_components_are_rejected(state, message):
+    with pytest.raises(ValueError, match=message):
+        bs.ForceElement(bs.HessForsbach(), HIP)(*state)
+
+
 def test_contact_beyond_the_wall_is_a_status_and_no_warning(caplog):
     element = bs.ForceElement(bs.Hertz(), HIP)
     with caplog.at_level(logging.WARNING, logger="ballsocket.dynamics"):

@@ -75,6 +75,21 @@ def test_orbit_in_a_cup_conserves_angular_momentum_about_the_dome_axis():
     assert motion.angular_drift < 1e-13
 
 
+def test_drifts_are_relative_to_the_largest_energy_and_angular_momentum():
+    """A ball of 1 kg at 0.1 mm with 200 mm/s has 20 mJ, and m r v = 2e-5 N mm s."""
+    thrown = {"mass": 1.0, "position": (0.05, 0.0, 0.0), "velocity": (0.0, 200.0, 0.0), "duration": 1e-5, "step": 1e-5}
+    motion = simulate(FREE, **thrown)
+    wrong = replace(
+        motion, velocity=np.array([[0.0, 200.0, 0.0], [0.0, 202.0, 0.0]]), position=motion.position * 0 + 0.05
+    )
+    assert wrong.drift == pytest.approx((202.0**2 - 200.0**2) / 202.0**2, rel=1e-9)
+    # L = m r x v is (-0.05 v, 0, 0.05 v) with r = (0.05, 0.05, 0.05): it changes by 1 % along itself
+    reach = 0.05 * np.sqrt(3) * 202.0
+    assert wrong.angular_drift == pytest.approx(0.05 * np.sqrt(2) * 2.0 / reach, rel=1e-9)
+    still = replace(motion, velocity=0 * motion.velocity)
+    assert still.angular_drift == 0.0
+
+
 def test_angular_drift_is_none_with_friction():
     assert simulate(LOSSY, duration=1e-3, **THROW).angular_drift is None
     bristles = replace(FREE, friction=Bristles(coefficient=0.1))
@@ -249,6 +264,7 @@ def test_motion_ends_where_the_ball_leaves_the_cup(friction):
     element = replace(FREE, cup=bs.Cup(), friction=friction)
     motion = simulate(element, duration=0.01, **{**THROW, "velocity": (0.0, 0.0, -300.0)})
     assert "has left the cup over its rim" in motion.ended
+    assert float(motion.ended.split()[1]) == pytest.approx(motion.time[-1], abs=1.01 * 2e-5)
     assert len(motion.time) == pytest.approx(HIP.clearance / 300.0 / 2e-5, abs=2)
 
 
