@@ -291,6 +291,7 @@ def test_a_host_is_given_the_load_and_its_slopes(host):
     assert_allclose(
         (force, moment, pressure), (load.force[2], 1e-3 * load.moment[0], 1e6 * load.max_pressure), rtol=1e-12
     )
+    assert host.said == []  # the contact is valid
     status, slope = host.directional("force[3]", "position[2]")
     assert status == GOOD
     step = 1e-8

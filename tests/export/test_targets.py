@@ -211,6 +211,48 @@ def test_every_target_takes_a_joint_without_a_load_and_says_what_is_missing(targ
         fromstring(path.read_bytes())
 
 
+@pytest.fixture
+def recording_compiler(tmp_path, monkeypatch):
+    """A compiler that writes the header of this Python as a library, and a file with its arguments."""
+    if sys.platform == "win32":
+        pytest.skip("Windows does not run scripts as programs")
+    script, log = tmp_path / "recording-gcc", tmp_path / "arguments.txt"
+    script.write_text(
+        f"#!{sys.executable}\nimport sys\n"
+        f"open({str(log)!r}, 'a').write(' '.join(sys.argv[1:]) + '\\n')\n"
+        f"open(sys.argv[sys.argv.index('-o') + 1], 'wb').write(open(sys.executable, 'rb').read(4096))\n"
+    )
+    script.chmod(0o755)
+    monkeypatch.setenv("CC", str(script))
+    return log
+
+
+@pytest.mark.parametrize("library", [f"libmujoco{LIBRARY_ENDING}.9", None])
+def test_the_plugin_is_compiled_with_the_headers_and_the_library_of_mujoco(
+    library, recording_compiler, tmp_path, monkeypatch
+):
+    package = tmp_path / "site" / "mujoco"
+    package.mkdir(parents=True)
+    (package / "__init__.py").touch()
+    if library:
+        (package / library).touch()
+    monkeypatch.syspath_prepend(str(tmp_path / "site"))
+    paths, missing = written("mujoco", PLAIN, tmp_path / "hip", name="hip")
+    assert missing == ""
+    assert all(path.exists() for path in paths)
+    plain, plugin = recording_compiler.read_text().splitlines()
+    assert plain.split("-o ")[0].endswith(" hip.c ")
+    sources = f"hip.c hip_mujoco.c {package / library}" if library else "hip.c hip_mujoco.c"
+    assert f"-isystem {package / 'include'} -Wl,-rpath,{package} {sources} -o _hip_plugin{LIBRARY_ENDING} -lm" in plugin
+
+
+def test_a_plugin_without_mujoco_is_a_note_and_its_source_is_written(recording_compiler, tmp_path, monkeypatch):
+    monkeypatch.setattr("ballsocket.export.targets.find_spec", lambda name: None)
+    missing = written("mujoco", PLAIN, tmp_path / "hip", name="hip")[1]
+    assert missing == "the plug-in is not compiled: mujoco, whose headers it needs, is not installed"
+    assert (tmp_path / "hip" / "hip_mujoco.c").exists()
+
+
 def test_what_a_program_has_no_words_for_is_said(tmp_path):
     element = ForceElement(bs.HessForsbach(), HIP, damping=Damping(time=1e-4), friction=LOSSY.friction, cup=bs.Cup())
     lost = "friction and the retardation time of the liner and the rim of the cup: omitted"
