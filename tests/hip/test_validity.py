@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.hip import (
     Activity,
     Archard,
@@ -133,6 +134,19 @@ def test_half_angles_of_round_patches():
         field = (axis @ use.foundation.directions - np.cos(angle))[None]
         assert half_angles(use.grid, use.reach, field)[0] == pytest.approx(angle, abs=4e-3)
         assert half_angles(use.grid, use.reach, (field > 0) * 1.0)[0] == pytest.approx(angle, abs=3e-2)
+
+
+def test_half_angles_of_caps_about_the_pole_are_exact_on_fine_rings():
+    """Linear interpolation between rings of 1° errs by the square of a ring; a full bore ends at its reach."""
+    grid = even_grid(np.pi / 2, np.radians(1.0))
+    polar = np.repeat(grid.polar, grid.meridians)
+    angles = np.array([0.1, 0.5, 1.0, 1.5])
+    fields = np.cos(polar) - np.cos(angles)[:, None]
+    np.testing.assert_allclose(half_angles(grid, np.pi / 2, fields), angles, atol=3e-4)
+    ends = half_angles(grid, np.pi / 2, np.stack([0 * polar + 1.0, 0 * polar - 1.0, 1.2 - polar]))
+    np.testing.assert_allclose(ends, [np.pi / 2, 0.0, 1.2], atol=1e-12)
+    half = np.where(np.tile(np.cos(grid.azimuth), grid.rings) > 0, 1.2 - polar, -1.0)
+    assert 1 - np.cos(half_angles(grid, np.pi / 2, half[None])[0]) == pytest.approx((1 - np.cos(1.2)) / 2, rel=0.02)
 
 
 def test_a_run_without_a_yield_stress_has_no_utilisation():
