@@ -160,6 +160,7 @@ def test_a_run_without_contact_has_no_check():
     history = use_of(HIP, constant_load(8, force=0.0)).after(1e4)
     assert history.use.unworn_checks == ()
     assert history.valid
+    assert (history.error.blocks, history.error.volume, history.error.depth) == (0.0, 0.0, 0.0)
 
 
 def test_the_command_reports_validity(tmp_path):
