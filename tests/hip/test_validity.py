@@ -161,6 +161,12 @@ def test_a_run_without_contact_has_no_check():
     assert history.use.unworn_checks == ()
     assert history.valid
     assert (history.error.blocks, history.error.volume, history.error.depth) == (0.0, 0.0, 0.0)
+    summary = history.summary()
+    zeros = ("pressure_slide_integral_Nm", "cross_shear_mean", "crossing_angle_mean_deg")
+    assert [summary["cycle"][name] for name in zeros] == [0.0, 0.0, 0.0]
+    assert summary["cycle"]["peaks"] == {"force_N": 0.0, "max_pressure_MPa": 0.0, "speed_mm_s": 0.0}
+    assert summary["initial"] == {"wear_mm3_per_Mc": 0.0, "depth_mm_per_Mc": 0.0}
+    assert (summary["cycle"]["edge"], summary["film"]) == (None, {})
 
 
 def test_the_command_reports_validity(tmp_path):
