@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from ballsocket.hip.law_fields import wear_factor, wear_per_energy, wear_per_slide
+from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.io.units import LONGEST, convert, parse, parse_units
 
 ENDLESS = [

@@ -149,7 +149,7 @@ def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) ->
         _tabulated_kernel(kind)(*(as_row(number, load.shape) for number in inputs), curves.functions, outputs)
         return tuple(outputs)
 
-    return model.answer(joint, kind, load, read)
+    return model.solve_with(joint, kind, load, read)
 
 
 @cache

@@ -294,7 +294,8 @@ def test_kernel_is_the_sum_of_its_modes():
     for x in (0.3, 1.0, 2.9):
         plain = np.sum(k.excess(n) * smooth * np.cos((n + 0.5) * x))
         a = k.expansion[: closed_forms.ORDER]
-        g, h, s = closed_forms.logarithmic(a), closed_forms.modular(a), closed_forms.smooth(a, reach=x)
+        g, h = closed_forms.logarithm_coefficients(a), closed_forms.distance_coefficients(a)
+        s = closed_forms.smooth_coefficients(a, reach=x)
         split = polynomial.polyval(x * x, g) * np.log(x) + polynomial.polyval(x * x, h) * x
         split += polynomial.polyval(x * x, s) + np.sum(k.remainder * np.cos((np.arange(len(k.remainder)) + 0.5) * x))
         assert split == pytest.approx(plain, rel=1e-7, abs=1e-9)

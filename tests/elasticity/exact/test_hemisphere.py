@@ -114,7 +114,7 @@ def test_the_change_does_not_depend_on_clearance_modulus_or_array():
 
 def test_layers_of_one_material_are_one_layer():
     single, double = (
-        FreeFace(socket=Socket(radius=10.0, shells=shells)).bore[:, :6]
+        FreeFace(socket=Socket(radius=10.0, shells=shells)).bore_displacement[:, :6]
         for shells in (
             (Shell(thickness=8.0, young=2.0, poisson=0.4),),
             (Shell(thickness=3.0, young=2.0, poisson=0.4), Shell(thickness=5.0, young=2.0, poisson=0.4)),

@@ -190,7 +190,7 @@ def test_sampled_functions_are_those_of_the_exact_solution():
     exact = bs.Exact(tolerance=1e-9).press(joint, half_angle=angle)
     np.testing.assert_allclose(state.indentation * 0.005, exact.indentation, rtol=1e-7)
     np.testing.assert_allclose(state.force * 0.005, exact.force, rtol=1e-7)
-    opening, force, pole = np.exp(build_tables._rigid_functions(state))
+    opening, force, pole = np.exp(build_tables._tabulated_functions(state))
     total, C = 0.005 + exact.indentation, 2 * (1 - 0.4**2)
     np.testing.assert_allclose(opening * (1 - np.cos(angle)), exact.indentation / total, rtol=1e-7)
     np.testing.assert_allclose(force * total * angle**3 / C, exact.force, rtol=1e-7)

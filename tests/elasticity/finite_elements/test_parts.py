@@ -153,7 +153,7 @@ def test_a_bracket_finds_the_contacts_between_its_ends(pair):
             contact = bracket.solve(kind, load)
             assert getattr(contact, kind) == pytest.approx(load, rel=1e-9)
             assert bracket.estimate_angle(kind, load) == pytest.approx(contact.half_angle, rel=0.02)
-            bisected = bracket._solve_by_bisection(kind, load, 0.29, 1.0)
+            bisected = bracket._solve_by_brent(kind, load, 0.29, 1.0)
             assert bisected.half_angle == pytest.approx(contact.half_angle, rel=1e-8)
 
 

@@ -16,12 +16,12 @@ from ...problem.gaps import LinearGap
 from .chebyshev_curve import ChebyshevCurve, fit_curve
 from .contact import CurveContact
 from .load_curve import LoadCurve
-from .model import Exact, curve_of, make_answer
+from .model import Exact, curve_of, make_result
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExactCurve(ModelWrapper):
-    """`Exact` for many loads on few joints: about a millionth of a second a load.
+    """Exact solution for many loads on few joints, interpolated in about a microsecond per load.
 
     The first load on a joint costs 32 to 72 exact solutions, a hundredth of a second for most joints. Chebyshev series
     through them in the half angle give all further loads. They are accurate to a tenth of the model's tolerance, as
@@ -65,10 +65,10 @@ class ExactCurve(ModelWrapper):
         solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: chebyshev_curve_of(self.model, plain_joint).press(kind, loads)
         )
-        return make_answer(solution, self.model.tolerance, load)
+        return make_result(solution, self.model.tolerance, load)
 
 
 @lru_cache(maxsize=256)
 def chebyshev_curve_of(model: Exact, joint: Joint) -> LoadCurve | ChebyshevCurve:
-    """Return the series of a joint of plain numbers, cached for further loads."""
+    """Return the Chebyshev series of the load curve of a joint of plain numbers, from a cache."""
     return fit_curve(curve_of(model, joint))

@@ -24,7 +24,7 @@ from .modes import ball_of, socket_of
 
 
 def _effective_poisson(contact: Any) -> Array:
-    """Return Poisson's ratio, limited to 0.4999 for a liner that can deform freely on one side."""
+    """Return Poisson's ratio of the liner, limited to 0.4999 if the liner can deform freely on one side."""
     joint = contact.joint
     nu = joint.liner.poisson
     if joint.backing or joint.support is Support.FREE:
@@ -34,7 +34,7 @@ def _effective_poisson(contact: Any) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class Exact(Model):
-    """Linear elasticity without friction: liner and backing are closed concentric shells bonded to each other.
+    """Exact linear-elastic contact without friction: liner and backing are bonded, closed concentric shells.
 
     The integral equation of the contact is solved in Abel space (see the docs, theory) to a requested tolerance.
     Half angles reach up to 85 degrees. The ball is solid and elastic, or rigid. All arrays are converted to NumPy.
@@ -113,13 +113,13 @@ class Exact(Model):
         solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: curve_of(self, plain_joint).press(kind, loads)
         )
-        return make_answer(solution, self.tolerance, load)
+        return make_result(solution, self.tolerance, load)
 
 
 _NEAR_HEMISPHERE = NearHemisphere()
 
 
-def make_answer(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
+def make_result(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
     """Make the solver result of a solution; errors beyond the tolerance count as not converged."""
     return SolverResult(
         laws=solution,
