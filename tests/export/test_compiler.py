@@ -129,6 +129,16 @@ def test_the_first_error_of_a_failing_compiler_is_reported(lines, message, faili
         compile_library(["one.c"], tmp_path / "one.so", tmp_path)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+def test_a_compiler_that_cannot_be_run_is_named(tmp_path, monkeypatch):
+    file = tmp_path / "no-program"
+    file.write_bytes(b"\x7fELF, but nothing else")
+    file.chmod(0o755)
+    monkeypatch.setenv("CC", str(file))
+    with pytest.raises(NoCompiler, match=f"the compiler {file} could not be run"):
+        compile_library(["one.c"], tmp_path / "one.so", tmp_path)
+
+
 @pytest.mark.skipif(shutil.which("true") is None, reason="there is no command that writes nothing")
 def test_a_compiler_that_writes_nothing_is_reported(tmp_path, monkeypatch):
     monkeypatch.setenv("CC", "true")
