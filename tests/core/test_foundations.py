@@ -10,13 +10,13 @@ from ballsocket.core import plotting
 from ballsocket.core.input_files import (
     AllowedFolders,
     open_input,
-    recorded_inputs,
+    record_inputs,
     resolve_input,
-    restricted,
+    restriction_variables,
 )
 from ballsocket.core.kinds import Kind, Unit
 from ballsocket.core.quantities import QUANTITIES
-from ballsocket.core.sources import Source, bibliography, named_in
+from ballsocket.core.sources import Source, bibliography, find_cited_keys
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_thicknesses_are_positive_or_infinite():
 
 def test_an_angle_in_degrees_gets_a_hint_in_radians():
     with pytest.raises(ValueError, match="half_angle = 45 is not .*; 45 degrees are 0.7854 radians"):
-        QUANTITIES["half_angle"].checked(45.0)
+        QUANTITIES["half_angle"].check(45.0)
     assert QUANTITIES["half_angle"].radian_hint(100.0) == ""
     assert QUANTITIES["force"].radian_hint(1.0) == ""
 
@@ -70,7 +70,7 @@ def test_an_angle_in_degrees_gets_a_hint_in_radians():
 def test_labels_have_symbols_and_units():
     indentation, angle = QUANTITIES["indentation"], QUANTITIES["half_angle"]
     assert indentation.label() == "indentation d [µm]"
-    assert indentation.capital(indentation.written) == "Indentation d [mm]"
+    assert indentation.input_label(indentation.written) == "Indentation d [mm]"
     assert indentation.head() == "d [µm]"
     assert (indentation.column, indentation.key) == ("indentation_mm", "indentation")
     assert (angle.column, angle.key) == ("half_angle_deg", "half_angle_deg")
@@ -82,12 +82,12 @@ def test_labels_have_symbols_and_units():
 
 def test_angles_are_written_in_degrees():
     assert Kind.ANGLE.written == Unit("°", degrees(1.0))
-    assert (Kind.ANGLE.unit, Kind.ANGLE.suffix, Kind.ANGLE.typed) == ("rad", "deg", "deg")
-    assert (Kind.NUMBER.unit, Kind.NUMBER.suffix, Kind.NUMBER.typed) == ("1", "", "")
-    assert (Kind.LENGTH.unit, Kind.LENGTH.suffix, Kind.LENGTH.typed) == ("mm", "mm", "mm")
+    assert (Kind.ANGLE.unit, Kind.ANGLE.column_suffix, Kind.ANGLE.assumed_unit) == ("rad", "deg", "deg")
+    assert (Kind.NUMBER.unit, Kind.NUMBER.column_suffix, Kind.NUMBER.assumed_unit) == ("1", "", "")
+    assert (Kind.LENGTH.unit, Kind.LENGTH.column_suffix, Kind.LENGTH.assumed_unit) == ("mm", "mm", "mm")
     assert Kind.AREA.written.text == "mm²"
-    assert Unit("").bracketed == ""
-    assert Unit("mm").bracketed == " [mm]"
+    assert Unit("").text_in_brackets == ""
+    assert Unit("mm").text_in_brackets == " [mm]"
     assert all(kind.example.startswith("a") for kind in Kind)
 
 
@@ -95,18 +95,18 @@ def test_sources_have_authors_and_year():
     key = bs.HessForsbach().sources[0].key
     source = Source(key, "Eq. (13)")
     assert source.doi == "10.3390/app112311170"
-    assert source.short == "Heß & Forsbach 2021"
+    assert source.authors_and_year == "Heß & Forsbach 2021"
     assert str(source) == "Heß & Forsbach 2021, Eq. (13)"
     assert str(Source(key)) == "Heß & Forsbach 2021"
-    several = [Source(key).short for key in bibliography() if " et al. " in Source(key).short]
+    several = [Source(key).authors_and_year for key in bibliography() if " et al. " in Source(key).authors_and_year]
     assert several
 
 
-def test_publications_are_found_in_texts():
+def test_publications_are_recognized_in_texts():
     key = bs.HessForsbach().sources[0].key
-    assert list(named_in("E of Heß & Forsbach 2021, Table 2")) == [key]
-    assert list(named_in("doi 10.3390/app112311170")) == [key]
-    assert list(named_in("")) == []
+    assert list(find_cited_keys("E of Heß & Forsbach 2021, Table 2")) == [key]
+    assert list(find_cited_keys("doi 10.3390/app112311170")) == [key]
+    assert list(find_cited_keys("")) == []
     assert key in bs.cite(bs.UHMWPE)
     assert bs.cite(bs.HessForsbach(), bs.HessForsbach()) == bs.cite(bs.HessForsbach())
 
@@ -137,7 +137,7 @@ def test_inputs_are_limited_to_allowed_folders(tmp_path, monkeypatch):
     (tmp_path / "other.toml").write_text("outside", encoding="utf-8")
     (folder / "link.toml").symlink_to(tmp_path / "other.toml")
     assert resolve_input(tmp_path / "other.toml") == tmp_path / "other.toml"
-    for name, value in restricted([folder]).items():
+    for name, value in restriction_variables([folder]).items():
         monkeypatch.setenv(name, value)
     with open_input(folder / "joint.toml") as stream:
         assert stream.read() == b"inside"
@@ -155,9 +155,9 @@ def test_opened_inputs_are_recorded_once(tmp_path):
     first, second = tmp_path / "a", tmp_path / "b"
     for path in (first, second):
         path.write_text("text", encoding="utf-8")
-    with recorded_inputs() as outer:
+    with record_inputs() as outer:
         open_input(first).close()
-        with recorded_inputs() as inner:
+        with record_inputs() as inner:
             open_input(first).close()
             open_input(second).close()
             open_input(second).close()

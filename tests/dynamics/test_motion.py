@@ -8,7 +8,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction, of_restitution, relations, simulate
+from ballsocket.dynamics import (
+    Bristles,
+    ContactState,
+    Damping,
+    Flores,
+    Friction,
+    damping_from_restitution,
+    relations,
+    simulate,
+)
 from ballsocket.dynamics.restitution import restitution_of
 
 from ..extent import either
@@ -69,7 +78,7 @@ def test_orbit_in_a_cup_conserves_angular_momentum_about_the_dome_axis():
     velocity = 60.0 * np.cross(dome, tangent) + 3.0 * tangent + 10.0 * dome
     thrown = {"mass": 0.35, "position": tuple(position), "velocity": tuple(velocity), "pull": tuple(30.0 * dome)}
     motion = simulate(replace(FREE, cup=cup), duration=either(0.006, 0.02), step=2e-5, **thrown)
-    assert motion.ended == ""
+    assert motion.end_reason == ""
     assert (np.asarray(motion.load.status) == ContactState.AT_RIM).sum() > 50
     assert motion.drift < 1e-12
     assert motion.angular_drift < 1e-13
@@ -114,8 +123,8 @@ def test_many_steps_conserve_energy_and_angular_momentum(model, step):
 def test_dissipated_energy_grows_and_balances():
     motion = simulate(LOSSY, duration=0.02, spin=(0.0, 3.0, 5.0), **THROW)
     assert motion.drift < 1e-12
-    assert (np.diff(motion.lost) >= 0).all()
-    assert motion.lost[-1] > 0.1 * motion.kinetic[0]
+    assert (np.diff(motion.dissipated_energy) >= 0).all()
+    assert motion.dissipated_energy[-1] > 0.1 * motion.kinetic_energy[0]
 
 
 def test_energy_balances_the_work_of_the_pull():
@@ -133,10 +142,10 @@ def test_nearly_circular_orbit_conserves_energy_and_angular_momentum():
     for faster in (1.0, 1.0 + 1e-9, 1.0001):
         thrown = {"mass": 1.0, "position": (distance, 0.0, 0.0), "velocity": (0.0, faster * speed, 0.0)}
         motion = simulate(FREE, duration=either(0.004, 0.02), step=4e-5, **thrown)
-        assert motion.ended == ""
+        assert motion.end_reason == ""
         assert motion.drift < 1e-13
         assert motion.angular_drift < 1e-13
-        assert np.ptp(motion.depth) < 2e-4 * distance
+        assert np.ptp(motion.indentation) < 2e-4 * distance
 
 
 def test_motion_converges_with_second_order_to_another_integrator():
@@ -173,7 +182,7 @@ def simulated_restitution(damping, speed, model):
 @pytest.mark.parametrize("relation", relations.relations, ids=lambda relation: relation.name)
 def test_simulated_restitution_equals_the_exact_relation(relation):
     for restitution, model in ((0.9, bs.HessForsbach()), (0.5, bs.Hertz())):
-        damping = of_restitution(relation, restitution, 100.0)
+        damping = damping_from_restitution(relation, restitution, 100.0)
         h = 100.0 * damping.hysteresis
         assert simulated_restitution(damping, 100.0, model) == pytest.approx(restitution_of(h), rel=1e-7)
         assert damping.restitution(100.0) == restitution_of(h)
@@ -205,7 +214,7 @@ def test_series_of_a_small_damping_continues_the_exact_relation():
 def test_perfect_rebound_needs_no_damping():
     for relation in relations.relations:
         assert relation.damping(1.0) == 0.0
-        assert of_restitution(relation, 1.0, 1e-3) == Damping(sources=relation.sources)
+        assert damping_from_restitution(relation, 1.0, 1e-3) == Damping(sources=relation.sources)
     assert restitution_of(0.0) == 1.0
     for number in (-1e-9, np.inf):
         with pytest.raises(ValueError, match="damping = .* is not allowed"):
@@ -216,7 +225,7 @@ def test_published_relations_have_their_numbers_at_one_half():
     expected = {"Hunt & Crossley": 0.75, "Lankarani & Nikravesh": 0.5625, "Gonthier": 1.5, "Flores": 1.6}
     numbers = {relation.name: relation.damping(0.5) for relation in relations.relations}
     assert expected.items() <= numbers.items()
-    assert of_restitution(relations.flores, 0.5, 200.0).hysteresis == pytest.approx(0.008)
+    assert damping_from_restitution(relations.flores, 0.5, 200.0).hysteresis == pytest.approx(0.008)
 
 
 @pytest.mark.parametrize("step", [2e-5, 2e-6, 2e-7])
@@ -228,17 +237,17 @@ def test_resting_ball_conserves_energy_at_short_steps(model, step):
     for damping in (None, Damping(hysteresis=0.01)):
         element = bs.ForceElement(model, HIP, damping=damping)
         motion = simulate(element, pull=lambda t: (0.0, 0.0, 500.0 + 400.0 * np.sin(150.0 * t)), **lying)
-        assert motion.ended == ""
+        assert motion.end_reason == ""
         assert motion.drift < 1e-11
 
 
 def test_motion_ends_with_a_note_at_a_state_without_a_result():
     motion = simulate(FREE, mass=1.0, position=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 1e7), duration=1e-3, step=1e-5)
     assert len(motion.time) == 1
-    assert "exceeds the wall thickness" in motion.ended
+    assert "exceeds the wall thickness" in motion.end_reason
     nan_motion = simulate(FREE, mass=1.0, position=(nan, 0.0, 0.0), duration=1e-3, step=1e-5)
-    assert "not finite" in nan_motion.ended
-    assert "r = (0, 0, 20) mm" in simulate(FREE, **{**THROW, "position": (0.0, 0.0, 20.0)}, duration=1e-3).ended
+    assert "not finite" in nan_motion.end_reason
+    assert "r = (0, 0, 20) mm" in simulate(FREE, **{**THROW, "position": (0.0, 0.0, 20.0)}, duration=1e-3).end_reason
 
 
 @pytest.mark.parametrize(
@@ -263,8 +272,8 @@ def test_invalid_arguments_are_rejected(arguments, message):
 def test_motion_ends_where_the_ball_leaves_the_cup(friction):
     element = replace(FREE, cup=bs.Cup(), friction=friction)
     motion = simulate(element, duration=0.01, **{**THROW, "velocity": (0.0, 0.0, -300.0)})
-    assert "has left the cup over its rim" in motion.ended
-    assert float(motion.ended.split()[1]) == pytest.approx(motion.time[-1], abs=1.01 * 2e-5)
+    assert "has left the cup over its rim" in motion.end_reason
+    assert float(motion.end_reason.split()[1]) == pytest.approx(motion.time[-1], abs=1.01 * 2e-5)
     assert len(motion.time) == pytest.approx(HIP.clearance / 300.0 / 2e-5, abs=2)
 
 
@@ -277,7 +286,7 @@ def test_free_flight_is_uniform_and_falls_under_the_pull():
     np.testing.assert_allclose(motion.position[:, 2], -0.04 + 3.0 * t + 9806.65 * t**2 / 2, rtol=1e-12)
     np.testing.assert_allclose(motion.velocity, np.stack([1 + 0 * t, -2 + 0 * t, 3 + 9806.65 * t], axis=1))
     np.testing.assert_allclose(motion.spin, np.tile([1.0, -2.0, 3.0], (6, 1)))
-    assert not motion.lost.any()
+    assert not motion.dissipated_energy.any()
     assert motion.bounces == 0
     np.testing.assert_allclose(motion.work, 9.80665 * (motion.position[:, 2] + 0.04), atol=1e-15)
     expected = np.cross(motion.position, motion.velocity) * 1e-3
@@ -297,9 +306,9 @@ def test_kinetic_energy_is_that_of_a_solid_ball():
         FREE, mass=0.5, position=(0, 0, 0), velocity=(0, 0, 300.0), spin=(0, 10.0, 0), duration=1e-5, step=1e-5
     )
     assert motion.inertia == pytest.approx(0.4 * 0.5 * 17.9**2)
-    assert motion.kinetic[0] == pytest.approx(22.5 + 0.5 * 1e-3 * 0.4 * 0.5 * 17.9**2 * 100.0)
+    assert motion.kinetic_energy[0] == pytest.approx(22.5 + 0.5 * 1e-3 * 0.4 * 0.5 * 17.9**2 * 100.0)
     heavy = simulate(FREE, mass=0.5, inertia=7.0, position=(0, 0, 0), spin=(0, 10.0, 0), duration=1e-5, step=1e-5)
-    assert heavy.kinetic[0] == pytest.approx(0.5 * 1e-3 * 7.0 * 100.0)
+    assert heavy.kinetic_energy[0] == pytest.approx(0.5 * 1e-3 * 7.0 * 100.0)
 
 
 def test_summary_of_a_motion_has_its_ends_and_extremes():
@@ -307,10 +316,10 @@ def test_summary_of_a_motion_has_its_ends_and_extremes():
     summary = motion.summary()
     assert summary["duration"] == pytest.approx(2e-3)
     assert summary["steps"] == 100
-    assert summary["deepest"] == motion.depth.max() > 0
+    assert summary["deepest"] == motion.indentation.max() > 0
     assert summary["largest_force"] == np.linalg.norm(motion.load.force, axis=1).max()
-    assert summary["stored"] + summary["kinetic"] + summary["lost"] == pytest.approx(motion.total[0], rel=1e-12)
-    crossings = np.sum((motion.depth[:-1] > 0) & (motion.depth[1:] <= 0))
+    assert summary["stored"] + summary["kinetic"] + summary["lost"] == pytest.approx(motion.total_energy[0], rel=1e-12)
+    crossings = np.sum((motion.indentation[:-1] > 0) & (motion.indentation[1:] <= 0))
     assert summary["bounces"] == crossings > 0
 
 
@@ -330,9 +339,9 @@ def test_steps_with_friction_stiffer_than_inertia_converge(friction):
     element = replace(FREE, friction=friction, damping=Damping(hysteresis=0.01, time=1e-3))
     thrown = {"mass": 0.1, "position": (0.0, 0.02, HIP.clearance + 0.03), "duration": 2e-3, "step": 1e-4}
     motion = simulate(element, velocity=(30.0, -20.0, 5.0), spin=(3.0, 2.0, -4.0), pull=(0, 0, 800.0), **thrown)
-    assert motion.ended == ""
+    assert motion.end_reason == ""
     assert motion.drift < 1e-10
-    assert (np.diff(motion.lost) >= 0).all()
+    assert (np.diff(motion.dissipated_energy) >= 0).all()
 
 
 def test_friction_at_the_pole_turns_a_sliding_ball_until_it_rolls():

@@ -9,7 +9,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.identify import HeavyTailed, Machine, Measured
 from ballsocket.identify.experiment import Candidate, Experiment, Gain, experiment, standard_candidates
-from ballsocket.identify.synthetic import Trials, drawn, trials
+from ballsocket.identify.synthetic import Trials, draw_data_sets, trials
 
 JOINT = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
 MODEL = bs.HessForsbach()
@@ -27,15 +27,15 @@ def measured(quantity="indentation", uncertainty=2e-4, **settings):
     )
 
 
-def of(quantity, result):
+def candidates_of(quantity, result):
     return [candidate for candidate in standard_candidates(result) if candidate.quantity == quantity]
 
 
 def test_standard_candidates_are_six_loads_up_to_one_and_a_half_times_the_largest():
     result = identified(measured())
-    candidates = of("indentation", result)
+    candidates = candidates_of("indentation", result)
     np.testing.assert_allclose([candidate.force for candidate in candidates], 4500.0 * np.arange(1, 7) / 6)
-    (clearance,) = of("diametral_clearance", result)
+    (clearance,) = candidates_of("diametral_clearance", result)
     assert clearance.force is None
     assert clearance.uncertainty == pytest.approx(0.02 * 0.2, rel=1e-3)
     assert [candidate.order for candidate in candidates] == [0.0] * 6
@@ -43,22 +43,26 @@ def test_standard_candidates_are_six_loads_up_to_one_and_a_half_times_the_larges
 
 def test_forces_that_were_measured_at_indentations_set_the_loads():
     data = Measured(quantity="force", values=FORCE, uncertainty=5.0, indentation=CONTACT.indentation)
-    assert of("indentation", identified(data))[-1].force == pytest.approx(4500.0, rel=1e-3)
+    assert candidates_of("indentation", identified(data))[-1].force == pytest.approx(4500.0, rel=1e-3)
 
 
 def test_data_without_forces_have_candidates_up_to_three_kilonewton():
     data = Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.01)
-    assert of("indentation", identified(data))[-1].force == pytest.approx(3000.0)
+    assert candidates_of("indentation", identified(data))[-1].force == pytest.approx(3000.0)
 
 
 def test_the_uncertainty_of_a_candidate_is_absolute_or_relative_as_in_the_data():
-    constant = of("indentation", identified(measured()))
+    constant = candidates_of("indentation", identified(measured()))
     assert [candidate.uncertainty for candidate in constant] == pytest.approx([2e-4] * 6)
     result = identified(measured(uncertainty=0.03 * CONTACT.indentation))
-    values = MODEL.press(result.joint, force=np.array([candidate.force for candidate in of("indentation", result)]))
+    values = MODEL.press(
+        result.joint, force=np.array([candidate.force for candidate in candidates_of("indentation", result)])
+    )
     expected = (0.03 * values.indentation).tolist()
-    assert [candidate.uncertainty for candidate in of("indentation", result)] == pytest.approx(expected, rel=1e-6)
-    (pressure, *_) = of("max_pressure", result)
+    assert [candidate.uncertainty for candidate in candidates_of("indentation", result)] == pytest.approx(
+        expected, rel=1e-6
+    )
+    (pressure, *_) = candidates_of("max_pressure", result)
     expected = 0.02 * MODEL.press(result.joint, force=pressure.force).max_pressure
     assert pressure.uncertainty == pytest.approx(expected, rel=1e-6)
 
@@ -74,10 +78,10 @@ def test_a_candidate_is_the_next_reading_of_the_machine():
         order=[3.0, 7.0, 5.0, 1.0],
     )
     result = identified(read, measured("area", 4.0))
-    assert {candidate.machine for candidate in of("indentation", result)} == {machine}
-    assert {candidate.order for candidate in of("indentation", result)} == {8.0}
-    assert of("half_angle", result)[0].order == 0.0
-    assert not of("half_angle", result)[0].machine.name
+    assert {candidate.machine for candidate in candidates_of("indentation", result)} == {machine}
+    assert {candidate.order for candidate in candidates_of("indentation", result)} == {8.0}
+    assert candidates_of("half_angle", result)[0].order == 0.0
+    assert not candidates_of("half_angle", result)[0].machine.name
 
 
 @pytest.mark.parametrize(("scatter", "weight"), [(None, 1.0), (HeavyTailed(), 5 / 7)])
@@ -87,7 +91,7 @@ def test_the_gain_of_one_unknown_is_half_the_logarithm_of_the_growth(scatter, we
     (gain,) = experiment(result, [candidate]).gains
     step = 1e-4
     theta = result.best.theta[0] + step * np.array([1.0, -1.0])
-    joints = [JOINT.replace(clearance=value) for value in result.transform.values(theta[:, None])[:, 0]]
+    joints = [JOINT.replace(clearance=value) for value in result.transform.to_values(theta[:, None])[:, 0]]
     above, below = (MODEL.press(joint, force=1500.0).half_angle for joint in joints)
     slope = (above - below) / (2 * step)
     growth = 1 + weight * (slope / 0.004) ** 2 * result.information.covariance[0, 0]
@@ -146,14 +150,14 @@ def test_coverage_and_bias_of_trials():
     tried = Trials(("a", "b"), truth, middle, middle - 0.2, middle + 0.2)
     assert tried.coverage == {"a": 0.75, "b": 1.0}
     assert tried.bias == pytest.approx({"a": 0.25, "b": 0.25})
-    np.testing.assert_allclose(tried.half, 0.2)
+    np.testing.assert_allclose(tried.half_widths, 0.2)
     assert tried.summary() == {"trials": 4, "coverage": tried.coverage, "bias": tried.bias}
 
 
 def test_synthetic_data_scatter_about_the_results_with_the_widened_uncertainty():
     result = identified(measured())
     wide = replace(result, misfit=replace(result.misfit, widening=3.0))
-    (plain,), (widened,) = (drawn(case, np.random.default_rng(5)) for case in (result, wide))
+    (plain,), (widened,) = (draw_data_sets(case, np.random.default_rng(5)) for case in (result, wide))
     noise = np.random.default_rng(5).standard_normal(4)
     np.testing.assert_allclose(plain.values, result.results[0] + 2e-4 * noise, rtol=1e-12)
     np.testing.assert_allclose(widened.values, result.results[0] + 6e-4 * noise, rtol=1e-12)
@@ -168,12 +172,12 @@ def test_synthetic_data_are_saturated_and_not_negative():
         saturation=6.0,
     )
     result = identified(film, measured())
-    values = np.stack([drawn(result, np.random.default_rng(seed))[0].values for seed in range(20)])
+    values = np.stack([draw_data_sets(result, np.random.default_rng(seed))[0].values for seed in range(20)])
     assert (values.min(), values.max()) == (0.0, 6.0)
     machine = Measured(
         quantity="indentation", values=CONTACT.indentation, uncertainty=0.2, force=FORCE, machine=Machine()
     )
-    read = drawn(identified(machine, measured()), np.random.default_rng(0))[0].values
+    read = draw_data_sets(identified(machine, measured()), np.random.default_rng(0))[0].values
     assert read.min() < 0.0
 
 

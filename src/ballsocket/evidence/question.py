@@ -13,7 +13,7 @@ from unicodedata import category
 from ..catalogue import off_axis, reference
 from ..contact import Model
 from ..core.checks import check_text, nearest, require, shown
-from ..core.input_files import open_input, recorded_inputs, resolve_input
+from ..core.input_files import open_input, record_inputs, resolve_input
 from ..core.quantities import QUANTITIES
 from ..hip.config import read_hip
 from ..io.joint_file import KEYS, JointFile, check_keys
@@ -137,7 +137,7 @@ def read_question(path: str | Path) -> Question:
         A file cannot be read.
     """
     path = Path(path)
-    with recorded_inputs() as opened:
+    with record_inputs() as opened:
         question = read_toml(path, "question", lambda content: _question(content, path))
     files = packed_files(path, opened)
     for file in files:

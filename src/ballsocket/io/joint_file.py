@@ -9,7 +9,7 @@ from math import degrees, hypot, inf, pi
 from pathlib import Path
 from typing import Any
 
-from ..contact.assembly import check_load
+from ..contact.assembly import select_and_check_load
 from ..core.checks import check_text, known_name, nearest, require, shown
 from ..core.kinds import Kind
 from ..core.quantities import CUP, LAYER, LOADS, MATERIAL, STRESS_LIMITS
@@ -126,7 +126,7 @@ def read_load(table: Mapping[str, Any]) -> dict[str, float]:
         raise ValueError(f"one load is needed, got {', '.join(table)}")
     load = {name: parse(name, value, LOADS[name].kind) for name, value in table.items()}
     with as_given(table):
-        return dict([check_load(**load)]) if load else {}
+        return dict([select_and_check_load(**load)]) if load else {}
 
 
 def read_aim(table: Mapping[str, Any]) -> dict[str, Any]:

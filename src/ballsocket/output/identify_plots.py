@@ -118,13 +118,13 @@ def corner_figure(found: IdentificationResult, drawn: Posterior | None = None) -
 
 def _label(name: str, quantity: Quantity) -> str:
     """By the name of the unknown: of two machines each has an offset."""
-    return f"{name}\n{quantity.shown.bracketed}".strip()
+    return f"{name}\n{quantity.shown.text_in_brackets}".strip()
 
 
 def _about(found: IdentificationResult) -> Numbers:
     random = numpy.random.default_rng(0)
     places = random.multivariate_normal(found.best.theta, found.information.covariance, _DRAWN)
-    return found.transform.values(numpy.clip(places, found.transform.low, found.transform.high))
+    return found.transform.to_values(numpy.clip(places, found.transform.low, found.transform.high))
 
 
 def _draw_alone(axes: Axes, values: Numbers) -> None:

@@ -128,7 +128,7 @@ def test_work_of_a_full_contact_is_the_strain_energy(pair):
     assert tangent._partial_work(narrow) == pytest.approx(narrow.strain_energy, rel=2e-3)
 
 
-def test_solving_a_full_contact_for_its_force(pair):
+def test_a_full_contact_is_solved_for_its_force(pair):
     for gap in (LinearGap(clearance=0.1, socket_radius=18.0), CircularGap(clearance=0.1, socket_radius=18.0)):
         contact = load_curve._solve_full_contact("force", 9000.0, pair, gap)
         assert contact.force == pytest.approx(9000.0, rel=1e-10)
@@ -145,8 +145,8 @@ def test_a_bracket_finds_the_contacts_between_its_ends(pair):
         assert bracket.estimate_angle(kind, 0.99 * first) is None
         assert bracket.solve(kind, 1.01 * last) is None
         assert bracket.estimate_angle(kind, 1.01 * last) is None
-        assert bracket.is_exceeded(kind, 1.01 * last)
-        assert not bracket.is_exceeded(kind, 0.99 * last)
+        assert bracket.lies_below(kind, 1.01 * last)
+        assert not bracket.lies_below(kind, 0.99 * last)
         for fraction in (0.0, 0.3, 0.9, 1.0):
             load = first ** (1 - fraction) * last**fraction
             load = min(max(load, first * (1 + 1e-12)), last * (1 - 1e-12))
@@ -180,7 +180,7 @@ def test_lagrange_polynomials_interpolate():
         np.testing.assert_allclose(surface.nodal_sums(angle, np.arange(5.0)), shapes.T @ np.arange(5.0), atol=1e-14)
 
 
-def test_bisection_and_joining_of_points():
+def test_points_are_bisected_and_joined():
     np.testing.assert_allclose(mesh.bisect_intervals(np.array([0.0, 1.0, 3.0])), [0.0, 0.5, 1.0, 2.0, 3.0])
     np.testing.assert_allclose(mesh.join_points([np.array([0.0, 1.0]), np.array([1.0, 2.0, 4.0])]), [0, 1, 2, 4])
 

@@ -16,8 +16,8 @@ from ...contact.closed_sphere import (
     NOTED_CHANGE,
     POISSON_RANGE,
     THICKNESS_RATIO_RANGE,
-    indentation_change,
-    largest_change,
+    hemisphere_indentation_change,
+    max_hemisphere_change,
 )
 from ...contact.per_joint import JointContacts, SolvedContact
 from ...core import arrays
@@ -87,7 +87,7 @@ class ElasticContact(SolvedContact):
         ValueError
             More than one contact, or one that is narrower than 1 degree: there the half-space (`Hertz`) answers.
         """
-        angles = numpy.asarray(arrays.to_numpy(QUANTITIES["angle"].checked(angle)), dtype=float)
+        angles = numpy.asarray(arrays.to_numpy(QUANTITIES["angle"].check(angle)), dtype=float)
         values = surface_displacement(self._interior_state, angles)
         return values if angles.ndim else float(values)
 
@@ -105,7 +105,7 @@ class ElasticContact(SolvedContact):
         """
         angles, depths = (
             numpy.asarray(value, dtype=float)
-            for value in (QUANTITIES["angle"].checked(angle), check_numeric("depth", depth))
+            for value in (QUANTITIES["angle"].check(angle), check_numeric("depth", depth))
         )
         thickness = sum(shell.thickness for shell in self._interior_state.kernel.socket.shells)
         inside = (depths >= 0) & (depths <= thickness * (1 + 1e-9))
@@ -125,7 +125,7 @@ class ElasticContact(SolvedContact):
         The solution itself is that of a closed sphere. The keys are the names in `hemisphere.CHANGES`. A change is NaN
         where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
         """
-        changes = self.laws.spread(_hemisphere_changes, rows=(len(CHANGES),))
+        changes = self.laws.combine(_hemisphere_changes, rows=(len(CHANGES),))
         return {name: self._match_load(changes[number, ...]) for number, name in enumerate(CHANGES)}
 
     @property
@@ -165,7 +165,7 @@ class ElasticContact(SolvedContact):
         has_formula = not self.joint.backing and self.joint.support is Support.FIXED
         if not has_formula or not all(arrays.all_true(limit.holds(self)) for limit in _FITTED_RANGES):
             return inf
-        estimate = indentation_change(self) if name == "indentation" else largest_change(self)
+        estimate = hemisphere_indentation_change(self) if name == "indentation" else max_hemisphere_change(self)
         return _SAFETY * float(numpy.max(arrays.to_numpy(estimate), where=~arrays.to_numpy(self._failed), initial=0.0))
 
     @cached_property
@@ -185,7 +185,9 @@ class ElasticContact(SolvedContact):
         lower, upper = super().von_mises_bounds
         if arrays.all_true(arrays.isfinite(upper) | self._failed) is not False:
             return lower, upper
-        estimate = self._mask_failed(lambda: self.laws.located(lambda position, piece: self._estimate_von_mises(piece)))
+        estimate = self._mask_failed(
+            lambda: self.laws.combine_by_index(lambda position, piece: self._estimate_von_mises(piece))
+        )
         return (1 - VON_MISES_TOLERANCE) * estimate, (1 + VON_MISES_TOLERANCE) * estimate
 
     def _estimate_von_mises(self, piece: JointContacts) -> numpy.ndarray:

@@ -299,8 +299,8 @@ def _check_radius(radius: float) -> None:
 
 def _check_material(young: float, poisson: float) -> None:
     """Raise ValueError for a Young's modulus or a Poisson's ratio outside its range."""
-    MATERIAL["young"].checked(young)
-    MATERIAL["poisson"].checked(poisson)
+    MATERIAL["young"].check(young)
+    MATERIAL["poisson"].check(poisson)
 
 
 def _check_degrees(degrees: ArrayLike) -> numpy.ndarray:

@@ -69,7 +69,7 @@ class OffAxisContact(SolvedContact):
     @cached_property
     def stiffness_matrix(self) -> Array:
         """Tangent stiffness: derivative of the force vector by the displacement in N/mm, (..., 3, 3), symmetric."""
-        rows = self.laws.spread(lambda piece: piece.state.tangent.reshape(9, -1), (9,))
+        rows = self.laws.combine(lambda piece: piece.state.tangent.reshape(9, -1), (9,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3))
 
@@ -81,7 +81,7 @@ class OffAxisContact(SolvedContact):
     @cached_property
     def edge_loaded(self) -> Array:
         """True where the contact reaches the end of the bore."""
-        loaded = self.laws.spread(lambda piece: piece.state.edge_loaded) == 1
+        loaded = self.laws.combine(lambda piece: piece.state.edge_loaded) == 1
         return bool(loaded) if self._is_plain else loaded
 
     @cached_property
@@ -92,7 +92,7 @@ class OffAxisContact(SolvedContact):
         """
         from .load_cases import edge_margins  # slow to import
 
-        return self._mask_failed(lambda: self.laws.spread(lambda piece: edge_margins(piece.state)))
+        return self._mask_failed(lambda: self.laws.combine(lambda piece: edge_margins(piece.state)))
 
     @property
     def edge_distance(self) -> Array:
@@ -111,7 +111,7 @@ class OffAxisContact(SolvedContact):
     @property
     def tilt(self) -> Array:
         """Angle in rad between the pole of the dome and the direction of the load."""
-        return self._match_load(self.laws.spread(lambda piece: polar_angle(piece.state.axes.T)))
+        return self._match_load(self.laws.combine(lambda piece: polar_angle(piece.state.axes.T)))
 
     @property
     def _patch(self) -> ContactPatch:
@@ -152,8 +152,8 @@ class OffAxisContact(SolvedContact):
         notes = list(super().notes)
         if self._is_plain and self.status is Status.DISLOCATED:
             notes.append(self._dislocation_note)
-        if not self._failed_everywhere:
-            unbounded = self.laws.spread(lambda piece: piece.state.unbounded) == 1
+        if not self._all_points_failed:
+            unbounded = self.laws.combine(lambda piece: piece.state.unbounded) == 1
             notes += self._note(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
             notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _RIM_NOTE)
         return tuple(notes)
@@ -171,7 +171,7 @@ class OffAxisContact(SolvedContact):
 
     def _collect_vector(self, name: str) -> Array:
         """Collect a vector of all contacts by its name (..., 3), NaN where there is no solution."""
-        rows = self.laws.spread(lambda piece: getattr(piece.state, name), (3,))
+        rows = self.laws.combine(lambda piece: getattr(piece.state, name), (3,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1)
 

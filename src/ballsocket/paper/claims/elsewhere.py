@@ -14,7 +14,7 @@ from ...core.sources import Source
 from ...elasticity.exact.contact import ElasticContact
 from ...elasticity.exact.model import Exact
 from ...elasticity.finite_elements.model import FiniteElement
-from ...identify.modulus import worst_error
+from ...identify.modulus import max_relative_error
 from ...problem import Joint, Material
 from ...problem.presets import COCR, CROSSLINKED_PE, STEEL, UHMWPE
 from .finding import SHOWN, Finding, graded, percent, true
@@ -58,7 +58,7 @@ def exact_agrees_with_calculix(_: Model) -> Finding:
 
 def _against_calculix(model: Model, table: Numbers) -> dict[str, float]:
     ours = model.press(_joints_of(table), force=table["force"])
-    depth, pressure = (percent(worst_error(getattr(ours, name), table[name])) for name in SHOWN[:2])
+    depth, pressure = (percent(max_relative_error(getattr(ours, name), table[name])) for name in SHOWN[:2])
     angle = float(numpy.max(abs(numpy.degrees(ours.half_angle) - table["half_angle_deg"])))
     return {"indentation off by, %": depth, "peak pressure off by, %": pressure, "half angle off by, °": angle}
 
@@ -99,7 +99,7 @@ def half_angles_of_jin(reference: Model) -> Finding:
     low, high = min(angles.values()), max(angles.values())
     return Finding(
         name="half-angles-of-jin",
-        where=f"{SOURCES[0].short}, abstract",
+        where=f"{SOURCES[0].authors_and_year}, abstract",
         sentence="The half angle lies between 40° and 50° at 2.5 kN for all heads and cups of that time.",
         numbers=angles,
         unit="°",
@@ -131,7 +131,7 @@ def ordering_of_plank(_: Model) -> Finding:
     large = all(stress[name, CROSSLINKED_PE] < small for name, *_ in _PLANK[-2:])
     return Finding(
         name="ordering-of-plank",
-        where=f"{SOURCES[1].short}, abstract",
+        where=f"{SOURCES[1].authors_and_year}, abstract",
         sentence="Von Mises stress at the surface is lower in crosslinked liners at every size, and in those of 3 mm "
         "under heads of 38 and 46 mm lower than in conventional ones of 5 mm under a 22 mm head.",
         numbers={f"{name}, {liner.name}, MPa": value for (name, liner), value in stress.items()},
