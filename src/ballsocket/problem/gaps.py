@@ -86,7 +86,9 @@ class CircularGap:
 
         Angles are in rad, indentations in mm; they broadcast.
         """
-        return self._gap_derivatives(2 * numpy.sin(angle / 2) ** 2, d)[0]
+        versine = 2 * numpy.sin(angle / 2) ** 2  # w = 1 - cos φ
+        u, _, _ = self._gap_derivatives(versine, d)
+        return u
 
     def transform(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute the Abel transform A[u](t) of the displacement in mm."""

@@ -227,7 +227,7 @@ class ChebyshevState(PeakPressure):
 
     @cached_property
     def _pressure_scale(self) -> Numbers:
-        """Pressure scale X ε/C in MPa."""
+        """Pressure scale X ε/C in MPa, from the total displacement X and the compliance C of the kernel."""
         return self._total_displacement * self.half_angle / self.kernel.compliance
 
     @cached_property

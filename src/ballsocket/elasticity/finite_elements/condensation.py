@@ -50,7 +50,7 @@ class CondensedBody:
         rank = numpy.empty(grid.size, dtype=int)
         rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
         node_rank = rank[grid[:, block.level]].ravel()
-        free = numpy.unique(self.elastic.unknowns)
+        free = numpy.unique(self.elastic.element_unknowns)
         free = free[~self.fixed_unknowns[free] & ~numpy.isin(free, self.normals)]
         return numpy.concatenate([free[numpy.argsort(node_rank[free // 2], kind="stable")], self.normals])
 

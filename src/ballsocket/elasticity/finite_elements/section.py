@@ -195,7 +195,7 @@ class _LoadedBody:
         flat = self._displacements.ravel()
         for chunk in elastic.chunks(element_indices):
             strains = elastic.strains(element_indices[chunk], points)
-            u = flat[elastic.unknowns[element_indices[chunk]]]
+            u = flat[elastic.element_unknowns[element_indices[chunk]]]
             strain = numpy.einsum("eqsu,eu->seq", strains.strain, u)
             swelling = numpy.einsum("equ,eu->eq", strains.swelling, u)
             mean = bulk * swelling - 2 * shear * (strain[0] + strain[1] + strain[3]) / 3
