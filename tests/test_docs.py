@@ -16,7 +16,8 @@ from .cli.command import run
 from .places import ROOT
 
 DOCS = ROOT / "docs"
-PAGES = sorted(path for path in (DOCS / "index.md", *DOCS.glob("[ehrst]*/*.md")) if "```" in path.read_text("utf-8"))
+FILES = (ROOT / "README.md", DOCS / "index.md", *DOCS.glob("[ehrst]*/*.md"))
+PAGES = sorted(path for path in FILES if "```" in path.read_text("utf-8"))
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 
 
