@@ -5,6 +5,7 @@ import re
 import shlex
 import shutil
 from importlib.util import find_spec
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -108,3 +109,22 @@ def test_a_figure_has_a_light_and_a_dark_palette(monkeypatch):
     assert np.allclose(over_white(on_light(drawn)), drawn)
     on_black = on_dark(drawn)[..., :3] * on_dark(drawn)[..., 3:]
     assert np.allclose(on_black[0, :4], [black, white, (0.4, 0.4, 0.4), blue])
+
+
+def test_the_picture_of_the_rooms_has_every_floor_and_the_way_of_the_data(monkeypatch, tmp_path):
+    """The rooms are those of the package, in their order, and the way leads from problem to output."""
+    monkeypatch.syspath_prepend(DOCS / "_ext")
+    import rooms
+
+    levels, steps = rooms.floors(), rooms.way_of_the_data()
+    assert {room for level in levels for room in level} == {
+        path.stem for path in rooms.PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").is_file()
+    } - {"__init__", "__main__", "version"}
+    assert [step.title for step in steps] == ["joint", "model", "contact", "study", "figure"]
+    rooms.write_pictures(tmp_path)
+    for theme in rooms.THEMES:
+        tree = ElementTree.parse(tmp_path / f"rooms.{theme}.svg")
+        words = [element.text for element in tree.iter("{http://www.w3.org/2000/svg}text")]
+        names = [word for word in words if word in {room for level in levels for room in level}]
+        assert names == [room for level in levels for room in level]
+        assert [word for word in words if word in {step.title for step in steps}] == [step.title for step in steps]
