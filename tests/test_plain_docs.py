@@ -26,14 +26,8 @@ _NOT_YET = {
     """,
     "docs/start": "designer.md index.md multibody.md regulator.md researcher.md",
     "docs/tutorial": "first_joint.md",
-    "examples": """
-        a_model_of_ones_own.py does_a_worn_ball_joint_rattle.py from_the_explorer.py how_exact_is_it.py
-        how_far_does_a_head_wander_in_a_simulator.py how_steep_may_a_cup_stand.py press_a_hip.py
-        what_does_a_step_cost_a_hip.py what_does_clearance_do_to_a_four_bar.py what_does_clearance_do_to_a_pendulum.py
-        what_elasticity_changes_in_wear.py when_does_the_rim_matter.py which_head_for_a_shell.py
-    """,
 }
-"""Pages and examples that are not yet rewritten, by folder. Remove a name when its page has no findings."""
+"""Pages that are not yet rewritten, by folder. Remove a name when its page has no findings."""
 
 NOT_YET = tuple(f"{folder}/{name}" for folder, names in _NOT_YET.items() for name in names.split())
 
