@@ -111,12 +111,12 @@ def test_a_figure_has_a_light_and_a_dark_palette(monkeypatch):
     assert np.allclose(on_black[0, :4], [black, white, (0.4, 0.4, 0.4), blue])
 
 
-def test_the_picture_of_the_rooms_has_every_floor_and_the_way_of_the_data(monkeypatch, tmp_path):
+def test_the_picture_of_the_rooms_has_every_floor_and_the_data_flow(monkeypatch, tmp_path):
     """The names in the picture are the rooms of the package in their order, then the steps from a joint to a figure."""
     monkeypatch.syspath_prepend(DOCS / "_ext")
     import rooms
 
-    levels, steps = rooms.floors(), rooms.way_of_the_data()
+    levels, steps = rooms.floors(), rooms.data_flow()
     assert {room for level in levels for room in level} == {
         path.stem for path in rooms.PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").is_file()
     } - {"__init__", "__main__", "version"}

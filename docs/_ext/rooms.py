@@ -1,7 +1,7 @@
-"""Picture of the rooms of the package and of the way of the data, drawn from the code while the pages are made.
+"""Picture of the rooms of the package and of the flow of data, drawn from the code while the pages are made.
 
 Floors are the layers of the import contract in pyproject.toml, titles are the docstrings of the rooms, and each step of
-the way is in the room whose module defines it. `python docs/_ext/rooms.py FOLDER` writes the two pictures alone.
+the flow is in the room whose module defines it. `python docs/_ext/rooms.py FOLDER` writes the two pictures alone.
 """
 
 import ast
@@ -20,18 +20,18 @@ from ballsocket.core.plotting import load_plot
 ROOT = Path(__file__).parents[2]
 PACKAGE = Path(bs.__file__).parent
 
-WIDTH, MARGIN, LANE = 960, 34, 408  # px; the lane at the right has the way of the data
+WIDTH, MARGIN, LANE = 960, 34, 408  # px; the lane at the right has the flow of data
 FLOOR, GAP, HEAD = 62, 6, 34  # px; height of a floor, distance of floors, height of the heads
 THEMES = {
     "light": {"ink": "#131416", "muted": "#5f646b", "line": "#c4c8cd", "floor": "#f3f4f6", "room": "#ffffff"},
     "dark": {"ink": "#e4e6e9", "muted": "#a2a8af", "line": "#4a5058", "floor": "#1f2226", "room": "#2a2e33"},
 }
-COLOURS = {"light": ("#0072B2", "#D55E00"), "dark": ("#56B4E9", "#F0843C")}  # rooms on the way, the way itself
+COLOURS = {"light": ("#0072B2", "#D55E00"), "dark": ("#56B4E9", "#F0843C")}  # rooms of the flow, the flow itself
 
 
 @dataclass(frozen=True)
 class Step:
-    """Step of the way of the data: name, Python code, room of the module that defines it, and position in the lane."""
+    """Step of the flow of data: name, Python code, room of the module that defines it, and position in the lane."""
 
     title: str
     code: str
@@ -48,7 +48,7 @@ def write_pictures(folder):
     """Write the picture for light and for dark pages."""
     folder.mkdir(parents=True, exist_ok=True)
     for theme in THEMES:
-        text = picture(floors(), way_of_the_data(), theme)
+        text = picture(floors(), data_flow(), theme)
         path = folder / f"rooms.{theme}.svg"
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
@@ -56,14 +56,13 @@ def write_pictures(folder):
 
 def floors():
     """Return the floors of the package from top to bottom, each with its rooms."""
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
-        "contracts"
-    ]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    contracts = project["tool"]["importlinter"]["contracts"]
     (layers,) = (contract["layers"] for contract in contracts if contract.get("containers") == ["ballsocket"])
     return [re.split(r"\s*[|:]\s*", layer) for layer in layers]
 
 
-def way_of_the_data():
+def data_flow():
     """Return the steps from a joint to a figure."""
     steps = (
         ("joint", "bs.Joint(...)", bs.Joint, 0),
@@ -92,7 +91,7 @@ def number_of_files(room):
 def picture(levels, steps, theme):
     """Return the picture as SVG."""
     height = HEAD + len(levels) * (FLOOR + GAP)
-    style = THEMES[theme] | dict(zip(("used", "way"), COLOURS[theme], strict=True))
+    style = THEMES[theme] | dict(zip(("used", "flow"), COLOURS[theme], strict=True))
     parts = [_heads(style), _downwards(height, style)]
     middles = {}
     for number, rooms in enumerate(levels):
@@ -100,8 +99,8 @@ def picture(levels, steps, theme):
         middles |= dict.fromkeys(rooms, top + FLOOR / 2)
         parts.append(_box(MARGIN, top, WIDTH - MARGIN, FLOOR, fill=style["floor"], line="none"))
         parts += _rooms(rooms, top, {step.room for step in steps}, style)
-    parts.append(_way(steps, middles, style))
-    label = "Rooms of the package on their floors, and the way of the data: " + ", ".join(
+    parts.append(_flow(steps, middles, style))
+    label = "Rooms of the package on their floors, and the flow of data: " + ", ".join(
         f"{step.title} in {step.room}" for step in steps
     )
     return (
@@ -113,9 +112,9 @@ def picture(levels, steps, theme):
 
 
 def _heads(style):
-    way = WIDTH - LANE + 22
+    left = WIDTH - LANE + 22
     return _text(MARGIN, 20, "Rooms, floor by floor (number of files)", 14, style["muted"]) + _text(
-        way, 20, "Way of the data", 14, style["way"]
+        left, 20, "Data flow", 14, style["flow"]
     )
 
 
@@ -151,7 +150,7 @@ def _fitted(text, width):
     return wrap(text, columns) if columns < 60 else [text]
 
 
-def _way(steps, middles, style):
+def _flow(steps, middles, style):
     """Draw the steps as nodes with arrows between them: along the column of the first, then to the second."""
     left = WIDTH - LANE + 30
     points = [(left + step.column, middles[step.room]) for step in steps]
@@ -163,12 +162,12 @@ def _way(steps, middles, style):
         else:
             line, turn, tip = f"V{y1 - 12 * sign} Q{x0} {y1} {x0 + 12} {y1} H{x1 - 17}", 0, (x1 - 17, y1)
         parts.append(
-            f'<path d="M{x0} {y0} {line}" fill="none" stroke="{style["way"]}" stroke-width="2.2"/>'
-            f'<path d="M0 -5 L8 0 L0 5 Z" fill="{style["way"]}" '
+            f'<path d="M{x0} {y0} {line}" fill="none" stroke="{style["flow"]}" stroke-width="2.2"/>'
+            f'<path d="M0 -5 L8 0 L0 5 Z" fill="{style["flow"]}" '
             f'transform="translate({tip[0]} {tip[1]}) rotate({turn})"/>'
         )
     for step, (x, y) in zip(steps, points, strict=True):
-        parts.append(f'<circle cx="{x}" cy="{y}" r="8" fill="{style["way"]}"/>')
+        parts.append(f'<circle cx="{x}" cy="{y}" r="8" fill="{style["flow"]}"/>')
         parts.append(_text(x + 14, y - 3, step.title, 15, style["ink"], 'font-weight="600"'))
         parts.append(_text(x + 14, y + 13, step.code, 11.5, style["muted"], 'font-family="monospace"'))
     return "\n".join(parts)
