@@ -51,9 +51,9 @@ class FigureOptions:
         if self.view is not None and self.view.suffix.lower() != _VIEW_FORMAT:
             raise ValueError(f"view {str(self.view)!r} must end in {_VIEW_FORMAT}")
         if self.vtk is not None:
-            from ..elasticity.finite_elements.decks.vtk import check_suffix
+            from ..elasticity.finite_elements.decks.vtk import check_vtk_path
 
-            check_suffix(self.vtk)
+            check_vtk_path(self.vtk)
 
     def check_models(self, models: Container[str]) -> None:
         """Raise ValueError for a file that needs a model which is not among the named ones."""
