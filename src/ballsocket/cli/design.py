@@ -37,7 +37,7 @@ from .options import (
     expand_groups,
     read_load_option,
 )
-from .root import app, complain
+from .root import app, print_message
 
 _POINTS_HELP = "Number of values along each axis, 2 or more. Default: 41, or 21 for a slow model."
 LimitOption = Annotated[
@@ -69,7 +69,7 @@ class PressOptions:
         if self.model is None:
             model = usual(file.joint, ends)
             if model.name == reference.name:
-                complain(f"model {model.name} is used, since none of these joints is in the tables of tabulated")
+                print_message(f"model {model.name} is used, since none of these joints is in the tables of tabulated")
         else:
             model = named_model(self.model)
             check_known(model, file.joint, ends)
@@ -237,7 +237,7 @@ def _default_points(model: Model) -> int:
 
 
 def _limits(phrases: list[str] | None, cup: Cup) -> list[Limit]:
-    """Return the limits of some phrases; distances from the edge are those of the cup."""
+    """Parse limits from text; distances from the edge are those of the cup."""
     return [replace(limit_of(phrase), cup=cup) for phrase in phrases or []]
 
 

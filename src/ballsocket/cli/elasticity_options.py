@@ -141,7 +141,7 @@ class DirectionOptions:
     ] = None
 
     def read(self, file: JointFile) -> dict[str, Any]:
-        """Return the direction of the options, or of the joint file; empty if there is none."""
+        """Read the direction from the options or the joint file; empty if there is none."""
         return read_aim(drop_missing({"tilt": self.tilt, "direction": self.direction})) or file.aim
 
     def refuse(self) -> None:

@@ -21,7 +21,7 @@ from ..problem.cup import Cup
 from ..studies.file import named_model
 from ..studies.usual import usual
 from .options import JointName, JointOptions, ModelName, expand_groups
-from .root import app, complain, echo_path
+from .root import app, echo_path, print_message
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +93,7 @@ def export(
     paths, missing = chosen.write(job, out)
     echo_path(out, f": {', '.join(path.relative_to(out).as_posix() for path in paths)}")
     if missing:
-        complain(missing)
+        print_message(missing)
 
 
 @app.command()
@@ -119,7 +119,7 @@ def fmu(
     for extra_path in write_cross_check(unit.element, path):
         echo_path(extra_path)
     if written.missing:
-        complain(written.missing)
+        print_message(written.missing)
 
 
 def checked_path(out: Path, ending: str) -> Path:

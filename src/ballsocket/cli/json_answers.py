@@ -81,14 +81,14 @@ def _sources(part: Any) -> Iterator[Source]:
     """Yield the publications of the models and presets in a part of an answer, and those that it cites."""
     if isinstance(part, dict):
         for key, value in part.items():
-            yield from _cited(key, value)
+            yield from _entry_sources(key, value)
             yield from _sources(value)
     elif isinstance(part, list):
         for element in part:
             yield from _sources(element)
 
 
-def _cited(key: str, value: Any) -> Iterator[Source]:
+def _entry_sources(key: str, value: Any) -> Iterator[Source]:
     """Yield the publications of one entry of an answer."""
     if key == "model" and isinstance(value, str) and value in listed_models:
         yield from listed_models[value].sources
@@ -102,7 +102,7 @@ def _cited(key: str, value: Any) -> Iterator[Source]:
 
 
 def _presets(name: str) -> Iterator[Joint | Material]:
-    """Yield the presets with a full name."""
+    """Yield the joints and materials with this full name."""
     yield from (joint for joint in joints.values() if joint.name == name)
     yield from (material for material in materials.values() if material.name == name)
 
@@ -145,7 +145,7 @@ def _no_steps(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield a model that is valid instead of an invalid one, then a model to check with, then the references."""
+    """Suggest a valid model if the requested one is invalid, then a check, then the references."""
     results = {result["model"]: result["valid"] for result in answer["results"]}
     requested = [result["model"] for result in requested_results(answer["results"], arguments)]
     valid_models = [name for name, valid in results.items() if valid is True]
@@ -178,7 +178,7 @@ _OUTPUT_OPTIONS = ("--units", "--figure", "--section", "--view", "--vtk", "--rep
 
 
 def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield the exact model if a point is invalid, then the references."""
+    """Suggest the exact model if a point is invalid, then the references."""
     if answer["valid"] is not True and answer["model"] != reference.name:
         why = f"{answer['model']} is outside its valid range at some points"
         yield NextStep((*_without_options(arguments, "--model"), "--model", reference.name), why)
@@ -186,27 +186,27 @@ def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield a press of the best joint by every model."""
+    """Suggest a press of the best joint by every model."""
     point = answer["point"] if "point" in answer else _point_of_least(answer)
     chosen = [argument for part, name in answer.get("materials", {}).items() for argument in (f"--{part}", name)]
     numbers = [argument for name, value in point.items() for argument in _as_option(name, value)]
     has_load = any(name in point for name in ("force", "indentation"))
     load = [] if has_load else _selected_options(arguments, "--force", "--indentation")
-    replaced = (option for option in _JOINT_OPTIONS if _determined(option) & set(map(_determined_by, point)))
+    replaced = (option for option in _JOINT_OPTIONS if _dimensions_of_option(option) & set(map(_dimension_of, point)))
     step = ("press", *_joint_arguments(_without_options(arguments, *replaced)), *chosen, *numbers, *load, "--all")
     yield NextStep(step, "the best joint by every model")
 
 
-def _determined_by(name: str) -> str:
+def _dimension_of(name: str) -> str:
     """Return the dimension that a parameter determines: of a diameter, the radius."""
     dimension = DIAMETERS.get(name, name)
     return "liner_thickness" if dimension == "outer_radius" else dimension
 
 
-def _determined(option: str) -> set[str]:
+def _dimensions_of_option(option: str) -> set[str]:
     """Return the dimensions that an option of the joint may determine."""
     name = option.removeprefix("--").replace("-", "_")
-    return {_determined_by(name), _determined_by(f"liner_{name}")}
+    return {_dimension_of(name), _dimension_of(f"liner_{name}")}
 
 
 def _point_of_least(answer: Answer) -> Answer:
@@ -228,19 +228,19 @@ _LINER_PARAMETERS = ("liner_young", "liner_poisson")
 
 
 def _after_sensitivity(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield a press of the mean joint by every model."""
+    """Suggest a press of the mean joint by every model."""
     load = _selected_options(arguments, "--force", "--indentation")
     yield NextStep(("press", *_joint_arguments(arguments), *load, "--all"), "the mean joint by every model")
 
 
 def _after_study(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield the study with all values in a file."""
+    """Suggest the study with all values in a file."""
     if not _selected_options(arguments, "--out"):
         yield NextStep((*arguments, "--out", "study.csv"), "all values, one row per point")
 
 
 def _after_orient(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield a press in the orientation with the largest edge distance."""
+    """Suggest a press in the orientation with the largest edge distance."""
     pairs = zip(chain(*answer["edge_distance"]), chain(*answer["tilt_deg"]), strict=True)
     known = [(distance, tilt) for distance, tilt in pairs if distance is not None]
     if known:
@@ -250,7 +250,7 @@ def _after_orient(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield the next experiment if parameters are not identifiable, else the samples of the posterior."""
+    """Suggest the next experiment if parameters are not identifiable, else the samples of the posterior."""
     if not answer["valid"]:
         why = answer["notes"][0] if answer["notes"] else "not every parameter is identifiable"
         yield NextStep((*arguments, "--experiment", "next.png"), why)
@@ -259,13 +259,13 @@ def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield the simulation with a report."""
+    """Suggest the simulation with a report."""
     if not _selected_options(arguments, "--report", "--patients"):
         yield NextStep((*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear")
 
 
 def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield the check of a new pack."""
+    """Suggest the check of a new pack."""
     if _selected_options(arguments, "--check"):
         return
     folder = (_selected_options(arguments, "--out") or ["--out", "evidence"])[1]
@@ -273,13 +273,13 @@ def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_calibrate(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield a press of the calibrated joint by every model."""
+    """Suggest a press of the calibrated joint by every model."""
     for name in _joint_name(arguments):
         yield NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint")
 
 
 def _after_list(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Yield a press of the first listed joint, or the references of the first listed model."""
+    """Suggest a press of the first listed joint, or the references of the first listed model."""
     for name in list(answer.get("joints", {}))[:1]:
         yield NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint")
     for model in answer.get("models", [])[:1]:

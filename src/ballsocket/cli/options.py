@@ -93,7 +93,7 @@ class JointOptions:
         return {name: table for name, table in tables.items() if table}
 
     def read(self, name: str | None) -> JointFile:
-        """Return the joint of a file, a preset or the options alone, with the values that the options replace.
+        """Read a joint from a file, a preset or the options alone; options replace single values.
 
         Raises
         ------
@@ -125,7 +125,7 @@ class LoadOptions:
     ] = None
 
     def read(self, file: JointFile) -> dict[str, float]:
-        """Return the load of the options, or of the joint file, in N, mm or rad."""
+        """Read the load from the options, or take that of the joint file, in N, mm or rad."""
         return read_load_option(vars(self), file)
 
 
@@ -160,7 +160,7 @@ def drop_missing(options: dict[str, str | None]) -> dict[str, str]:
 
 
 def read_load_option(options: dict[str, str | None], file: JointFile) -> dict[str, float]:
-    """Return the load of some options, or of the joint file, in N, mm or rad.
+    """Read the load from some options, or take that of the joint file, in N, mm or rad.
 
     Raises
     ------

@@ -22,7 +22,7 @@ from ..output.orientation_terminal import print_orientations
 from ..studies.phrases import ends_of
 from .elasticity_options import CupOptions, DirectionOptions
 from .options import JointName, JointOptions, LoadOptions, OutputOptions, drop_missing, expand_groups
-from .root import FAILURE, app, complain
+from .root import FAILURE, app, print_message
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,12 +57,12 @@ class OrientationOptions:
         return numpy.unique(numpy.linspace(min(low, high), max(low, high), self.points))
 
     def read_direction(self, file: JointFile) -> Mapping[str, Any]:
-        """Return the direction of the options, or of the joint file.
+        """Read the direction from the options or the joint file.
 
         Raises
         ------
         ValueError
-            The file has a tilt from the cup's axis, which is no direction in the body.
+            The file has a tilt from the cup's axis, which is not a direction in the body.
         """
         direction = read_aim(drop_missing({"direction": self.direction})) or file.aim
         if "tilt" in direction:
@@ -99,5 +99,5 @@ def orient(
     output.print(orientations.summary, lambda: print_orientations(orientations))
     output.draw(lambda: orientation_figure(orientations))
     if not orientations.held.any():
-        complain("no orientation has an answer (see the statuses)")
+        print_message("no orientation has an answer (see the statuses)")
         raise typer.Exit(FAILURE)

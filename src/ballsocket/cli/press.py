@@ -35,7 +35,7 @@ from .elasticity_options import (
 from .json_answers import echo_json
 from .options import AsJson, JointName, JointOptions, LoadOptions, expand_groups
 from .press_files import FigureOptions, ReportOptions
-from .root import FAILURE, app, complain
+from .root import FAILURE, app, print_message
 
 DEFAULT_MODEL = "hess-forsbach"
 
@@ -151,7 +151,7 @@ def _exit_on_failure(comparison: Comparison, models: Iterable[str]) -> None:
     """Exit with a message and a status if there is no result or no convergence."""
     failure = _failure(comparison, models)
     if failure:
-        complain(failure)
+        print_message(failure)
         raise typer.Exit(FAILURE)
 
 
@@ -196,7 +196,7 @@ def curve(
     else:
         print_curve(contact)
     if not numpy.isfinite(contact.indentation[1:]).any():
-        complain(f"no answer from {named.name} at any load (see the notes)")
+        print_message(f"no answer from {named.name} at any load (see the notes)")
         raise typer.Exit(FAILURE)
 
 

@@ -19,7 +19,7 @@ from ..output.save import check_format, save
 from ..output.unit_systems import Units
 from ..studies.around import Around, around
 from ..studies.phrases import spread_of
-from .root import complain
+from .root import print_message
 
 _VIEW_FORMAT = ".png"
 _REPORT_FORMAT = ".html"
@@ -85,7 +85,7 @@ def _write(path: Path | None, contact: Any, write: Callable[[Any, Path], None]) 
     if path is None:
         return
     if contact is None:
-        complain("without a contact there is nothing to draw or write")
+        print_message("without a contact there is nothing to draw or write")
         return
     write(contact, path)
 

@@ -89,7 +89,7 @@ class CommandGroup(TyperGroup):
 app = typer.Typer(
     name="ballsocket",
     cls=CommandGroup,
-    help="Contact of a ball in a socket of nearly its own radius. Units are mm, N, MPa, degrees unless text says so.",
+    help="Contact of a ball in a socket of nearly its own radius. A number without a unit is in mm, N, MPa or degrees.",
     no_args_is_help=False,
     add_completion=False,
     rich_markup_mode=None,
@@ -103,11 +103,11 @@ def load_commands() -> dict[str, Callable[..., None]]:
     """Import all commands, and return their functions by name in the order of the help."""
     for entry in _ENTRIES.values():
         import_module(entry.module)
-    functions = {_name(info): info.callback for info in app.registered_commands}
+    functions = {_command_name(info): info.callback for info in app.registered_commands}
     return {name: functions[name] for name in _ENTRIES}
 
 
-def _name(info: Any) -> str:
+def _command_name(info: Any) -> str:
     """Return the name of a registered command: a stated one, or that of its function."""
     return info.name or info.callback.__name__.replace("_", "-")  # type: ignore[no-any-return]
 
@@ -145,7 +145,7 @@ def _allow_any_encoding() -> None:
 
 
 def main() -> None:
-    """Run the program: an error that the user can correct is one line on stderr, without a traceback."""
+    """Run the program; print errors that the user can correct as one line on stderr."""
     _allow_any_encoding()
     if os.environ.get("COLUMNS", "").strip() == "0":  # width 0 means an unknown width
         del os.environ["COLUMNS"]
@@ -191,7 +191,7 @@ def _run() -> int:
         message, status = str(error), FAILURE
     except (ArithmeticError, MemoryError) as error:
         message, status = f"the numbers are too large or too small to compute with ({error})", FAILURE
-    complain(message)
+    print_message(message)
     return status
 
 
@@ -203,7 +203,7 @@ def _usage_message(error: Any) -> str:
     return f"No such option: {error.option_name}; ballsocket {error.ctx.info_name} -h lists them"
 
 
-def complain(message: str) -> None:
+def print_message(message: str) -> None:
     """Print one line on stderr if stderr can be written to."""
     try:
         print(f"ballsocket: {_one_line(message)}", file=sys.stderr, flush=True)

@@ -49,7 +49,7 @@ def _run_until_signal(loop: Any) -> None:
     signals: list[int] = []
 
     def stop(number: int, frame: Any) -> None:
-        """Stop the loop after the present callback, which could catch an exception."""
+        """Stop the loop after the present callback; an exception inside it could be caught there."""
         signals.append(number)
         loop.asyncio_loop.call_soon_threadsafe(loop.stop)
 

@@ -23,7 +23,7 @@ from ..studies.run import study as run_study
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, Scheduler, Workers, choose_engine
-from .root import app, complain, echo_path
+from .root import app, echo_path, print_message
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -116,7 +116,7 @@ def _progress_bar(store: Path | None) -> Iterator[Listener]:
         _stop(progress)
         if store is not None and latest:
             stored = f"{latest[0].done:.4g} of {latest[0].points:.4g} points are stored in {store}"
-            complain(f"stopped; {stored}: run the command again to resume")
+            print_message(f"stopped; {stored}: run the command again to resume")
         raise
     finally:
         _stop(progress)
