@@ -103,13 +103,15 @@ def load_commands() -> dict[str, Callable[..., None]]:
     """Import all commands, and return their functions by name in the order of the help."""
     for entry in _ENTRIES.values():
         import_module(entry.module)
-    functions = {_command_name(info): info.callback for info in app.registered_commands}
+    functions: dict[str, Any] = {
+        _command_name(info): info.callback for info in CommandGroup.program.registered_commands
+    }
     return {name: functions[name] for name in _ENTRIES}
 
 
 def _command_name(info: Any) -> str:
     """Return the name of a registered command: a stated one, or that of its function."""
-    return info.name or info.callback.__name__.replace("_", "-")  # type: ignore[no-any-return]
+    return info.name or info.callback.__name__.replace("_", "-")
 
 
 def _print_version(requested: bool) -> None:

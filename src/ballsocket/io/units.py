@@ -51,7 +51,7 @@ _COMMON_UNITS = {
 }
 """Names of common units in pint, whose import takes as long as a press."""
 
-_COMMON_FACTORS = {
+_COMMON_FACTORS: dict[tuple[tuple[str, int], ...], float] = {
     (("millimeter", 1), ("millimeter", 1)): 1.0,
     (("micrometer", 1), ("millimeter", 1)): 0.001,
     (("centimeter", 1), ("millimeter", 1)): 10.0,
