@@ -185,7 +185,7 @@ class TimedModel:
 
 
 def sphere_in_cup(sphere: Sphere, cup: Cup, direction: Mapping[str, Any]) -> Sphere:
-    """Return the model `sphere` in a cup, under a load of some direction."""
+    """Return the model `sphere` with a cup and the direction of the load."""
     return replace(sphere, cup=cup).with_direction(**direction)
 
 

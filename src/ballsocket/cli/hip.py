@@ -22,7 +22,7 @@ from ..output.hip_report import check_page, write_hip_report
 from ..output.hip_terminal import print_hip
 from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson, Scheduler, Workers, choose_engine
+from .options import AsJson, Scheduler, Workers, choose_executor
 from .root import FAILURE, app, echo_path
 
 
@@ -46,7 +46,7 @@ def hip(
     """
     if report is not None:
         check_page(report)
-    hip_file, engine = read_hip(file), choose_engine(workers, scheduler, Serial())
+    hip_file, engine = read_hip(file), choose_executor(workers, scheduler, Serial())
     if patients is not None:
         if report is not None:
             raise ValueError("a report shows one hip: leave out --report or --patients")
@@ -55,7 +55,7 @@ def hip(
     history = _simulate(hip_file, store)
     bands = _uncertainty_bands(hip_file, history, engine)
     if as_json:
-        _echo(history, bands)
+        _echo_history(history, bands)
     else:
         print_hip(history)
         if bands is not None:
@@ -87,7 +87,7 @@ def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> B
         )
 
 
-def _echo(history: History, bands: Bands | None) -> None:
+def _echo_history(history: History, bands: Bands | None) -> None:
     """Print a simulation and its bands as JSON."""
     valid = history.valid and (bands is None or bands.valid)
     answer = {"version": __version__, "valid": valid, **history.summary()}

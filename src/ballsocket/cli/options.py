@@ -196,7 +196,7 @@ def named_joint(name: str) -> JointFile:
     raise ValueError(f"{name!r} is neither a file nor a preset{nearest(name, joints)}")
 
 
-def choose_engine(workers: int | None, scheduler: str | None, default: Engine) -> Engine:
+def choose_executor(workers: int | None, scheduler: str | None, default: Engine) -> Engine:
     """Return the executor that the options select, or the default."""
     if scheduler is not None:
         from ..core.executors.dask import Distributed
@@ -224,7 +224,7 @@ def expand_groups(command: Command) -> Command:
         parameter.name: _group_type(parameter)[0] for parameter in parameters if is_dataclass(_group_type(parameter)[0])
     }
 
-    def expanded(**options: Any) -> None:
+    def expanded_command(**options: Any) -> None:
         """Build the groups from single options, and call the command."""
         built = {
             name: group(**{field.name: options.pop(field.name) for field in fields(group)})
@@ -232,14 +232,14 @@ def expand_groups(command: Command) -> Command:
         }
         command(**options, **built)
 
-    expanded.__name__, expanded.__doc__ = command.__name__, command.__doc__
+    expanded_command.__name__, expanded_command.__doc__ = command.__name__, command.__doc__
     flat = [
         option
         for parameter in parameters
         for option in (_group_options(parameter) if parameter.name in groups else (parameter,))
     ]
-    expanded.__signature__ = Signature(flat)  # type: ignore[attr-defined]
-    return expanded
+    expanded_command.__signature__ = Signature(flat)  # type: ignore[attr-defined]
+    return expanded_command
 
 
 def _group_type(parameter: Parameter) -> tuple[Any, str]:

@@ -91,6 +91,7 @@ def _write(path: Path | None, contact: Any, write: Callable[[Any, Path], None]) 
 
 
 def _write_figure(contacts: Mapping[str, Any], first_model: str, path: Path) -> None:
+    """Write a figure of all contacts, or of the cup alone if `sphere` is the first model."""
     from ..output import quick_plot
 
     alone = first_model == off_axis.name and first_model in contacts
@@ -98,24 +99,28 @@ def _write_figure(contacts: Mapping[str, Any], first_model: str, path: Path) -> 
 
 
 def _write_section(contact: MeshedContact, exact: Any, path: Path) -> None:
+    """Write a figure of the meshed section with the exact pressure."""
     from ..output.section_plot import section_figure
 
     save(section_figure(contact, exact), path)
 
 
 def _write_meshes(contact: MeshedContact, path: Path) -> None:
+    """Write the meshes and fields of the finite elements for VTK."""
     from ..elasticity.finite_elements.decks.vtk import write_vtk
 
     write_vtk(contact.section, path)
 
 
 def _write_surfaces(contact: OffAxisContact, path: Path) -> None:
+    """Write the surfaces of bore and ball for VTK."""
     from ..elasticity.off_axis.vtk import write_vtk
 
     write_vtk(contact, path)
 
 
 def _write_view(contact: OffAxisContact, path: Path) -> None:
+    """Write a three-dimensional picture of the cup."""
     from ..output.cup_view import save_view
 
     save_view(contact, path)

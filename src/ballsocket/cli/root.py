@@ -115,6 +115,7 @@ def _command_name(info: Any) -> str:
 
 
 def _print_version(requested: bool) -> None:
+    """Print the version and exit if the option is used."""
     if requested:
         typer.echo(f"ballsocket {__version__}")
         raise typer.Exit()
@@ -133,13 +134,14 @@ def root(
 
 
 def _replace_by_ascii(error: UnicodeError) -> tuple[str, int]:
-    """Return ASCII text for characters that the encoding of the terminal lacks."""
+    """Return ASCII text for characters that cannot be encoded, and the position after them."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     return "".join(_ASCII_REPLACEMENTS.get(char, "?") for char in error.object[error.start : error.end]), error.end
 
 
 def _allow_any_encoding() -> None:
+    """Write ASCII text for characters that the encoding of an output stream lacks."""
     codecs.register_error("degrade", _replace_by_ascii)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
@@ -247,14 +249,14 @@ def _discard_output(stream: TextIO | None = None) -> None:
 def _exit_on_sigterm() -> Iterator[None]:
     """Exit through Python on SIGTERM, so that temporary folders are removed."""
 
-    def leave(number: int, frame: Any) -> None:
+    def exit_with_status(number: int, frame: Any) -> None:
         """Exit with the status that a shell gives to a signal."""
         sys.exit(128 + number)
 
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGTERM, leave)
+    before = signal.signal(signal.SIGTERM, exit_with_status)
     try:
         yield
     finally:

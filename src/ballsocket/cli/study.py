@@ -22,7 +22,7 @@ from ..studies.run import Progress as StudyProgress
 from ..studies.run import study as run_study
 from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson, Scheduler, Workers, choose_engine
+from .options import AsJson, Scheduler, Workers, choose_executor
 from .root import app, echo_path, print_message
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def study(
             study_file.design,
             quantities=study_file.quantities,
             store=folder,
-            engine=choose_engine(workers, scheduler, study_file.engine),
+            engine=choose_executor(workers, scheduler, study_file.engine),
             listen=progress,
         )
     if as_json:
