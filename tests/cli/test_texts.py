@@ -57,6 +57,13 @@ def test_a_figure_of_an_optimum_needs_two_ranges(vary, count, tmp_path):
     )
 
 
+def test_an_optimum_of_two_ranges_is_drawn_as_a_map(tmp_path):
+    ranges = ("--vary", "clearance=50..200 um", "--vary", "liner_thickness=4..8 mm", "--points", "3")
+    done = run("optimise", "hip-36", "--force=3 kN", "--model=bartel", *ranges, "--figure", str(tmp_path / "a.png"))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "a.png").stat().st_size > 5000
+
+
 @pytest.mark.parametrize(
     ("stem", "name"),
     [
