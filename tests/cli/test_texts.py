@@ -29,8 +29,8 @@ def test_the_distance_from_the_rim_is_positive_on_both_sides(distance, loaded, t
 
 
 def test_estimated_errors_are_in_percent_without_those_of_other_quantities():
-    contact = SimpleNamespace(error={"force": 0.0, "indentation": 0.02, "max_pressure": 3e-4, "area": 0.5})
-    assert elasticity_options._error_text(contact) == "d ±2 %, pmax ±0.03 %"
+    contact = SimpleNamespace(error={"force": 0.0, "indentation": 0.0149, "max_pressure": 3e-4, "area": 0.5})
+    assert elasticity_options._error_text(contact) == "d ±1 %, pmax ±0.03 %"
 
 
 def test_a_timed_model_measures_seconds_of_its_last_press():
