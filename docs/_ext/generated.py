@@ -13,7 +13,7 @@ import ballsocket as bs
 from ballsocket.catalogue import listed_models
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.sources import Source, bibliography
-from ballsocket.evidence.comparator import between
+from ballsocket.evidence.applicability import between
 from ballsocket.evidence.comparators import PUBLISHED
 from ballsocket.evidence.validity import measure, promising
 from ballsocket.output.accuracy_table import markdown
@@ -145,7 +145,7 @@ def _validity() -> str:
             f"[`{each.model}`](#model-{each.model})",
             each.promise,
             each.valid,
-            f"{100 * each.kept:.1f} %",
+            f"{100 * each.kept_share:.1f} %",
             ", ".join(
                 f"{bs.quantities.CONTACT[name].symbol} {100 * error:.2g} %" for name, error in each.worst.items()
             ),

@@ -16,15 +16,28 @@ from pathlib import Path
 from typing import Any
 
 from ..core.checks import shown
+from ..core.deprecation import renamed_arguments
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.fingerprint import fingerprint
-from .folder import PAGE, QUESTION, RECORD, SIGNATURE, SUMS, PageMaker, digest, names_of, page_bytes, sums_bytes
-from .folder import record_bytes as canonical
-from .inputs import DRAWING, STATED, made_with
-from .pack import Listener, gathered, silent
+from .folder import (
+    MAX_FILE_SIZE,
+    PAGE,
+    QUESTION,
+    RECORD,
+    SIGNATURE,
+    SUMS,
+    PageMaker,
+    digest,
+    names_of,
+    page_bytes,
+    read_checksums,
+    read_record,
+    record_bytes,
+    sums_bytes,
+)
+from .pack import DRAWING, STATED, Listener, gather_evidence, ignore_progress, made_with
 from .question import read_question
 from .requirements import assessed
-from .signature import PublicKey, SignatureError, verify
 
 RELATIVE_TOLERANCE = 1e-9
 """Largest relative difference between the numbers of two machines."""
@@ -39,9 +52,9 @@ _STATED = ("version", "made_with", "made_on")
 _JUDGED = ("credibility", "requirements", "adequacy")
 """Entries that follow from the other entries of the record and are derived again."""
 
-_MAX_FILES, _MAX_SIZE = 200, 1 << 26
+_MAX_FILES = 200
 
-_HERE = Serial()
+_SERIAL = Serial()
 
 
 @dataclass(frozen=True)
@@ -86,23 +99,12 @@ class PackComparison:
     sums: bytes
 
 
-@dataclass(frozen=True)
-class Signed:
-    """A valid signature: its key, and True for the expected key or None without one."""
-
-    key: PublicKey
-    expected: bool | None
-
-    def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
-        return {"fingerprint": self.key.fingerprint, "verified": self.expected}
-
-
+@renamed_arguments(listen="progress")
 def compare(
     folder: Path,
     page: PageMaker,
-    listen: Listener = silent,
-    engine: Engine = _HERE,
+    progress: Listener = ignore_progress,
+    engine: Engine = _SERIAL,
 ) -> PackComparison:
     """Compare a pack with the results of this version for its question.
 
@@ -114,7 +116,7 @@ def compare(
     folder : Path
     page : callable
         Page maker for a record and a digest.
-    listen : callable
+    progress : callable
         Called with the name of each completed part.
     engine : Engine
 
@@ -128,8 +130,8 @@ def compare(
     contents, strange = _read_files(folder)
     if QUESTION not in contents:
         raise ValueError(f"{folder} holds no pack of evidence: {QUESTION} is missing")
-    listed = _listed(folder, contents)
-    record = _record(folder, contents)
+    listed = read_checksums(folder, contents)
+    record = read_record(folder, contents)
     with tempfile.TemporaryDirectory() as copy:
         for name, content in contents.items():
             path = Path(copy, name)
@@ -137,7 +139,7 @@ def compare(
             path.write_bytes(content)
         question = read_question(Path(copy, QUESTION))
         names = names_of(question)
-        again = json.loads(canonical(gathered(question, Path(copy, "computed.anew"), listen, engine)))
+        again = json.loads(record_bytes(gather_evidence(question, Path(copy, "computed.anew"), progress, engine)))
     files = {name: contents[name] for name in names if name in contents}
     outside = [name for name in contents if name not in {*names, SUMS, SIGNATURE}]
     differences = [*strange, *(Difference(name, "present", "absent", _STRANGE) for name in sorted(outside))]
@@ -169,38 +171,6 @@ _STRANGE = "does not belong to the pack"
 _ABSENT = "absent"
 
 
-def signature_of(folder: Path, expected: PublicKey | None = None, sums: bytes | None = None) -> Signed | None:
-    """Verify the signature of a pack; return None for an unsigned pack where no key is expected.
-
-    Parameters
-    ----------
-    folder : Path
-    expected : PublicKey, optional
-    sums : bytes, optional
-        Content of the checksum file that was compared; read from the folder by default.
-
-    Raises
-    ------
-    SignatureError
-        A signature that is invalid, of another key, or missing although a key is expected.
-    ImportError
-        The library of signatures is missing.
-    OSError
-        A file cannot be read.
-    """
-    path = folder / SIGNATURE
-    if not path.is_file():
-        if expected is not None:
-            raise SignatureError(f"{SIGNATURE} is missing: the pack is not signed")
-        return None
-    if path.is_symlink() or path.stat().st_size > _MAX_SIZE:
-        raise SignatureError(f"{SIGNATURE} must be a regular file of at most {_MAX_SIZE} bytes")
-    key = verify((folder / SUMS).read_bytes() if sums is None else sums, path.read_bytes())
-    if expected is not None and key != expected:
-        raise SignatureError(f"the signature is by another key, {key.fingerprint}, not by {expected.fingerprint}")
-    return Signed(key, None if expected is None else True)
-
-
 def contradictions(record: Mapping[str, Any], files: Mapping[str, bytes], page: PageMaker) -> Iterator[Difference]:
     """Compare the parts of a pack: form of the record, stated entries, assessment and page.
 
@@ -209,14 +179,15 @@ def contradictions(record: Mapping[str, Any], files: Mapping[str, bytes], page: 
     Exception
         A record with missing or unknown entries.
     """
-    if files.get(RECORD) != canonical(record):
+    if files.get(RECORD) != record_bytes(record):
         yield Difference(
             RECORD, "another form", "one form", "differs from the canonical form of its record: the file was edited"
         )
     yield from _stated(record)
     if record.get("version") != fingerprint():
-        reason = f"cannot be verified by this version of ballsocket, {fingerprint()}: the pack is of {_short(record)}"
-        yield Difference("version", record.get("version"), fingerprint(), reason)
+        made_by = record.get("version")
+        reason = f"cannot be verified by this version of ballsocket, {fingerprint()}: the pack is of {shown(made_by)}"
+        yield Difference("version", made_by, fingerprint(), reason)
         return
     for name, part in assessed(record).items():
         for pair in _pairs(record.get(name, _ABSENT), json.loads(json.dumps(part)), name):
@@ -224,10 +195,6 @@ def contradictions(record: Mapping[str, Any], files: Mapping[str, bytes], page: 
                 yield pair
     if PAGE in files:
         yield from _compare_pages(files[PAGE], page_bytes(page(record, digest(files))), record)
-
-
-def _short(record: Mapping[str, Any]) -> str:
-    return shown(record.get("version"))
 
 
 def _stated(record: Mapping[str, Any]) -> Iterator[Difference]:
@@ -248,6 +215,7 @@ _VERSION = re.compile(r"[\w.+~-]{1,30}( [\w.-]{1,20})?", re.ASCII)
 
 
 def _is_version(text: Any) -> bool:
+    """Check the form of a version of a library."""
     return isinstance(text, str) and _VERSION.fullmatch(text) is not None
 
 
@@ -279,11 +247,13 @@ def _position(written: bytes, drawn: bytes) -> int:
 
 
 def _excerpt(page: bytes, compared: bytes) -> str:
+    """Return the text of a page around the first difference."""
     position = _position(page, compared)
     return page[max(0, position - 20) : position + 40].decode("utf-8", "replace")
 
 
 def _describe_position(written: bytes, drawn: bytes) -> str:
+    """Describe the first difference of two pages."""
     position = _position(written, drawn)
     figures = [match.span() for match in _FIGURE.finditer(drawn)]
     inside = [number for number, (start, end) in enumerate(figures, 1) if start <= position < end]
@@ -307,7 +277,7 @@ def _read_files(folder: Path) -> tuple[dict[str, bytes], list[Difference]]:
                 raise ValueError(f"{folder} holds more than {_MAX_FILES} files: a pack of evidence has fewer")
             if stat.S_ISLNK(mode.st_mode):
                 strange.append(Difference(inside, "a link", "a file", "is a symbolic link: a pack holds files only"))
-            elif not stat.S_ISREG(mode.st_mode) or mode.st_size > _MAX_SIZE:
+            elif not stat.S_ISREG(mode.st_mode) or mode.st_size > MAX_FILE_SIZE:
                 strange.append(Difference(inside, "present", "absent", _STRANGE))
             else:
                 contents[inside] = path.read_bytes()
@@ -321,22 +291,7 @@ def _folders(folder: Path, names: set[str]) -> Iterator[Difference]:
         for path in (Path(parent, name) for name in sorted(folders)):
             inside = path.relative_to(folder).as_posix()
             if inside not in parents and not path.is_symlink():
-                yield Difference(inside, "present", "absent", "does not belong to the pack")
-
-
-def _listed(folder: Path, contents: Mapping[str, bytes]) -> list[tuple[str, str]]:
-    """Read names and checksums from the checksum file."""
-    if SUMS not in contents:
-        raise ValueError(f"{folder} holds no pack of evidence: {SUMS} is not a file")
-    try:
-        lines = contents[SUMS].decode("utf-8").splitlines()
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{folder} holds no pack of evidence: {SUMS} is not text") from error
-    listed = [(name, checksum) for checksum, _, name in (line.partition("  ") for line in lines)]
-    for name, _ in listed:
-        if not name or Path(name).is_absolute() or ".." in Path(name).parts:
-            raise ValueError(f"{SUMS} names {shown(name)}, which is not a file of the pack")
-    return listed
+                yield Difference(inside, "present", "absent", _STRANGE)
 
 
 def _sums(
@@ -354,16 +309,6 @@ def _sums(
     return wrong
 
 
-def _record(folder: Path, contents: Mapping[str, bytes]) -> dict[str, Any]:
-    try:
-        record = json.loads(contents[RECORD].decode("utf-8"))
-    except (KeyError, ValueError, RecursionError) as error:
-        raise ValueError(f"{folder} holds no pack of evidence: {RECORD} cannot be read") from error
-    if not isinstance(record, dict):
-        raise ValueError(f"{RECORD} holds no record")
-    return record
-
-
 def _pairs(written: Any, now: Any, where: str) -> Iterator[Difference]:
     """Yield every leaf of both records as a pair."""
     if isinstance(now, dict) and isinstance(written, dict):
@@ -379,6 +324,7 @@ def _pairs(written: Any, now: Any, where: str) -> Iterator[Difference]:
 
 
 def _same(pair: Difference, computed: Mapping[str, Any]) -> bool:
+    """Compare a pair of values, numbers within a tolerance."""
     if pair.reason or type(pair.written) is not type(pair.now):
         return False
     if not isinstance(pair.now, float):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from .credibility import FACTORS, Record, error_margins
-from .matrix import NAMES
-from .terms import input_title, limit_text, number
+from .credibility import FACTORS
+from .credibility_levels import Record, error_margins
+from .matrix import NAMES, input_title, limit_text, number
 
 MET, NOT_MET, UNKNOWN = "met", "not met", "not known"
 """States of a requirement."""
@@ -31,6 +31,7 @@ def assessed(record: Record) -> dict[str, Any]:
 def _row(
     identifier: str, requirement: str, evidence: str, met: bool | None, where: str, gap: str = ""
 ) -> dict[str, Any]:
+    """Create one row of the matrix; `met` is None for an unknown state."""
     status = UNKNOWN if met is None else MET if met else NOT_MET
     return {
         "id": identifier,
@@ -43,6 +44,7 @@ def _row(
 
 
 def _limits(record: Record) -> Iterator[dict[str, Any]]:
+    """Compare the matrix with each limit, one row for each."""
     for index, limit in enumerate(record["limits"]):
         within = {"not kept": False, "not known": None}.get(limit["verdict"], True)
         gap = f"cases beyond the limit: {limit['beyond']}; without a result: {limit['unknown']}"
@@ -51,6 +53,7 @@ def _limits(record: Record) -> Iterator[dict[str, Any]]:
 
 
 def _accuracy(record: Record) -> Iterator[dict[str, Any]]:
+    """Compare errors and deviations with the required accuracy, in one row."""
     accurate = record["accurate"]
     largest = accurate["largest"]
     evidence = "no error bar and no second method" if largest is None else f"{100 * largest:.2g} % at most"
@@ -60,6 +63,7 @@ def _accuracy(record: Record) -> Iterator[dict[str, Any]]:
 
 
 def _margins(record: Record) -> Iterator[dict[str, Any]]:
+    """Compare the numerical error with the margin to each limit, one row for each."""
     for index, margin in enumerate(error_margins(record)):
         share = margin["share"]
         evidence = "no error bar" if share is None else f"{100 * share:.2g} % of the margin"
@@ -93,6 +97,7 @@ def _bands(record: Record) -> Iterator[dict[str, Any]]:
 
 
 def _checks(record: Record) -> Iterator[dict[str, Any]]:
+    """List the code checks, one row for each."""
     for index, check in enumerate(record["code_verification"]):
         evidence = "not run" if check["observed"] is None else f"{check['observed']:.2g}"
         gap = check["why"] or "a check that passes"
@@ -101,12 +106,14 @@ def _checks(record: Record) -> Iterator[dict[str, Any]]:
 
 
 def _inputs(record: Record) -> Iterator[dict[str, Any]]:
+    """List the sources of the inputs, one row for each."""
     for index, item in enumerate(record["inputs"]):
         text, source = f"source of the {input_title(item['name'])}", item["source"]
         yield _row(f"I{index + 1}", text, source or "none", bool(source), f"inputs[{index}]", "a source in [sources]")
 
 
 def _factors(factors: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """List the credibility factors, one row for each."""
     for index, factor in enumerate(factors):
         goal, level = factor["goal"], factor["reached"]
         yield _row(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from ..core.storage.fingerprint import fingerprint
-from ..evidence.terms import input_title, limit_text, number, title_of
+from ..evidence.matrix import input_title, limit_text, number, title_of
 from . import html
 from .evidence_sections import (
     calculation_section,
