@@ -45,7 +45,8 @@ def test_a_stopped_run_is_resumed_and_leaves_only_the_pack(pack, run, tmp_path):
     shutil.copytree(pack[2] / "data", out / "data")
     result = run(pack[2] / "asked.toml", "--out", out)
     assert result.exit_code == 0
-    assert "results were read from an earlier, stopped run and not computed" in result.stdout
+    stored = len(list((pack[2] / "data").rglob("*.json")))
+    assert f"{stored} results were read from an earlier, stopped run and not computed" in result.stdout
     assert sorted(path.name for path in out.iterdir()) == sorted([PAGE, RECORD, SUMS, "question.toml"])
     for name in (PAGE, RECORD, SUMS):
         assert (out / name).read_bytes() == (pack[2] / "out" / name).read_bytes()  # the same bytes, drawn again

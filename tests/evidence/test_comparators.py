@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ballsocket import Exact
-from ballsocket.evidence.applicability import SIMILARITY, applicability, between, question_ranges, similarity_ranges
+from ballsocket.evidence.applicability import SIMILARITY, applicability, question_ranges, range_text, similarity_ranges
 from ballsocket.evidence.comparators import CLAIMS, PUBLISHED, claim
 from ballsocket.problem import Joint, Material
 from ballsocket.problem.presets import COCR, UHMWPE, joints
@@ -144,8 +144,8 @@ def test_half_of_the_numbers_outside_still_applies_in_part():
 
 
 def test_ranges_are_written_with_three_digits():
-    assert between((0.12345, 0.12345)) == "0.123"
-    assert between((1.0, 2.5)) == "1 to 2.5"
+    assert range_text((0.12345, 0.12345)) == "0.123"
+    assert range_text((1.0, 2.5)) == "1 to 2.5"
 
 
 def test_ranges_of_a_question_include_its_tolerances(pack):

@@ -30,7 +30,7 @@ from ballsocket.evidence.folder import (
     sign_pack,
     signature_of,
 )
-from ballsocket.evidence.requirements import assessed
+from ballsocket.evidence.requirements import assess
 
 from .small_pack import page
 
@@ -83,7 +83,7 @@ def in_record(change, judged_again=False):
     def forge(out):
         record = record_of(out)
         change(record)
-        redraw(out, {**record, **assessed(record)} if judged_again else record)
+        redraw(out, {**record, **assess(record)} if judged_again else record)
 
     return forge
 

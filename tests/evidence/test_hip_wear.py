@@ -1,11 +1,15 @@
 """Published wear and its predictions: the page has the computed ratios and bands, and every source."""
 
 import math
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from ballsocket.evidence import hip_wear
 from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, make_hip, patients, ratios, simulators
 from ballsocket.hip.simulator_cycles import iso_14242_1
+from ballsocket.hip.variability import RESULT_UNITS
 
 from ..places import ROOT
 
@@ -55,3 +59,85 @@ def test_page_has_the_bands_of_the_laws(predictions, count, tolerance):
         assert low < float(middle) < high
         assert band.median == pytest.approx(float(middle), rel=tolerance)
         assert low * 0.9 <= band.low < band.high <= high * 1.1
+
+
+@pytest.fixture
+def simulated(monkeypatch):
+    """Replace the simulation of patients by a table of known numbers; return the arguments of its calls."""
+    calls = []
+
+    def population(variability, counts, patients):
+        calls.append(SimpleNamespace(hip=variability.use, spreads=variability.distributions, counts=counts, n=patients))
+        table = np.zeros((101, len(counts), len(RESULT_UNITS)))
+        ranks = np.arange(101.0)
+        for name, slope in (("volume", 2.0), ("penetration", 3.0)):
+            table[:, :, list(RESULT_UNITS).index(name)] = (
+                slope * ranks[:, None] * np.array([1.0, 3.0, 7.0, 19.0][: len(counts)])
+            )
+        return None, SimpleNamespace(cohort=SimpleNamespace(table=table))
+
+    monkeypatch.setattr(hip_wear, "population", population)
+    return calls
+
+
+def test_simulator_rates_are_volumes_per_million_cycles_between_one_and_three(simulated):
+    bands = {band.name: band for band in simulators(5)}
+    assert list(bands) == ["clarke-22", "clarke-28", "ali-45", "ali-65", "ali-45-off", "ali-65-off"]
+    for band in bands.values():
+        assert (band.low, band.median, band.high) == pytest.approx((5.0, 100.0, 195.0))
+    heads = [2 * call.hip.joint.ball_radius for call in simulated]
+    assert heads == pytest.approx([22.225, 28.0, 36.0, 36.0, 36.0, 36.0])
+    tilts = [math.degrees(call.hip.cup.inclination) for call in simulated]
+    assert tilts == pytest.approx([0.0, 0.0, 30.0, 50.0, 30.0, 50.0])
+    assert [call.hip.wear.coefficient for call in simulated] == pytest.approx([1.066e-6] * 2 + [2e-7] * 4)
+    for call in simulated:
+        assert (call.counts, call.n) == ([1e6, 3e6], 5)
+        assert (call.spreads["clearance"].low, call.spreads["clearance"].high) == (0.05, 0.2)
+        assert call.spreads["coefficient"].median == call.hip.wear.coefficient
+        assert call.spreads["coefficient"].factor == 1.5
+    assert len({call.hip.cycle.name for call in simulated}) == 3
+    assert [call.hip.joint.liner_thickness for call in simulated] == [10.9, 8.0, 6.0, 6.0, 6.0, 6.0]
+
+
+def test_patient_rates_are_penetrations_and_volumes_per_year(simulated):
+    medians = {band.name: band.median for band in patients(7)}
+    assert medians == pytest.approx(
+        {
+            "rsa-bedding": 150.0,
+            "rsa-rate": 150.0 * 18 / 9.75,
+            "teeter": 150.0 * 18 / 9.75,
+            "rsa-bedding-linked": 150.0,
+            "rsa-rate-linked": 150.0 * 18 / 9.75,
+            "mccalden-linked": 150.0,
+            "callary": 150.0 * 18 / 9.75,
+            "lachiewicz": 150.0 * 18 / 9.75,
+            "lachiewicz-volume": 100.0 * 7 / 5,
+        }
+    )
+    for call, k in zip(simulated, (1.066e-6, 2e-7), strict=True):
+        assert call.counts == [3.75e5, 1.5e6, 7.5e6, 1.5e7]
+        assert (call.n, call.hip.joint.ball_radius) == (7, 14.0)
+        assert call.hip.seconds_per_cycle == pytest.approx(21.0384)
+        spreads = call.spreads
+        assert (spreads["coefficient"].median, spreads["coefficient"].factor) == (k, 1.5)
+        assert (spreads["cycles_per_year"].median, spreads["cycles_per_year"].factor) == (1.5e6, 1.5)
+        weight, tilt = spreads["body_weight"], spreads["tilt"]
+        assert (weight.mean, weight.deviation, weight.low, weight.high) == (780.0, 130.0, 400.0, 1400.0)
+        degrees = [math.degrees(angle) for angle in (tilt.mean, tilt.deviation, tilt.low, tilt.high)]
+        assert degrees == pytest.approx([30.0, 7.0, 0.0, 60.0])
+
+
+def test_published_numbers_are_on_the_page_in_the_table_of_bands_or_ratios():
+    for row in PUBLISHED.values():
+        assert row.value > 0
+        assert (row.half_width > 0) == bool(row.spread)
+        if "Saikko" not in row.source:
+            assert row.description in PAGE
+    assert {row.read for row in PUBLISHED.values()} == {"abstract", "second hand"}
+
+
+def test_joints_of_the_hips_are_the_stated_inputs():
+    hip = make_hip(28.0, iso_14242_1())
+    assert (hip.joint.clearance, hip.joint.liner.young, hip.joint.liner.poisson) == (0.1, 1000.0, 0.4)
+    assert math.degrees(hip.cup.inclination) == pytest.approx(30.0)
+    assert {d: make_hip(d, iso_14242_1()).joint.liner_thickness for d in (22.225, 32.0)} == {22.225: 10.9, 32.0: 7.0}

@@ -18,7 +18,7 @@ from ballsocket.evidence.credibility import FACTORS, model_risk
 from ballsocket.evidence.folder import PAGE, QUESTION, RECORD, SUMS, source_files
 from ballsocket.evidence.pack import gather_evidence, list_inputs
 from ballsocket.evidence.question import read_question
-from ballsocket.evidence.requirements import assessed, gaps
+from ballsocket.evidence.requirements import assess, gaps
 from ballsocket.evidence.worst_case import propagate_tolerances, wear_history, wear_rates
 
 from ..places import EXAMPLES, ROOT
@@ -357,7 +357,7 @@ def test_named_files_in_the_folder_of_stored_results_are_refused(asked):
 
 
 def assess_risk(record, influence, consequence="medium"):
-    return assessed({**record, "risk": model_risk(influence, consequence)})
+    return assess({**record, "risk": model_risk(influence, consequence)})
 
 
 def test_a_higher_risk_sets_higher_goals(pack):
@@ -381,7 +381,7 @@ def test_goals_rise_with_the_risk_and_exist_in_their_gradation():
 
 
 def level(record, factor):
-    result = {row["factor"]: row for row in assessed(record)["credibility"]}[factor]
+    result = {row["factor"]: row for row in assess(record)["credibility"]}[factor]
     return result["reached"], result["missing"]
 
 

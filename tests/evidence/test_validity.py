@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.evidence.validity import EXCESS, SHARE, TRUTH, measure, population, promising
+from ballsocket.evidence.validity import EXCESS, SHARE, TRUTH, measure, models_with_promise, population
 
-PROMISING = {model.name: model for model in promising()}
+PROMISING = {model.name: model for model in models_with_promise()}
 SIZES = {"plane-layer": 120, "cosine-limit": 60_000}
 
 
@@ -73,3 +73,22 @@ def test_plane_layer_is_not_valid_for_liners_thicker_than_twice_the_radius():
         contact = bs.PlaneLayer().press(joint, half_angle=np.radians(13.0))
         assert contact.valid == valid
         assert any("R2/L" in note for note in contact.notes) == (not valid)
+
+
+def test_the_population_covers_the_stated_ranges():
+    joint, angle = population(4000, seed=5)
+    ranges = {
+        "radius": (joint.ball_radius, 4.0, 30.0),
+        "clearance": (joint.clearance / joint.ball_radius, 5e-4, 2e-2),
+        "thickness ratio": (joint.socket_radius / joint.liner_thickness, 0.2, 20.0),
+        "modulus": (joint.liner.young, 200.0, 3500.0),
+    }
+    for name, (values, low, high) in ranges.items():
+        assert low <= values.min() < 1.02 * low, name
+        assert high / 1.02 < values.max() <= high, name
+        middle = (np.log(low) + np.log(high)) / 2
+        assert np.log(values).mean() == pytest.approx(middle, abs=0.03 * np.log(high / low)), name
+    assert 0 <= joint.liner.poisson.min() < 0.001
+    assert 0.498 < joint.liner.poisson.max() <= 0.499
+    assert np.degrees([angle.min(), angle.max()]) == pytest.approx([1.0, 84.0], abs=0.1)
+    assert (joint.ball.young[0], joint.ball.young[1], joint.ball.poisson) == (1e9, 210_000.0, 0.3)

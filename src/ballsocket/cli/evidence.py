@@ -18,7 +18,7 @@ from ..core.checks import needs
 from ..core.executors.processes import Engine, Processes
 from ..core.storage.fingerprint import fingerprint
 from ..evidence.comparison import compare
-from ..evidence.folder import WORK, Signed, check_room, digest_of, sign_pack, signature_of, write
+from ..evidence.folder import WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
 from ..evidence.pack import Listener, gather_evidence
 from ..evidence.plan import count_stored_pieces, remove_stored_pieces
 from ..evidence.question import Question, read_question
@@ -69,7 +69,7 @@ def evidence(
 
 
 def _gather(question: Question, out: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None) -> None:
-    check_room(out, question)
+    check_folder(out, question)
     resumed = 0 if key is not None else count_stored_pieces(question, out / WORK)
     with _progress() as listen, tempfile.TemporaryDirectory() as temporary:
         work = out / WORK if key is None else Path(temporary)

@@ -79,7 +79,7 @@ def applicability(reaches: Mapping[str, Sequence[float]], needed: Ranges, tilted
     """
     positions = {name: _position(needed[name], reaches[name]) for name in reaches}
     gaps = [
-        f"{name} {between(needed[name])} against {between(reaches[name])}"
+        f"{name} {range_text(needed[name])} against {range_text(reaches[name])}"
         for name, position in positions.items()
         if position != WITHIN
     ]
@@ -90,7 +90,7 @@ def applicability(reaches: Mapping[str, Sequence[float]], needed: Ranges, tilted
 
 
 def _verdict(positions: Mapping[str, str], gaps: bool) -> str:
-    """Return the verdict from the positions of the ranges."""
+    """Return the verdict on applicability from the positions of the ranges and the existence of gaps."""
     outside = [name for name, position in positions.items() if position == OUTSIDE]
     if not positions or "E/E of the ball" in outside or len(outside) > len(positions) / 2:
         return DOES_NOT_APPLY
@@ -108,7 +108,7 @@ def _position(needed: Sequence[float], reached: Sequence[float]) -> str:
     return IN_PART if needed[0] <= high and low <= needed[1] else OUTSIDE
 
 
-def between(ends: Sequence[float]) -> str:
-    """Format a range in words."""
+def range_text(ends: Sequence[float]) -> str:
+    """Format a range with three digits, such as "1 to 2.5"."""
     low, high = (f"{end:.3g}" for end in ends)
     return low if low == high else f"{low} to {high}"

@@ -189,7 +189,7 @@ def check_along_the_axis() -> CheckResult:
 
 
 def _check_elements(name: str, description: str, compute: Callable[[], float], **allowed: float) -> CheckResult:
-    """Run a check of the finite elements if they are installed."""
+    """Run a check of the finite elements; state the reason if the extra is not installed."""
     if find_spec("skfem") is None:
         return CheckResult(name=name, description=description, observed=None, why="the extra 'fem' is not installed")
     return CheckResult(name=name, description=description, observed=compute(), **allowed)

@@ -87,16 +87,18 @@ _QUANTITIES = {
 def _result_ranges(joints: Sequence[Joint], force: float) -> dict[str, tuple[float, float]]:
     """Compute the ranges of our results over joints at a force in N."""
     contacts = [reference.press(joint, force=force) for joint in joints]
-    return {title: _ends([getattr(contact, name) for contact in contacts]) for title, name in _QUANTITIES.items()}
+    return {
+        title: _value_range([getattr(contact, name) for contact in contacts]) for title, name in _QUANTITIES.items()
+    }
 
 
-def _ends(values: Sequence[Any]) -> tuple[float, float]:
+def _value_range(values: Sequence[Any]) -> tuple[float, float]:
     """Return the smallest and the largest value."""
     return float(min(values)), float(max(values))
 
 
 def durom() -> Comparator:
-    """Compare with a resurfacing of cobalt-chromium on bone."""
+    """Compare our results with a published resurfacing of cobalt-chromium on bone."""
     joints = [
         Joint(
             head_diameter=50.0,
@@ -129,7 +131,7 @@ def durom() -> Comparator:
 
 
 def metasul() -> Comparator:
-    """Compare with a metal inlay in polyethylene."""
+    """Compare our results with a published metal inlay in polyethylene."""
     joints = [
         Joint(
             head_diameter=28.0,
@@ -157,7 +159,7 @@ def metasul() -> Comparator:
 
 
 def mak() -> Comparator:
-    """Compare with a ceramic insert, for which the source uses Hertz' theory."""
+    """Compare Hertz' theory with our results for a ceramic insert, as the source does."""
     force, backings = 2500.0, ((), (Layer(thickness=3.0, material=TITANIUM),))
     joints = [
         Joint(ball_radius=radius, clearance=gap, liner_thickness=5.0, liner=ALUMINA, ball=ALUMINA, backing=backing)
@@ -186,11 +188,11 @@ def mak() -> Comparator:
         },
         published={"contact": "small against head and insert", "largest pressure and area": "as Hertz estimates them"},
         ours={
-            "largest pressure of Hertz over ours": _ends(
+            "largest pressure of Hertz over ours": _value_range(
                 [hertz.max_pressure / exact.max_pressure for exact, hertz in pairs]
             ),
-            "area of Hertz over ours": _ends([hertz.area / exact.area for exact, hertz in pairs]),
-            "radius of the contact over the insert's thickness": _ends(width),
+            "area of Hertz over ours": _value_range([hertz.area / exact.area for exact, hertz in pairs]),
+            "radius of the contact over the insert's thickness": _value_range(width),
         },
         reaches=similarity_ranges((joint, force) for joint in joints),
         agreement="Hertz is an estimate: up to a seventh low in pressure and a tenth high in area with a rigid "
@@ -200,7 +202,7 @@ def mak() -> Comparator:
 
 
 def kurtz() -> Comparator:
-    """Compare with a liner of 3 to 12 mm in a metal shell."""
+    """Compare our results with published liners of 3 to 12 mm in a metal shell."""
     force, thick = 2500.0, (3.0, 12.0)
     sets = [
         [
@@ -228,7 +230,7 @@ def kurtz() -> Comparator:
             "stress by direction of the load": "varies by about 20 %",
             "stress by friction of the shell": "varies by 1 to 10 %",
         },
-        ours={"largest pressure of 3 mm over that of 12 mm": _ends([thin / full for thin, full in pressures])},
+        ours={"largest pressure of 3 mm over that of 12 mm": _value_range([thin / full for thin, full in pressures])},
         reaches=similarity_ranges((joint, force) for pair in sets for joint in pair),
         agreement="Thickness has the largest influence in both; ours varies by less, 41 to 69 %. Head, clearance, "
         "load and moduli are not in the abstract, and their load is tilted: no agreement in numbers is claimed.",

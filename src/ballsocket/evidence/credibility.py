@@ -34,7 +34,7 @@ def model_risk(influence: str, consequence: str) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Factor:
-    """A credibility factor.
+    """Credibility factor of ASME V&V 40-2018 with its gradation, goals and assessment.
 
     Attributes
     ----------

@@ -53,8 +53,8 @@ def write(question: Question, record: Mapping[str, Any], page: PageMaker, folder
     contents[PAGE] = page_bytes(page(json.loads(contents[RECORD]), digest(contents)))
     (folder / SIGNATURE).unlink(missing_ok=True)
     for name, content in contents.items():
-        _write(folder / name, content)
-    _write(folder / SUMS, sums_bytes(contents))
+        _write_file(folder / name, content)
+    _write_file(folder / SUMS, sums_bytes(contents))
     return folder / PAGE
 
 
@@ -111,7 +111,7 @@ def digest_of(folder: Path) -> str:
 def sign_pack(folder: Path, key: Ed25519PrivateKey, sums: bytes | None = None) -> Path:
     """Sign the checksums of a pack, or compared bytes of them, and write the signature file."""
     message = (folder / SUMS).read_bytes() if sums is None else sums
-    return _write(folder / SIGNATURE, sign(message, key).encode())
+    return _write_file(folder / SIGNATURE, sign(message, key).encode())
 
 
 def read_checksums(folder: Path, contents: Mapping[str, bytes]) -> list[tuple[str, str]]:
@@ -184,7 +184,7 @@ def signature_of(folder: Path, expected: PublicKey | None = None, sums: bytes | 
     return Signed(key, None if expected is None else True)
 
 
-def check_room(folder: Path, question: Question) -> None:
+def check_folder(folder: Path, question: Question) -> None:
     """Raise ValueError for a folder with files that do not belong to the pack."""
     names = {*names_of(question), SUMS, SIGNATURE}
     expected = {*names, WORK, *(parent.as_posix() for name in names for parent in Path(name).parents)}
@@ -201,7 +201,7 @@ def _top_names(names: set[str]) -> set[str]:
     return {name.split("/")[0] for name in names}
 
 
-def _write(path: Path, content: bytes) -> Path:
+def _write_file(path: Path, content: bytes) -> Path:
     """Write a file atomically."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with write_atomically(path) as draft:

@@ -84,8 +84,8 @@ class Row:
     def summary(self) -> dict[str, Any]:
         """Return one dictionary for JSON, with the units of files."""
         return {
-            "case": {PARAMETERS[name].key: written(PARAMETERS[name], value) for name, value in self.case.items()},
-            "numbers": {NAMES[name].key: written(NAMES[name], value) for name, value in self.numbers.items()},
+            "case": {PARAMETERS[name].key: to_file_unit(PARAMETERS[name], value) for name, value in self.case.items()},
+            "numbers": {NAMES[name].key: to_file_unit(NAMES[name], value) for name, value in self.numbers.items()},
             "errors": {NAMES[name].key: value for name, value in self.errors.items() if isfinite(value)},
             "status": self.status,
             "valid": self.valid,
@@ -98,7 +98,7 @@ class Row:
         return Row(
             {name: case[p.key] / p.written.factor for name, p in PARAMETERS.items() if p.key in case},
             {
-                name: _read(quantity, numbers[quantity.key])
+                name: _to_internal_unit(quantity, numbers[quantity.key])
                 for name, quantity in NAMES.items()
                 if quantity.key in numbers
             },
@@ -108,12 +108,12 @@ class Row:
         )
 
 
-def _read(quantity: Quantity, value: float | None) -> float:
+def _to_internal_unit(quantity: Quantity, value: float | None) -> float:
     """Convert a number of a file to internal units; NaN for None."""
     return numpy.nan if value is None else value / quantity.written.factor
 
 
-def written(quantity: Quantity, value: float) -> float | None:
+def to_file_unit(quantity: Quantity, value: float) -> float | None:
     """Convert a number to the unit of files; None for a missing number."""
     return value * quantity.written.factor if isfinite(value) else None
 
@@ -129,7 +129,7 @@ def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
     values = {name: numpy.array([case[name] for case in cases]) for name in question.axes}
     joint, load, possible = pressable(question.file.joint, values)
     contact = question.model.press(joint, **load)
-    numbers = {name: _column(value, count) for name, value in _numbers(question, contact).items()}
+    numbers = {name: _column(value, count) for name, value in _contact_numbers(question, contact).items()}
     errors = {name: _column(value, count) for name, value in known_errors(contact).items() if name in NAMES}
     status, valid, made = (_column(value, count) for value in (contact.status, contact.valid, possible))
     return [
@@ -144,12 +144,12 @@ def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
     ]
 
 
-def _numbers(question: Question, contact: Contact) -> dict[str, Any]:
+def _contact_numbers(question: Question, contact: Contact) -> dict[str, Any]:
     """Return the numbers of a contact, by name."""
     numbers = {name: getattr(contact, name) for name in COMPUTED}
     numbers["edge_distance"] = _edge_distance(question, contact)
     if question.friction is not None:
-        numbers[TORQUE.name] = _torque(question, contact, question.friction)
+        numbers[TORQUE.name] = _friction_torque(question, contact, question.friction)
     return {name: value for name, value in numbers.items() if value is not None}
 
 
@@ -160,7 +160,7 @@ def _edge_distance(question: Question, contact: Contact) -> Any:
     return question.file.cup.edge_distance(contact.joint.socket_radius, contact.half_angle, UP)
 
 
-def _torque(question: Question, contact: Contact, friction: float) -> Any:
+def _friction_torque(question: Question, contact: Contact, friction: float) -> Any:
     """Compute the friction torque in N mm; off the axis an upper bound, with the ball radius as every lever."""
     if question.model.off_axis:
         return friction * contact.joint.ball_radius * contact.pressure_integral
@@ -220,7 +220,7 @@ class LimitCheck:
 
     def _end(self, end: float) -> float | None:
         """Convert an end of the limit to the unit of files."""
-        return written({**PARAMETERS, **NAMES, **QUANTITIES}[self.limit.name], end)
+        return to_file_unit({**PARAMETERS, **NAMES, **QUANTITIES}[self.limit.name], end)
 
     def summary(self) -> dict[str, Any]:
         """Return one dictionary for JSON."""
@@ -239,7 +239,7 @@ class LimitCheck:
 
 def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitCheck:
     """Check a limit over the matrix, with numbers of a relative accuracy."""
-    values = numpy.array([_limited(limit, row) for row in rows], dtype=float)
+    values = numpy.array([_limited_value(limit, row) for row in rows], dtype=float)
     margin = numpy.minimum(values - limit.low, limit.high - values)
     known = numpy.isfinite(values)
     order = numpy.where(known, margin, numpy.inf)
@@ -252,7 +252,7 @@ def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitChec
     )
 
 
-def _limited(limit: Limit, row: Row) -> float:
+def _limited_value(limit: Limit, row: Row) -> float:
     """Return the limited number of a row, or the parameter of its case."""
     return float(row.numbers.get(limit.name, row.case.get(limit.name, numpy.nan)))
 

@@ -24,7 +24,7 @@ from .credibility import model_risk
 from .matrix import WEAR, Row, check_limit, worst_rows
 from .plan import distinct_cases, plan, plan_worst_cases
 from .question import Question
-from .requirements import assessed
+from .requirements import assess
 from .worst_case import largest_deviation
 
 _SERIAL = Serial()
@@ -81,7 +81,7 @@ def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], r
         "model": {"name": question.model.name, "call": _CALL},
         "matrix": [row.summary() for row in rows],
         "worst": {name: row.summary() for name, row in worst.items()},
-        "drawn": _drawn(question, worst),
+        "drawn": _drawn_joint(question, worst),
         "limits": [check_limit(limit, rows, question.accuracy).summary() for limit in question.limits],
         "code_verification": results["code_verification"],
         "calculation": _calculations(worst, results),
@@ -94,7 +94,7 @@ def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], r
     for entry in (*record["claims"], *record["comparators"]):
         entry["applicability"] = applicability(entry["reaches"], ranges, question.model.off_axis)
     record["accurate"] = _accuracy(record)
-    return {**record, **assessed(record)}
+    return {**record, **assess(record)}
 
 
 _CALL = "question = read_question('question.toml'); compute_rows(question, list_cases(question))"
@@ -114,7 +114,7 @@ def _calculations(worst: Mapping[str, Row], results: Results) -> list[dict[str, 
     return calculations
 
 
-def _drawn(question: Question, worst: Mapping[str, Row]) -> dict[str, Any] | None:
+def _drawn_joint(question: Question, worst: Mapping[str, Row]) -> dict[str, Any] | None:
     """Return the joint and the contact with the largest pressure for a drawing; None without a result."""
     row = worst.get("max_pressure")
     if row is None:
@@ -151,8 +151,8 @@ def list_inputs(question: Question) -> list[dict[str, Any]]:
             "name": name,
             "value": value if abs(value) < inf else "inf",
             "unit": unit,
-            "tolerance": _tolerance(question, name),
-            "source": _source(question, name, body) or source,
+            "tolerance": _tolerance_text(question, name),
+            "source": _source_text(question, name, body) or source,
         }
         for body, name, value, unit, source in rows
     ]
@@ -170,14 +170,14 @@ def _material_inputs(body: str, material: Material | None, prefix: str = "") -> 
     ]
 
 
-def _source(question: Question, name: str, body: str) -> str:
+def _source_text(question: Question, name: str, body: str) -> str:
     """Return the source that the question states for an input; empty without one."""
     recentred = {DIAMETERS.get(entry.name, entry.name) for entry in question.recentred}
     by_tolerance = "nominal value of its tolerance in the question" if name in recentred else ""
     return question.sources.get(name) or by_tolerance or question.sources.get(body, "")
 
 
-def _tolerance(question: Question, name: str) -> str:
+def _tolerance_text(question: Question, name: str) -> str:
     """Format the tolerance of an input; empty without one."""
     spreads = {DIAMETERS.get(stated, stated): (stated, spread) for stated, spread in question.tolerances.items()}
     if name not in spreads:

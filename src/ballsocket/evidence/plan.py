@@ -30,7 +30,9 @@ def plan(question: Question) -> Plan:
     return Plan(
         name=_store_names(question)[0],
         parts={
-            "matrix": {f"block {number}": partial(_rows, question, block) for number, block in enumerate(blocks)},
+            "matrix": {
+                f"block {number}": partial(_row_summaries, question, block) for number, block in enumerate(blocks)
+            },
             "wear_rates": {
                 f"block {number}": partial(wear_rates, question, block)
                 for number, block in enumerate(blocks)
@@ -47,9 +49,10 @@ def plan_worst_cases(question: Question, worst: Mapping[str, Row]) -> Plan:
     """Return the plan of the pieces for the worst cases."""
     row = worst.get("max_pressure", next(iter(worst.values()), None))
     parts: dict[str, Mapping[str, Piece]] = {
-        "rival": {} if row is None else {"": partial(_calculix, question, row.case)},
+        "rival": {} if row is None else {"": partial(_calculix_summaries, question, row.case)},
         "calculation": {
-            f"case {number}": partial(_methods, question, case) for number, case in enumerate(distinct_cases(worst))
+            f"case {number}": partial(_method_summaries, question, case)
+            for number, case in enumerate(distinct_cases(worst))
         },
         "uncertainty": {},
         "wear": {},
@@ -67,17 +70,17 @@ def distinct_cases(worst: Mapping[str, Row]) -> list[Case]:
     return list({tuple(case.items()): case for case in cases}.values())
 
 
-def _rows(question: Question, cases: Sequence[Case]) -> list[dict[str, Any]]:
+def _row_summaries(question: Question, cases: Sequence[Case]) -> list[dict[str, Any]]:
     """Compute several cases and return their summaries."""
     return [row.summary() for row in compute_rows(question, cases)]
 
 
-def _methods(question: Question, case: Case) -> list[dict[str, Any]]:
+def _method_summaries(question: Question, case: Case) -> list[dict[str, Any]]:
     """Solve a case by all methods and return their summaries."""
     return [method.summary() for method in compare_methods(question, case)]
 
 
-def _calculix(question: Question, case: Case) -> list[dict[str, Any]]:
+def _calculix_summaries(question: Question, case: Case) -> list[dict[str, Any]]:
     """Solve a case with CalculiX and return its summary."""
     return [method.summary() for method in solve_with_calculix(question, case)]
 

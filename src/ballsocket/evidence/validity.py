@@ -16,7 +16,7 @@ import numpy
 from ..catalogue import catalogue
 from ..contact import Model
 from ..core.arrays import to_list
-from ..core.deprecation import renamed_fields
+from ..core.deprecation import renamed_fields, renamed_names
 from ..core.validity import Promise
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint, Material
@@ -99,7 +99,7 @@ def _log_uniform(rng: numpy.random.Generator, low: float, high: float, size: int
     return numpy.exp(rng.uniform(log(low), log(high), size))
 
 
-def promising(models: Iterable[Model] = tuple(catalogue.values())) -> Iterator[Model]:
+def models_with_promise(models: Iterable[Model] = tuple(catalogue.values())) -> Iterator[Model]:
     """Yield the models whose promise can be compared with the reference solution."""
     return (model for model in models if model.promise is not None and model.name != TRUTH.name)
 
@@ -150,3 +150,6 @@ def _select(number: Any, indices: Any) -> Numbers:
     """Return the numbers of some contacts; a single number belongs to all of them."""
     values = numpy.atleast_1d(numpy.asarray(number, dtype=float))
     return values if values.size == 1 else values[indices]
+
+
+__getattr__ = renamed_names(__name__, {"promising": "models_with_promise"})

@@ -209,7 +209,7 @@ def propagate_tolerances(question: Question, case: Case) -> dict[str, Any]:
     drawn = sample(count, seed=_SEED, method=Method.SOBOL, **spreads).part([slice(None)])
     made, loads, possible = pressable(joint, {**drawn, **load})
     contact = model.press(made, **loads)
-    results = {name: _known(getattr(contact, name), to_numpy(possible), count) for name in _BANDED}
+    results = {name: _finite_results(getattr(contact, name), to_numpy(possible), count) for name in _BANDED}
     indices = sensitivity(model, joint, spreads, quantities=_BANDED[:2], count=count // 4, load=load).total_order
     return {
         "model": model.name,
@@ -240,7 +240,7 @@ def _outside_notes(question: Question, case: Case) -> Iterator[str]:
             )
 
 
-def _known(values: Any, possible: Numbers, count: int) -> Numbers:
+def _finite_results(values: Any, possible: Numbers, count: int) -> Numbers:
     """Return the results of the samples that are possible joints and have a result."""
     results: Numbers = numpy.where(possible, numpy.broadcast_to(to_numpy(values), count), numpy.nan)
     return results[numpy.isfinite(results)]

@@ -148,11 +148,11 @@ def accuracies(
         if name == reference.name:
             continue
         try:
-            pressed = model.press(family, force=FORCES[:, None])
-            pushed = model.press(family, indentation=exact.indentation)
+            at_force = model.press(family, force=FORCES[:, None])
+            at_indentation = model.press(family, indentation=exact.indentation)
         except OutsideDomainError:
             continue
-        rows.append(_accuracy(name, family, inner, exact, pressed, pushed))
+        rows.append(_accuracy(name, family, inner, exact, at_force, at_indentation))
     return tuple(sorted(rows, key=lambda row: row.spreads["max_pressure"].median))
 
 
@@ -163,18 +163,20 @@ def _concatenate(first: Joint, second: Joint) -> Joint:
     return first.with_numbers([numpy.concatenate([a * shapes[0], b * shapes[1]]) for a, b in pairs])
 
 
-def _accuracy(name: str, joints: Joint, inner: slice, exact: Contact, pressed: Contact, pushed: Contact) -> Accuracy:
+def _accuracy(
+    name: str, joints: Joint, inner: slice, exact: Contact, at_force: Contact, at_indentation: Contact
+) -> Accuracy:
     """Compute the errors of one model from its contacts at given force and at given indentation."""
-    contacts = {"force": pushed}
+    contacts = {"force": at_indentation}
     spreads = {}
     for quantity in QUANTITIES:
-        value = getattr(contacts.get(quantity, pressed), quantity)
+        value = getattr(contacts.get(quantity, at_force), quantity)
         spreads[quantity] = _spread(abs(value / getattr(exact, quantity) - 1), joints, inner)
     return Accuracy(
         model=name,
         spreads=spreads,
-        answered=float(numpy.mean(numpy.isfinite(pressed.indentation))),
-        valid=float(numpy.mean(pressed.valid)),
+        answered=float(numpy.mean(numpy.isfinite(at_force.indentation))),
+        valid=float(numpy.mean(at_force.valid)),
     )
 
 

@@ -23,7 +23,7 @@ FIT = "Eq. (18), Table 3"
 """Name of the paper's closed form in figures of the modulus."""
 
 
-def _line(model: str, case: str, x: Any, y: Any) -> FigureLine:
+def _curve(model: str, case: str, x: Any, y: Any) -> FigureLine:
     """Create a curve from arrays."""
     return FigureLine(model=model, case=case, x=to_numpy(x).ravel().tolist(), y=to_numpy(y).ravel().tolist())
 
@@ -66,9 +66,9 @@ def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str
     family = cases.by_ratio(_RATIOS, poisson)
     by_force, by_clearance, by_ratio = [], [], []
     for name, model in models.items():
-        by_force.append(_line(name, case, _FORCES, _scaled(model, hip, _FORCES)))
-        by_clearance.append(_line(name, case, _CLEARANCES, _mean_modulus(model, wide)))
-        by_ratio.append(_line(name, case, _RATIOS, _mean_modulus(model, family)))
+        by_force.append(_curve(name, case, _FORCES, _scaled_modulus(model, hip, _FORCES)))
+        by_clearance.append(_curve(name, case, _CLEARANCES, _mean_modulus(model, wide)))
+        by_ratio.append(_curve(name, case, _RATIOS, _mean_modulus(model, family)))
     return {
         ("by force", CONTACT["force"].label()): by_force,
         ("by clearance", JOINT["clearance"].label()): by_clearance,
@@ -76,7 +76,7 @@ def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str
     }
 
 
-def _scaled(model: Model, joint: Joint, force: Numbers) -> Numbers:
+def _scaled_modulus(model: Model, joint: Joint, force: Numbers) -> Numbers:
     """Compute the dimensionless modulus of a model at forces in N."""
     contact = model.press(joint, force=force)
     return cases.scaled_modulus(contact.max_pressure, contact.indentation, joint.socket_radius)
@@ -84,7 +84,7 @@ def _scaled(model: Model, joint: Joint, force: Numbers) -> Numbers:
 
 def _mean_modulus(model: Model, joints: Joint) -> Numbers:
     """Compute the mean dimensionless modulus over 1 to 3 kN."""
-    return _scaled(model, joints, cases.LOADS[:, None]).mean(axis=0)
+    return _scaled_modulus(model, joints, cases.LOADS[:, None]).mean(axis=0)
 
 
 _STEPS = 25
@@ -156,7 +156,7 @@ def _load_panel(title: str, case: str, joint: Joint, models: Models) -> Panel:
     lines = []
     for name, model in models.items():
         pressed = model.press(joint, force=forces).indentation * depth.shown.factor
-        lines.append(_line(name, case, numpy.append(0.0, pressed), numpy.append(0.0, forces)))
+        lines.append(_curve(name, case, numpy.append(0.0, pressed), numpy.append(0.0, forces)))
     return Panel(title=title, x=depth.label(), y=force.label(), lines=lines, highest=float(forces[-1]))
 
 
@@ -172,7 +172,7 @@ def _pressure_panel(title: str, case: str, joint: Joint, models: Models, axis: P
     for name, model in models.items():
         contact = model.press(joint, force=cases.LOAD)
         angle = float(contact.half_angle) * numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 60))
-        lines.append(_line(name, case, position(joint, angle), contact.pressure(angle)))
+        lines.append(_curve(name, case, position(joint, angle), contact.pressure(angle)))
     return Panel(title=title, x=label, y=FIELD["pressure"].label(), lines=lines)
 
 

@@ -108,7 +108,7 @@ BY_EVALUATION: Expected = {}
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """A statement about contacts that can be computed: one row of a table of claims.
+    """Computable statement about contacts: one row of a table of claims.
 
     Attributes
     ----------

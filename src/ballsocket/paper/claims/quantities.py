@@ -44,7 +44,7 @@ def unbounded_moduli(_: Model) -> Computed:
 
 
 def errors_of_linear_kinematics(_: Model) -> Computed:
-    """Compare Eq. (6) with Eq. (5), both with Bartel's modulus, over the joints of Table 1."""
+    """Compute the errors of Eq. (6) against Eq. (5), both with Bartel's modulus, over the joints of Table 1."""
     joints = cases.outline()[-1]
     families = (cases.with_clearance(joints, cases.CLEARANCES[index]) for index in (0, -1))
     pairs = ((Vessel().press(f, force=cases.LOAD), Bartel().press(f, force=cases.LOAD)) for f in families)
@@ -108,7 +108,7 @@ def stiffening_by_confinement(reference: Model) -> Evaluation:
 
 
 def errors_of_table_3(reference: Model, thin: bool) -> Evaluation:
-    """Compare the foundation modulus of Table 3 with the reference, for thick (R2/L up to 4.1) or thin liners."""
+    """Compute the errors of the foundation modulus of Table 3, for thick (R2/L up to 4.1) or thin liners."""
     chosen = (RATIOS > 4.1) if thin else (RATIOS <= 4.1)
     columns = refit_table_3(reference)
     ends = [percent(column.difference[-1]) for column in columns]
@@ -121,7 +121,7 @@ def errors_of_table_3(reference: Model, thin: bool) -> Evaluation:
 
 
 def errors_of_a_rigid_ball(reference: Model) -> Computed:
-    """Compare a rigid head with a steel head at 3 kN."""
+    """Compute the errors of a rigid head against a steel head at 3 kN, in percent."""
     rigid, steel = (
         reference.press(joint, force=cases.LOAD) for joint in (replace(cases.hip(), ball=None), cases.hip())
     )
