@@ -1,13 +1,15 @@
 """Comparators: published numbers, our results, and the applicability to a question."""
 
+import math
+
 import numpy as np
 import pytest
 
 from ballsocket import Exact
 from ballsocket.evidence.applicability import SIMILARITY, applicability, question_ranges, range_text, similarity_ranges
 from ballsocket.evidence.comparators import CLAIMS, PUBLISHED, claim
-from ballsocket.problem import Joint, Material
-from ballsocket.problem.presets import COCR, UHMWPE, joints
+from ballsocket.problem import Joint, Layer, Material
+from ballsocket.problem.presets import ALUMINA, COCR, UHMWPE, joints
 
 HIP = joints["hip-36"]
 NEEDED = similarity_ranges([(HIP, 2000.0), (HIP.replace(clearance=0.05), 3000.0)])
@@ -158,3 +160,91 @@ def test_ranges_of_a_question_include_its_tolerances(pack):
     radius = question.file.joint.ball_radius
     assert low < 2000.0 / (750.0 * radius**2) < 4000.0 / (750.0 * radius**2) < high
     assert high == pytest.approx(4000.0 / (675.0 * radius**2), rel=0.06)
+
+
+def ends(values):
+    return pytest.approx((min(values), max(values)), rel=1e-9)
+
+
+def test_resurfacing_is_computed_for_the_stated_ranges_of_wall_and_bone(published):
+    """Wall 3.5 to 4.5 mm of cobalt-chromium on bone of 0.3 to 1 GPa, head 50 mm, bore 50.145 mm, 3200 N."""
+    contacts = [
+        Exact().press(
+            Joint(
+                ball_radius=25.0,
+                clearance=0.0725,
+                liner_thickness=wall,
+                liner=COCR,
+                ball=COCR,
+                backing=(Layer(thickness=math.inf, material=Material(young=bone, poisson=0.3)),),
+            ),
+            force=3200.0,
+        )
+        for wall in (3.5, 4.0, 4.5)
+        for bone in (300.0, 1000.0)
+    ]
+    ours = published["durom"].ours
+    assert ours["largest pressure, MPa"] == ends([float(contact.max_pressure) for contact in contacts])
+    assert ours["pole pressure, MPa"] == ends([float(contact.pole_pressure) for contact in contacts])
+    assert ours["contact area, mm²"] == ends([float(contact.area) for contact in contacts])
+    assert published["durom"].reaches["R1/L"] == pytest.approx((25.0 / 4.5, 25.0 / 3.5))
+    assert published["durom"].reaches["c/R1"] == pytest.approx((0.0029, 0.0029))
+    assert published["durom"].reaches["F/(E R1²)"][0] == pytest.approx(3200.0 / (COCR.young * 625.0))
+
+
+def test_inlay_is_computed_for_the_stated_ranges_of_wall_and_polyethylene(published):
+    """Wall 2 to 4 mm on 3 to 5 mm of polyethylene, head 28 mm, bore 28.12 mm, 3200 N."""
+    pressures = [
+        float(
+            Exact()
+            .press(
+                Joint(
+                    ball_radius=14.0,
+                    clearance=0.06,
+                    liner_thickness=wall,
+                    liner=COCR,
+                    ball=COCR,
+                    backing=(Layer(thickness=thickness, material=UHMWPE),),
+                ),
+                force=3200.0,
+            )
+            .max_pressure
+        )
+        for wall in (2.0, 3.0, 4.0)
+        for thickness in (3.0, 5.0)
+    ]
+    assert published["metasul"].ours["largest pressure, MPa"] == ends(pressures)
+    assert published["metasul"].reaches["R1/L"] == pytest.approx((3.5, 7.0))
+
+
+def test_ceramic_insert_covers_two_heads_and_three_clearances(published):
+    reaches = published["mak"].reaches
+    assert reaches["c/R1"] == pytest.approx((0.02 / 18.0, 0.08 / 14.0))
+    assert reaches["R1/L"] == pytest.approx((14.0 / 5.0, 18.0 / 5.0))
+    assert reaches["F/(E R1²)"] == pytest.approx(
+        (2500.0 / (ALUMINA.young * 18.0**2), 2500.0 / (ALUMINA.young * 14.0**2))
+    )
+
+
+def test_liners_in_a_shell_cover_three_heads_and_three_clearances(published):
+    reaches = published["kurtz"].reaches
+    assert reaches["c/R1"] == pytest.approx((0.05 / 16.0, 0.2 / 11.0))
+    assert reaches["R1/L"] == pytest.approx((11.0 / 12.0, 16.0 / 3.0))
+    assert reaches["F/(E R1²)"] == pytest.approx((2500.0 / (UHMWPE.young * 16.0**2), 2500.0 / (UHMWPE.young * 11.0**2)))
+    middle = [
+        float(
+            Exact()
+            .press(
+                Joint(ball_radius=14.0, clearance=0.1, liner_thickness=thickness, liner=UHMWPE, ball=COCR), force=2500.0
+            )
+            .max_pressure
+        )
+        for thickness in (3.0, 12.0)
+    ]
+    low, high = published["kurtz"].ours["largest pressure of 3 mm over that of 12 mm"]
+    assert low < middle[0] / middle[1] < high
+
+
+def test_strain_of_the_ptfe_liner_follows_from_the_stated_modulus(published):
+    (strain,) = published["ptfe"].ours.values()
+    assert strain == pytest.approx((482 / 31.0264, 541 / 31.0264), rel=1e-4)

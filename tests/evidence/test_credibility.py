@@ -249,7 +249,7 @@ def test_the_accuracy_is_a_row(record, largest, holds, status):
     )
 
 
-@pytest.mark.parametrize(("error", "status"), [(0.04, "met"), (0.6, "not met")])
+@pytest.mark.parametrize(("error", "status"), [(0.04, "met"), (0.49, "met"), (0.51, "not met"), (0.6, "not met")])
 def test_an_error_larger_than_the_margin_is_a_gap(record, error, status):
     for row in record["matrix"]:
         row["numbers"]["max_pressure"], row["errors"]["max_pressure"] = 10.0, error

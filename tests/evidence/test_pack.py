@@ -266,6 +266,40 @@ def test_code_checks_pass_or_state_why_they_did_not_run(name):
         assert result.passed is True
 
 
+@pytest.mark.parametrize(("text", "accuracy"), [('"5 %"', 0.05), ('"100 %"', 1.0), ("0.2", 0.2), ('"1.5e-1"', 0.15)])
+def test_accuracy_is_a_share_or_a_percentage(asked, text, accuracy):
+    asked.write_text(QUESTION_TEXT.replace('"5 %"', text), encoding="utf-8")
+    assert read_question(asked).accuracy == pytest.approx(accuracy, rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ['"101 %"', '"0 %"', "1.001", "-0.1"])
+def test_accuracy_is_above_0_and_at_most_100_percent(asked, text):
+    asked.write_text(QUESTION_TEXT.replace('"5 %"', text), encoding="utf-8")
+    with pytest.raises(ValueError, match="above 0, at most 100 %"):
+        read_question(asked)
+
+
+@pytest.mark.parametrize(("coefficient", "allowed"), [("0", True), ("2", True), ("2.01", False), ("-0.01", False)])
+def test_friction_is_0_to_2(asked, coefficient, allowed):
+    asked.write_text(QUESTION_TEXT.replace("coefficient = 0.06", f"coefficient = {coefficient}"), encoding="utf-8")
+    if allowed:
+        assert read_question(asked).friction == float(coefficient)
+    else:
+        with pytest.raises(ValueError, match="a coefficient of friction is 0 to 2"):
+            read_question(asked)
+
+
+def test_a_matrix_has_at_most_2000_cases(asked):
+    for count, allowed in ((1000, True), (1001, False)):
+        forces = str([1000 + number for number in range(count)])
+        asked.write_text(QUESTION_TEXT.replace('["2 kN", "4 kN"]', forces), encoding="utf-8")
+        if allowed:
+            assert len(matrix.list_cases(read_question(asked))) == 2000
+        else:
+            with pytest.raises(ValueError, match="cases of the matrix = 2002"):
+                read_question(asked)
+
+
 def test_the_example_question_is_valid():
     question = read_question(ROOT / "examples" / "evidence.toml")
     assert question.model.name == "exact"
@@ -292,6 +326,8 @@ def test_a_matrix_of_cup_angles_uses_the_off_axis_solver(asked, tmp_path):
         ('liner_young = "900 +- 150 MPa"', 900.0),  # inside, but not where the tolerance says
         ('liner_young = "600 .. 800 MPa"', 700.0),  # a range states no nominal value: the middle
         ('liner_young = "900 .. 1200 MPa"', 1000.0),  # which the joint's value may have
+        ('liner_young = "1005 +- 100 MPa"', 1005.0),  # also for a small difference
+        ('liner_young = "1000 +- 100 MPa"', 1000.0),
     ],
 )
 def test_nominal_values_are_those_of_the_tolerances(asked, tolerance, used):

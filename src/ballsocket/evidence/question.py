@@ -1,4 +1,4 @@
-"""The question that evidence is gathered for: a file with its context of use, inputs, limits and worst cases."""
+"""Question files: a question with its context of use, its inputs, its limits and its matrix of cases."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def evidence_page(record: Record, digest: str = "") -> str:
     Parameters
     ----------
     record : mapping
-        See `evidence.pack.gathered`.
+        See `evidence.pack.gather_evidence`.
     digest : str
         Digest of the pack, see `evidence.folder.digest`; omitted if empty.
     """
