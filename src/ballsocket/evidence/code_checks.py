@@ -188,11 +188,14 @@ def check_along_the_axis() -> CheckResult:
     )
 
 
-def _check_elements(name: str, description: str, compute: Callable[[], float], **allowed: float) -> CheckResult:
+def _check_elements(
+    name: str, description: str, compute: Callable[[], float], low: float = 0.0, high: float = inf
+) -> CheckResult:
     """Run a check of the finite elements; state the reason if the extra is not installed."""
-    if find_spec("skfem") is None:
-        return CheckResult(name=name, description=description, observed=None, why="the extra 'fem' is not installed")
-    return CheckResult(name=name, description=description, observed=compute(), **allowed)
+    installed = find_spec("skfem") is not None
+    why = "" if installed else "the extra 'fem' is not installed"
+    observed = compute() if installed else None
+    return CheckResult(name=name, description=description, observed=observed, low=low, high=high, why=why)
 
 
 def check_patch_test() -> CheckResult:
