@@ -4,6 +4,7 @@ import copy
 import json
 import shutil
 from functools import partial
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -473,3 +474,27 @@ def test_every_requirement_is_a_row_with_a_gap_unless_it_is_met(pack):
     without = [row for row in rows.values() if row["id"].startswith("I") and row["status"] == "not met"]
     assert [row["requirement"] for row in without] == ["source of the coefficient of friction"]
     assert {row["id"] for row in gaps(record)} == {name for name, row in rows.items() if row["status"] != "met"}
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("calculation.beside", "worst_case.compare_methods"),
+        ("scatter.scattered", "worst_case.propagate_tolerances"),
+        ("wear.worn", "worst_case.wear_history"),
+        ("matrix.rows", "matrix.compute_rows"),
+        ("matrix.cases", "matrix.list_cases"),
+        ("pack.gathered", "pack.gather_evidence"),
+        ("requirements.assessed", "requirements.assess"),
+        ("comparison.signature_of", "folder.signature_of"),
+        ("comparator.reach_of", "applicability.similarity_ranges"),
+        ("code_checks.Checked", "code_checks.CheckResult"),
+    ],
+)
+def test_calls_in_packs_of_version_1_0_still_work(old, new):
+    def resolve(path):
+        module, _, name = path.partition(".")
+        return getattr(import_module(f"ballsocket.evidence.{module}"), name)
+
+    with pytest.warns(DeprecationWarning, match=new.rpartition(".")[2]):
+        assert resolve(old) is resolve(new)

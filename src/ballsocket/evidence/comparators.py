@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..catalogue import reference
+from ..core.deprecation import renamed_names
 from ..models.half_space import Hertz
 from ..paper.claims import ELSEWHERE, Claim, judge
 from ..problem import Joint, Layer, Material
@@ -98,7 +99,7 @@ def _value_range(values: Sequence[Any]) -> tuple[float, float]:
 
 
 def durom() -> Comparator:
-    """Compare our results with a published resurfacing of cobalt-chromium on bone."""
+    """Compare our results with the published DUROM resurfacing: cobalt-chromium on bone."""
     joints = [
         Joint(
             head_diameter=50.0,
@@ -131,7 +132,7 @@ def durom() -> Comparator:
 
 
 def metasul() -> Comparator:
-    """Compare our results with a published metal inlay in polyethylene."""
+    """Compare our results with the published METASUL inlay: metal in polyethylene."""
     joints = [
         Joint(
             head_diameter=28.0,
@@ -297,3 +298,14 @@ def claim(name: str) -> dict[str, Any]:
     ranges = {group: list(ends) for group, ends in similarity_ranges([row.joints()]).items()}
     call = f"ballsocket.evidence.comparators.claim({name!r})"
     return {**judge(row, reference).summary(), "reaches": ranges, "call": call}
+
+
+_APPLICABILITY = "ballsocket.evidence.applicability"
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "applicability": f"{_APPLICABILITY}.applicability",
+        "between": f"{_APPLICABILITY}.range_text",
+        "reach_of": f"{_APPLICABILITY}.similarity_ranges",
+    },
+)

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.checks import shown
-from ..core.deprecation import renamed_arguments
+from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.fingerprint import fingerprint
 from .folder import (
@@ -325,7 +325,7 @@ def _leaf_pairs(written: Any, now: Any, where: str) -> Iterator[Difference]:
 
 
 def _agrees(pair: Difference, computed: Mapping[str, Any]) -> bool:
-    """Compare a pair of values, numbers within a tolerance."""
+    """Check that the two values of a pair are equal, numbers within a tolerance."""
     if pair.reason or type(pair.written) is not type(pair.now):
         return False
     if not isinstance(pair.now, float):
@@ -339,3 +339,8 @@ def _agrees(pair: Difference, computed: Mapping[str, Any]) -> bool:
 
 
 _OBSERVED = re.compile(r"code_verification\[(\d+)\]\.observed")
+
+
+__getattr__ = renamed_names(
+    __name__, {name: f"ballsocket.evidence.folder.{name}" for name in ("Signed", "signature_of")}
+)

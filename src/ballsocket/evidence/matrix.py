@@ -218,7 +218,7 @@ class LimitCheck:
             return "not known"
         return "kept, but nearer than the required accuracy" if self.marginal else "kept"
 
-    def _end(self, end: float) -> float | None:
+    def _in_file_unit(self, end: float) -> float | None:
         """Convert an end of the limit to the unit of files."""
         return to_file_unit({**PARAMETERS, **NAMES, **QUANTITIES}[self.limit.name], end)
 
@@ -227,8 +227,8 @@ class LimitCheck:
         return {
             "limit": str(self.limit),
             "name": self.limit.name,
-            "low": self._end(self.limit.low),
-            "high": self._end(self.limit.high),
+            "low": self._in_file_unit(self.limit.low),
+            "high": self._in_file_unit(self.limit.high),
             "verdict": self.verdict,
             "beyond": self.beyond,
             "unknown": self.unknown,

@@ -213,4 +213,6 @@ def made_with() -> dict[str, str]:
     return {"python": platform.python_version(), "system": machine, **versions, **drawing}
 
 
-__getattr__ = renamed_names(__name__, {"gathered": "gather_evidence", "silent": "ignore_progress"})
+__getattr__ = renamed_names(
+    __name__, {"gathered": "gather_evidence", "inputs": "list_inputs", "silent": "ignore_progress"}
+)

@@ -16,6 +16,7 @@ import numpy
 from ..catalogue import reference
 from ..contact import Contact, Model
 from ..core.arrays import Numbers, to_numpy
+from ..core.deprecation import renamed_names
 from ..core.quantities import CONTACT, QUANTITIES
 from ..core.validity import OutsideDomainError
 from ..elasticity.exact.tabulated.model import Tabulated
@@ -127,7 +128,7 @@ def _solve_aligned(question: Question, joint: Joint, load: Mapping[str, Any]) ->
 
 
 def _solve(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
-    """Solve a case with one model."""
+    """Solve a case with one model; return its numbers, known errors and notes."""
     contact = model.press(joint, **load)
     return CalculationMethod(
         name=name,
@@ -247,7 +248,7 @@ def _finite_results(values: Any, possible: Numbers, count: int) -> Numbers:
 
 
 def _band(name: str, values: Numbers) -> Mapping[str, float]:
-    """Compute the band of a quantity in the unit of files."""
+    """Compute low end, median and high end of a quantity over the samples, in the unit of files."""
     factor = QUANTITIES[name].written.factor
     ends = numpy.percentile(values, _PERCENTILES) * factor
     return {"low": float(ends[0]), "median": float(ends[1]), "high": float(ends[2]), "answered": len(values)}
@@ -301,3 +302,14 @@ def wear_history(question: Question, case: Case) -> dict[str, Any]:
         variability = replace(file.uncertain.variability, use=hip)
         result |= uncertainty(variability, history, count=file.uncertain.count, seed=file.uncertain.seed).summary()
     return result
+
+
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "beside": "compare_methods",
+        "scattered": "propagate_tolerances",
+        "rates": "wear_rates",
+        "worn": "wear_history",
+    },
+)

@@ -171,7 +171,7 @@ def _accuracy(
     spreads = {}
     for quantity in QUANTITIES:
         value = getattr(contacts.get(quantity, at_force), quantity)
-        spreads[quantity] = _spread(abs(value / getattr(exact, quantity) - 1), joints, inner)
+        spreads[quantity] = _error_statistics(abs(value / getattr(exact, quantity) - 1), joints, inner)
     return Accuracy(
         model=name,
         spreads=spreads,
@@ -180,7 +180,7 @@ def _accuracy(
     )
 
 
-def _spread(error: Numbers, joints: Joint, inner: slice) -> Spread:
+def _error_statistics(error: Numbers, joints: Joint, inner: slice) -> Spread:
     """Compute median and percentile of errors (loads, joints) over the inner joints, and the maximum over all."""
     inside = error[:, inner]
     known = inside[numpy.isfinite(inside)]

@@ -26,7 +26,7 @@ def _excess_of_the_elements(numbers: Computed) -> str:
     return f"Theirs follow from elements whose peak pressure is {min(excess):.1f} to {max(excess):.1f} % higher."
 
 
-def _grows(numbers: Computed) -> bool:
+def _deviation_grows(numbers: Computed) -> bool:
     """Check that the deviation grows with ν, and exceeds 15 % at ν 0.46."""
     values = list(numbers.values())
     return all(first <= second for first, second in pairwise(values)) and values[-2] > 15
@@ -54,7 +54,7 @@ CLAIMS: tuple[Claim, ...] = (
         source="Section 3",
         statement="Bartel's model is somewhat stiffer than the liner, noticeably so for larger Poisson's ratios.",
         quantity=quantities.deviations_of_bartel,
-        expected=_grows,
+        expected=_deviation_grows,
     ),
     Claim(
         name="only-the-liner-deforms",
