@@ -15,6 +15,8 @@ from ballsocket.studies.phrases import limit_of
 
 from .small_pack import QUESTION_TEXT
 
+pytestmark = pytest.mark.xdist_group("evidence")  # the pack is computed once
+
 
 def row(**numbers):
     return Row({"force": 1.0}, numbers, {}, "OK", True)
