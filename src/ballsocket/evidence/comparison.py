@@ -302,7 +302,7 @@ def _compare_checksums(
     sums = dict(checksums)
     both = [*sums, *(name for name in names if name not in sums)]
     now = {name: sha256(files[name]).hexdigest() if name in files else "missing" for name in both}
-    stated = {name: sums.get(name, "not checksums") for name in both}
+    stated = {name: sums.get(name, "not listed") for name in both}
     wrong = [Difference(name, stated[name], now[name]) for name in both if stated[name] != now[name]]
     if not wrong and written != sums_bytes(files):
         reason = "has other content than checksums, or lists them in another order"
