@@ -2,6 +2,7 @@
 
 import copy
 import json
+import math
 import shutil
 from functools import partial
 from importlib import import_module
@@ -13,12 +14,13 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.storage.plan import Plan
 from ballsocket.evidence import matrix
+from ballsocket.evidence import pack as pack_module
 from ballsocket.evidence.code_checks import CHECKS
 from ballsocket.evidence.comparison import compare, contradictions
 from ballsocket.evidence.credibility import FACTORS, model_risk
 from ballsocket.evidence.folder import PAGE, QUESTION, RECORD, SUMS, source_files
 from ballsocket.evidence.pack import gather_evidence, list_inputs
-from ballsocket.evidence.question import read_question
+from ballsocket.evidence.question import Recentred, read_question
 from ballsocket.evidence.requirements import assess, gaps
 from ballsocket.evidence.worst_case import propagate_tolerances, wear_history, wear_rates
 
@@ -356,6 +358,22 @@ def test_nominal_values_are_those_of_the_tolerances(asked, tolerance, used):
     row = next(row for row in list_inputs(question) if row["name"] == "liner_young")
     assert row["value"] == used
     assert (row["source"] == "nominal value of its tolerance in the question") == (used != 1000.0)
+
+
+def test_recentred_inputs_are_written_in_the_units_of_files():
+    summary = Recentred("half_angle", math.radians(30.0), math.radians(40.0)).summary()
+    assert summary == {"name": "half_angle", "stated": pytest.approx(30.0), "used": pytest.approx(40.0)}
+
+
+@pytest.mark.parametrize(("required", "holds"), [(0.05, True), (1e-6, False)])
+def test_accuracy_compares_errors_and_deviations_with_the_required_accuracy(pack, required, holds):
+    record = copy.deepcopy(pack[1])
+    record["required"]["accuracy"] = required
+    result = pack_module._accuracy(record)
+    deviations = [value for piece in record["calculation"] for value in piece["deviation"].values()]
+    assert result == {"largest": max(deviations), "required": required, "holds": holds}
+    record["matrix"][0]["errors"]["max_pressure"] = 0.04
+    assert pack_module._accuracy(record)["largest"] == 0.04
 
 
 def test_the_band_of_a_tolerance_includes_the_worst_case(asked):
