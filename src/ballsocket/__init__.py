@@ -40,8 +40,8 @@ from .elasticity.off_axis import (
     orient,
     read_scan,
 )
+from .files.joint_file import read_joint
 from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
-from .io.joint_file import read_joint
 from .models.adhesion import AdhesiveSocket
 from .models.closed_form import ClosedForm
 from .models.foundation import (

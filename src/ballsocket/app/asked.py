@@ -10,11 +10,11 @@ from typing import Any
 from ..core.checks import check_names, check_text, shown
 from ..core.kinds import Kind
 from ..evidence.question import LEVELS, Question, read_question
+from ..files.joint_file import JointFile
+from ..files.joint_toml import Tables, tables_of
+from ..files.named_joint import PARTS
+from ..files.units import parse
 from ..hip.cycle_registry import CYCLES
-from ..io.joint_file import JointFile
-from ..io.joint_toml import Tables, tables_of
-from ..io.named_joint import PARTS
-from ..io.units import parse
 from ..problem.cup import Cup
 from ..problem.presets import joints
 from ..studies.parameters import PARAMETERS

@@ -10,6 +10,8 @@ from typing import Any
 
 from ..core.checks import check_names, require, shown
 from ..core.kinds import Kind
+from ..files.joint_file import JointFile
+from ..files.units import parse
 from ..hip import Cycle, HipSimulation, named_cycle
 from ..hip.config import parse_creep, parse_surface
 from ..hip.creep_laws import CREEP_LAWS
@@ -19,8 +21,6 @@ from ..hip.in_vivo import check_body_weight
 from ..hip.law_fields import Law, LawField
 from ..hip.wear_law import COEFFICIENT
 from ..hip.wear_laws import WEAR_LAWS, read_wear_law
-from ..io.joint_file import JointFile
-from ..io.units import parse
 
 CONTACTS = ("springs", "shell", "cup")
 LAWS = tuple(WEAR_LAWS)

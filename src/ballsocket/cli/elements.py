@@ -20,8 +20,8 @@ from ..elasticity.finite_elements.contact import MeshedContact
 from ..elasticity.finite_elements.model import FiniteElement
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Uniform
-from ..io.joint_file import read_cup
-from ..io.units import parse
+from ..files.joint_file import read_cup
+from ..files.units import parse
 from ..problem.cup import Cup
 from .words import given
 

@@ -13,8 +13,8 @@ import ballsocket as bs
 
 from ..core.checks import known_name
 from ..core.kinds import Kind
+from ..files.units import parse
 from ..identify.modulus import FORCES, Form
-from ..io.units import parse
 from ..output.reference_terminal import print_calibration, print_table_3
 from ..paper.table_3 import refit_table_3
 from .root import app, echo_path

@@ -13,7 +13,7 @@ import typer
 
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..problem.cup import Cup
 from ..studies.file import named_model
 from ..studies.usual import usual

@@ -16,8 +16,8 @@ from ..core.kinds import Kind
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
 from ..elasticity.off_axis.model import Sphere
-from ..io.joint_file import JointFile, read_aim
-from ..io.units import parse
+from ..files.joint_file import JointFile, read_aim
+from ..files.units import parse
 from ..problem import Joint
 from ..problem.cup import Cup
 from .elements import error_bars

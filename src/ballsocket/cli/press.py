@@ -15,7 +15,7 @@ from ..compare import Comparison, successful_contacts
 from ..contact import Model
 from ..core.checks import known_name
 from ..core.validity import Status
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output import terminal
 from ..output.unit_systems import Units
 from ..problem.cup import UP

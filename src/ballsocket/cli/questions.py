@@ -14,7 +14,7 @@ import ballsocket as bs
 from ..catalogue import reference
 from ..contact import Model
 from ..core.checks import require
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output import study_plots, study_summary, study_terminal
 from ..output.save import check_format, save
 from ..problem import Joint

@@ -15,11 +15,11 @@ from ..contact import Model
 from ..core.checks import check_text, nearest, require, shown
 from ..core.input_files import open_input, recorded_inputs, resolve_input
 from ..core.quantities import QUANTITIES
+from ..files.joint_file import KEYS, JointFile, check_keys
+from ..files.named_joint import PARTS, joint_in
+from ..files.toml import read_toml, table_of
+from ..files.units import parse
 from ..hip.config import read_hip
-from ..io.joint_file import KEYS, JointFile, check_keys
-from ..io.named_joint import PARTS, joint_in
-from ..io.toml import read_toml, table_of
-from ..io.units import parse
 from ..studies.design import check_values, grid
 from ..studies.distributions import Distribution, Rectangular
 from ..studies.limits import Limit

@@ -14,10 +14,10 @@ from ..core.checks import known_name, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
-from ..io.joint_file import KEYS, JointFile, check_keys, read_cup
-from ..io.named_joint import PARTS, joint_in
-from ..io.toml import read_toml, table_of
-from ..io.units import parse
+from ..files.joint_file import KEYS, JointFile, check_keys, read_cup
+from ..files.named_joint import PARTS, joint_in
+from ..files.toml import read_toml, table_of
+from ..files.units import parse
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from ..studies.distributions import check_nominal

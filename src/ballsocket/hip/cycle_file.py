@@ -14,8 +14,8 @@ from ..core.arrays import Numbers
 from ..core.checks import check_names, check_text, known_name, require, shown
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.kinds import Kind
-from ..io.toml import table_of
-from ..io.units import parse
+from ..files.toml import table_of
+from ..files.units import parse
 from ..problem.cup import Side
 from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction, check_step_count
 from .cycle_registry import CYCLES, named_cycle

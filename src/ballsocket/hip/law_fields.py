@@ -13,7 +13,7 @@ from typing import Any, ClassVar, TypeVar
 
 from ..core.checks import known_name, require, shown
 from ..core.kinds import Kind
-from ..io.units import convert, parse, parse_units, split_quantity
+from ..files.units import convert, parse, parse_units, split_quantity
 
 _WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")
 """Force times length in a denominator, which people write without brackets."""

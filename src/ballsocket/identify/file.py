@@ -13,10 +13,10 @@ from ..contact import Model
 from ..core.checks import check_names, check_text, known_name, shown
 from ..core.kinds import Kind
 from ..core.quantities import LOADS
-from ..io.joint_file import KEYS, check_keys
-from ..io.named_joint import PARTS, joint_in
-from ..io.toml import read_toml, table_of
-from ..io.units import parse
+from ..files.joint_file import KEYS, check_keys
+from ..files.named_joint import PARTS, joint_in
+from ..files.toml import read_toml, table_of
+from ..files.units import parse
 from ..problem import Joint
 from ..studies.file import named_model
 from ..studies.phrases import ends_of

@@ -13,10 +13,10 @@ from ..core.checks import check_names, check_text, known_name, nearest, shown
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
 from ..elasticity.exact.exact_curve import ExactCurve
-from ..io.joint_file import KEYS, check_keys, named_material
-from ..io.named_joint import PARTS, joint_in
-from ..io.toml import read_toml, table_of
-from ..io.units import parse
+from ..files.joint_file import KEYS, check_keys, named_material
+from ..files.named_joint import PARTS, joint_in
+from ..files.toml import read_toml, table_of
+from ..files.units import parse
 from ..problem import Joint
 from .axes import Method, Span
 from .design import Design, grid, sample

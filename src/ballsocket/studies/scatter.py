@@ -7,7 +7,7 @@ from typing import Any
 
 from ..core.checks import shown
 from ..core.kinds import Kind
-from ..io.units import as_given, parse
+from ..files.units import as_given, parse
 from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 
 Read = Callable[[str, Any], float]

@@ -13,7 +13,7 @@ from typer.models import ArgumentInfo
 from ...core.checks import check_names, known_name, shown
 from ...core.input_files import AllowedFolders, resolved_path
 from ...core.storage.atomic_files import write_text
-from ...io.toml import MOST, read_toml
+from ...files.toml import MOST, read_toml
 from .schema import option, parameters
 from .table import TOOLS, Tool
 

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 import ballsocket as bs
 from ballsocket.core.kinds import Kind
-from ballsocket.io.joint_file import JointFile, joint_of, parse_joint
-from ballsocket.io.joint_toml import tables_of, toml_of
-from ballsocket.io.units import parse
+from ballsocket.files.joint_file import JointFile, joint_of, parse_joint
+from ballsocket.files.joint_toml import tables_of, toml_of
+from ballsocket.files.units import parse
 from ballsocket.studies.file import read_study
 
 from ..places import EXAMPLES
