@@ -1,45 +1,144 @@
-"""A joint file: TOML with units in, `Joint` and load out. Strict: what is not known is named, with what is near it."""
+"""Joint files: TOML with units that describes a joint, its cup and its load."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from enum import Enum
 from math import degrees, hypot, inf, pi
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar, Self
 
 from ..contact.assembly import check_load
 from ..core.checks import check_text, known_name, nearest, require, shown
 from ..core.kinds import Kind
-from ..core.quantities import CUP, LAYER, LOADS, MATERIAL, STRESS_LIMITS
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup, Interface, Side
-from ..problem.dimensions import LENGTHS
 from ..problem.presets import materials
-from .toml import parse_toml, read_toml, table_of
+from .schema import (
+    Angle,
+    Force,
+    Length,
+    Modulus,
+    Number,
+    Table,
+    Text,
+    Value,
+    meaning,
+    quantities_of,
+    read_table,
+    written_in,
+)
+from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
-_CHOICES: dict[str, type[Enum]] = {"interface": Interface, "side": Side}
-_AIM = ("tilt", "direction")
-_TABLES = {
-    "": ("name", "source", "joint", "liner", "ball", "backing", "cup", "load"),
-    "joint": (*LENGTHS, "support"),
-    "liner": ("material", *MATERIAL, *STRESS_LIMITS),
-    "ball": ("material", *MATERIAL, *STRESS_LIMITS),
-    "cup": (*CUP, *_CHOICES),
-    "load": (*LOADS, *_AIM),
-}
-KEYS: Mapping[str, Sequence[str]] = {**_TABLES, "backing": (*LAYER, "material", *MATERIAL, *STRESS_LIMITS)}
-_HEADS = {"backing": "[[backing]]"}
-_MOST_LAYERS = 20
+_MAX_LAYERS = 20
+"""Largest number of layers behind the liner."""
+
+
+class LengthsTable(Table, kw_only=True):
+    """Lengths of a joint: two of radii and clearance, and the thickness of the liner or an outer dimension."""
+
+    ball_radius: Length | None = None
+    head_diameter: Length | None = None
+    socket_radius: Length | None = None
+    clearance: Length | None = None
+    diametral_clearance: Length | None = None
+    liner_thickness: Length | None = None
+    outer_radius: Length | None = None
+    outer_diameter: Length | None = None
+    interference: Length | None = None
+    support: Annotated[Support, meaning("outermost surface behind the liner: fixed or free")] = Support.FIXED
+
+
+class MaterialTable(Table, kw_only=True):
+    """Material: a preset by name, numbers, or both; numbers win over those of the preset."""
+
+    qualified: ClassVar[bool] = True
+
+    material: Annotated[Text | None, meaning("name of a preset material")] = None
+    young: Modulus | None = None
+    poisson: Number | None = None
+    proportional_limit: Modulus | None = None
+    yield_stress: Modulus | None = None
+    fatigue_limit: Modulus | None = None
+    allowable_pressure: Modulus | None = None
+
+
+class LayerTable(MaterialTable, kw_only=True):
+    """Layer behind the liner, from the liner outwards."""
+
+    thickness: Annotated[Length, meaning("thickness of the layer; inf is a massive body")]
+
+
+class CupTable(Table, kw_only=True):
+    """Cup: its rim, its interface with the liner, and its orientation in the body."""
+
+    arc_of_cover: Angle | None = None
+    chamfer: Length | None = None
+    inclination: Angle | None = None
+    anteversion: Angle | None = None
+    interface: Annotated[Interface | None, meaning("interface of liner and backing: bonded or sliding")] = None
+    side: Annotated[Side | None, meaning("side of the body: right or left")] = None
+
+
+class Direction(Value, tuple[float, ...]):
+    """Direction of a load: three numbers to the right, to the front and upwards."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": ["array", "string"], "minItems": 3, "maxItems": 3}
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert three numbers: a list, or a text with commas."""
+        parts = value.split(",") if isinstance(value, str) else value
+        if not isinstance(parts, list | tuple) or len(parts) != 3:
+            raise ValueError(f"{name} = {shown(value)} must be three numbers: to the right, to the front, upwards")
+        numbers = cls(parse(name, part, Kind.NUMBER) for part in parts)
+        length = hypot(*numbers)
+        require(f"length of {name}", length, 0 < length < inf, "a direction points somewhere")
+        return numbers
+
+
+class LoadTable(Table, kw_only=True):
+    """Load: one of force, indentation and half angle; a tilt from the cup's axis, or a direction in the body."""
+
+    force: Force | None = None
+    indentation: Length | None = None
+    half_angle: Angle | None = None
+    tilt: Angle | None = None
+    direction: Annotated[Direction | None, meaning("direction to the right, to the front and upwards")] = None
+
+
+class JointTables(Table, kw_only=True):
+    """Tables that describe a joint in every kind of file."""
+
+    joint: LengthsTable | str | None = None
+    liner: MaterialTable | None = None
+    ball: MaterialTable | None = None
+    backing: list[LayerTable] | None = None
+    cup: CupTable | None = None
+
+
+class JointFileTable(JointTables, kw_only=True):
+    """Joint file."""
+
+    name: Annotated[Text | None, meaning("name of the joint")] = None
+    source: Annotated[Text | None, meaning("source of the numbers")] = None
+    joint: LengthsTable | None = None
+    load: LoadTable | None = None
 
 
 @dataclass(frozen=True)
 class JointFile:
-    """What a joint file holds: the joint, its load (empty, or one of force, indentation, half_angle), and its cup.
+    """Contents of a joint file: a joint, its load, its cup and the direction of the load.
 
-    `aim` says where the load points, as the keyword of `Sphere.press`: empty, or one of tilt and direction.
+    Attributes
+    ----------
+    joint : Joint
+    load : dict
+        Empty, or one of force (N), indentation (mm) and half_angle (rad).
+    cup : Cup
+    aim : dict
+        Direction of the load as the keyword of `Sphere.press`: empty, or one of tilt (rad) and direction.
     """
 
     joint: Joint
@@ -51,27 +150,26 @@ class JointFile:
 def read_joint(path: str | Path) -> JointFile:
     """Read a joint file.
 
-    The file is TOML: a table `joint` with two of `ball_radius`, `socket_radius`, `clearance` (or `head_diameter`,
-    `diametral_clearance` in their places) and `liner_thickness` (or `outer_radius`, `outer_diameter`: of the liner, or
-    of the shell where one is right behind it); tables `liner` and (for a ball that is not rigid) `ball`, each with a
-    `material` by name or `young` and `poisson`, or both, where the numbers win, and the limits `proportional_limit`,
-    `yield_stress`, `fatigue_limit`, `allowable_pressure`, which may be left out; a table `load` with one of `force`,
-    `indentation`, `half_angle`. What is behind the liner is rigid, or is an array of tables `[[backing]]` from the
-    liner outwards, each with a `thickness` and a material as above; `support` in the table `joint` says whether its
-    outermost surface is "fixed" (without a word) or "free". A table `cup` holds what finite elements ask for,
-    `arc_of_cover`, `chamfer`, and `interface`, which is "bonded" or "sliding", and where the cup faces: `inclination`,
-    `anteversion`, and `side`, which is "right" or "left". Values are text with a unit ("16 mm", "3 kN", "1 GPa", "40
-    deg") or bare numbers in mm, N, MPa, degrees.
+    The file is TOML. The table `joint` has two of `ball_radius`, `socket_radius` and `clearance` (or `head_diameter`,
+    `diametral_clearance` in their places), and `liner_thickness` (or `outer_radius`, `outer_diameter`: of the liner, or
+    of the shell right behind it). The tables `liner` and, for a deformable ball, `ball` have a `material` by name, or
+    `young` and `poisson`, or both; numbers win. The limits `proportional_limit`, `yield_stress`, `fatigue_limit` and
+    `allowable_pressure` are optional. The table `load` has one of `force`, `indentation` and `half_angle`. The backing
+    of the liner is rigid, or an array of tables `[[backing]]` from the liner outwards, each with a `thickness` and a
+    material; `support` in the table `joint` states whether its outermost surface is "fixed" (the default) or "free".
+    The table `cup` has `arc_of_cover`, `chamfer` and `interface` ("bonded" or "sliding"), and the orientation
+    `inclination`, `anteversion` and `side` ("right" or "left"). Values are text with a unit ("16 mm", "3 kN", "1 GPa",
+    "40 deg") or bare numbers in mm, N, MPa, degrees.
 
     Returns
     -------
     JointFile
-        With everything in mm, N, MPa and rad.
+        All numbers in mm, N, MPa and rad.
 
     Raises
     ------
     ValueError
-        One sentence: what is wrong, and the nearest thing that is right.
+        One sentence: the error, and the nearest allowed name.
     OSError
         The file cannot be read.
     """
@@ -79,85 +177,147 @@ def read_joint(path: str | Path) -> JointFile:
 
 
 def parse_joint(raw: bytes, title: str) -> JointFile:
-    """A joint file's content; see `read_joint`."""
+    """Convert the content of a joint file; see `read_joint`. Messages begin with `title`."""
     return parse_toml(raw, title, "joint", joint_of)
 
 
-def joint_of(table: Mapping[str, Any]) -> JointFile:
-    """Joint and load from the tables of a joint file, or of the command line; see `read_joint`."""
-    for name in _TABLES:
-        part = table_of(table, name) if name else table
-        check_keys(part, name, f"in [{name}]" if name else "at the top", KEYS)
-    for name in ("name", "source"):
-        check_text(name, table.get(name, ""))
-    joint = _joint(
-        table.get("joint", {}),
-        liner=_material("liner", table.get("liner", {})),
-        ball=_material("ball", table["ball"]) if "ball" in table else None,
-        backing=_backing(table.get("backing", [])),
-        name=table.get("name", ""),
-        source=table.get("source", ""),
-    )
-    load = table.get("load", {})
-    pressed = {name: value for name, value in load.items() if name not in _AIM}
-    return JointFile(joint, read_load(pressed), read_cup(table.get("cup", {})), read_aim(load))
+def joint_of(content: Mapping[str, Any]) -> JointFile:
+    """Convert the tables of a joint file, or of the command line; see `read_joint`."""
+    tables = read_table(content, JointFileTable)
+    file = describe_joint(tables, name=tables.name or "", source=tables.source or "")
+    load = tables.load or LoadTable()
+    return replace(file, load=_load_of(load), aim=_aim_of(load))
 
 
-def varied(file: JointFile, tables: Mapping[str, Any]) -> JointFile:
-    """A joint file with other lengths or materials, by tables as those of a joint file.
+def describe_joint(tables: JointTables, name: str = "", source: str = "") -> JointFile:
+    """Create joint and cup from the tables that describe them."""
+    lengths = tables.joint if isinstance(tables.joint, LengthsTable) else LengthsTable()
+    liner = _material("liner", tables.liner or MaterialTable())
+    ball = None if tables.ball is None else _material("ball", tables.ball)
+    layers = tables.backing or []
+    if len(layers) > _MAX_LAYERS:
+        raise ValueError(f"{len(layers)} layers are behind the liner; at most {_MAX_LAYERS} are read")
+    backing = tuple(_layer(f"backing[{number}]", layer) for number, layer in enumerate(layers))
+    numbers: Any = quantities_of(lengths)
+    with as_given(written_in(lengths)):
+        joint = Joint(
+            **numbers, liner=liner, ball=ball, backing=backing, support=lengths.support, name=name, source=source
+        )
+    return JointFile(joint, {}, cup_of(tables.cup or CupTable()))
+
+
+def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
+    """Replace lengths and materials of a joint file by those of tables as in a joint file.
 
     Raises
     ------
     ValueError
         As of `read_joint`; numbers of a ball that is rigid, without a material.
     """
-    lengths, joint = tables.get("joint", {}), file.joint
-    changes: dict[str, Any] = {name: parse(name, value, LENGTHS[name].kind) for name, value in lengths.items()}
-    for part in ("liner", "ball"):
-        if part in tables:
-            changes[part] = _material(part, tables[part], getattr(joint, part))
-    with as_given(lengths):
+    tables, joint = read_table(content, JointFileTable), file.joint
+    lengths = tables.joint or LengthsTable()
+    changes: dict[str, Any] = dict(quantities_of(lengths))
+    for part, material in (("liner", tables.liner), ("ball", tables.ball)):
+        if material is not None:
+            changes[part] = _material(part, material, getattr(joint, part))
+    with as_given(written_in(lengths)):
         return replace(file, joint=joint.replace(**changes))
 
 
-def read_load(table: Mapping[str, Any]) -> dict[str, float]:
-    """At most one of force, indentation, half_angle, as the keyword of a press."""
-    if len(table) > 1:
-        raise ValueError(f"one load is needed, got {', '.join(table)}")
-    load = {name: parse(name, value, LOADS[name].kind) for name, value in table.items()}
-    with as_given(table):
+def read_load(content: Mapping[str, Any]) -> dict[str, float]:
+    """Read at most one of force, indentation and half_angle, as the keyword of a press."""
+    return _load_of(read_table(content, LoadTable))
+
+
+def _load_of(table: LoadTable) -> dict[str, float]:
+    """Return the load of a table as the keyword of a press; empty without a load."""
+    load = quantities_of(table, "force", "indentation", "half_angle")
+    if len(load) > 1:
+        raise ValueError(f"one load is needed, got {', '.join(load)}")
+    with as_given(written_in(table)):
         return dict([check_load(**load)]) if load else {}
 
 
-def read_aim(table: Mapping[str, Any]) -> dict[str, Any]:
-    """At most one of tilt and direction, as the keyword of `Sphere.press`; other names are passed over."""
-    given = {name: table[name] for name in _AIM if name in table}
-    if len(given) > 1:
+def read_aim(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Read at most one of tilt and direction, as the keyword of `Sphere.press`; other keys are ignored."""
+    return _aim_of(read_table({name: content[name] for name in ("tilt", "direction") if name in content}, LoadTable))
+
+
+def _aim_of(table: LoadTable) -> dict[str, Any]:
+    """Return the direction of a load as the keyword of `Sphere.press`; empty for a load along the cup's axis."""
+    if table.tilt is not None and table.direction is not None:
         raise ValueError("either a tilt or a direction is needed, got both")
-    if "tilt" in given:
-        tilt = parse("tilt", given["tilt"], Kind.ANGLE)
-        require("tilt", degrees(tilt), 0 <= tilt <= pi, "a tilt is 0 to 180 degrees from the cup's axis")
-        return {"tilt": tilt}
-    return {"direction": _direction(given["direction"])} if given else {}
+    if table.direction is not None:
+        return {"direction": tuple(table.direction)}
+    if table.tilt is None:
+        return {}
+    tilt = float(table.tilt)
+    require("tilt", degrees(tilt), 0 <= tilt <= pi, "a tilt is 0 to 180 degrees from the cup's axis")
+    return {"tilt": tilt}
 
 
-def _direction(value: Any) -> tuple[float, ...]:
-    """Three numbers, as a list or as text with commas between."""
-    parts = value.split(",") if isinstance(value, str) else value
-    if not isinstance(parts, list | tuple) or len(parts) != 3:
-        raise ValueError(f"direction = {shown(value)} must be three numbers: to the right, to the front, upwards")
-    found = tuple(parse("direction", part, Kind.NUMBER) for part in parts)
-    length = hypot(*found)
-    require("length of direction", length, 0 < length < inf, "a direction points somewhere")
-    return found
+def read_cup(content: Mapping[str, Any]) -> Cup:
+    """Read a cup; every key is optional."""
+    return cup_of(read_table(content, CupTable))
 
 
-def read_cup(table: Mapping[str, Any]) -> Cup:
-    """A cup from the names of its parameters, none of which is needed."""
-    words: dict[str, Any] = {name: parse(name, table[name], CUP[name].kind) for name in CUP if name in table}
-    words |= {name: kind(_one_of(name, table[name], kind)) for name, kind in _CHOICES.items() if name in table}
-    with as_given(table):
-        return Cup(**words)
+def cup_of(table: CupTable) -> Cup:
+    """Create a cup from its table."""
+    choices = {"interface": table.interface, "side": table.side}
+    arguments: dict[str, Any] = {name: choice for name, choice in choices.items() if choice is not None}
+    with as_given(written_in(table)):
+        return Cup(**arguments, **quantities_of(table, "arc_of_cover", "chamfer", "inclination", "anteversion"))
+
+
+def _layer(name: str, table: LayerTable) -> Layer:
+    """Create a layer behind the liner."""
+    material = _material(name, table)
+    with as_given(written_in(table), f"{name}."):
+        return Layer(thickness=float(table.thickness), material=material)
+
+
+_ELASTIC = ("young", "poisson")
+
+
+def _material(name: str, table: MaterialTable, present: Material | None = None) -> Material:
+    """Create a material from a preset, from numbers that win over its own, or from the present material."""
+    numbers: Any = quantities_of(table, *(key for key in MaterialTable.__struct_fields__ if key != "material"))
+    preset = present if table.material is None else named_material(name, table.material)
+    missing = [key for key in _ELASTIC if key not in numbers]
+    if missing and preset is None:
+        raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
+    with as_given(written_in(table), f"{name}."):
+        return replace(preset, **numbers) if preset else Material(**numbers)
+
+
+def named_material(name: str, chosen: Any) -> Material:
+    """Return a preset material by its name, regardless of capitals.
+
+    Raises
+    ------
+    ValueError
+        A name that is not known, or several names.
+    """
+    if isinstance(chosen, str) and "," in chosen:
+        raise ValueError(f"{name} material {shown(chosen)} are several, and one is needed: optimise and studies choose")
+    return materials[known_name(f"{name} material", check_text(f"{name}.material", chosen), materials)]
+
+
+KEYS = {
+    name: kind.__struct_fields__
+    for name, kind in (
+        ("", JointFileTable),
+        ("joint", LengthsTable),
+        ("liner", MaterialTable),
+        ("ball", MaterialTable),
+        ("cup", CupTable),
+        ("load", LoadTable),
+        ("backing", LayerTable),
+    )
+}
+
+
+_HEADS = {"backing": "[[backing]]"}
 
 
 def check_keys(part: Mapping[str, Any], name: str, where: str, tables: Mapping[str, Sequence[str]]) -> None:
@@ -174,58 +334,3 @@ def _place(key: str, name: str, tables: Mapping[str, Sequence[str]]) -> str:
     if key and key in tables:
         return f"; it is a table of its own, {_HEADS.get(key, f'[{key}]')}"
     return nearest(key, tables[name])
-
-
-def _joint(table: Mapping[str, Any], **words: Any) -> Joint:
-    lengths: Any = {name: parse(name, value, LENGTHS[name].kind) for name, value in table.items() if name in LENGTHS}
-    support = Support(_one_of("support", table.get("support", Support.FIXED.value), Support))
-    with as_given(table):
-        return Joint(**lengths, support=support, **words)
-
-
-def _one_of(name: str, chosen: Any, kind: type[Enum]) -> Any:
-    """`chosen`, if one of the kind has that value, in any spelling of capitals."""
-    known = [one.value for one in kind]
-    chosen = chosen.lower() if isinstance(chosen, str) else chosen
-    if chosen not in known:
-        raise ValueError(f"{name} = {shown(chosen)} is not allowed: {' or '.join(map(repr, known))}")
-    return chosen
-
-
-def _backing(tables: Any) -> tuple[Layer, ...]:
-    if not (isinstance(tables, list | tuple) and all(isinstance(table, Mapping) for table in tables)):
-        raise ValueError(f"backing = {shown(tables)} must be an array of tables: [[backing]] before each layer")
-    if len(tables) > _MOST_LAYERS:
-        raise ValueError(f"{len(tables)} layers are behind the liner; at most {_MOST_LAYERS} are read")
-    return tuple(_layer(f"backing[{number}]", table) for number, table in enumerate(tables))
-
-
-def _layer(name: str, table: Mapping[str, Any]) -> Layer:
-    check_keys(table, "backing", f"in {name}", KEYS)
-    if "thickness" not in table:
-        raise ValueError(f"{name}.thickness is missing; inf is a massive body")
-    thickness = parse(f"{name}.thickness", table["thickness"], LAYER["thickness"].kind)
-    material = _material(name, table)
-    with as_given(table, f"{name}."):
-        return Layer(thickness=thickness, material=material)
-
-
-def _material(name: str, table: Mapping[str, Any], standing: Material | None = None) -> Material:
-    """A material from a table with `material` (by name), numbers that win over its own, or both; else what stands."""
-    known = {**MATERIAL, **STRESS_LIMITS}
-    numbers: dict[str, Any] = {
-        key: parse(f"{name}.{key}", table[key], quantity.kind) for key, quantity in known.items() if key in table
-    }
-    preset = named_material(name, table["material"]) if "material" in table else standing
-    missing = [key for key in MATERIAL if key not in numbers]
-    if missing and preset is None:
-        raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
-    with as_given(table, f"{name}."):
-        return replace(preset, **numbers) if preset else Material(**numbers)
-
-
-def named_material(name: str, chosen: Any) -> Material:
-    """The preset material called `chosen`, in any spelling of capitals."""
-    if isinstance(chosen, str) and "," in chosen:
-        raise ValueError(f"{name} material {shown(chosen)} are several, and one is needed: optimise and studies choose")
-    return materials[known_name(f"{name} material", check_text(f"{name}.material", chosen), materials)]

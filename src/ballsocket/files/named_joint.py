@@ -1,48 +1,47 @@
-"""The joint of a file about more than a joint: described there, or by the name of a preset or of a joint file."""
+"""Joints of files of other kinds: described there, or named as a preset or a joint file."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from ..core.checks import check_text, nearest, normalise_name, shown
 from ..core.input_files import resolve_input
 from ..problem.presets import joints
-from .joint_file import JointFile, joint_of, read_joint
+from .joint_file import JointFile, JointTables, describe_joint, read_joint
 
-PARTS = ("joint", "liner", "ball", "backing", "cup")
-"""The tables that describe a joint."""
+_PARTS = ("liner", "ball", "backing", "cup")
+"""Tables that describe a joint together with [joint]."""
 
 
-def joint_in(content: Mapping[str, Any], folder: Path) -> JointFile:
-    """The joint of a file: from its tables, or by its name.
+def joint_in(tables: JointTables, folder: Path) -> JointFile:
+    """Create the joint of a file from its tables, or read it by its name.
 
     Parameters
     ----------
-    content : mapping
+    tables : JointTables
         `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
     folder : Path
 
     Raises
     ------
     ValueError
-        One sentence: what is wrong, and the nearest thing that is right.
+        One sentence: the error, and the nearest allowed name.
     OSError
         A joint file cannot be read.
     """
-    given = content.get("joint")
-    if isinstance(given, Mapping):
-        return joint_of({name: content[name] for name in PARTS if name in content})
-    others = [name for name in PARTS[1:] if name in content]
-    if given is not None and others:
-        raise ValueError(f"joint = {shown(given)} is a whole joint: [{others[0]}] belongs to a table [joint]")
-    if given is None:
+    if tables.joint is None:
         raise ValueError("a joint is needed: a joint file, a preset's name, or a table [joint]")
-    return _called(given, folder)
+    if not isinstance(tables.joint, str):
+        return describe_joint(tables)
+    described = [part for part in _PARTS if getattr(tables, part) is not None]
+    if described:
+        name = shown(tables.joint)
+        raise ValueError(f"joint = {name} is a whole joint: [{described[0]}] belongs to a table [joint]")
+    return _named(tables.joint, folder)
 
 
-def _called(name: Any, folder: Path) -> JointFile:
+def _named(name: str, folder: Path) -> JointFile:
+    """Return a preset, or read a joint file of the folder."""
     if not check_text("joint", name):
         raise ValueError("joint is empty")
     if normalise_name(name) in joints:
