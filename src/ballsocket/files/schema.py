@@ -24,6 +24,7 @@ from msgspec import inspect
 from ..core.checks import check_text, nearest, shown
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
+from ..core.quantities import Quantity as CoreQuantity
 from .units import parse
 
 _NAME = "\0"
@@ -36,6 +37,10 @@ _STEP = re.compile(r"\.(?P<key>\w+)|\[(?P<index>\d+)\]")
 def meaning(text: str) -> msgspec.Meta:
     """Return the annotation of a key that states its meaning."""
     return msgspec.Meta(description=text)
+
+
+QUANTITY_SCHEMA = {"type": ["number", "string"], "maxLength": 100}
+"""JSON schema of a number, or of a text with a unit."""
 
 
 class Value:
@@ -67,11 +72,32 @@ class Text(Value, str):
         return cls(check_text(name, value))
 
 
+_MAX_INTEGER = 1 << 53
+"""Largest whole number that a float represents exactly."""
+
+
+class Whole(Value, int):
+    """Whole number."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": "integer"}
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a whole number of a file; 4.0 is one."""
+        if isinstance(value, float) and value.is_integer():
+            value = int(value)
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise ValueError(f"{name} = {shown(value)} must be a whole number")
+        if not -_MAX_INTEGER < value < _MAX_INTEGER:
+            raise ValueError(f"{name} = {shown(value)} is too large a number")
+        return cls(value)
+
+
 class Quantity(Value, float):
     """Number in mm, N, MPa or rad, with the number or text of the file in `written`."""
 
     kind: ClassVar[Kind] = Kind.NUMBER
-    schema: ClassVar[Mapping[str, Any]] = {"type": ["number", "string"], "maxLength": 100}
+    schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
     written: Any
 
     @classmethod
@@ -124,6 +150,36 @@ class Table(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 TableType = TypeVar("TableType", bound=Table)
+
+
+def table_of_quantities(
+    name: str, quantities: Mapping[str, CoreQuantity], value: type[Value], bases: tuple[type[Table], ...] = (Table,)
+) -> type[Any]:
+    """Create a table with a key for each quantity, whose values are of the given type.
+
+    Parameters
+    ----------
+    name : str
+        Name of the class.
+    quantities : mapping
+        Quantities by key.
+    value : class
+        Type of the values. For each kind of quantity it gets a subclass with the attribute `kind`.
+    bases : tuple of class
+        Tables with further keys.
+    """
+    kinds = {
+        kind: type(f"{value.__name__}{kind.name}", (value,), {"kind": kind, "__doc__": value.__doc__})
+        for kind in dict.fromkeys(quantity.kind for quantity in quantities.values())
+    }
+    keys = [(key, kinds[quantity.kind] | None, None) for key, quantity in quantities.items()]
+    return msgspec.defstruct(name, keys, bases=bases, kw_only=True, frozen=True, module=value.__module__)
+
+
+def values_of(table: Table | None, kind: type[Any], content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of one type in a table, by key in the order of the file's `content`; empty without a table."""
+    values = {} if table is None else {name: getattr(table, name) for name in content}
+    return {name: value for name, value in values.items() if isinstance(value, kind)}
 
 
 def quantities_of(table: Table, *names: str) -> dict[str, float]:
@@ -277,17 +333,21 @@ def _tables_of(kind: inspect.Type) -> Iterator[tuple[str, inspect.StructType]]:
 def _expected(place: _Place) -> str:
     """Describe what a value must be."""
     parts = list(_parts(place.type))
-    return next(
-        (text(place, part) for kind, text in _EXPECTED for part in parts if isinstance(part, kind)),
-        "another kind of value",
-    )
+    texts = [text(place, part) for kind, text in _EXPECTED for part in parts if isinstance(part, kind)]
+    return " or ".join(texts) or "another kind of value"
 
 
 def _array_of(place: _Place, kind: inspect.ListType) -> str:
     """Describe an array of tables, or a list."""
     if _struct_in(kind.item_type):
         return f"an array of tables: [[{place.key}]] before each of them"
-    return "a list"
+    return f"a list of {_plural(kind.item_type)}"
+
+
+def _plural(kind: inspect.Type) -> str:
+    """Name the items of a list."""
+    customs = [part.cls for part in _parts(kind) if isinstance(part, inspect.CustomType)]
+    return "texts" if any(issubclass(custom, str) for custom in customs) else "numbers"
 
 
 def _choice(place: _Place, kind: inspect.EnumType | inspect.LiteralType) -> str:
