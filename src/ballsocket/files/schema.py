@@ -249,7 +249,9 @@ def _refusal(error: msgspec.ValidationError, content: Mapping[str, Any], table: 
     struct = _struct_in(place.type)
     if struct is not None and isinstance(place.value, Mapping):
         return _unknown_or_missing_key(place, struct, root)
-    return f"{place.label} = {shown(place.value)} must be {_expected(place)}"
+    choices = _choices_in(place.type)
+    allowed = f"is not allowed: {choices}" if choices else f"must be {_expected(place)}"
+    return f"{place.label} = {shown(place.value)} {allowed}"
 
 
 def _step_into(place: _Place, step: re.Match[str]) -> _Place:
@@ -350,15 +352,16 @@ def _plural(kind: inspect.Type) -> str:
     return "texts" if any(issubclass(custom, str) for custom in customs) else "numbers"
 
 
-def _choice(place: _Place, kind: inspect.EnumType | inspect.LiteralType) -> str:
-    """Describe the words that are allowed."""
-    values = [item.value for item in kind.cls] if isinstance(kind, inspect.EnumType) else list(kind.values)
-    return f"{' or '.join(map(repr, values))}"
+def _choices_in(kind: inspect.Type) -> str:
+    """List the words that a key allows; empty for other keys."""
+    for part in _parts(kind):
+        if isinstance(part, inspect.EnumType | inspect.LiteralType):
+            values = [item.value for item in part.cls] if isinstance(part, inspect.EnumType) else part.values
+            return " or ".join(map(repr, values))
+    return ""
 
 
 _EXPECTED: Sequence[tuple[type[inspect.Type], Callable[[_Place, Any], str]]] = (
-    (inspect.EnumType, _choice),
-    (inspect.LiteralType, _choice),
     (inspect.ListType, _array_of),
     (inspect.StructType, lambda place, kind: f"a table: {_bracketed(place.key)}"),
     (inspect.BoolType, lambda place, kind: "true or false"),
@@ -423,12 +426,12 @@ def _key(head: str, field: inspect.Field) -> Key:
     customs = [part.cls for part in parts if isinstance(part, inspect.CustomType)]
     kinds = [kind.kind for kind in customs if issubclass(kind, Quantity)]
     place = _Place(None, field.type, key=field.encode_name)
-    values = kinds[0].example if kinds else (customs[0].__doc__.split(".")[0] if customs else _expected(place))
+    values = kinds[0].example if kinds else customs[0].__doc__.split(".")[0] if customs else ""
     return Key(
         table=head,
         name=field.encode_name,
         unit=kinds[0].typed if kinds else "",
-        values=values,
+        values=values or _choices_in(field.type) or _expected(place),
         default="required" if field.required else _default(field),
         meaning=_meaning_of(field.encode_name, field.type),
     )
