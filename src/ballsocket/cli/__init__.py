@@ -2,7 +2,7 @@
 
 # in the order in which `--help` lists what they do
 from . import press, curve, orient, questions, study, hip, lists, identify, fit, evidence  # noqa: I001
-from . import deck, fmu, export, app, serve_mcp, reproduce
+from . import deck, fmu, export, schema, app, serve_mcp, reproduce
 from .root import main
 
 __all__ = [
