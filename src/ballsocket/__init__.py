@@ -16,7 +16,7 @@ from . import studies
 from .catalogue import catalogue
 from .compare import compare
 from .contact import Contact, Model
-from .core.deprecation import keep_old_paths, new_path
+from .core.deprecation import new_path, register_old_paths
 from .core.sources import cite
 from .core.validity import OutsideDomainError, Range, Status
 from .dynamics.element import ForceElement
@@ -83,7 +83,7 @@ from .problem.presets import (
 from .studies.run import study
 from .version import __version__ as __version__
 
-keep_old_paths()
+register_old_paths()
 register_plots()
 
 __all__ = [  # noqa: RUF022, grouped by subject

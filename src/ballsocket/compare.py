@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Mapping[str, Contact]):
-    """Contacts by the name of their model.
+    """Contacts of several models for one joint and load, by the name of the model.
 
     Prints as a table of one row per model, with the reasons why models are invalid for this contact.
 
@@ -61,12 +61,15 @@ class Comparison(Mapping[str, Contact]):
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """Publications of the formulas of all models in `contacts`, each once."""
+        """Publications of the formulas of all compared models, without duplicates."""
         listed = [source for contact in self.contacts.values() for source in getattr(contact.model, "sources", ())]
         return tuple(dict.fromkeys(listed))
 
     def notes(self) -> list[str]:
-        """List the notes of all contacts and the reasons of missing models, each once with its models."""
+        """List the notes of all contacts and the reasons of missing models, without duplicates.
+
+        Each note has the names of its models.
+        """
         holders: dict[str, list[str]] = {}
         for name, contact in self.contacts.items():
             for note in contact.notes:
@@ -74,7 +77,7 @@ class Comparison(Mapping[str, Contact]):
         return [f"{', '.join(names)}: {note}" for note, names in holders.items()] + list(self.missing.values())
 
     def deviation(self, name: str) -> dict[str, Array] | None:
-        """Compute the relative deviation of a model from the exact solution.
+        """Compute the relative deviations of a model from the exact solution.
 
         Returns
         -------
@@ -86,17 +89,19 @@ class Comparison(Mapping[str, Contact]):
         if exact is None or name == reference.name or name not in self.contacts:
             return None
         contact = self.contacts[name]
-        return {column.name: relative_deviation(column.of(contact), column.of(exact)) for column in COLUMNS}
+        return {
+            column.name: relative_deviation(column.values_of(contact), column.values_of(exact)) for column in COLUMNS
+        }
 
     def rows(self) -> list[tuple[str, ...]]:
-        """Return the rows of a table as text, with the columns of `COLUMN_HEADS`."""
+        """Format the table rows, one per model, with the columns of `COLUMN_HEADS`."""
         return [
-            (name, *(number_text(column.of(contact), 5, "-") for column in _SHOWN), count_text(contact.valid))
+            (name, *(number_text(column.values_of(contact), 5, "-") for column in _SHOWN), count_text(contact.valid))
             for name, contact in self.contacts.items()
         ]
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary for JSON of version, joint and results, in mm, N, MPa and degrees."""
+        """Return a dictionary of the comparison for JSON, in N, mm, MPa and degrees."""
         results = [{**self[name].summary(), "deviation": _as_lists(self.deviation(name))} for name in self]
         gaps = dict.fromkeys([*(column.name for column in (*COLUMNS, UTILISATION)), UTILISATION_NOTE])
         missing = [
@@ -106,7 +111,9 @@ class Comparison(Mapping[str, Contact]):
         return {"version": __version__, "joint": self.joint.summary(), "results": [*results, *missing]}
 
     def to_frame(self) -> pandas.DataFrame:
-        """Return a data frame of one row per model and point; column names end in units, the last has the notes.
+        """Return a pandas data frame with one row per model and point.
+
+        Column names end in units; the last column has the notes.
 
         Raises
         ------
@@ -149,12 +156,16 @@ class Comparison(Mapping[str, Contact]):
 
 
 def relative_deviation(value: Array, truth: Array) -> Array:
-    """Compute value/truth - 1: 0 where they are equal, NaN where the truth is 0, infinite or NaN."""
+    """Compute the relative deviation value/truth - 1.
+
+    It is 0 where both are equal, and NaN where the truth is 0, infinite or NaN.
+    """
     known = (truth > -inf) & (truth < inf) & (truth != 0)
     return where(truth == value, 0.0, where(known, value / where(known, truth, 1.0) - 1, float("nan")))
 
 
 def _as_lists(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
+    """Convert deviations to lists for JSON."""
     return None if deviation is None else {name: to_list(value) for name, value in deviation.items()}
 
 
@@ -172,7 +183,7 @@ def compare(
     models: Mapping[str, Model] | None = None,
     cup: Cup | None = None,
 ) -> Comparison:
-    """Press one joint by each model with the same load.
+    """Compute the contact of one joint and load with several models.
 
     Parameters
     ----------
@@ -221,7 +232,7 @@ def compare(
 
 
 def successful_contacts(comparison: Mapping[str, Contact]) -> dict[str, Contact]:
-    """Return the contacts that have a result; each holds one point."""
+    """Select the contacts of one point that have a result."""
     return {name: contact for name, contact in comparison.items() if not contact.status.failed}
 
 
@@ -247,19 +258,22 @@ _MAX_HALF_ANGLE = radians(84.9)
 """Largest half angle of a short curve in rad."""
 
 
-def is_slow(model: Model, joint: Joint) -> bool:
-    """Return True if a curve of this model takes seconds, since thin liners need many terms; for one joint."""
+def is_curve_slow(model: Model, joint: Joint) -> bool:
+    """Check if a force curve of this model and joint takes seconds, as with thin liners."""
     return model.seconds_a_press > _NUMERICAL_SECONDS and float(joint.thickness_ratio) > THIN_LINER_RATIO
 
 
-def short_curve(contact: Contact, model: Model) -> Contact:
-    """Press 12 half angles up to 1.15 times that of a contact, for which no load must be searched."""
+def press_short_curve(contact: Contact, model: Model) -> Contact:
+    """Compute 12 contacts at half angles up to 1.15 times that of a contact.
+
+    A given half angle needs no search for the load.
+    """
     max_half_angle = min(1.15 * float(contact.half_angle), _MAX_HALF_ANGLE)
     return model.press(contact.joint, half_angle=max_half_angle * _SHORT_STEPS)
 
 
 def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -> dict[str, Contact]:
-    """Press each model from first touch to 1.15 times the deepest indentation of some contacts.
+    """Compute the force curve of each model, up to 1.15 times the largest indentation of some contacts.
 
     Parameters
     ----------
@@ -276,10 +290,11 @@ def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -
     max_indentation = 1.15 * max(contact.indentation for contact in contacts.values())
 
     def curve(contact: Contact, model: Model) -> Contact:
+        """Compute the force curve of one model with a number of points that suits its speed."""
         if model.seconds_a_press > _MESH_SECONDS:
             return model.press(contact.joint, indentation=max_indentation * _MESH_STEPS)
-        if is_slow(model, contact.joint):
-            return short_curve(contact, model)
+        if is_curve_slow(model, contact.joint):
+            return press_short_curve(contact, model)
         return model.press(contact.joint, indentation=max_indentation * _FINE_STEPS)
 
     return {name: curve(contact, models[name]) for name, contact in contacts.items()}

@@ -14,7 +14,7 @@ from ballsocket.cli.tools.call import words_of
 from ballsocket.cli.tools.run import run as run_tool
 from ballsocket.cli.tools.schema import schema
 from ballsocket.cli.tools.table import TOOLS
-from ballsocket.core.input_files import restricted
+from ballsocket.core.input_files import restriction_variables
 
 from ..places import EXAMPLES
 from .command import run
@@ -110,7 +110,7 @@ def room(tmp_path, secret, monkeypatch):
     folder = tmp_path / "room"
     folder.mkdir()
     (folder / "link").symlink_to(secret)
-    for name, value in restricted((folder, Path(os.environ["BALLSOCKET_CACHE"]))).items():
+    for name, value in restriction_variables((folder, Path(os.environ["BALLSOCKET_CACHE"]))).items():
         monkeypatch.setenv(name, value)
     return folder
 

@@ -104,7 +104,7 @@ def test_joints_are_solved_once_with_all_of_their_loads():
     np.testing.assert_allclose(solution.force, [10.1, 10.4, 10.3, 0.0])
     np.testing.assert_allclose(solution.pressure(np.array([[0.5], [2.0]])), np.outer([0.5, 2.0], solution.force))
     np.testing.assert_allclose(solution.pressure(np.array(0.5)), 0.5 * solution.force)
-    np.testing.assert_allclose(solution.spread(lambda piece: piece.error["force"]), 0.01 * solution.force)
+    np.testing.assert_allclose(solution.combine(lambda piece: piece.error["force"]), 0.01 * solution.force)
     assert joint_at(joint, (4,), 1).clearance == 0.2
     assert joint_at(replace(HIP, clearance=np.array([[0.1], [0.3]])), (2, 5), 7).clearance == 0.3
 
@@ -122,7 +122,7 @@ def test_foundation_modulus_is_pole_pressure_over_indentation():
     contact = bs.Exact().press(HIP, indentation=np.array([0.0, 0.05, 0.1]))
     assert contact.foundation_modulus[0] == np.inf
     np.testing.assert_allclose(contact.foundation_modulus[1:], contact.pole_pressure[1:] / np.array([0.05, 0.1]))
-    np.testing.assert_allclose(contact.laws.worst, np.max(list(contact.error.values()), axis=0))
+    np.testing.assert_allclose(contact.laws.max_error, np.max(list(contact.error.values()), axis=0))
 
 
 def test_solutions_of_one_contact_need_one_contact():
@@ -184,25 +184,25 @@ def test_one_contact_is_printed_with_six_digits_and_many_with_five():
 def test_columns_convert_units():
     contact = MODEL.press(HIP, force=3000.0)
     by_name = {column.attribute: column for column in describe.COLUMNS}
-    assert by_name["half_angle"].of(contact) == pytest.approx(np.degrees(contact.half_angle))
+    assert by_name["half_angle"].values_of(contact) == pytest.approx(np.degrees(contact.half_angle))
     assert by_name["half_angle"].name == "half_angle_deg"
     assert (by_name["area"].head, by_name["area"].label) == ("A [mm²]", "contact area A [mm²]")
-    assert str(by_name["force"].of(MODEL.press(HIP, force=-0.0))) == "0.0"
+    assert str(by_name["force"].values_of(MODEL.press(HIP, force=-0.0))) == "0.0"
 
 
 def test_exponents_of_polynomials_have_a_limited_sum():
-    exponents = closed_sphere.powers(2)
+    exponents = closed_sphere.polynomial_exponents(2)
     assert exponents[:4] == ((0, 0, 0), (0, 0, 1), (0, 0, 2), (0, 1, 0))
     assert len(exponents) == 10
     assert max(map(sum, exponents)) == 2
 
 
 def test_variables_of_the_hemisphere_estimate_are_clipped():
-    angle, ratio, poisson = closed_sphere.variables(0.5, 0.3, 4.0)
+    angle, ratio, poisson = closed_sphere.polynomial_variables(0.5, 0.3, 4.0)
     assert (angle, ratio, poisson) == pytest.approx((0.5, np.log(4.0), np.log(0.22)))
-    low = closed_sphere.variables(0.0, -0.9, 0.01)
+    low = closed_sphere.polynomial_variables(0.0, -0.9, 0.01)
     assert low == pytest.approx((np.radians(3.0), np.log(0.2), np.log(0.52)))
-    high = closed_sphere.variables(1.5, 0.4999, 100.0)
+    high = closed_sphere.polynomial_variables(1.5, 0.4999, 100.0)
     assert high == pytest.approx((np.radians(83.0), np.log(20.0), np.log(0.52 - 0.499)))
 
 

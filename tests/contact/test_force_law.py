@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from ballsocket.contact.law import CurveLaw, curve_law, finite_or_nan, force_and_tangent
+from ballsocket.contact.law import CurveLaw, finite_or_nan, fit_curve_law, force_and_tangent
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
 def test_a_power_law_is_reproduced(exponent):
-    law = curve_law(lambda d: 7.0 * d**exponent, 1e-6, 2.0)
+    law = fit_curve_law(lambda d: 7.0 * d**exponent, 1e-6, 2.0)
     assert (law.shallowest, law.deepest) == (1e-6, 2.0)
     for d in (1e-9, 1e-6, 3e-4, 0.1, 1.999, 2.0):
         force, stiffness = law(d)
@@ -19,7 +19,7 @@ def test_a_power_law_is_reproduced(exponent):
 
 
 def test_a_smooth_law_is_reproduced():
-    law = curve_law(lambda d: 3.0 * d * np.exp(d), 1e-5, 1.0)
+    law = fit_curve_law(lambda d: 3.0 * d * np.exp(d), 1e-5, 1.0)
     for d in np.geomspace(1e-5, 1.0, 57):
         force, stiffness = law(float(d))
         assert force == pytest.approx(3.0 * d * np.exp(d), rel=1e-10)
@@ -27,7 +27,7 @@ def test_a_smooth_law_is_reproduced():
 
 
 def test_a_law_is_zero_without_contact_and_nan_beyond_its_end():
-    law = curve_law(lambda d: np.where(d < 0.5, d, np.nan), 1e-4, 2.0)
+    law = fit_curve_law(lambda d: np.where(d < 0.5, d, np.nan), 1e-4, 2.0)
     assert law.deepest == pytest.approx(0.5, rel=3e-6)
     assert law.deepest < 0.5
     assert law(0.0) == law(-1.0) == (0.0, 0.0)
@@ -36,8 +36,8 @@ def test_a_law_is_zero_without_contact_and_nan_beyond_its_end():
 
 
 def test_more_pieces_are_used_for_a_sharper_bend():
-    smooth = curve_law(lambda d: d, 1e-3, 1.0)
-    sharp = curve_law(lambda d: d * (1 + np.tanh(40 * np.log(d / 0.1))) + d, 1e-3, 1.0)
+    smooth = fit_curve_law(lambda d: d, 1e-3, 1.0)
+    sharp = fit_curve_law(lambda d: d * (1 + np.tanh(40 * np.log(d / 0.1))) + d, 1e-3, 1.0)
     assert len(smooth.pieces) == 24
     assert len(sharp.pieces) == 96
     assert smooth.pieces.shape[1] == 10
@@ -46,7 +46,7 @@ def test_more_pieces_are_used_for_a_sharper_bend():
 
 def test_a_force_that_is_not_positive_has_no_law():
     with pytest.raises(TypeError, match="no force law: the load at an indentation of 0.001 mm must be above 0 N"):
-        curve_law(lambda d: 0.0 * d, 1e-3, 1.0)
+        fit_curve_law(lambda d: 0.0 * d, 1e-3, 1.0)
 
 
 def test_pieces_are_polynomials_of_a_coordinate_from_minus_one_to_one():

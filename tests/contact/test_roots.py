@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ballsocket.contact.roots import bracketed, increasing_root, root_of_number
+from ballsocket.contact.roots import bracketed_newton_step, increasing_root, scalar_increasing_root
 
 
 def cube(x):
@@ -66,13 +66,13 @@ def test_the_number_of_evaluations_is_limited():
         calls.append(x)
         return cube(x)
 
-    root_of_number(counted, 5.0, 0.0, 4.0, 4.0, (), 3, 1e-8)
+    scalar_increasing_root(counted, 5.0, 0.0, 4.0, 4.0, (), 3, 1e-8)
     assert len(calls) == 3
     calls.clear()
-    root_of_number(counted, 5.0, 0.0, 4.0, 4.0, (), 60, 1e-8)
+    scalar_increasing_root(counted, 5.0, 0.0, 4.0, 4.0, (), 60, 1e-8)
     assert len(calls) <= 8  # quadratic convergence
     calls.clear()
-    loose = root_of_number(counted, 5.0, 0.0, 4.0, 4.0, (), 60, 0.1)
+    loose = scalar_increasing_root(counted, 5.0, 0.0, 4.0, 4.0, (), 60, 0.1)
     assert len(calls) <= 5
     assert loose == pytest.approx(5.0 ** (1 / 3), rel=0.02)
     calls.clear()
@@ -81,7 +81,7 @@ def test_the_number_of_evaluations_is_limited():
 
 
 def test_one_step_shrinks_the_bracket():
-    x, low, high, fresh, moved = bracketed(
+    x, low, high, fresh, moved = bracketed_newton_step(
         cube, 8.0, (), 1e-8, np.array([1.0, 3.0, 2.0]), np.zeros(3), np.full(3, 4.0), np.array([True, True, True])
     )
     np.testing.assert_allclose(x, [1 + 7 / 3, 3 - 19 / 27, 2.0])
@@ -93,7 +93,7 @@ def test_one_step_shrinks_the_bracket():
 
 def test_steps_out_of_the_bracket_try_its_end_and_then_its_middle():
     far = (np.array([0.1]), np.zeros(1), np.full(1, 4.0))
-    x, *_ = bracketed(cube, 8.0, (), 1e-8, *far, np.array([True]))
+    x, *_ = bracketed_newton_step(cube, 8.0, (), 1e-8, *far, np.array([True]))
     assert x == [4.0]
-    x, *_ = bracketed(cube, 8.0, (), 1e-8, *far, np.array([False]))
+    x, *_ = bracketed_newton_step(cube, 8.0, (), 1e-8, *far, np.array([False]))
     assert x == pytest.approx([(0.1 + 4.0) / 2])

@@ -106,8 +106,8 @@ def test_lists_for_json_have_no_nan_and_no_infinity():
 
 
 def test_plain_numbers_are_numbers_without_a_library():
-    assert all(map(arrays.is_plain, (1, 2.0, np.float64(3.0), True)))
-    assert not any(map(arrays.is_plain, (np.ones(1), "1", np.float32(1.0))))
+    assert all(map(arrays.is_plain_number, (1, 2.0, np.float64(3.0), True)))
+    assert not any(map(arrays.is_plain_number, (np.ones(1), "1", np.float32(1.0))))
 
 
 def test_gradients_of_roots_and_powers_are_zero_at_zero():

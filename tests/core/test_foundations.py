@@ -10,13 +10,13 @@ from ballsocket.core import plotting
 from ballsocket.core.input_files import (
     AllowedFolders,
     open_input,
-    recorded_inputs,
+    record_inputs,
     resolve_input,
-    restricted,
+    restriction_variables,
 )
 from ballsocket.core.kinds import Kind, Unit
 from ballsocket.core.quantities import QUANTITIES
-from ballsocket.core.sources import Source, bibliography, named_in
+from ballsocket.core.sources import Source, bibliography, find_cited_keys
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_thicknesses_are_positive_or_infinite():
 
 def test_an_angle_in_degrees_gets_a_hint_in_radians():
     with pytest.raises(ValueError, match="half_angle = 45 is not .*; 45 degrees are 0.7854 radians"):
-        QUANTITIES["half_angle"].checked(45.0)
+        QUANTITIES["half_angle"].check(45.0)
     assert QUANTITIES["half_angle"].radian_hint(100.0) == ""
     assert QUANTITIES["force"].radian_hint(1.0) == ""
 
@@ -70,7 +70,7 @@ def test_an_angle_in_degrees_gets_a_hint_in_radians():
 def test_labels_have_symbols_and_units():
     indentation, angle = QUANTITIES["indentation"], QUANTITIES["half_angle"]
     assert indentation.label() == "indentation d [µm]"
-    assert indentation.capital(indentation.written) == "Indentation d [mm]"
+    assert indentation.input_label(indentation.written) == "Indentation d [mm]"
     assert indentation.head() == "d [µm]"
     assert (indentation.column, indentation.key) == ("indentation_mm", "indentation")
     assert (angle.column, angle.key) == ("half_angle_deg", "half_angle_deg")
@@ -104,9 +104,9 @@ def test_sources_have_authors_and_year():
 
 def test_publications_are_found_in_texts():
     key = bs.HessForsbach().sources[0].key
-    assert list(named_in("E of Heß & Forsbach 2021, Table 2")) == [key]
-    assert list(named_in("doi 10.3390/app112311170")) == [key]
-    assert list(named_in("")) == []
+    assert list(find_cited_keys("E of Heß & Forsbach 2021, Table 2")) == [key]
+    assert list(find_cited_keys("doi 10.3390/app112311170")) == [key]
+    assert list(find_cited_keys("")) == []
     assert key in bs.cite(bs.UHMWPE)
     assert bs.cite(bs.HessForsbach(), bs.HessForsbach()) == bs.cite(bs.HessForsbach())
 
@@ -137,7 +137,7 @@ def test_inputs_are_limited_to_allowed_folders(tmp_path, monkeypatch):
     (tmp_path / "other.toml").write_text("outside", encoding="utf-8")
     (folder / "link.toml").symlink_to(tmp_path / "other.toml")
     assert resolve_input(tmp_path / "other.toml") == tmp_path / "other.toml"
-    for name, value in restricted([folder]).items():
+    for name, value in restriction_variables([folder]).items():
         monkeypatch.setenv(name, value)
     with open_input(folder / "joint.toml") as stream:
         assert stream.read() == b"inside"
@@ -155,9 +155,9 @@ def test_opened_inputs_are_recorded_once(tmp_path):
     first, second = tmp_path / "a", tmp_path / "b"
     for path in (first, second):
         path.write_text("text", encoding="utf-8")
-    with recorded_inputs() as outer:
+    with record_inputs() as outer:
         open_input(first).close()
-        with recorded_inputs() as inner:
+        with record_inputs() as inner:
             open_input(first).close()
             open_input(second).close()
             open_input(second).close()

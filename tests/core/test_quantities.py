@@ -136,10 +136,10 @@ _WRONG = {
 def test_messages_of_invalid_numbers_state_what_is_allowed(quantity):
     for wrong in (_WRONG.get(quantity.name, -1.0), nan, np.array([nan])):
         with pytest.raises(ValueError, match=re.escape(quantity.allowed)) as refused:
-            quantity.checked(wrong)
+            quantity.check(wrong)
         assert str(refused.value).startswith(quantity.name)
     with pytest.raises(TypeError, match=f"{quantity.name} must be a number"):
-        quantity.checked("1")
+        quantity.check("1")
     assert not quantity.allows(nan)
 
 
@@ -206,7 +206,9 @@ def test_a_quantity_is_added_by_one_entry(tmp_path):
     table = tmp_path / "ballsocket" / "core" / "quantities.py"
     before = table.read_text(encoding="utf-8")
     entry = re.search(r'    Quantity\("conformity".*?\),\n', before, flags=re.DOTALL)[0]
-    table.write_text(before.replace(entry, "").replace("CONTACT = _table(\n", f"CONTACT = _table(\n{entry}"), "utf-8")
+    table.write_text(
+        before.replace(entry, "").replace("CONTACT = _make_table(\n", f"CONTACT = _make_table(\n{entry}"), "utf-8"
+    )
     env = {**os.environ, "PYTHONPATH": str(tmp_path), "COLUMNS": "200", "PYTHONIOENCODING": "utf-8"}
     done = subprocess.run([sys.executable, "-c", _ADDED], capture_output=True, encoding="utf-8", env=env, check=True)
     first, *rest = done.stdout.splitlines()

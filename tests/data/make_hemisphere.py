@@ -11,8 +11,8 @@ from ballsocket.contact.closed_sphere import (
     MAX_MODULUS_RATIO,
     POISSON_RANGE,
     THICKNESS_RATIO_RANGE,
-    powers,
-    variables,
+    polynomial_exponents,
+    polynomial_variables,
 )
 
 ANGLES = np.radians([3, 6, 10, 15, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 83])
@@ -53,7 +53,8 @@ def changes(joint: bs.Joint) -> np.ndarray:
 def fitted(variables: np.ndarray, known: np.ndarray, degree: int, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients, and the estimates at all variables."""
     terms = np.stack(
-        [np.prod(variables ** np.array(exponents)[:, None], axis=0) for exponents in powers(degree)], axis=1
+        [np.prod(variables ** np.array(exponents)[:, None], axis=0) for exponents in polynomial_exponents(degree)],
+        axis=1,
     )
     good = np.isfinite(known) & (known > MIN_CHANGE) & ~held
     weight = np.clip(known[good] / SMALL_CHANGE, 0.15, 1.0)
@@ -66,7 +67,9 @@ def main() -> None:
     where, rigid, elastic, ratios = [], [], [], []
     for _ in range(COUNT):
         joint, ratio, poisson = joint_of(random)
-        where.append(np.stack(np.broadcast_arrays(*variables(ANGLES, joint.liner.poisson, joint.thickness_ratio))))
+        where.append(
+            np.stack(np.broadcast_arrays(*polynomial_variables(ANGLES, joint.liner.poisson, joint.thickness_ratio)))
+        )
         rigid.append(changes(joint))
         elastic.append(changes(joint.replace(ball=bs.Material(young=1000.0 / ratio, poisson=poisson))))
         ratios.append(np.full(len(ANGLES), ratio))

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from ballsocket.cli import root
 from ballsocket.cli.tools.call import words_of
-from ballsocket.core.input_files import restricted
+from ballsocket.core.input_files import restriction_variables
 from ballsocket.core.kinds import Kind
 from ballsocket.core.storage.array_files import read_arrays
 from ballsocket.elasticity.off_axis.scans import read_scan
@@ -250,5 +250,5 @@ def test_calls_of_assistants(fresh, call, runs):
             assert not any(Path(word).is_absolute() or word.startswith("..") for word in words)
             if runs or words[0] not in ("press", "models", "curve"):
                 return
-            with mock.patch.dict(os.environ, restricted((folder, Path(os.environ["BALLSOCKET_CACHE"])))):
+            with mock.patch.dict(os.environ, restriction_variables((folder, Path(os.environ["BALLSOCKET_CACHE"])))):
                 check_run(run(*words, folder=folder))

@@ -25,7 +25,7 @@ class LinearForward:
     matrix: np.ndarray
     model: object = bs.HessForsbach()
 
-    def at(self, values, load_perturbation=0.0):
+    def results_at(self, values, load_perturbation=0.0):
         return values @ self.matrix.T * (1 + load_perturbation)
 
 
@@ -48,6 +48,6 @@ def linear_misfit(noise=0.0, unknowns=None, scatter=None, matrix=MATRIX, uncerta
 
 def scaled_covariance(misfit, matrix=MATRIX, uncertainty=0.02):
     """Return the covariance of theta."""
-    spans = np.array([unknown.span for unknown in misfit.transform.unknowns])
+    spans = np.array([unknown.prior_deviation for unknown in misfit.transform.unknowns])
     slopes = matrix * spans / uncertainty
     return np.linalg.inv(slopes.T @ slopes)

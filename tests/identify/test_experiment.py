@@ -9,7 +9,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.identify import HeavyTailed, Machine, Measured
 from ballsocket.identify.experiment import Candidate, Experiment, Gain, experiment, standard_candidates
-from ballsocket.identify.synthetic import Trials, drawn, trials
+from ballsocket.identify.synthetic import Trials, draw_data_sets, trials
 
 JOINT = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
 MODEL = bs.HessForsbach()
@@ -87,7 +87,7 @@ def test_the_gain_of_one_unknown_is_half_the_logarithm_of_the_growth(scatter, we
     (gain,) = experiment(result, [candidate]).gains
     step = 1e-4
     theta = result.best.theta[0] + step * np.array([1.0, -1.0])
-    joints = [JOINT.replace(clearance=value) for value in result.transform.values(theta[:, None])[:, 0]]
+    joints = [JOINT.replace(clearance=value) for value in result.transform.to_values(theta[:, None])[:, 0]]
     above, below = (MODEL.press(joint, force=1500.0).half_angle for joint in joints)
     slope = (above - below) / (2 * step)
     growth = 1 + weight * (slope / 0.004) ** 2 * result.information.covariance[0, 0]
@@ -146,14 +146,14 @@ def test_coverage_and_bias_of_trials():
     tried = Trials(("a", "b"), truth, middle, middle - 0.2, middle + 0.2)
     assert tried.coverage == {"a": 0.75, "b": 1.0}
     assert tried.bias == pytest.approx({"a": 0.25, "b": 0.25})
-    np.testing.assert_allclose(tried.half, 0.2)
+    np.testing.assert_allclose(tried.half_widths, 0.2)
     assert tried.summary() == {"trials": 4, "coverage": tried.coverage, "bias": tried.bias}
 
 
 def test_synthetic_data_scatter_about_the_results_with_the_widened_uncertainty():
     result = identified(measured())
     wide = replace(result, misfit=replace(result.misfit, widening=3.0))
-    (plain,), (widened,) = (drawn(case, np.random.default_rng(5)) for case in (result, wide))
+    (plain,), (widened,) = (draw_data_sets(case, np.random.default_rng(5)) for case in (result, wide))
     noise = np.random.default_rng(5).standard_normal(4)
     np.testing.assert_allclose(plain.values, result.results[0] + 2e-4 * noise, rtol=1e-12)
     np.testing.assert_allclose(widened.values, result.results[0] + 6e-4 * noise, rtol=1e-12)
@@ -168,12 +168,12 @@ def test_synthetic_data_are_saturated_and_not_negative():
         saturation=6.0,
     )
     result = identified(film, measured())
-    values = np.stack([drawn(result, np.random.default_rng(seed))[0].values for seed in range(20)])
+    values = np.stack([draw_data_sets(result, np.random.default_rng(seed))[0].values for seed in range(20)])
     assert (values.min(), values.max()) == (0.0, 6.0)
     machine = Measured(
         quantity="indentation", values=CONTACT.indentation, uncertainty=0.2, force=FORCE, machine=Machine()
     )
-    read = drawn(identified(machine, measured()), np.random.default_rng(0))[0].values
+    read = draw_data_sets(identified(machine, measured()), np.random.default_rng(0))[0].values
     assert read.min() < 0.0
 
 

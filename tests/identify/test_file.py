@@ -5,7 +5,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.identify import HeavyTailed, Machine, NormalScatter
-from ballsocket.identify.columns import Gaps, head_of, read_measured
+from ballsocket.identify.columns import Gaps, parse_head, read_measured
 from ballsocket.identify.file import read_identify
 from ballsocket.studies import Normal
 
@@ -39,7 +39,7 @@ def rows(heads, *columns):
     ],
 )
 def test_heads_are_names_and_units(text, name, factor):
-    head = head_of(text)
+    head = parse_head(text)
     assert (head.name, head.factor) == (name, pytest.approx(factor))
 
 
@@ -133,7 +133,7 @@ def test_a_file_is_identified(question):
     assert [each.quantity for each in given.data] == ["indentation", "area"]
     assert given.free == {"clearance": (0.02, 0.3), "liner_young": (400.0, 2000.0)}
     truth = {"clearance": HIP.clearance, "liner_young": HIP.liner.young, "frame.compliance": 5e-6}
-    assert given.identified().point == pytest.approx(truth, rel=2e-3)
+    assert given.identify_unknowns().point == pytest.approx(truth, rel=2e-3)
 
 
 def test_the_drift_of_a_machine_is_read_with_the_order_of_the_readings(question):
@@ -145,7 +145,7 @@ def test_the_drift_of_a_machine_is_read_with_the_order_of_the_readings(question)
     question.write_text(text.replace('file = "press.csv"', inline), "utf-8")
     given = read_identify(question)
     assert given.data[0].machine.drift == pytest.approx((-1e-3, 1e-3))
-    assert given.identified().point["frame.drift"] == pytest.approx(3e-4, rel=0.05)
+    assert given.identify_unknowns().point["frame.drift"] == pytest.approx(3e-4, rel=0.05)
 
 
 SWING = """
@@ -164,7 +164,7 @@ def test_the_frequency_of_a_mass_measures_the_stiffness(question):
     given = read_identify(question)
     assert given.data[2].observable.described.unit == "Hz"
     truth = {"clearance": HIP.clearance, "liner_young": HIP.liner.young, "frame.compliance": 5e-6}
-    assert given.identified().point == pytest.approx(truth, rel=2e-3)
+    assert given.identify_unknowns().point == pytest.approx(truth, rel=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -272,14 +272,14 @@ def test_a_message_names_at_most_eight_rows_with_gaps(tmp_path):
 @pytest.mark.parametrize("text", ["force)", "force [kN", "(force", "liner_poisson_mm"])
 def test_heads_with_half_a_bracket_or_a_wrong_unit_are_refused(text):
     with pytest.raises(ValueError, match=r"column|unit of|liner_poisson"):
-        head_of(text)
+        parse_head(text)
 
 
 def test_heads_may_have_units_in_either_bracket():
-    assert head_of("area (mm2)").name == "area"
-    assert head_of("max pressure [MPa]").name == "max_pressure"
-    assert head_of(" max_pressure_uncertainty [kPa] ").factor == pytest.approx(1e-3)
-    assert head_of("liner_young_GPa").factor == pytest.approx(1e3)
+    assert parse_head("area (mm2)").name == "area"
+    assert parse_head("max pressure [MPa]").name == "max_pressure"
+    assert parse_head(" max_pressure_uncertainty [kPa] ").factor == pytest.approx(1e-3)
+    assert parse_head("liner_young_GPa").factor == pytest.approx(1e3)
 
 
 def test_a_file_states_scatter_priors_and_options(question):

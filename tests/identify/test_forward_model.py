@@ -10,7 +10,7 @@ from ballsocket.identify import Machine, Measured, oscillation
 from ballsocket.identify.forward_model import ForwardModel
 from ballsocket.identify.misfit import Misfit, by_differences
 from ballsocket.identify.scatter import HeavyTailed, NormalScatter
-from ballsocket.identify.unknowns import ParameterTransform, log_prior, unknowns_of
+from ballsocket.identify.unknowns import ParameterTransform, collect_unknowns, log_prior
 from ballsocket.studies import Normal
 
 from .linear_problem import MATRIX, NAMES, TRUTH, linear_misfit, unknown
@@ -43,7 +43,7 @@ def test_results_are_those_of_single_presses_in_the_order_of_the_data():
         measured("frequency", observable=oscillation(2.0)),
         Measured(quantity="liner_young", values=900.0, uncertainty=5.0),
     )
-    rows = forward(*data).at(VALUES)
+    rows = forward(*data).results_at(VALUES)
     assert rows.shape == (2, 3 + 2 + 2 + 3 + 1 + 3 + 1)
     for row, joint in zip(rows, JOINTS, strict=True):
         contact = MODEL.press(joint, force=FORCE)
@@ -60,24 +60,24 @@ def test_results_are_those_of_single_presses_in_the_order_of_the_data():
 
 
 def test_known_numbers_of_the_joint_are_constant():
-    rows = forward(Measured(quantity="ball_radius", values=[16.0, 16.0], uncertainty=0.1)).at(VALUES)
+    rows = forward(Measured(quantity="ball_radius", values=[16.0, 16.0], uncertainty=0.1)).results_at(VALUES)
     assert rows.tolist() == [[16.0, 16.0]] * 2
 
 
 def test_a_perturbation_changes_every_load_by_its_fraction():
-    rows = forward(measured("indentation")).at(VALUES[:1], load_perturbation=0.01)
+    rows = forward(measured("indentation")).results_at(VALUES[:1], load_perturbation=0.01)
     np.testing.assert_allclose(rows[0], MODEL.press(JOINTS[0], force=1.01 * FORCE).indentation, rtol=1e-12)
     by_depth = Measured(quantity="force", values=FORCE, uncertainty=1.0, indentation=[0.01, 0.02, 0.03])
     machine = replace(by_depth, machine=Machine(offset=0.001))
     depth = 1.01 * by_depth.indentation
     for data, expected in ((by_depth, depth), (machine, depth - 0.001)):
-        row = forward(data).at(VALUES[:1], load_perturbation=0.01)[0]
+        row = forward(data).results_at(VALUES[:1], load_perturbation=0.01)[0]
         np.testing.assert_allclose(row, MODEL.press(JOINTS[0], indentation=expected).force, rtol=1e-12)
 
 
 def test_a_machine_adds_its_errors_to_indentations():
     machine = Machine(compliance=5e-6, offset=0.003, drift=2e-4)
-    row = forward(measured("indentation", machine=machine, order=[4.0, 0.0, 2.0])).at(VALUES[:1])[0]
+    row = forward(measured("indentation", machine=machine, order=[4.0, 0.0, 2.0])).results_at(VALUES[:1])[0]
     depth = MODEL.press(JOINTS[0], force=FORCE).indentation
     np.testing.assert_allclose(row, depth + 5e-6 * FORCE + 0.003 + 2e-4 * np.array([4.0, 0.0, 2.0]), rtol=1e-12)
 
@@ -85,7 +85,9 @@ def test_a_machine_adds_its_errors_to_indentations():
 def test_unknown_errors_of_a_machine_are_columns():
     machine = Machine(compliance=(0.0, 1e-5), offset=0.003, name="frame")
     names = ("clearance", "frame.compliance")
-    rows = forward(measured("indentation", machine=machine), names=names).at(np.array([[0.1, 2e-6], [0.1, 4e-6]]))
+    rows = forward(measured("indentation", machine=machine), names=names).results_at(
+        np.array([[0.1, 2e-6], [0.1, 4e-6]])
+    )
     np.testing.assert_allclose(rows[1] - rows[0], 2e-6 * FORCE, rtol=1e-9)
 
 
@@ -98,31 +100,31 @@ def test_loads_read_by_a_compliant_machine_are_corrected_exactly(quantity):
     values = 1.1 * getattr(contact, quantity)  # a measured force is the start of the iterations
     data = Measured(quantity=quantity, values=values, uncertainty=1.0, indentation=reading, machine=machine)
     tolerance = 3e-8 if quantity == "force" else 3e-5
-    np.testing.assert_allclose(forward(data).at(VALUES[:1])[0], getattr(contact, quantity), rtol=tolerance)
+    np.testing.assert_allclose(forward(data).results_at(VALUES[:1])[0], getattr(contact, quantity), rtol=tolerance)
 
 
 def test_an_indentation_below_the_zero_of_the_machine_has_no_force():
     data = Measured(quantity="force", values=[0.0], uncertainty=1.0, indentation=[0.001], machine=Machine(offset=0.002))
-    assert forward(data).at(VALUES[:1]).tolist() == [[0.0]]
+    assert forward(data).results_at(VALUES[:1]).tolist() == [[0.0]]
 
 
 def test_a_value_of_zero_is_read_at_the_corrected_indentation():
     machine = Machine(offset=0.002, compliance=1e-6)
     data = Measured(quantity="area", values=[0.0], uncertainty=1.0, indentation=[0.001], machine=machine)
-    assert forward(data).at(VALUES[:1]).tolist() == [[0.0]]
+    assert forward(data).results_at(VALUES[:1]).tolist() == [[0.0]]
 
 
 def test_a_point_without_a_joint_or_a_result_is_nan():
     data = (measured("indentation"), Measured(quantity="clearance", values=0.1, uncertainty=0.1))
-    rows = forward(*data, names=("outer_radius",)).at(np.array([[15.0], [22.1]]))
+    rows = forward(*data, names=("outer_radius",)).results_at(np.array([[15.0], [22.1]]))
     assert np.isnan(rows[0]).all()
     assert np.isfinite(rows[1]).all()
-    thin = forward(*data, names=("liner_thickness",), model=bs.Tabulated()).at(np.array([[0.01], [0.02]]))
+    thin = forward(*data, names=("liner_thickness",), model=bs.Tabulated()).results_at(np.array([[0.01], [0.02]]))
     assert np.isnan(thin[:, :3]).all()
     assert np.isfinite(thin[:, 3]).all()
 
 
-UNKNOWNS = unknowns_of({"clearance": (0.05, 0.2), "liner_young": Normal(mean=1000.0, deviation=80.0)}, (), MODEL)
+UNKNOWNS = collect_unknowns({"clearance": (0.05, 0.2), "liner_young": Normal(mean=1000.0, deviation=80.0)}, (), MODEL)
 TRANSFORM = ParameterTransform(UNKNOWNS)
 DATA = (measured("indentation", values=[0.02, 0.03, 0.045]), measured("max_pressure", values=[4.0, 7.0, 9.0]))
 FILM = replace(DATA[1], saturation=7.0)
@@ -133,16 +135,16 @@ def misfit(*data, scatter=None):
     return Misfit(forward(*data), TRANSFORM, scatter or NormalScatter(), by_differences, sigma)
 
 
-THETA = TRANSFORM.theta(VALUES)
+THETA = TRANSFORM.to_theta(VALUES)
 
 
 def test_differences_are_the_derivatives_of_the_results():
     results, slopes = by_differences(forward(*DATA), TRANSFORM, THETA)
-    np.testing.assert_array_equal(results, forward(*DATA).at(TRANSFORM.values(THETA)))
+    np.testing.assert_array_equal(results, forward(*DATA).results_at(TRANSFORM.to_values(THETA)))
     assert slopes.shape == (2, 6, 2)
     for index in range(2):
         shift = 1e-3 * np.eye(2)[index]
-        above, below = (forward(*DATA).at(TRANSFORM.values(THETA + side * shift)) for side in (1, -1))
+        above, below = (forward(*DATA).results_at(TRANSFORM.to_values(THETA + side * shift)) for side in (1, -1))
         np.testing.assert_allclose(slopes[..., index], (above - below) / 2e-3, rtol=1e-5)
     single, _ = by_differences(forward(*DATA), TRANSFORM, THETA[0])
     np.testing.assert_array_equal(single, results[0])
@@ -154,7 +156,7 @@ def test_differences_are_one_sided_at_the_ends_of_a_range():
     _, slopes = by_differences(forward(*DATA), TRANSFORM, ends)
     for end, side, slope in zip(ends, (1, -1), slopes, strict=True):
         shift = side * 1e-4 * np.array([1.0, 0.0])
-        near, at_end = forward(*DATA).at(TRANSFORM.values(np.stack([end + shift, end])))
+        near, at_end = forward(*DATA).results_at(TRANSFORM.to_values(np.stack([end + shift, end])))
         np.testing.assert_allclose(slope[:, 0], (near - at_end) / (side * 1e-4), rtol=1e-3)
 
 
@@ -162,13 +164,13 @@ def test_differences_omit_a_neighbour_without_a_result():
     linear = linear_misfit()
 
     class Edge(type(linear.forward)):
-        def at(self, values, load_perturbation=0.0):
+        def results_at(self, values, load_perturbation=0.0):
             results = values @ self.matrix.T
             return np.where(values[:, :1] > TRUTH[0] + 1e-9, np.nan, results)
 
-    theta = linear.transform.theta(TRUTH)
+    theta = linear.transform.to_theta(TRUTH)
     results, slopes = by_differences(Edge(linear.forward.data, MATRIX), linear.transform, theta)
-    spans = np.array([unknown(name).span for name in NAMES])
+    spans = np.array([unknown(name).prior_deviation for name in NAMES])
     np.testing.assert_allclose(results, MATRIX @ TRUTH, rtol=1e-12)
     np.testing.assert_allclose(slopes, MATRIX * spans, rtol=1e-7)
 
@@ -200,11 +202,11 @@ def test_a_saturated_value_is_a_lower_bound_at_its_limit():
 
 def test_widening_divides_the_standardised_residuals():
     problem = misfit(*DATA)
-    results = problem.forward.at(TRANSFORM.values(THETA))
+    results = problem.forward.results_at(TRANSFORM.to_values(THETA))
     wide = replace(problem, widening=2.0)
-    np.testing.assert_allclose(wide.standard(results), problem.standard(results) / 2)
-    np.testing.assert_allclose(problem.standard(results), (results - problem.value) / problem.uncertainty)
-    np.testing.assert_allclose(wide.information(THETA[0]), problem.information(THETA[0]) / 4, rtol=1e-12)
+    np.testing.assert_allclose(wide.standardised_residuals(results), problem.standardised_residuals(results) / 2)
+    np.testing.assert_allclose(problem.standardised_residuals(results), (results - problem.value) / problem.uncertainty)
+    np.testing.assert_allclose(wide.fisher_information(THETA[0]), problem.fisher_information(THETA[0]) / 4, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("scatter", "factor"), [(NormalScatter(), 1.0), (HeavyTailed(), 5 / 7)])
@@ -212,24 +214,24 @@ def test_the_information_is_the_weighted_product_of_the_slopes(scatter, factor):
     problem = misfit(*DATA, scatter=scatter)
     _, slopes = by_differences(problem.forward, TRANSFORM, THETA[0])
     weights = factor / problem.uncertainty**2
-    np.testing.assert_allclose(problem.information(THETA[0]), (slopes * weights[:, None]).T @ slopes, rtol=1e-10)
+    np.testing.assert_allclose(problem.fisher_information(THETA[0]), (slopes * weights[:, None]).T @ slopes, rtol=1e-10)
     errors = np.arange(12.0).reshape(2, 6)
-    np.testing.assert_allclose(problem.shifts(THETA[0], errors), slopes.T @ (weights * errors).T, rtol=1e-10)
+    np.testing.assert_allclose(problem.project_errors(THETA[0], errors), slopes.T @ (weights * errors).T, rtol=1e-10)
 
 
 def test_a_lower_bound_far_below_the_result_has_no_information():
     linear = linear_misfit(saturation=-10.0)
     assert linear.saturated.all()
     object.__setattr__(linear, "value", MATRIX @ TRUTH - 0.4)
-    assert abs(linear.information(linear.transform.theta(TRUTH))).max() < 1e-6
+    assert abs(linear.fisher_information(linear.transform.to_theta(TRUTH))).max() < 1e-6
     object.__setattr__(linear, "value", MATRIX @ TRUTH)  # half the density lies above: h² = 2/π of the full weight
-    full = linear_misfit().information(linear.transform.theta(TRUTH))
-    np.testing.assert_allclose(linear.information(linear.transform.theta(TRUTH)), 2 / np.pi * full, rtol=1e-9)
+    full = linear_misfit().fisher_information(linear.transform.to_theta(TRUTH))
+    np.testing.assert_allclose(linear.fisher_information(linear.transform.to_theta(TRUTH)), 2 / np.pi * full, rtol=1e-9)
 
 
 def test_the_log_posterior_is_prior_plus_likelihood_within_the_ranges():
     problem = misfit(*DATA)
-    residuals = problem.residuals(problem.forward.at(TRANSFORM.values(THETA)))
+    residuals = problem.residuals(problem.forward.results_at(TRANSFORM.to_values(THETA)))
     expected = log_prior(TRANSFORM, THETA) - np.sum(residuals**2, axis=1) / 2
     np.testing.assert_allclose(problem.log_posterior(THETA), expected, rtol=1e-12)
     shift = np.array([0.1, 0.0])
@@ -239,13 +241,13 @@ def test_the_log_posterior_is_prior_plus_likelihood_within_the_ranges():
 
 def test_the_cost_is_infinite_without_a_result():
     data = measured("indentation", values=[0.02, 0.03, 0.045])
-    transform = ParameterTransform(unknowns_of({"liner_thickness": (0.01, 6.0)}, (), MODEL))
+    transform = ParameterTransform(collect_unknowns({"liner_thickness": (0.01, 6.0)}, (), MODEL))
     model = forward(data, names=("liner_thickness",), model=bs.Tabulated())
     problem = Misfit(model, transform, NormalScatter(), by_differences, data.uncertainty)
-    costs = problem.costs(transform.theta([[0.01], [5.0]]))
+    costs = problem.costs(transform.to_theta([[0.01], [5.0]]))
     assert costs[0] == np.inf
     assert np.isfinite(costs[1])
-    assert problem.log_posterior(transform.theta([[0.01]])).tolist() == [-np.inf]
+    assert problem.log_posterior(transform.to_theta([[0.01]])).tolist() == [-np.inf]
 
 
 @pytest.mark.long

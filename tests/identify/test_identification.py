@@ -7,7 +7,7 @@ import ballsocket as bs
 from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
 from ballsocket.identify.experiment import Candidate, experiment
 from ballsocket.identify.jax_derivatives import by_tracing
-from ballsocket.identify.synthetic import drawn, trials
+from ballsocket.identify.synthetic import draw_data_sets, trials
 from ballsocket.output.identify_plots import fit_figure
 from ballsocket.studies import LogNormal, Normal
 
@@ -154,7 +154,7 @@ def test_uncertain_loads_widen_the_band():
     unsure = identified(measured("indentation", share=1e-3, load_uncertainty=60.0))
     wide, narrow = (each["clearance"].high / each["clearance"].low for each in (unsure, sure))
     assert np.log(wide) > 2 * np.log(narrow)
-    offs = [drawn(result, np.random.default_rng(0))[0].values - TRUTH.indentation for result in (unsure, sure)]
+    offs = [draw_data_sets(result, np.random.default_rng(0))[0].values - TRUTH.indentation for result in (unsure, sure)]
     assert np.std(offs[0]) > 3 * np.std(offs[1])
 
 
@@ -301,7 +301,7 @@ def test_a_custom_observable_is_read_from_contacts():
     vibrations = Measured(quantity="frequency", observable=observable, values=swings, uncertainty=1.0, force=FORCE)
     result = identified(vibrations, measured("area"))
     assert result.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
-    assert drawn(result, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
+    assert draw_data_sets(result, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
     assert fit_figure(result).axes[0].get_ylabel() == "frequency of oscillation f [Hz]"
 
 

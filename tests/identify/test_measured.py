@@ -63,10 +63,10 @@ def test_a_zero_value_needs_no_load():
 def test_an_area_is_at_most_half_of_the_ball():
     half = 2 * np.pi * JOINT.ball_radius**2
     area = {"quantity": "area", "uncertainty": 1.0, "force": FORCE[:1]}
-    Measured(**area, values=0.999 * half).check_within(JOINT)
+    Measured(**area, values=0.999 * half).check_area(JOINT)
     with pytest.raises(ValueError, match=r"area\[0\] = .* is not allowed: a contact area is below half of the ball"):
-        Measured(**area, values=1.001 * half).check_within(JOINT)
-    measured(values=[1e4, 2e4, 3e4]).check_within(JOINT)
+        Measured(**area, values=1.001 * half).check_area(JOINT)
+    measured(values=[1e4, 2e4, 3e4]).check_area(JOINT)
 
 
 def test_a_custom_observable_has_any_name_and_values():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify.modulus import worst_error
+from ballsocket.identify.modulus import max_relative_error
 from ballsocket.paper.table_3 import RATIOS, refit_table_3
 
 from ..cli.command import run
@@ -127,8 +127,8 @@ def test_errors_at_equal_indentation_are_those_of_the_force():
 
 
 def test_the_largest_error_is_relative_to_the_reference():
-    assert worst_error(np.array([1.0, 2.2, 2.7]), np.array([1.0, 2.0, 3.0])) == pytest.approx(0.1)
-    assert worst_error(np.array([1.0, 1.7]), np.array([1.0, 2.0])) == pytest.approx(0.15)
+    assert max_relative_error(np.array([1.0, 2.2, 2.7]), np.array([1.0, 2.0, 3.0])) == pytest.approx(0.1)
+    assert max_relative_error(np.array([1.0, 1.7]), np.array([1.0, 2.0])) == pytest.approx(0.15)
 
 
 def test_a_polynomial_needs_three_thicknesses():

@@ -105,19 +105,19 @@ uncertainty = "1 nm"
     )
     question = read_identify(tmp_path / "adhesion.toml")
     assert question.free["work_of_adhesion"] == pytest.approx((1e-5, 1e-3))
-    assert question.identified().point["work_of_adhesion"] == pytest.approx(2e-4, rel=1e-3)
+    assert question.identify_unknowns().point["work_of_adhesion"] == pytest.approx(2e-4, rel=1e-3)
 
 
 def test_a_machine_has_every_registered_error():
     machine = Machine(**dict.fromkeys(MACHINE_ERRORS, 1e-06), name="press")
-    assert machine.known() == {f"press.{name}": 1e-6 for name in MACHINE_ERRORS}
-    assert Machine().known() == {f"machine.{name}": 0.0 for name in MACHINE_ERRORS}
+    assert machine.known_errors() == {f"press.{name}": 1e-6 for name in MACHINE_ERRORS}
+    assert Machine().known_errors() == {f"machine.{name}": 0.0 for name in MACHINE_ERRORS}
     assert Machine(offset=(-1.0, 2.0)).unknowns == {"machine.offset": (-1.0, 2.0)}
     assert Machine(offset=0.1) == Machine(offset=0.1)
     assert Machine(offset=0.1) != Machine(drift=0.1)
     assert repr(Machine(offset=0.1)) == "Machine(compliance=0.0, offset=0.1, drift=0.0, name='machine')"
     assert pickle.loads(pickle.dumps(machine)) == copy.deepcopy(machine) == machine
-    assert replace(machine, offset=0.3).known()["press.offset"] == 0.3
+    assert replace(machine, offset=0.3).known_errors()["press.offset"] == 0.3
     with pytest.raises(TypeError, match="'offsett' is not an error of a machine; did you mean 'offset'"):
         Machine(offsett=0.1)
     with pytest.raises(AttributeError, match="no attribute 'offsett'"):
@@ -158,7 +158,7 @@ open("data.toml", "w").write(
     '[machine.frame]\\nseating = "0..20 um"\\n'
     '[[data]]\\nfile = "press.csv"\\nuncertainty = "0.01 um"\\nmachine = "frame"\\n'
 )
-points.append(read_identify("data.toml").identified().point)
+points.append(read_identify("data.toml").identify_unknowns().point)
 print(json.dumps({"points": points, "notes": known.notes}))
 sys.stdout.flush()
 sys.argv = ["ballsocket", "identify", "data.toml", "--json"]

@@ -25,14 +25,14 @@ from ballsocket.studies import Normal, Rectangular
 from .linear_problem import MATRIX, NAMES, TRUTH, linear_misfit, scaled_covariance, unknown
 
 NOISE = np.array([0.03, -0.01, 0.02, -0.04, 0.01])
-SPANS = np.array([unknown(name).span for name in NAMES])
+SPANS = np.array([unknown(name).prior_deviation for name in NAMES])
 
 
 def test_the_best_fit_of_a_linear_problem_is_the_least_squares_solution():
     misfit = linear_misfit(NOISE)
     best = find_best_fit(misfit, seed=0)
     expected, squares, *_ = np.linalg.lstsq(MATRIX, MATRIX @ TRUTH + NOISE, rcond=None)
-    np.testing.assert_allclose(misfit.transform.values(best.theta), expected, atol=1e-9)
+    np.testing.assert_allclose(misfit.transform.to_values(best.theta), expected, atol=1e-9)
     assert best.cost == pytest.approx(squares[0] / 2 / 0.02**2, rel=1e-9)
     assert best.converged
     assert best.rivals == ()
@@ -46,7 +46,7 @@ def test_a_prior_distribution_is_one_more_value():
     rows = np.vstack([MATRIX / 0.02, [[1 / 0.005, 0.0]]])
     values = np.append((MATRIX @ TRUTH + NOISE) / 0.02, 0.0)
     np.testing.assert_allclose(
-        misfit.transform.values(best.theta), np.linalg.lstsq(rows, values, rcond=None)[0], atol=1e-9
+        misfit.transform.to_values(best.theta), np.linalg.lstsq(rows, values, rcond=None)[0], atol=1e-9
     )
     assert misfit.freedom == 4
     assert linear_misfit(NOISE).freedom == 3
@@ -55,7 +55,7 @@ def test_a_prior_distribution_is_one_more_value():
 def test_the_search_stays_within_the_ranges():
     misfit = linear_misfit(unknowns=(unknown(NAMES[0], low=0.15, high=0.4), unknown(NAMES[1])))
     best = find_best_fit(misfit, seed=0)
-    assert misfit.transform.values(best.theta)[0] == pytest.approx(0.15)
+    assert misfit.transform.to_values(best.theta)[0] == pytest.approx(0.15)
     assert minimise(misfit, misfit.transform.high).theta == pytest.approx(best.theta, abs=1e-6)
 
 
@@ -64,7 +64,7 @@ def test_two_valleys_of_equal_depth_are_rivals():
     misfit = linear_misfit(unknowns=(unknown(NAMES[0], low=-0.4, high=0.4),), matrix=MATRIX[:, :1])
 
     class Square(type(misfit.forward)):
-        def at(self, values, load_perturbation=0.0):
+        def results_at(self, values, load_perturbation=0.0):
             return values**2 @ self.matrix.T
 
     forward = Square(misfit.forward.data, MATRIX[:, :1])
@@ -72,7 +72,7 @@ def test_two_valleys_of_equal_depth_are_rivals():
     object.__setattr__(square, "value", MATRIX[:, 0] * 0.04)
     best = find_best_fit(square, seed=0)
     (rival,) = best.rivals
-    values = square.transform.values(np.stack([best.theta, rival]))[:, 0]
+    values = square.transform.to_values(np.stack([best.theta, rival]))[:, 0]
     np.testing.assert_allclose(sorted(values), [-0.2, 0.2], rtol=1e-4)
 
 
@@ -114,7 +114,7 @@ def test_the_range_of_one_unknown_limits_the_band_of_another():
     (row,) = profile_ends(misfit, [best.theta], best.cost, (3.84,)).ends
     assert row[0][0].limited_by == row[0][1].limited_by == (1,)
     assert not row[1][0].closed
-    low, high = (misfit.transform.values(end.theta)[0] for end in row[0])
+    low, high = (misfit.transform.to_values(end.theta)[0] for end in row[0])
     deviation = 0.02 / np.linalg.norm(matrix[:, 0])
     assert low == pytest.approx(0.05 - 1.96 * deviation, abs=2e-3)
     assert high == pytest.approx(0.15 + 1.96 * deviation, abs=2e-3)
@@ -145,15 +145,20 @@ def test_the_scatter_ratio_ignores_lower_bounds_below_the_result():
     misfit = linear_misfit(NOISE)
     saturated = replace(misfit)
     object.__setattr__(saturated, "saturated", np.ones(5, dtype=bool))
-    best = FitResult(misfit.transform.theta(TRUTH + 0.3), 0.0, True)
-    z = np.minimum(saturated.standard(saturated.forward.at(saturated.transform.values(best.theta[None]))[0]), 0.0)
+    best = FitResult(misfit.transform.to_theta(TRUTH + 0.3), 0.0, True)
+    z = np.minimum(
+        saturated.standardised_residuals(
+            saturated.forward.results_at(saturated.transform.to_values(best.theta[None]))[0]
+        ),
+        0.0,
+    )
     assert scatter_ratio(saturated, best) == pytest.approx(max(sqrt(np.sum(z**2) / 3), 1.0), rel=1e-5)
 
 
 def test_the_scatter_ratio_of_a_heavy_tail_is_its_most_likely_scale():
     noise = np.array([0.06, -0.07, 0.09, -0.06, 0.5])
     misfit = linear_misfit(noise, scatter=HeavyTailed())
-    best = FitResult(misfit.transform.theta(TRUTH), 0.0, True)
+    best = FitResult(misfit.transform.to_theta(TRUTH), 0.0, True)
     ratio = scatter_ratio(misfit, best)
     u = noise / 0.02 / ratio
     assert np.sum(5 * u**2 / (4 + u**2)) == pytest.approx(3.0, rel=1e-4)

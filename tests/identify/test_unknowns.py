@@ -7,14 +7,14 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.identify import Machine
-from ballsocket.identify.unknowns import ParameterTransform, log_prior, unknowns_of
+from ballsocket.identify.unknowns import ParameterTransform, collect_unknowns, log_prior
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 MODEL = bs.HessForsbach()
 
 
 def one(name, prior, machines=()):
-    return unknowns_of({name: prior}, machines, MODEL)[0]
+    return collect_unknowns({name: prior}, machines, MODEL)[0]
 
 
 RANGE = one("clearance", (0.02, 0.3))
@@ -32,50 +32,50 @@ def test_a_range_above_zero_is_searched_on_a_logarithmic_scale():
     assert not LINEAR.logarithmic
     assert not POISSON.logarithmic
     assert not NORMAL.logarithmic
-    assert [unknown.known for unknown in (RANGE, POISSON, NORMAL, FACTOR)] == [False, False, True, True]
+    assert [unknown.has_distribution for unknown in (RANGE, POISSON, NORMAL, FACTOR)] == [False, False, True, True]
     assert not any(unknown.of_machine for unknown in ALL.unknowns)
 
 
 def test_the_span_is_the_standard_deviation_of_the_prior():
-    assert RANGE.span == pytest.approx(log(15.0) / sqrt(12))
-    assert LINEAR.span == pytest.approx(0.3 / sqrt(12))
-    assert NORMAL.span == 50.0
-    assert FACTOR.span == pytest.approx(log(1.2))
+    assert RANGE.prior_deviation == pytest.approx(log(15.0) / sqrt(12))
+    assert LINEAR.prior_deviation == pytest.approx(0.3 / sqrt(12))
+    assert NORMAL.prior_deviation == 50.0
+    assert FACTOR.prior_deviation == pytest.approx(log(1.2))
 
 
 def test_the_middle_is_the_scaled_mean_of_the_prior():
-    assert RANGE.middle == 0.0
-    assert NORMAL.middle == pytest.approx(18.0)
-    assert FACTOR.middle == pytest.approx(log(0.1) / log(1.2))
+    assert RANGE.prior_mean == 0.0
+    assert NORMAL.prior_mean == pytest.approx(18.0)
+    assert FACTOR.prior_mean == pytest.approx(log(0.1) / log(1.2))
 
 
 def test_theta_is_the_scaled_value_over_the_span():
-    theta = ALL.theta(VALUES)
+    theta = ALL.to_theta(VALUES)
     expected = np.stack(
         [
-            np.log(VALUES[:, 0]) / RANGE.span,
-            VALUES[:, 1] / POISSON.span,
+            np.log(VALUES[:, 0]) / RANGE.prior_deviation,
+            VALUES[:, 1] / POISSON.prior_deviation,
             VALUES[:, 2] / 50.0,
-            np.log(VALUES[:, 3]) / FACTOR.span,
+            np.log(VALUES[:, 3]) / FACTOR.prior_deviation,
         ],
         axis=1,
     )
     np.testing.assert_allclose(theta, expected, rtol=1e-14)
-    np.testing.assert_allclose(ALL.values(theta), VALUES, rtol=1e-13)
-    np.testing.assert_allclose(ALL.low, ALL.theta([unknown.low for unknown in ALL.unknowns]))
+    np.testing.assert_allclose(ALL.to_values(theta), VALUES, rtol=1e-13)
+    np.testing.assert_allclose(ALL.low, ALL.to_theta([unknown.low for unknown in ALL.unknowns]))
     assert ALL.names == ("clearance", "liner_poisson", "liner_young", "clearance")
 
 
 def test_derivatives_are_those_of_the_values():
-    theta, step = ALL.theta(VALUES), 1e-6
+    theta, step = ALL.to_theta(VALUES), 1e-6
     for index in range(4):
         shift = step * np.eye(4)[index]
-        slope = (ALL.values(theta + shift) - ALL.values(theta - shift)) / (2 * step)
+        slope = (ALL.to_values(theta + shift) - ALL.to_values(theta - shift)) / (2 * step)
         np.testing.assert_allclose(ALL.derivatives(theta)[:, index], slope[:, index], rtol=1e-7)
 
 
 def test_prior_residuals_count_standard_deviations_from_the_mean():
-    residuals = ALL.prior_residuals(ALL.theta(VALUES))
+    residuals = ALL.prior_residuals(ALL.to_theta(VALUES))
     np.testing.assert_allclose(residuals[:, :2], 0.0)
     np.testing.assert_allclose(residuals[:, 2], [-0.8, 2.0], rtol=1e-12)
     np.testing.assert_allclose(residuals[:, 3], np.log([0.9, 1.3]) / log(1.2), rtol=1e-12)
@@ -83,16 +83,16 @@ def test_prior_residuals_count_standard_deviations_from_the_mean():
 
 def test_the_log_prior_is_flat_in_the_value_of_a_range():
     transform = ParameterTransform((RANGE,))
-    theta = transform.theta([[0.03], [0.06]])
+    theta = transform.to_theta([[0.03], [0.06]])
     density = log_prior(transform, theta)
     assert density[1] - density[0] == pytest.approx(log(2.0))  # d value / d theta grows with the value
-    assert log_prior(transform, transform.theta([[0.019], [0.31]])).tolist() == [-inf, -inf]
+    assert log_prior(transform, transform.to_theta([[0.019], [0.31]])).tolist() == [-inf, -inf]
     assert np.isfinite(log_prior(transform, np.stack([transform.low, transform.high]))).all()
 
 
 def test_the_log_prior_of_a_distribution_is_minus_half_the_squared_distance():
     transform = ParameterTransform((NORMAL, FACTOR))
-    theta = transform.theta([[900.0, 0.1], [950.0, 0.1], [900.0, 0.144]])
+    theta = transform.to_theta([[900.0, 0.1], [950.0, 0.1], [900.0, 0.144]])
     np.testing.assert_allclose(log_prior(transform, theta), [0.0, -0.5, -2.0], atol=1e-9)
 
 
@@ -110,20 +110,20 @@ def test_the_search_ends_at_allowed_values():
 
 
 def test_a_physical_limit_is_an_end_beyond_which_no_value_is_allowed():
-    compliance = unknowns_of({}, [Machine(compliance=(0.0, 1e-5), offset=(0.0, 0.01))], MODEL)
-    low = compliance[0].to_scale(0.0) / compliance[0].span
+    compliance = collect_unknowns({}, [Machine(compliance=(0.0, 1e-5), offset=(0.0, 0.01))], MODEL)
+    low = compliance[0].to_scale(0.0) / compliance[0].prior_deviation
     assert compliance[0].is_physical(-1, low)
     assert not compliance[0].is_physical(-1, low + 1e-3)
-    assert not compliance[0].is_physical(1, compliance[0].high / compliance[0].span)
+    assert not compliance[0].is_physical(1, compliance[0].high / compliance[0].prior_deviation)
     assert not compliance[1].is_physical(-1, 0.0)  # an offset may be negative
     poisson = one("liner_poisson", (0.3, 0.5))
-    assert poisson.is_physical(1, 0.5 / poisson.span)
-    assert not POISSON.is_physical(1, 0.48 / POISSON.span)
+    assert poisson.is_physical(1, 0.5 / poisson.prior_deviation)
+    assert not POISSON.is_physical(1, 0.48 / POISSON.prior_deviation)
 
 
 def test_unknowns_are_those_of_the_joint_and_then_those_of_machines():
     machines = [Machine(drift=(-1e-3, 1e-3), compliance=(0.0, 1e-5), name="a"), Machine(name="b"), Machine(name="")]
-    unknowns = unknowns_of({"clearance": (0.1, 0.2)}, [*machines, machines[0]], MODEL)
+    unknowns = collect_unknowns({"clearance": (0.1, 0.2)}, [*machines, machines[0]], MODEL)
     assert [unknown.name for unknown in unknowns] == ["clearance", "a.compliance", "a.drift"]
     assert [unknown.of_machine for unknown in unknowns] == [False, True, True]
     assert isinstance(unknowns[0].prior, Rectangular)
@@ -145,7 +145,7 @@ def test_unknowns_are_those_of_the_joint_and_then_those_of_machines():
 )
 def test_unknowns_that_contradict_a_rule_are_refused(free, machines, message):
     with pytest.raises(ValueError, match=message):
-        unknowns_of(free, machines, MODEL)
+        collect_unknowns(free, machines, MODEL)
 
 
 @pytest.mark.parametrize(

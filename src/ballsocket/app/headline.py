@@ -55,7 +55,7 @@ def _idle(each: Column, contact: Contact) -> bool:
 
 
 def _cell(each: Column, contact: Contact) -> str:
-    value = float(each.of(contact))
+    value = float(each.values_of(contact))
     unit = "" if value != value else f" <span class='unit'>{escape(each.unit)}</span>"
     return (
         f"<div><dt>{escape(each.title)} <i>{escape(each.symbol)}</i></dt>"
@@ -98,5 +98,5 @@ def _error(contact: Contact) -> float:
 
 
 def _apart(contact: Contact, exact: Contact) -> float:
-    shares = [abs(float(relative_deviation(each.of(contact), each.of(exact)))) for each in COLUMNS]
+    shares = [abs(float(relative_deviation(each.values_of(contact), each.values_of(exact)))) for each in COLUMNS]
     return max((share for share in shares if share == share), default=float("nan"))

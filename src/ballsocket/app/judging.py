@@ -8,7 +8,7 @@ from typing import Any
 
 from ..catalogue import judge, reference
 from ..contact import Contact
-from ..contact.describe import summary
+from ..contact.describe import to_summary
 from ..core.validity import OutsideDomainError
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..files.joint_file import JointFile
@@ -55,9 +55,9 @@ def judged(file: JointFile, told: Told) -> Judged:
     told(Reached(share=0.85, words="drawing stresses"))
     figure = section_figure(contact, exact)
     return Judged(
-        numbers=summary(contact),
+        numbers=to_summary(contact),
         error={name: float(value) for name, value in contact.error.items()},
-        exact=None if exact is None else summary(exact),
+        exact=None if exact is None else to_summary(exact),
         elements=contact.mesh.elements,
         seconds=time.perf_counter() - start,
         notes=tuple(contact.notes),

@@ -42,9 +42,9 @@ def _pressures(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], 
 
 def _forces(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
     axes = depth, force = force_axes(reading.units)
-    top = rounded_up(1.2 * max(float(force.of(contact)) for contact in contacts.values()))
+    top = rounded_up(1.2 * max(float(force.values_of(contact)) for contact in contacts.values()))
     largest = top / force.factor
-    deepest = max(float(depth.of(contact)) for contact in contacts.values())
+    deepest = max(float(depth.values_of(contact)) for contact in contacts.values())
     return chart(
         "force over indentation",
         depth.label,
@@ -62,8 +62,8 @@ def _profile(contact: Contact, turns: tuple[float, float], line: LineStyle) -> C
 
 def _curve(contact: Contact, largest: float, axes: tuple[Column, Column], line: LineStyle) -> Curve:
     depth, force = axes
-    mark = (float(depth.of(contact)), float(force.of(contact)))
+    mark = (float(depth.values_of(contact)), float(force.values_of(contact)))
     press = curve(contact, largest)
     if press is None:
         return Curve(numpy.empty(0), numpy.empty(0), numpy.empty(0, dtype=bool), line, mark)
-    return Curve(depth.of(press), force.of(press), numpy.asarray(press.valid), line, mark)
+    return Curve(depth.values_of(press), force.values_of(press), numpy.asarray(press.valid), line, mark)

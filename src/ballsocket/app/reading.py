@@ -26,7 +26,7 @@ class Reading:
         """The unit of a quantity; lengths that are read in µm are mils where others are inches."""
         if quantity.kind is Kind.ANGLE:
             return Unit(quantity.unit) if self.angle == "radians" else quantity.shown
-        if self.units is Units.IMPERIAL and quantity.kind is Kind.LENGTH and quantity.handy is None:
+        if self.units is Units.IMPERIAL and quantity.kind is Kind.LENGTH and quantity.display_unit is None:
             return _INCH
         return self.units.of(quantity)
 

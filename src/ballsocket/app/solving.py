@@ -11,7 +11,7 @@ from typing import Any
 import panel as pn
 
 from ..catalogue import catalogue
-from ..compare import is_slow, short_curve
+from ..compare import is_curve_slow, press_short_curve
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
 from ..problem import Joint
@@ -34,7 +34,7 @@ Solved = WrittenContact | str
 
 def heavy(joint: Joint, name: str) -> bool:
     """Whether a press of a model may take longer than others are to wait."""
-    return is_slow(catalogue[name], joint)
+    return is_curve_slow(catalogue[name], joint)
 
 
 _solved: OrderedDict[Key, tuple[Solved, bool]] = OrderedDict()
@@ -71,7 +71,7 @@ def solve(file: JointFile, names: Sequence[str], told: Told) -> None:
             contacts[name] = found
         told((name, found, name not in contacts))
     for name, contact in contacts.items():
-        told((name, replace(contact, curve=written(short_curve(contact, catalogue[name]))), True))
+        told((name, replace(contact, curve=written(press_short_curve(contact, catalogue[name]))), True))
 
 
 def _contact(file: JointFile, name: str) -> Solved:

@@ -89,7 +89,7 @@ def _row(comparison: Comparison, name: str, shown: list[Column]) -> str:
 
 def _number(each: Column, contact: Contact, apart: Mapping[str, Any] | None) -> str:
     """A cell, which says its own head where there is no room for one above."""
-    text = number_text(float(each.of(contact)))
+    text = number_text(float(each.values_of(contact)))
     return f"<td data-head='{escape(each.head)}'>{text}{_apart(apart, each.name)}</td>"
 
 
@@ -113,7 +113,7 @@ def number_rows(head: str, contacts: Mapping[str, Contact], reading: Reading) ->
     """A table with its head: a row a contact, its numbers its columns named by quantity and unit."""
     columns = COLUMNS if reading.units is Units.SI else reading.columns
     rows = [
-        [name, *(float(each.of(contact)) for each in columns), bool(contact.valid)]
+        [name, *(float(each.values_of(contact)) for each in columns), bool(contact.valid)]
         for name, contact in contacts.items()
     ]
     return [[head, *(column_of(each.quantity, each.reading) for each in columns), "valid"], *rows]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from ..catalogue import listed_models
-from ..core.sources import Source, bibliography, named_in
+from ..core.sources import Source, bibliography, find_cited_keys
 from ..output.list_summary import source_summary
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
@@ -62,9 +62,9 @@ def _said(name: str, value: Any) -> Iterator[Source]:
     if name == "model" and isinstance(value, str) and value in listed_models:
         yield from listed_models[value].sources
     elif name == "name" and isinstance(value, str):
-        yield from (Source(key) for preset in _presets(value) for key in named_in(preset.source))
+        yield from (Source(key) for preset in _presets(value) for key in find_cited_keys(preset.source))
     elif name == "source" and isinstance(value, str):
-        yield from map(Source, named_in(value))
+        yield from map(Source, find_cited_keys(value))
     elif name == "sources" and isinstance(value, list):
         keys = (each["key"] if isinstance(each, dict) else each for each in value)
         yield from (Source(key) for key in keys if key in bibliography())

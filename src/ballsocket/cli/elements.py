@@ -82,7 +82,7 @@ def timed(model: FiniteElement, joint: Any, load: Mapping[str, float]) -> tuple[
     status = Console(stderr=True).status("finite elements")
     with status, progress_to(lambda text: status.update(f"finite elements: {text}")):
         contact: Any = model.press(joint, **load)
-        _ = [column.of(contact) for column in COLUMNS]
+        _ = [column.values_of(contact) for column in COLUMNS]
     return contact, perf_counter() - start
 
 

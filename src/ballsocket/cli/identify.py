@@ -41,7 +41,7 @@ def identify(
     for path in (figure, corner, experiment):
         if path is not None:
             check_format(path)
-    found = read_identify(file).identified()
+    found = read_identify(file).identify_unknowns()
     drawn = None if samples is None else found.posterior(samples)
     if as_json:
         echo_json(_summary(found, drawn))

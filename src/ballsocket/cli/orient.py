@@ -47,7 +47,7 @@ class StandWords:
     def _angle(self, name: str) -> Numbers:
         low, high = ends_of(name, getattr(self, name), CUP[name].kind)
         with as_given({name: getattr(self, name)}):
-            CUP[name].checked(numpy.array([low, high]))
+            CUP[name].check(numpy.array([low, high]))
         return numpy.unique(numpy.linspace(min(low, high), max(low, high), self.points))
 
     def aim(self, file: JointFile) -> Mapping[str, Any]:

@@ -28,7 +28,7 @@ from ..models.foundation import RadialFoundation
 from ..models.kinematics import Kinematics
 from ..models.liner_compliance import liner_of
 from ..models.modulus import Formula
-from ..models.refined import RefinedSolution, make_answer, scaled_load
+from ..models.refined import RefinedSolution, make_solver_result, scaled_load
 from ..models.refined_state import ScaledContact, edge_of_force, edge_of_indentation, scaled_contact
 from ..models.table_3 import eq_18
 from ..problem import Joint
@@ -114,7 +114,7 @@ def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
     edge, *state = (output.reshape(shape) for output in outputs)
     solution = RefinedSolution(joint=joint, edge=edge)
     vars(solution)["_scaled_contact"] = ScaledContact(*state)
-    return make_answer(solution, kind, load)
+    return make_solver_result(solution, kind, load)
 
 
 @cache

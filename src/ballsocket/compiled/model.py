@@ -8,7 +8,7 @@ from typing import Any
 import numpy
 
 from ..contact import Contact, ModelWrapper
-from ..contact.assembly import SolverResult, as_arrays, broadcast_load, check_joint, check_load
+from ..contact.assembly import SolverResult, as_arrays, broadcast_load, check_joint, select_and_check_load
 from ..core import arrays
 from ..core.arrays import Array
 from ..core.checks import reject_unnamed_loads, shown
@@ -61,7 +61,7 @@ class Compiled(ModelWrapper):
     ) -> Contact:
         reject_unnamed_loads(unnamed)
         check_joint(joint)
-        kind, load = check_load(force=force, indentation=indentation, half_angle=half_angle)
+        kind, load = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         load = broadcast_load(load, joint.strengths())
         if kind == "force" and isinstance(self.model, RadialFoundation) and self._is_compilable(joint, load):
             return self._solve_forces(self.model, joint, load)
@@ -69,8 +69,8 @@ class Compiled(ModelWrapper):
 
     def _is_compilable(self, joint: Joint, load: Array) -> bool:
         """Return True for float64 arrays and a model of plain numbers."""
-        large = [number for number in (*joint.numbers(), load) if not arrays.is_plain(number)]
-        return bool(large) and all(map(_is_float64, large)) and all(map(arrays.is_plain, self.parameters))
+        large = [number for number in (*joint.numbers(), load) if not arrays.is_plain_number(number)]
+        return bool(large) and all(map(_is_float64, large)) and all(map(arrays.is_plain_number, self.parameters))
 
     def _solve_forces(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:
         """Press a radial foundation in one compiled pass."""

@@ -111,10 +111,10 @@ def _false(condition: Any) -> Callable[..., Any]:
 def _increasing_root(
     law: Any, target: Any, low: Any, high: Any, start: Any, arguments: Any = (), steps: Any = 60, tolerance: Any = 1e-8
 ) -> Callable[..., Any]:
-    return lambda law, target, low, high, start, arguments=(), steps=60, tolerance=1e-8: roots.root_of_number(
+    return lambda law, target, low, high, start, arguments=(), steps=60, tolerance=1e-8: roots.scalar_increasing_root(
         law, target, low, high, start, arguments, steps, tolerance
     )
 
 
 inline_formula(arrays.safe_divisor)
-jit_formula(roots.root_of_number)
+jit_formula(roots.scalar_increasing_root)

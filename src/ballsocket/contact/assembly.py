@@ -21,7 +21,7 @@ from .model_info import ModelInfo
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolverResult:
-    """Result of a solver before its points get a status.
+    """Result of a solver, before the status of its points is determined.
 
     Attributes
     ----------
@@ -40,7 +40,10 @@ class SolverResult:
 
 
 def check_joint(joint: Any) -> None:
-    """Raise TypeError unless `joint` is a Joint; name the preset if it is the name of one."""
+    """Check that `joint` is a Joint; raise TypeError otherwise.
+
+    If it is the name of a preset, the message suggests that preset.
+    """
     if isinstance(joint, Joint):
         return
     is_preset = isinstance(joint, str) and normalise_name(joint) in joints
@@ -48,21 +51,24 @@ def check_joint(joint: Any) -> None:
     raise TypeError(f"joint must be a Joint, got {shown(joint)}{hint}")
 
 
-def check_load(**loads: Array | None) -> tuple[str, Array]:
-    """Select the single load that is not None, check it and return its name and value."""
+def select_and_check_load(**loads: Array | None) -> tuple[str, Array]:
+    """Select the only load that is not None, check its values, and return its name and value."""
     kind, load = select_load(**loads)
-    return kind, LOADS[kind].checked(load)
+    return kind, LOADS[kind].check(load)
 
 
 def broadcast_load(load: Array, strengths: tuple[Array, ...]) -> Array:
-    """Broadcast a load against the strengths of the materials, so that stresses can be compared with them."""
-    if all(map(arrays.is_plain, strengths)):
+    """Broadcast a load to the common shape with the strengths of the materials.
+
+    Stresses can then be compared with the strengths point by point.
+    """
+    if all(map(arrays.is_plain_number, strengths)):
         return load
     return arrays.broadcast(*arrays.to_common_arrays(load, *strengths))
 
 
 def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
-    """Convert joint and load to arrays of one library and dtype.
+    """Convert the numbers of a joint and a load to arrays of one library and dtype.
 
     The `parameters` of a model count for the choice of the library; they are not returned.
 
@@ -74,7 +80,7 @@ def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Join
         The joint and the load of arrays.
     """
     numbers = (*joint.numbers(), load)
-    plain = all(arrays.is_plain(number) for number in (*numbers, *parameters))
+    plain = all(arrays.is_plain_number(number) for number in (*numbers, *parameters))
     joint_numbers = arrays.to_common_arrays(*numbers, *parameters)[: len(numbers)]
     return plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
 
@@ -101,7 +107,7 @@ def make_contact(
     result: SolverResult,
     plain: bool,
 ) -> Contact:
-    """Assemble a contact of arrays: status, and NaN at the points that failed.
+    """Assemble a contact of arrays: determine the status, and set failed points to NaN.
 
     Parameters
     ----------
@@ -138,7 +144,10 @@ def make_contact(
 def make_scalar_contact(
     model: ModelInfo, contact_type: type[Contact], joint: Joint, kind: str, load: float, result: SolverResult
 ) -> Contact:
-    """Assemble a contact of Python numbers; the joint is inside the domain. See `make_contact`."""
+    """Assemble a contact of Python numbers: determine the status, and set a failed result to NaN.
+
+    The joint is inside the domain of the model. See `make_contact`.
+    """
     F, d, status = result.force, result.indentation, Status.OK
     failures = {**result.failures, Status.NOT_REACHED: not (arrays.isfinite(F) and arrays.isfinite(d))}
     for code in _BY_SEVERITY:

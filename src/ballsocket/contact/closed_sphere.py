@@ -32,8 +32,8 @@ BALL_FACTOR = 2.1
 """Ratio of the largest change by the half ball to the change of the indentation."""
 
 
-def variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
-    """Compute the variables of the polynomials: ε in rad, ln(R2/L) and ln(0.52 - ν)."""
+def polynomial_variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
+    """Compute the variables of the fitted polynomials: ε in rad, ln(R2/L) and ln(0.52 - ν)."""
     return (
         clip(half_angle, MIN_HALF_ANGLE, MAX_HALF_ANGLE),
         log(clip(thickness_ratio, *THICKNESS_RATIO_RANGE)),
@@ -41,33 +41,43 @@ def variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tupl
     )
 
 
-def powers(degree: int) -> tuple[tuple[int, int, int], ...]:
-    """Return the exponents of the variables in a polynomial of a total degree."""
+def polynomial_exponents(degree: int) -> tuple[tuple[int, int, int], ...]:
+    """List the exponents of the three variables in each term of a polynomial of given degree."""
     orders = range(degree + 1)
     return tuple((i, j, k) for i in orders for j in orders for k in orders if i + j + k <= degree)
 
 
 @cache
-def _terms(name: str) -> tuple[float, ...]:
+def _read_coefficients(name: str) -> tuple[float, ...]:
+    """Read the coefficients of a fitted polynomial from the data of the package."""
     table = tomllib.loads((files("ballsocket") / "data" / "hemisphere.toml").read_text(encoding="utf-8"))
     return tuple(table[name])
 
 
-def _fitted(name: str, degree: int, contact: Any) -> Array:
+def _evaluate_fit(name: str, degree: int, contact: Any) -> Array:
+    """Evaluate a fitted polynomial, the logarithm of a relative change, for a contact."""
     joint = contact.joint
-    x, y, z = variables(contact.half_angle, joint.liner.poisson, joint.thickness_ratio)
-    return exp(sum(number * x**i * y**j * z**k for number, (i, j, k) in zip(_terms(name), powers(degree), strict=True)))
+    x, y, z = polynomial_variables(contact.half_angle, joint.liner.poisson, joint.thickness_ratio)
+    return exp(
+        sum(
+            number * x**i * y**j * z**k
+            for number, (i, j, k) in zip(_read_coefficients(name), polynomial_exponents(degree), strict=True)
+        )
+    )
 
 
 def indentation_change(contact: Any) -> Array:
-    """Estimate the relative increase of the indentation at the same force."""
-    return _fitted("indentation", 5, contact) + contact.joint.modulus_ratio * _fitted("ball", 4, contact)
+    """Estimate the relative increase of the indentation on a hemisphere at the same force."""
+    return _evaluate_fit("indentation", 5, contact) + contact.joint.modulus_ratio * _evaluate_fit("ball", 4, contact)
 
 
 def largest_change(contact: Any) -> Array:
-    """Estimate the largest relative change of indentation, half angle, largest pressure and stiffness."""
-    ball = BALL_FACTOR * contact.joint.modulus_ratio * _fitted("ball", 4, contact)
-    return _fitted("largest", 5, contact) + ball
+    """Estimate the largest relative change of contact quantities on a hemisphere at the same force.
+
+    The quantities are indentation, half angle, largest pressure and stiffness.
+    """
+    ball = BALL_FACTOR * contact.joint.modulus_ratio * _evaluate_fit("ball", 4, contact)
+    return _evaluate_fit("largest", 5, contact) + ball
 
 
 LIKE_HEMISPHERE = Range(

@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 
 
 class Laws(Protocol):
-    """Quantities of a contact beyond force and indentation: closed forms bound to the joint, or a solution."""
+    """Protocol of the quantities of a contact beyond force and indentation.
+
+    Closed forms bound to the joint, and numerical solutions, have these attributes.
+    """
 
     @property
     def half_angle(self) -> Array: ...
@@ -49,7 +52,7 @@ class Laws(Protocol):
 
 
 def _law_property(name: str) -> Any:
-    """Make a cached property that evaluates one law of the contact."""
+    """Make a cached property of `Contact` that evaluates one quantity of its laws."""
 
     def compute(self: Contact) -> Array:
         return self._evaluate(law)
@@ -57,14 +60,16 @@ def _law_property(name: str) -> Any:
     law = attrgetter(name)
 
     quantity = QUANTITIES[name]
-    compute.__doc__ = f"{quantity.capital(Unit(''))} in {quantity.unit}. {quantity.meaning}"
+    compute.__doc__ = f"{quantity.input_label(Unit(''))} in {quantity.unit}. {quantity.meaning}"
     compute.__name__ = name
     return cached_property(compute)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class Contact(Outcome):
-    """Result of `model.press(joint, ...)`. Every quantity has the shape that joint and load broadcast to.
+    """Contact of a joint under load: the result of `model.press(joint, ...)`.
+
+    Every quantity has the shape that joint and load broadcast to.
 
     Points without a result are NaN and have a `status` other than `Status.OK`. Points outside the model's `validity`
     have numbers, and `valid` is false there. `notes` describes both.
@@ -111,7 +116,9 @@ class Contact(Outcome):
 
     @cached_property
     def utilisation(self) -> Array:
-        """Largest von Mises stress over yield stress, the larger of liner and ball; NaN if neither has a yield stress.
+        """Ratio of largest von Mises stress to yield stress, the larger of liner and ball.
+
+        It is NaN if neither has a yield stress.
 
         From 1 on the material yields somewhere. A linear result is invalid above 1.38
         (`strength.MAX_ELASTIC_UTILISATION`).
@@ -122,20 +129,30 @@ class Contact(Outcome):
 
     @renamed_arguments(asked="mask")
     def utilisation_at(self, mask: Array) -> Array:
-        """Compute the utilisation at the points of a mask; slow models leave NaN at the other points."""
+        """Compute the utilisation at the points of a mask; the others may be NaN.
+
+        Models that solve for the stresses skip the other points.
+        """
         return self.utilisation
 
     def _compute_utilisation(self, von_mises: Array) -> Array:
+        """Compute the utilisation from the largest von Mises stress in the liner in MPa."""
         return self._match_load(strength.utilisation(self.joint, von_mises, self.max_pressure))
 
     @property
     def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of `von_mises` in MPa, computed without solving for the stresses."""
+        """Lower and upper bound in MPa of the largest von Mises stress in the liner.
+
+        No stresses are solved for.
+        """
         return self.von_mises, self.von_mises
 
     @property
     def utilisation_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of `utilisation`, computed without solving for the stresses."""
+        """Lower and upper bound of the utilisation.
+
+        No stresses are solved for.
+        """
         low, high = self.von_mises_bounds
         pressure = self.max_pressure
         return strength.utilisation(self.joint, low, pressure), strength.utilisation(self.joint, high, pressure)
@@ -145,16 +162,18 @@ class Contact(Outcome):
     utilisation_where = RenamedAttribute("utilisation_at")
 
     def _compute_von_mises(self) -> Array:
+        """Compute the largest von Mises stress in the liner in MPa from the fitted ratio."""
         liner = self.joint.liner
         return strength.von_mises_ratio(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
 
     @property
     def _limits(self) -> tuple[Range, ...]:
+        """Ranges that a valid contact satisfies."""
         return (*self.model.validity, _ELASTIC) if self.joint.strengths() else self.model.validity
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Messages about points without a result, outside the model's validity, or above a limit of a material."""
+        """Messages on failed points, points outside the model's validity, and exceeded material limits."""
         unchecked = (
             [self.utilisation_note] if self.utilisation_note and arrays.all_true(self._failed) is not True else []
         )
@@ -163,35 +182,35 @@ class Contact(Outcome):
 
     @property
     def utilisation_note(self) -> str:
-        """Reason why `utilisation` does not cover the liner; empty where the liner has a yield stress."""
+        """Reason why the utilisation excludes the liner; empty if the liner has a yield stress."""
         return strength.unchecked_strength_reason(self.joint)
 
     @cached_property
     def area(self) -> Array:
-        """Contact area on the ball, A = 2π R1² (1 - cos ε) in mm², Eq. (19)."""
+        """Contact area on the ball in mm², A = 2π R1² (1 - cos ε), Eq. (19)."""
         half_sine = arrays.sin(arrays.clip(self.half_angle, 0.0, pi) / 2)
         with numpy.errstate(all="ignore"):
             return self._match_load(4 * pi * self.joint.ball_radius * self.joint.ball_radius * half_sine * half_sine)
 
     @property
     def indentation_ratio(self) -> Array:
-        """Indentation over liner thickness, d/L."""
+        """Ratio of indentation to liner thickness, d/L."""
         return self.indentation / self.joint.liner_thickness
 
     @property
     def depth_ratio(self) -> Array:
-        """Indentation over the smaller of liner thickness and socket radius, a measure of the strains."""
+        """Ratio of indentation to the smaller of liner thickness and socket radius, a measure of the strains."""
         R2, L = self.joint.socket_radius, self.joint.liner_thickness
         return self.indentation / arrays.where(L < R2, L, R2)
 
     @property
     def width_ratio(self) -> Array:
-        """Contact radius over liner thickness, R2 sin ε / L."""
+        """Ratio of contact radius to liner thickness, R2 sin ε / L."""
         return arrays.sin(self.half_angle) * self.joint.thickness_ratio
 
     @property
     def conformity(self) -> Array:
-        """Clearance over indentation, c/d; 0 if ball and socket have equal radii."""
+        """Ratio of clearance to indentation, c/d; 0 if ball and socket have equal radii."""
         quotient = self.joint.clearance / arrays.safe_divisor(self.indentation)
         return self._match_load(arrays.where(self.indentation == 0, numpy.inf, quotient))
 
@@ -218,14 +237,14 @@ class Contact(Outcome):
         """
         angle = check_numeric("angle", angle)
         # the angle at the edge is NaN where there is no contact
-        QUANTITIES["angle"].checked(arrays.where(angle == angle, angle, 0.0))
-        if self._is_plain and arrays.is_plain(angle):
+        QUANTITIES["angle"].check(arrays.where(angle == angle, angle, 0.0))
+        if self._is_plain and arrays.is_plain_number(angle):
             return self._evaluate(lambda laws: laws.pressure(float(angle)))
         _, angle = arrays.to_common_arrays(self.indentation, angle)
         return self._evaluate(lambda laws: laws.pressure(angle))
 
     def pressure_at(self, direction: Array) -> Array:
-        """Compute the contact pressure in MPa in directions from the centre of the socket; 0 outside the contact.
+        """Compute the contact pressure in MPa along directions from the centre of the socket; 0 outside the contact.
 
         Parameters
         ----------
@@ -253,7 +272,7 @@ class Contact(Outcome):
         return self.pressure(arrays.atan2(across, z))
 
     def friction_torque(self, coefficient: Array, axis_angle: float = pi / 2) -> Array:
-        """Compute the Coulomb friction torque in N mm about an axis through the ball's centre, for sliding everywhere.
+        """Compute the Coulomb friction torque in N mm of a ball that slides about an axis through its centre.
 
         Parameters
         ----------
@@ -292,7 +311,10 @@ class Contact(Outcome):
         return self._match_load(lever * 2 * pi * R2 * R2 * arrays.integral(ring, 24))
 
     def _evaluate(self, law: Callable[[Laws], Array]) -> Array:
-        """Evaluate a law, with NumPy numbers if Python floats raise; set failed points to NaN."""
+        """Evaluate one quantity of the laws, and set failed points to NaN.
+
+        NumPy numbers replace Python floats where these raise ArithmeticError.
+        """
 
         def value() -> Array:
             try:
@@ -304,21 +326,23 @@ class Contact(Outcome):
 
     def summary(self) -> dict[str, Any]:
         """Return a dictionary for JSON in N, mm, MPa and degrees; arrays become lists, missing numbers None."""
-        return describe.summary(self)
+        return describe.to_summary(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return `summary()`."""
+        """Return the dictionary for JSON of `summary()`."""
         return self.summary()
 
     def to_frame(self) -> pandas.DataFrame:
-        """Return a data frame of one row per point; column names end in units, such as "half_angle_deg".
+        """Return a pandas data frame with one row per point.
+
+        Column names end in units, such as "half_angle_deg".
 
         Raises
         ------
         ImportError
             pandas is not installed.
         """
-        return describe.frame(self)
+        return describe.to_frame(self)
 
     def plot(self) -> Any:
         """Plot pressure over angle and force over indentation of a single contact.
@@ -335,10 +359,10 @@ class Contact(Outcome):
         return load_plot("contacts")({self.model.name: self})
 
     def __repr__(self) -> str:
-        return describe.text(self)
+        return describe.to_text(self)
 
     def _repr_html_(self) -> str:
-        return describe.html(self)
+        return describe.to_html(self)
 
 
 _ELASTIC = strength.ElasticLimit()
@@ -348,7 +372,10 @@ _UNIT_TOLERANCE = 1e-10
 
 
 def _mean_lever(angle: Array, axis_angle: float) -> Array:
-    """Average the sine of the angle between radius and axis of rotation over the circle at a polar angle."""
+    """Compute the mean lever arm of friction, over the ball radius, on the circle at a polar angle.
+
+    It is the mean sine of the angle between radius and axis of rotation.
+    """
     azimuths = [pi * (k + 0.5) / 64 for k in range(64)]
     polar, across = arrays.cos(angle) * float(numpy.cos(axis_angle)), arrays.sin(angle) * float(numpy.sin(axis_angle))
     sines = [

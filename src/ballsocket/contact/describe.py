@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Column:
-    """Quantity of a contact in a unit: head and numbers of a column.
+    """Column of a table of contacts: a quantity in a unit.
 
     Attributes
     ----------
@@ -34,12 +34,12 @@ class Column:
 
     @property
     def name(self) -> str:
-        """Key in JSON."""
+        """Key of the quantity in JSON."""
         return self.quantity.key
 
     @property
     def attribute(self) -> str:
-        """Name of the attribute of a contact."""
+        """Attribute name of the quantity in `Contact`."""
         return self.quantity.name
 
     @property
@@ -59,21 +59,24 @@ class Column:
 
     @property
     def factor(self) -> float:
-        """Factor from the internal unit to `unit`."""
+        """Factor from the internal unit to the unit of the column."""
         return self.reading.factor
 
     @property
     def head(self) -> str:
-        """Symbol and unit, the head of a column."""
+        """Column head of symbol and unit, such as "pmax [MPa]"."""
         return self.quantity.head(self.reading)
 
     @property
     def label(self) -> str:
-        """Title, symbol and unit, the label of an axis."""
+        """Axis label of title, symbol and unit."""
         return self.quantity.label(self.reading)
 
-    def of(self, contact: Any) -> Array:
-        """Return the values of a contact in `unit`; -0 becomes 0."""
+    def values_of(self, contact: Any) -> Array:
+        """Return the values of the quantity in a contact, in the unit of the column.
+
+        -0 becomes 0.
+        """
         return getattr(contact, self.attribute) * self.factor + 0.0
 
 
@@ -87,19 +90,19 @@ UTILISATION_NOTE = "utilisation_note"
 """Key in JSON of the reason why the utilisation does not cover the liner."""
 
 
-def summary(contact: Any) -> dict[str, Any]:
-    """Return a dictionary for JSON of a contact."""
-    numbers = {column.name: arrays.to_list(column.of(contact)) for column in COLUMNS}
+def to_summary(contact: Any) -> dict[str, Any]:
+    """Return a dictionary of a contact for JSON."""
+    numbers = {column.name: arrays.to_list(column.values_of(contact)) for column in COLUMNS}
     strength = {
-        UTILISATION.name: arrays.to_list(UTILISATION.of(contact)),
+        UTILISATION.name: arrays.to_list(UTILISATION.values_of(contact)),
         UTILISATION_NOTE: contact.utilisation_note or None,
     }
     valid = arrays.to_list(contact.valid)
     return {"model": contact.model.name, **numbers, **strength, "valid": valid, "notes": list(contact.notes)}
 
 
-def frame(contact: Any) -> pandas.DataFrame:
-    """Return a data frame of one row per point.
+def to_frame(contact: Any) -> pandas.DataFrame:
+    """Return a pandas data frame of a contact with one row per point.
 
     Raises
     ------
@@ -109,40 +112,40 @@ def frame(contact: Any) -> pandas.DataFrame:
     needs("study", "pandas")
     import pandas
 
-    columns = {column.quantity.column: arrays.to_numpy(column.of(contact)).ravel() for column in COLUMNS}
+    columns = {column.quantity.column: arrays.to_numpy(column.values_of(contact)).ravel() for column in COLUMNS}
     return pandas.DataFrame({**columns, "valid": arrays.to_numpy(contact.valid).ravel()})
 
 
-def text(contact: Any) -> str:
-    """Format a contact as aligned lines: model, joint, quantities and notes."""
+def to_text(contact: Any) -> str:
+    """Format a contact as lines of text: model, joint, quantities and notes."""
     if arrays.all_true(contact.indentation == contact.indentation) is None:
         return f"<Contact of {contact.model.name}, traced>"
-    rows = _rows(contact)
+    rows = _format_rows(contact)
     width = max(len(number) for _, number, _ in rows)
     lines = [f"{contact.model.name} on {contact.joint}"]
     lines += [f"  {name:<19}{number:>{width}} {unit}".rstrip() for name, number, unit in rows]
     return "\n".join([*lines, *(f"  note: {note}" for note in contact.notes)])
 
 
-def html(contact: Any) -> str:
+def to_html(contact: Any) -> str:
     """Format a contact as an HTML table for a notebook."""
     align = "style='text-align:left'"
     rows = "".join(
         f"<tr><td {align}>{name.replace('_', ' ')}</td><td>{escape(number)}</td><td {align}>{unit}</td></tr>"
-        for name, number, unit in _rows(contact)
+        for name, number, unit in _format_rows(contact)
     )
     notes = "".join(f"<div>{escape(note)}</div>" for note in contact.notes)
     return f"<b>{escape(contact.model.name)}</b><div>{escape(str(contact.joint))}</div><table>{rows}</table>{notes}"
 
 
 def count_text(valid: Array) -> str:
-    """Format a mask: "yes" or "no" for one point, else "3 of 5"."""
+    """Format a mask as "yes" or "no" for one point, and as "3 of 5" for several."""
     mask = arrays.to_numpy(valid)
     return ("yes" if mask.item() else "no") if mask.size == 1 else f"{int(mask.sum())} of {mask.size}"
 
 
 def number_text(value: Array, digits: int, gap: str) -> str:
-    """Format one number, or the range of many; return `gap` if all of them are NaN."""
+    """Format a number, or the range of an array, such as "3 to 5"; `gap` if all are NaN."""
     values = arrays.to_numpy(value)
     numbers = values[~numpy.isnan(values)]
     if not numbers.size:
@@ -151,16 +154,19 @@ def number_text(value: Array, digits: int, gap: str) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _rows(contact: Any) -> list[tuple[str, str, str]]:
-    """Return name, number and unit of each printed quantity."""
+def _format_rows(contact: Any) -> list[tuple[str, str, str]]:
+    """Format name, number and unit of each printed quantity of a contact."""
     digits = 6 if arrays.to_numpy(contact.indentation).size == 1 else 5
-    rows = [(column.attribute, number_text(column.of(contact), digits, "no answer"), column.unit) for column in COLUMNS]
-    return [*rows, *_utilisation_row(contact), ("valid", count_text(contact.valid), "")]
+    rows = [
+        (column.attribute, number_text(column.values_of(contact), digits, "no answer"), column.unit)
+        for column in COLUMNS
+    ]
+    return [*rows, *_format_utilisation_row(contact), ("valid", count_text(contact.valid), "")]
 
 
-def _utilisation_row(contact: Any) -> list[tuple[str, str, str]]:
-    """Return the row of the utilisation of a single contact, if it is known."""
+def _format_utilisation_row(contact: Any) -> list[tuple[str, str, str]]:
+    """Format the row of the utilisation; an empty list if it is unknown, or for many contacts."""
     if arrays.to_numpy(contact.indentation).size != 1 or not contact.joint.strengths():
         return []
-    value = UTILISATION.of(contact)
+    value = UTILISATION.values_of(contact)
     return [] if value != value else [(UTILISATION.attribute, number_text(value, 3, ""), "")]

@@ -18,7 +18,7 @@ PolynomialPieces = Sequence[Sequence[float]]
 
 
 class ForceLaw(Protocol):
-    """Function that `model.law(joint)` returns.
+    """Protocol of the function `model.law(joint)`: force and stiffness from the indentation.
 
     Parameters
     ----------
@@ -36,7 +36,9 @@ class ForceLaw(Protocol):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurveLaw:
-    """Force law of one joint: ln F as a piecewise polynomial of ln d; the tangent stiffness is its slope.
+    """Fitted force law of one joint: ln F is a piecewise polynomial of ln d.
+
+    The tangent stiffness is the slope of the force.
 
     Below `shallowest` the load is a power of the indentation; beyond `deepest` it is NaN.
 
@@ -58,6 +60,7 @@ class CurveLaw:
 
     @cached_property
     def _numbers(self) -> tuple[float, float, float, float, PolynomialPieces]:
+        """Attributes as plain numbers and tuples, for fast evaluation."""
         rows = tuple(map(tuple, self.pieces.tolist()))
         return self.shallowest, self.deepest, self.first, self.density, rows
 
@@ -68,7 +71,7 @@ class CurveLaw:
 def force_and_tangent(
     indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float]:
-    """Evaluate a `CurveLaw`, given by its attributes, at an indentation in mm."""
+    """Compute force in N and tangent stiffness in N/mm from the attributes of a `CurveLaw`."""
     if indentation <= 0.0:
         return 0.0, 0.0
     if not indentation <= deepest:
@@ -87,7 +90,7 @@ def force_and_tangent(
 
 
 def finite_or_nan(force: float, stiffness: float) -> tuple[float, float]:
-    """Return force and stiffness, or NaN for both if one of them is not finite."""
+    """Return force in N and stiffness in N/mm; NaN for both if one of them is not finite."""
     return (force, stiffness) if math.isfinite(force + stiffness) else (math.nan, math.nan)
 
 
@@ -104,8 +107,8 @@ _END_TOLERANCE = 1e-6
 """Relative tolerance of the deepest indentation that has a load."""
 
 
-def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
-    """Fit a curve to the loads at many indentations, and add pieces until the last terms of ln F are small.
+def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
+    """Fit a `CurveLaw` to computed forces; add pieces until ln F has converged.
 
     Parameters
     ----------
@@ -134,7 +137,10 @@ def curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: f
 
 
 def _deepest_indentation(force: Callable[[Numbers], Numbers], low: float, high: float) -> float:
-    """Find the deepest indentation that has a load, reduced by the relative tolerance of a solver, 1e-6."""
+    """Find the deepest indentation in mm with a finite force, by refining a grid.
+
+    It is reduced by a relative tolerance of 1e-6.
+    """
     if not force(numpy.array([low]))[0] > 0:
         raise TypeError(f"no force law: the load at an indentation of {low:.3g} mm must be above 0 N")
     while high / low > 1 + _END_TOLERANCE:
@@ -147,7 +153,10 @@ def _deepest_indentation(force: Callable[[Numbers], Numbers], low: float, high: 
 
 
 def _chebyshev_pieces(force: Callable[[Numbers], Numbers], low: float, high: float, count: int) -> Numbers:
-    """Compute Chebyshev coefficients (pieces, terms) of ln F over ln d; neighbouring pieces meet continuously."""
+    """Compute the Chebyshev coefficients (pieces, terms) of ln F over ln d.
+
+    Adjacent pieces are continuous.
+    """
     nodes = -numpy.cos(math.pi * numpy.arange(_DEGREE + 1) / _DEGREE)
     along = (numpy.arange(count)[:, None] + (1 + nodes[:-1]) / 2).ravel() / count
     depths = low * numpy.exp(math.log(high / low) * numpy.append(along, 1.0))
@@ -160,7 +169,7 @@ def _chebyshev_pieces(force: Callable[[Numbers], Numbers], low: float, high: flo
 
 @cache
 def _chebyshev_to_powers() -> Numbers:
-    """Compute the matrix that converts Chebyshev coefficients to coefficients of powers."""
+    """Compute the matrix that converts Chebyshev coefficients to coefficients of powers of x."""
     matrix = numpy.zeros((_DEGREE + 1, _DEGREE + 1))
     for term in range(_DEGREE + 1):
         matrix[term, : term + 1] = numpy.polynomial.chebyshev.cheb2poly(numpy.eye(term + 1)[term])

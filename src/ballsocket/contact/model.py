@@ -22,17 +22,17 @@ from .assembly import (
     as_arrays,
     broadcast_load,
     check_joint,
-    check_load,
     make_contact,
     make_scalar_contact,
+    select_and_check_load,
 )
 from .contact import Contact, Laws
-from .law import CurveLaw, ForceLaw, curve_law
+from .law import CurveLaw, ForceLaw, fit_curve_law
 from .model_info import ModelInfo
 
 
 class Model(ModelInfo):
-    """Base class of models: `press` returns the `Contact` of a joint under one load.
+    """Base class of contact models: `press` computes the `Contact` of a joint under one load.
 
     Attributes that are equal for all instances of a model are class variables.
 
@@ -70,12 +70,12 @@ class Model(ModelInfo):
 
     @property
     def domain(self) -> tuple[Range, ...]:
-        """Open ranges outside of which the model has no formula."""
+        """Open ranges outside of which the model is not defined."""
         return ()
 
     @property
     def parameters(self) -> tuple[Array, ...]:
-        """Numbers of the model that may be arrays."""
+        """Parameters of the model that may be arrays and broadcast with joint and load."""
         return ()
 
     def press(
@@ -86,7 +86,7 @@ class Model(ModelInfo):
         indentation: Array | None = None,
         half_angle: Array | None = None,
     ) -> Contact:
-        """Press the ball into the socket with exactly one of three loads.
+        """Compute the contact of a joint under exactly one load: force, indentation or half angle.
 
         Parameters
         ----------
@@ -112,7 +112,7 @@ class Model(ModelInfo):
         """
         reject_unnamed_loads(unnamed)
         check_joint(joint)
-        kind, value = check_load(force=force, indentation=indentation, half_angle=half_angle)
+        kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         value = broadcast_load(value, joint.strengths())
         if self._can_press_floats(joint, value):
             try:
@@ -127,33 +127,38 @@ class Model(ModelInfo):
             return make_contact(self, self.contact_type, own_joint, kind, load, points, result, plain)
 
     def _can_press_floats(self, joint: Joint, load: Array) -> bool:
-        """Return True if all numbers are plain and the formulas of the model take floats."""
+        """Check if joint, load and parameters are plain numbers and the model accepts Python floats."""
         plain_parameters = (type(number) in (float, int) for number in self.parameters)
-        plain = all(map(arrays.is_plain, (*joint.numbers(), load)))
+        plain = all(map(arrays.is_plain_number, (*joint.numbers(), load)))
         return self.accepts_floats and plain and all(plain_parameters)
 
     def _press_floats(self, joint: Joint, kind: str, load: float) -> Contact:
-        """Press a joint of plain numbers without arrays."""
+        """Compute the contact of a joint of plain numbers with Python floats instead of arrays."""
         float_joint = joint.with_floats()
         check_domain((*self.fits, *self.domain), float_joint, self.name)
         result = self._solve(float_joint, kind, load)
         return make_scalar_contact(self, self.contact_type, joint, kind, load, result)
 
     def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
-        """Return the laws of a contact in NumPy numbers, which become infinite or NaN where Python floats raise."""
+        """Compute the laws of a contact with NumPy numbers.
+
+        These become infinite or NaN where Python floats raise ArithmeticError.
+        """
         _, array_joint, d = as_arrays(joint, indentation)
         with numpy.errstate(all="ignore"):
             return self._solve(array_joint, "indentation", d).laws
 
     @abstractmethod
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve for a load of one kind ("force", "indentation" or "half_angle"); all numbers are arrays.
+        """Solve the contact under one kind of load ("force", "indentation" or "half_angle").
+
+        All numbers are arrays.
 
         If the model `accepts_floats`, all numbers may be Python floats instead, and the result has floats too.
         """
 
     def law(self, joint: Joint) -> ForceLaw:
-        """Return force and tangent stiffness of one joint as a fast function of the indentation, for time integration.
+        """Return a fast function of the indentation for force and tangent stiffness, for time integration.
 
         Parameters
         ----------
@@ -176,27 +181,30 @@ class Model(ModelInfo):
         ValueError
             A joint outside the model's domain.
         """
-        if not all(map(arrays.is_plain, (*joint.numbers(), *self.parameters))):
+        if not all(map(arrays.is_plain_number, (*joint.numbers(), *self.parameters))):
             raise TypeError("a law needs one joint: the numbers of joint and model must be plain, not arrays")
         float_joint = joint.with_floats()
         check_domain((*self.fits, *self.domain), float_joint, self.name)
         return self._law(float_joint)
 
     def _law(self, joint: Joint) -> ForceLaw:
-        """Return the law of a joint of floats inside the domain."""
+        """Return the force law of a joint of floats inside the domain."""
         return self.curve(joint)
 
     def curve(self, joint: Joint) -> CurveLaw:
-        """Fit a curve to presses of a joint, up to an indentation of the socket's radius."""
+        """Fit a force law to computed contacts, up to an indentation of one socket radius."""
         shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
-        return curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, joint.socket_radius)
+        return fit_curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, joint.socket_radius)
 
     def in_cup(self, cup: Cup) -> Model:
-        """Return this model in a cup; by default its validity then ends near the rim (`RimLimited`)."""
+        """Return this model for a joint in a cup.
+
+        By default, its validity then ends near the rim (`RimLimited`).
+        """
         return self if cup == Cup() else RimLimited(model=self, cup=cup)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
-        """Compute the force in N on the ball for a displacement of its centre from the centre of the socket.
+        """Compute the force vector in N on the ball from the displacement of its centre.
 
         Parameters
         ----------
@@ -226,7 +234,7 @@ class Model(ModelInfo):
 
 
 def _declared_names(base: type) -> set[str]:
-    """Collect the names of the public properties and class variables that a class and its bases declare."""
+    """Collect the public properties and class variables that a class and its bases declare."""
     names = {name for cls in base.__mro__ for name in vars(cls).get("__annotations__", {})}
     return names | {name for cls in base.__mro__ for name, value in vars(cls).items() if isinstance(value, property)}
 
@@ -239,7 +247,9 @@ _Delegation: Any = type(
 
 @dataclass(frozen=True, kw_only=True)
 class ModelWrapper(_Delegation, Model):
-    """Model around another one; delegates every attribute it does not override to the wrapped model.
+    """Base class of models around another model.
+
+    Delegates every attribute it does not override to the wrapped model.
 
     Parameters
     ----------
@@ -258,7 +268,7 @@ class ModelWrapper(_Delegation, Model):
 
 @dataclass(frozen=True, kw_only=True)
 class RimLimited(ModelWrapper):
-    """Model of a full sphere in a cup: equal results, with a validity that ends before the rim.
+    """Full-sphere model in a cup: equal results, but validity ends before the rim.
 
     Parameters
     ----------
@@ -272,7 +282,10 @@ class RimLimited(ModelWrapper):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        """Validity of the model, limited to a bonded liner and a rim one liner thickness or more away."""
+        """Validity of the wrapped model, limited to bonded liners and contacts away from the rim.
+
+        The rim must be one liner thickness or more away.
+        """
         rim = Range(
             quantity=partial(_relative_rim_distance, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM
         )
@@ -282,7 +295,7 @@ class RimLimited(ModelWrapper):
         return (*self.model.validity, rim, *((sliding,) if self.cup.interface is Interface.SLIDING else ()))
 
     def in_cup(self, cup: Cup) -> Model:
-        """Return the wrapped model in another cup."""
+        """Return the wrapped model for a joint in another cup."""
         return self.model.in_cup(cup)
 
 
@@ -290,7 +303,9 @@ _RIM = "the model takes the socket as a full sphere; near the rim, which is soft
 
 
 def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
-    """Compute the arc from the edge of a contact to the rim over the liner thickness, or over R2 if that is smaller.
+    """Compute the distance from contact edge to rim over the liner thickness.
+
+    R2 replaces a larger thickness.
 
     At 1, the indentation is up to 2 % larger than in a full sphere and the largest pressure 1 % (ν 0.46); at 0.3,
     9 % and 4 %.

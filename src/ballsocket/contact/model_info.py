@@ -13,7 +13,7 @@ from ..problem import Joint
 
 
 class ModelInfo(ABC):
-    """Description of a model, independent of the load that it takes.
+    """Base class for the description of a model: name, sources and validity.
 
     Attributes
     ----------
@@ -44,12 +44,12 @@ class ModelInfo(ABC):
     @property
     @abstractmethod
     def title(self) -> str:
-        """Description of the model in one line."""
+        """One-line description of the model."""
 
     @property
     @abstractmethod
     def sources(self) -> tuple[Source, ...]:
-        """Publications of the formulas."""
+        """Publications of the model's formulas."""
 
     @property
     @abstractmethod
@@ -58,7 +58,7 @@ class ModelInfo(ABC):
 
     @property
     def promise(self) -> Promise | None:
-        """Measured largest difference from the elastic solution, or None."""
+        """Measured largest difference from the elastic solution; None if it was not measured."""
         return None
 
     @property
@@ -67,7 +67,10 @@ class ModelInfo(ABC):
         return ()
 
     def numpy_laws(self, joint: Joint, indentation: Array) -> Any:
-        """Return the `Laws` of a contact in NumPy numbers, which become infinite or NaN where Python floats raise."""
+        """Compute the laws of a contact with NumPy numbers.
+
+        These become infinite or NaN where Python floats raise ArithmeticError.
+        """
         raise NotImplementedError(f"{self.name} has no laws of a contact")
 
 

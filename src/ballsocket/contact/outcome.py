@@ -18,7 +18,7 @@ from .model_info import ModelInfo
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class Outcome(ABC):
-    """Base class of results: model, joint and status, with the validity and the notes that follow from them.
+    """Base class of results, with status, validity and notes of each point.
 
     Attributes
     ----------
@@ -36,11 +36,14 @@ class Outcome(ABC):
     @property
     @abstractmethod
     def _load(self) -> Array:
-        """Load with the shape and the array library of every other quantity; a float for a single contact."""
+        """Load of the result, whose shape and array library all quantities have.
+
+        A single contact has a float.
+        """
 
     @cached_property
     def valid(self) -> Array:
-        """True at the points where joint and result lie inside the model's validity."""
+        """Mask of the valid points: joint and result lie inside the model's validity."""
         inside = self.status == int(Status.OK)
         for limit in self._limits:
             inside = inside & limit.holds(self)
@@ -54,7 +57,7 @@ class Outcome(ABC):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Messages about points without a result or outside the model's validity, and remarks of the model."""
+        """Messages on failed points and points outside the model's validity, and remarks of the model."""
         notes = []
         for status in list(Status)[1:]:
             reason = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
@@ -64,7 +67,7 @@ class Outcome(ABC):
         return tuple(notes)
 
     def _note(self, good: Array, sentence: str) -> list[str]:
-        """List the sentence with the number of points for which `good` is false; return [] without such points."""
+        """List a note with the number of affected points, where `good` is false; [] if there are none."""
         if arrays.all_true(good) is not False:
             return []
         good = arrays.to_numpy(good)
@@ -72,29 +75,32 @@ class Outcome(ABC):
 
     @property
     def _failed(self) -> Array:
+        """Mask of the points whose results are NaN."""
         return is_missing(self.status)
 
     @property
     def _is_plain(self) -> bool:
+        """True if the result consists of Python numbers."""
         return isinstance(self._load, float)
 
     def _mask_failed(self, law: Callable[[], Array]) -> Array:
-        """Evaluate a law and replace the values of failed points by NaN."""
+        """Evaluate a function, and replace its values at failed points by NaN."""
         with numpy.errstate(all="ignore"):  # a failed point has a status, not a warning
             value = law()
             return self._match_load(arrays.where(self._failed, numpy.nan, value) if self._some_failed else value)
 
     @cached_property
     def _some_failed(self) -> bool:
+        """True if at least one point failed, or if the status is traced."""
         return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
 
     @cached_property
     def _numbers(self) -> Joint:
-        """Joint of NumPy numbers, which become infinite where Python floats raise."""
+        """Joint with NumPy numbers, which become infinite where Python floats raise."""
         return self.joint.with_numbers(arrays.to_common_arrays(*self.joint.numbers())) if self._is_plain else self.joint
 
     def _match_load(self, value: Array) -> Array:
-        """Convert a value to the type and the shape of the load: floats for plain numbers."""
+        """Convert a value to the type and the shape of the load: a float for plain numbers."""
         if type(value) is float:
             return value
         if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:

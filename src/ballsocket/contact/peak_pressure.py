@@ -21,7 +21,7 @@ _INTERVAL_POSITIONS = numpy.linspace(0.0, 1.0, 9)
 def find_peak_pressure(
     pressure: Callable[[numpy.ndarray], numpy.ndarray], pole: numpy.ndarray, edge: numpy.ndarray, noise: float
 ) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """Find the largest pressure of each contact and its polar angle from the pressure profile.
+    """Find the largest pressure of each contact in MPa and its polar angle in rad.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def find_peak_pressure(
 
 
 class PeakPressure(ABC):
-    """Mixin of solved states: largest pressure and its angle, from the property `largest`."""
+    """Mixin of solved contacts that adds the largest pressure and its angle."""
 
     @property
     @abstractmethod
@@ -63,10 +63,10 @@ class PeakPressure(ABC):
 
     @property
     def max_pressure(self) -> numpy.ndarray:
-        """Largest pressure in MPa."""
+        """Largest pressure of each contact in MPa."""
         return self.largest[0]
 
     @property
     def max_pressure_angle(self) -> numpy.ndarray:
-        """Polar angle of the largest pressure in rad."""
+        """Polar angle of the largest pressure of each contact in rad."""
         return self.largest[1]

@@ -35,7 +35,7 @@ QUANTITIES = (
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class JointContacts:
-    """Solved contacts of one joint.
+    """Solved contacts of one joint under several loads.
 
     Attributes
     ----------
@@ -57,8 +57,11 @@ class JointContacts:
     reached: numpy.ndarray
     error: dict[str, numpy.ndarray]
 
-    def spread(self, values: numpy.ndarray) -> numpy.ndarray:
-        """Expand values of the touching contacts to all loads: 0 without a load, NaN without a solution."""
+    def expand(self, values: numpy.ndarray) -> numpy.ndarray:
+        """Expand values of the touching contacts to all loads.
+
+        Loads of 0 get 0, and loads without a solution NaN.
+        """
         expanded = numpy.zeros((*values.shape[:-1], len(self.load)))
         expanded[..., self.touching] = numpy.where(self.reached, values, numpy.nan)
         return expanded
@@ -69,7 +72,7 @@ Solve = Callable[..., JointContacts]
 
 
 def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *parameters: Array) -> CombinedSolution:
-    """Solve each joint in the model's domain, with all of its loads at once.
+    """Solve an array of joints and loads, one distinct joint at a time with all of its loads.
 
     Parameters
     ----------
@@ -88,8 +91,8 @@ def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *para
         Traced numbers without a value (inside `jax.jit`, `jax.grad`).
     """
     joint = joint.without_strengths()
-    numbers = [_values(model, number) for number in joint.numbers()]
-    varying = [_values(model, value) for value in (load, *parameters)]
+    numbers = [_to_concrete(model, number) for number in joint.numbers()]
+    varying = [_to_concrete(model, value) for value in (load, *parameters)]
     shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, *varying)))
     loads = [numpy.broadcast_to(value, shape).ravel().astype(float) for value in varying]
     pieces = []
@@ -103,7 +106,7 @@ def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *para
 def _distinct_joints(
     numbers: list[numpy.ndarray], shape: tuple[int, ...]
 ) -> Iterator[tuple[list[float], numpy.ndarray]]:
-    """Yield the numbers of each distinct joint, and its indices in the flattened shape."""
+    """Find the distinct joints in broadcast arrays: yield their numbers and flat indices."""
     if all(number.size == 1 for number in numbers):
         yield [float(number.item()) for number in numbers], numpy.arange(prod(shape))
         return
@@ -116,13 +119,13 @@ def _distinct_joints(
 
 
 def joint_at(joint: Joint, shape: tuple[int, ...], index: int) -> Joint:
-    """Return the joint of plain numbers at an index of the flattened shape."""
+    """Return the joint of plain numbers at one flat index of a joint of arrays."""
     broadcast = (numpy.broadcast_to(arrays.to_numpy(number), shape) for number in joint.numbers())
     return joint.with_numbers([float(number.flat[index]) for number in broadcast])
 
 
-def _values(model: Model, number: Array) -> numpy.ndarray:
-    """Convert a number to NumPy; raise TypeError for a traced one."""
+def _to_concrete(model: Model, number: Array) -> numpy.ndarray:
+    """Convert a number or array to NumPy; raise TypeError if JAX traces it."""
     values = arrays.concrete_values(number)
     if values is None:
         raise TypeError(f"model {model.name} cannot be traced by JAX: use tabulated or refined")
@@ -130,10 +133,10 @@ def _values(model: Model, number: Array) -> numpy.ndarray:
 
 
 def _combined_property(name: str) -> Any:
-    """Make a cached property that combines a quantity of the solved contacts of all joints."""
+    """Make a cached property that combines one quantity of all joints."""
 
     def combine(self: CombinedSolution) -> Array:
-        return self.spread(lambda piece: getattr(piece.state, name))
+        return self.combine(lambda piece: getattr(piece.state, name))
 
     combine.__name__ = name
     return cached_property(combine)
@@ -141,7 +144,9 @@ def _combined_property(name: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CombinedSolution:
-    """Solved contacts of all joints: the `Laws` of their contact, in the array library of the load.
+    """Solutions of all joints, combined to arrays: the `Laws` of their contact.
+
+    Its arrays have the library of the load.
 
     Attributes
     ----------
@@ -157,41 +162,42 @@ class CombinedSolution:
     shape: tuple[int, ...]
     pieces: tuple[tuple[numpy.ndarray, JointContacts], ...]
 
-    def spread(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
-        """Combine the values of all joints into the shape (*rows, *shape); NaN at points without a solution."""
-        return self._like_load(self._combine_joints(lambda indices, piece: quantity(piece), prod(rows)), rows)
+    def combine(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
+        """Combine a quantity of all joints to an array (*rows, *shape); NaN without a solution."""
+        return self._match_load_array(self._combine_joints(lambda indices, piece: quantity(piece), prod(rows)), rows)
 
-    def located(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
-        """Combine the values of all joints for a quantity that depends on the indices of the points."""
-        return self._like_load(self._combine_joints(quantity))
+    def combine_by_index(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
+        """Combine a quantity that depends on the flat indices of the points."""
+        return self._match_load_array(self._combine_joints(quantity))
 
     def _combine_joints(
         self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: int = 1
     ) -> numpy.ndarray:
-        """Combine the values of all joints into a NumPy array (rows, points); NaN at points without a solution."""
+        """Combine a quantity of all joints to a NumPy array (rows, points); NaN without a solution."""
         combined = numpy.full((rows, prod(self.shape)), numpy.nan)
         for indices, piece in self.pieces:
-            combined[:, indices] = piece.spread(quantity(indices, piece))
+            combined[:, indices] = piece.expand(quantity(indices, piece))
         return combined
 
-    def _like_load(self, values: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
+    def _match_load_array(self, values: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
         """Convert NumPy values to the shape, library, dtype and device of the load."""
         values = values.reshape((*shape, *self.shape))
         xp = arrays.namespace(self.like)
         return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
 
-    def _error(self, name: str) -> Array:
-        return self.spread(lambda piece: piece.error[name])
+    def _combine_error(self, name: str) -> Array:
+        """Combine the estimated relative error of one quantity."""
+        return self.combine(lambda piece: piece.error[name])
 
     @property
-    def worst(self) -> Array:
-        """Largest of the estimated errors of each point."""
-        return self.spread(lambda piece: numpy.max(list(piece.error.values()), axis=0))
+    def max_error(self) -> Array:
+        """Largest estimated relative error of all quantities, point by point."""
+        return self.combine(lambda piece: numpy.max(list(piece.error.values()), axis=0))
 
     @property
     def error(self) -> dict[str, Array]:
-        """Estimated relative error of each quantity."""
-        return {name: self._error(name) for name in QUANTITIES}
+        """Estimated relative error of each quantity, by name."""
+        return {name: self._combine_error(name) for name in QUANTITIES}
 
     force = _combined_property("force")
     indentation = _combined_property("indentation")
@@ -205,12 +211,15 @@ class CombinedSolution:
 
     @property
     def foundation_modulus(self) -> Array:
-        """Pressure at the pole over indentation in MPa/mm; infinite at zero indentation."""
+        """Foundation modulus K = p0/d in MPa/mm; infinite at zero indentation."""
         d = self.indentation
         return arrays.where(d == 0, inf, self.pole_pressure / arrays.safe_divisor(d))
 
     def pressure(self, angle: Array) -> Array:
-        """Compute p(φ) in MPa at angles in rad that broadcast against the contact's shape."""
+        """Compute the contact pressure in MPa at polar angles in rad.
+
+        The angles broadcast with the shape of the contact.
+        """
         angles = arrays.to_numpy(angle)
         shape = numpy.broadcast_shapes(angles.shape, self.shape)
         front = shape[: len(shape) - len(self.shape)]
@@ -220,12 +229,12 @@ class CombinedSolution:
             values: numpy.ndarray = piece.state.pressure(rows[:, indices[piece.touching]])
             return values
 
-        return self._like_load(self._combine_joints(pressure, rows=len(rows)), front)
+        return self._match_load_array(self._combine_joints(pressure, rows=len(rows)), front)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class SolvedContact(Contact):
-    """Contact of a model that solves one joint at a time and estimates its errors."""
+    """Contact of a numerical model that solves joint by joint, with error estimates."""
 
     laws: CombinedSolution
 
@@ -238,12 +247,13 @@ class SolvedContact(Contact):
 
     @property
     def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of `von_mises` in MPa, from the fit that closed-form models use."""
+        """Lower and upper bound in MPa of the largest von Mises stress in the liner, from the fitted ratio."""
         low, high = strength.von_mises_bounds(self, super()._compute_von_mises())
         return self._match_load(low), self._match_load(high)
 
     def _compute_von_mises(self) -> Array:
-        return self.laws.located(self._joint_von_mises)
+        """Compute the largest von Mises stress in the liner in MPa by solving for the stresses."""
+        return self.laws.combine_by_index(self._joint_von_mises)
 
     @renamed_arguments(asked="mask")
     def utilisation_at(self, mask: Array) -> Array:
@@ -254,15 +264,15 @@ class SolvedContact(Contact):
             masked = replace(piece, reached=piece.reached & flat_mask[indices][piece.touching])
             return self._joint_von_mises(indices, masked)
 
-        return self._compute_utilisation(self._match_load(self.laws.located(masked_von_mises)))
+        return self._compute_utilisation(self._match_load(self.laws.combine_by_index(masked_von_mises)))
 
     @abstractmethod
     def _joint_von_mises(self, indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
-        """Compute the largest von Mises stress in the liner of the touching contacts of one joint."""
+        """Compute the largest von Mises stress in MPa in the liner of one joint, for its touching contacts."""
 
     @property
     def single_state(self) -> Any:
-        """Solution of a single contact that is loaded or preloaded.
+        """Solution of a single contact that touches.
 
         Raises
         ------
@@ -278,9 +288,10 @@ class SolvedContact(Contact):
 
     @property
     def _failed_everywhere(self) -> bool:
+        """True if no point has a result."""
         return bool(arrays.to_numpy(self._failed).all())
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary for JSON, with the error estimates."""
+        """Return a dictionary of the contact for JSON, with error estimates."""
         error = {name: arrays.to_list(value) for name, value in self.error.items()}
         return {**super().summary(), "error": error}

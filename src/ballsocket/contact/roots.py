@@ -25,12 +25,14 @@ def increasing_root(
     steps: int = 60,
     tolerance: float = 1e-8,
 ) -> Array:
-    """Solve `law(x, *arguments)[0] == target` for an increasing law, element by element, in the bracket [low, high].
+    """Solve law(x) = target for an increasing function of arrays in a bracket, by Newton's method.
 
-    Newton's method with the slope `law(x, *arguments)[1]`, see `bracketed`. It stops after `steps` evaluations, or
-    once no element moves by more than `tolerance` times its value. The error is then of the order of the squared
-    tolerance. Inside `jax.jit` it always takes all steps. Automatic differentiation gives the derivatives of the root
-    by the implicit function theorem.
+    Each element has its own bracket [low, high].
+
+    Newton's method with the slope `law(x, *arguments)[1]`, see `bracketed_newton_step`. It stops after `steps`
+    evaluations, or once no element moves by more than `tolerance` times its value. The error is then of the order of
+    the squared tolerance. Inside `jax.jit` it always takes all steps. Automatic differentiation gives the derivatives
+    of the root by the implicit function theorem.
 
     Parameters
     ----------
@@ -51,10 +53,10 @@ def increasing_root(
         The root, or the nearest end of the bracket where there is none.
     """
     if type(start) is float:
-        return root_of_number(law, target, low, high, start, arguments, steps, tolerance)
+        return scalar_increasing_root(law, target, low, high, start, arguments, steps, tolerance)
 
     def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
-        return bracketed(law, target, arguments, tolerance, *state[:-1])
+        return bracketed_newton_step(law, target, arguments, tolerance, *state[:-1])
 
     x = _iterate(step, (start, low, high, start < high, start == start), steps)
     if namespace(x) is numpy:
@@ -66,7 +68,7 @@ def increasing_root(
     return x
 
 
-def root_of_number(
+def scalar_increasing_root(
     law: Increasing,
     target: float,
     low: float,
@@ -76,7 +78,7 @@ def root_of_number(
     steps: int,
     tolerance: float,
 ) -> float:
-    """Solve for one number with the steps of `bracketed`."""
+    """Solve law(x) = target for an increasing function of one number, by bracketed Newton steps."""
     x, fresh = start, start < high
     for _ in range(steps):
         value, slope = law(x, *arguments)
@@ -94,7 +96,7 @@ def root_of_number(
     return x
 
 
-def bracketed(
+def bracketed_newton_step(
     law: Increasing,
     target: Array,
     arguments: tuple[Any, ...],
@@ -104,7 +106,7 @@ def bracketed(
     high: Array,
     fresh: Array,
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """Take one Newton step and shrink the bracket.
+    """Compute one Newton step within a bracket, and narrow the bracket.
 
     A step out of the bracket is replaced by the middle of the bracket, or by its upper end while that is `fresh`, that
     is, not yet evaluated.
@@ -126,7 +128,10 @@ def bracketed(
 
 
 def _iterate(step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], times: int) -> Array:
-    """Iterate a step until the mask, the last item of the state, is all false; return the first item."""
+    """Iterate a step until all elements have converged; return the first item of the state.
+
+    The last item of the state is the mask of unconverged elements.
+    """
     if all_true(state[-1]) is None and array_api_compat.is_jax_array(state[0]):
         import jax  # compile one loop instead of unrolling the steps
 

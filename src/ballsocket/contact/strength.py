@@ -44,20 +44,24 @@ _BALL_UNCHECKED = "strength of the ball not checked: it has no yield stress, and
 
 
 def fit_variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
-    """Compute the variables of the fitted ratio: sin(ε/2), a/(L + a) with a = R2 sin ε, and ν."""
+    """Compute the variables of the fitted stress ratio: sin(ε/2), a/(L + a) and ν.
+
+    a = R2 sin ε.
+    """
     angle = clip(half_angle, 0.0, _MAX_HALF_ANGLE)
     width = thickness_ratio * sin(angle)
     return sin(angle / 2), width / (1 + width), clip(poisson, 0.0, 0.5)
 
 
 @cache
-def _terms() -> tuple[tuple[float, int, int, int], ...]:
+def _read_terms() -> tuple[tuple[float, int, int, int], ...]:
+    """Read coefficients and exponents of the fitted stress ratio."""
     table = tomllib.loads((files("ballsocket") / "data" / "von_mises.toml").read_text(encoding="utf-8"))
     return tuple((number, *powers) for number, *powers in table["terms"])
 
 
 def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
-    """Estimate the largest von Mises stress over the largest pressure in a liner on a rigid backing.
+    """Estimate the ratio of largest von Mises stress to largest pressure in a liner on a rigid backing.
 
     The formula is fitted to the exact solution. Its error is below 20 % or 0.08, whichever is larger, and typically
     6 %.
@@ -72,11 +76,11 @@ def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -
         R2/L.
     """
     x, y, nu = fit_variables(half_angle, poisson, thickness_ratio)
-    return clip(sum(number * x**i * y**j * nu**k for number, i, j, k in _terms()), _MIN_RATIO, _MAX_RATIO)
+    return clip(sum(number * x**i * y**j * nu**k for number, i, j, k in _read_terms()), _MIN_RATIO, _MAX_RATIO)
 
 
 def ball_stress_ratio(poisson: Array) -> Array:
-    """Compute the largest von Mises stress over the largest pressure in a ball, within 2 %.
+    """Compute the ratio of largest von Mises stress to largest pressure in a ball, within 2 %.
 
     The ball is a half-space under the pressure of Hertz (Johnson 1985, section 4.2).
     """
@@ -85,14 +89,17 @@ def ball_stress_ratio(poisson: Array) -> Array:
 
 
 def von_mises_bounds(contact: Any, von_mises: Array) -> tuple[Array, Array]:
-    """Bound the largest von Mises stress in the liner, in MPa, from its fitted value `von_mises`."""
+    """Compute a lower and an upper bound in MPa of the largest von Mises stress in the liner.
+
+    `von_mises` is its fitted value.
+    """
     rigid, margin = contact.joint.backing_ratio <= RIGID_BACKING.high, _ABSOLUTE_ERROR * contact.max_pressure
     low = where(rigid, (1 - _RELATIVE_ERROR) * von_mises - margin, 0.0 * von_mises)
     return low, where(rigid, (1 + _RELATIVE_ERROR) * von_mises + margin, inf + von_mises)
 
 
 def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
-    """Compute von Mises stress over yield stress, the larger of liner and ball.
+    """Compute the ratio of von Mises stress to yield stress, the larger of liner and ball.
 
     Parameters
     ----------
@@ -117,20 +124,26 @@ def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
 
 
 def joint_ball_stress_ratio(joint: Joint) -> Array:
-    """Compute the largest von Mises stress in the ball over the largest pressure; 0 for a rigid ball."""
+    """Compute the ratio of largest von Mises stress in the ball to largest pressure; 0 for a rigid ball."""
     return 0.0 if joint.ball is None else ball_stress_ratio(joint.ball.poisson)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticLimit(Range):
-    """Range of utilisations for which a linear result is valid; it also holds without a yield stress."""
+    """Range of utilisations for which linear elasticity is valid.
+
+    Contacts without a yield stress count as inside.
+    """
 
     quantity: str | Callable[[Any], Array] = "utilisation"
     high: float = MAX_ELASTIC_UTILISATION
     why: str = "the material yields, so that linear elasticity is invalid"
 
     def holds(self, contact: Any) -> Array:
-        """Return True inside the range; solve for the stresses only where the bounds do not decide."""
+        """Return a mask of the contacts below the elastic limit.
+
+        The stresses are solved for only where their bounds do not decide.
+        """
         low, high = contact.utilisation_bounds
         undecided = (high > self.high) & logical_not(low > self.high)
         if all_true(logical_not(undecided)) is not False:
@@ -139,7 +152,7 @@ class ElasticLimit(Range):
 
 
 def unchecked_strength_reason(joint: Joint) -> str:
-    """Return the reason why the strength of the liner is unchecked; empty if it has a yield stress."""
+    """Explain why the strength of the liner is not checked; empty if it has a yield stress."""
     liner, ball = joint.liner, joint.ball
     if liner.yield_stress is not None:
         return ""
@@ -149,10 +162,10 @@ def unchecked_strength_reason(joint: Joint) -> str:
 
 
 def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
-    """Yield masks of points below a limit of a material, each with the note for the other points."""
+    """Yield a mask of points and a note for each material limit; the note is for points where the mask is false."""
     joint, pressure = contact.joint, contact.max_pressure
     if joint.liner.proportional_limit is not None:
-        yield from _linearity_remarks("liner", joint.liner, _estimate(contact))
+        yield from _linearity_remarks("liner", joint.liner, _estimate_von_mises(contact))
     if joint.liner.strengths:
         yield from _limit_remarks(
             "liner", joint.liner, contact.von_mises_bounds[1], lambda: contact.von_mises, pressure
@@ -166,8 +179,8 @@ def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
             yield logical_not(stress > _SAFE_STRAIN * joint.ball.young), _BALL_UNCHECKED
 
 
-def _estimate(contact: Any) -> Array:
-    """Estimate the largest von Mises stress in the liner; solve for it only where no estimate exists."""
+def _estimate_von_mises(contact: Any) -> Array:
+    """Estimate the largest von Mises stress in the liner in MPa; solve for it only without an estimate."""
     low, high = contact.von_mises_bounds
     middle = (low + high) / 2
     return middle if all_true(isfinite(middle) | is_missing(contact.status)) is not False else contact.von_mises
@@ -176,7 +189,10 @@ def _estimate(contact: Any) -> Array:
 def _limit_remarks(
     body: str, material: Material, upper_bound: Array, von_mises: Callable[[], Array], pressure: Array
 ) -> Iterator[tuple[Array, str]]:
-    """Yield remarks on the strengths of a material whose von Mises stress is at most `upper_bound`."""
+    """Yield mask and note for each exceeded strength of a material.
+
+    Its von Mises stress is at most `upper_bound`.
+    """
     for name, strength in material.strengths.items():
         by_pressure = name == "allowable_pressure"
         if all_true(logical_not((pressure if by_pressure else upper_bound) > strength)):
@@ -188,7 +204,7 @@ def _limit_remarks(
 
 
 def _linearity_remarks(body: str, material: Material, stress: Array) -> Iterator[tuple[Array, str]]:
-    """Yield a remark on points between proportional limit and yield stress."""
+    """Yield mask and note for points between the proportional limit and the yield stress of a material."""
     limit: Array = material.proportional_limit
     yields = material.yield_stress
     good = logical_not(stress > limit) if yields is None else logical_not((stress > limit) & (stress <= yields))
@@ -203,7 +219,7 @@ _SOFTER = "its secant modulus is below E, so d and ε are larger and pmax is sma
 
 
 def _ratio_text(ratio: Array) -> str:
-    """Format a ratio above 1 as "2.5 times", or the largest of an array as "up to 2.5 times"."""
+    """Format a ratio above 1, such as "2.5 times", or "up to 2.5 times" for an array."""
     listed = to_numpy(ratio)
     digits = f"{numpy.nanmax(listed, initial=0.0):.2g}"
     largest = f"{'1.0' if digits == '1' else digits} times"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class StrengthUse:
-    """Stress of a contact relative to one strength of the liner or the ball.
+    """Stress of a contact compared with one strength of the liner or the ball.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class StrengthUse:
 
     @property
     def ratio(self) -> float:
-        """Stress over strength."""
+        """Ratio of stress to strength."""
         return self.stress / self.allowed
 
     def __str__(self) -> str:
@@ -45,12 +45,12 @@ class StrengthUse:
 
 
 def strength_uses(contact: Contact) -> tuple[StrengthUse, ...]:
-    """List the stresses relative to all strengths of the materials, the largest first, for a single contact."""
+    """Compare a single contact with all strengths of its materials, the highest ratio first."""
     return strength_uses_at(contact, contact.von_mises if contact.joint.liner.strengths else 0.0)
 
 
 def strength_uses_at(contact: Contact, von_mises: float) -> tuple[StrengthUse, ...]:
-    """List the stresses relative to all strengths for a given largest von Mises stress in the liner (MPa)."""
+    """Compare a contact with all strengths, for a known von Mises stress in the liner in MPa."""
     joint, pressure = contact.joint, float(contact.max_pressure)
     uses = list(_material_uses("liner", joint.liner, pressure, von_mises))
     if joint.ball is not None:
@@ -59,6 +59,7 @@ def strength_uses_at(contact: Contact, von_mises: float) -> tuple[StrengthUse, .
 
 
 def _material_uses(body: str, material: Material, pressure: float, von_mises: float) -> Iterator[StrengthUse]:
+    """Yield the comparison with each strength of one material."""
     for name, strength in material.strengths.items():
         stress = pressure if name == "allowable_pressure" else von_mises
         yield StrengthUse(part=body, strength=name, stress=float(stress), allowed=float(strength))
@@ -66,7 +67,7 @@ def _material_uses(body: str, material: Material, pressure: float, von_mises: fl
 
 @dataclass(frozen=True, kw_only=True)
 class StrengthVerdict:
-    """Assessment of a contact.
+    """Verdict on the strength of a contact, with its reason.
 
     Attributes
     ----------
@@ -81,7 +82,7 @@ class StrengthVerdict:
 
 
 def assess_strength(contact: Contact) -> StrengthVerdict:
-    """Compare a single contact with the strengths of its materials.
+    """Assess if a single contact stays below the strengths of its materials.
 
     There is no verdict (None) on an invalid result, nor if the strength of the liner is unknown.
     """

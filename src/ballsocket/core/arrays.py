@@ -29,13 +29,16 @@ _NUMPY_TYPES = (float, int, numpy.ndarray, numpy.generic)
 """Types whose array library is NumPy."""
 
 
-def is_plain(value: Any) -> bool:
-    """Return True for a Python or NumPy number, which takes the library and dtype of the other operands."""
+def is_plain_number(value: Any) -> bool:
+    """Check if a value is a Python number and not an array.
+
+    NumPy float64 scalars and booleans count as numbers. Such a number adopts the library and dtype of other operands.
+    """
     return isinstance(value, int | float)
 
 
 def namespace(*values: Array) -> Any:
-    """Return the array library of some values; NumPy for plain numbers.
+    """Return the array library (NumPy, JAX, PyTorch, ...) of some values; NumPy for plain numbers.
 
     Raises
     ------
@@ -44,7 +47,7 @@ def namespace(*values: Array) -> Any:
     """
     if all(isinstance(value, _NUMPY_TYPES) for value in values):
         return numpy
-    arrays = [value for value in values if not is_plain(value)]
+    arrays = [value for value in values if not is_plain_number(value)]
     try:
         return array_api_compat.array_namespace(*arrays)
     except TypeError as error:
@@ -52,14 +55,14 @@ def namespace(*values: Array) -> Any:
         raise TypeError(f"all arrays must be of one library, got {', '.join(kinds)}") from error
 
 
-def _elementwise(name: str, of_number: Callable[[float], float]) -> Callable[[Array], Array]:
-    """Return the elementwise function of that name for Python numbers and arrays."""
+def _make_elementwise(name: str, scalar_function: Callable[[float], float]) -> Callable[[Array], Array]:
+    """Make an elementwise function, such as `exp`, for Python numbers and arrays of any library."""
 
     def function(x: Array) -> Array:
         if type(x) is not float:
             return getattr(namespace(x), name)(x)
         try:
-            return of_number(x)
+            return scalar_function(x)
         except (ValueError, OverflowError):
             with numpy.errstate(all="ignore"):
                 return float(getattr(numpy, name)(x))
@@ -68,19 +71,22 @@ def _elementwise(name: str, of_number: Callable[[float], float]) -> Callable[[Ar
     return function
 
 
-exp = _elementwise("exp", math.exp)
-log = _elementwise("log", math.log)
-log1p = _elementwise("log1p", math.log1p)
-sin = _elementwise("sin", math.sin)
-cos = _elementwise("cos", math.cos)
-tan = _elementwise("tan", math.tan)
-atan = _elementwise("atan", math.atan)
-asinh = _elementwise("asinh", math.asinh)
-asin = _elementwise("asin", math.asin)
+exp = _make_elementwise("exp", math.exp)
+log = _make_elementwise("log", math.log)
+log1p = _make_elementwise("log1p", math.log1p)
+sin = _make_elementwise("sin", math.sin)
+cos = _make_elementwise("cos", math.cos)
+tan = _make_elementwise("tan", math.tan)
+atan = _make_elementwise("atan", math.atan)
+asinh = _make_elementwise("asinh", math.asinh)
+asin = _make_elementwise("asin", math.asin)
 
 
 def sqrt(x: Array) -> Array:
-    """Compute √x, with a derivative of 0 at 0, so that a point without load does not turn gradients into NaN."""
+    """Compute the square root √x; its derivative at x = 0 is set to 0.
+
+    Points without load therefore do not turn gradients into NaN. The root of a negative number is NaN.
+    """
     if type(x) is float:
         return math.sqrt(x) if x >= 0 else math.nan
     xp = namespace(x)
@@ -90,7 +96,7 @@ def sqrt(x: Array) -> Array:
 
 
 def power(x: Array, exponent: float) -> Array:
-    """Compute x^exponent for a positive exponent, with a derivative of 0 at 0 as in `sqrt`."""
+    """Compute x^exponent for a positive exponent; its derivative at x = 0 is set to 0 as in `sqrt`."""
     if type(x) is float:
         return x**exponent if x >= 0 else math.nan
     if namespace(x) is numpy:
@@ -106,34 +112,37 @@ def atan2(y: Array, x: Array) -> Array:
 
 
 def where(condition: Array, if_true: Array, if_false: Array) -> Array:
-    """Select elements of two arrays by a mask."""
+    """Return the elements of `if_true` where a mask is true, and of `if_false` elsewhere."""
     if type(condition) is bool and type(if_true) is float and type(if_false) is float:
         return if_true if condition else if_false
     return namespace(condition, if_true, if_false).where(condition, if_true, if_false)
 
 
 def clip(x: Array, low: float, high: float) -> Array:
-    """Limit x to the interval from low to high."""
+    """Limit the elements of x to the interval from low to high."""
     return min(max(x, low), high) if isinstance(x, float) else namespace(x).clip(x, low, high)
 
 
 def isfinite(x: Array) -> Array:
-    """Return the mask of the elements that are neither infinite nor NaN."""
+    """Return a mask that is true for elements that are neither infinite nor NaN."""
     return math.isfinite(x) if type(x) is float else namespace(x).isfinite(x)
 
 
 def logical_not(condition: Array) -> Array:
-    """Invert a mask."""
+    """Invert a boolean mask."""
     return condition ^ True
 
 
 def safe_divisor(x: Array) -> Array:
-    """Replace elements that are not positive by 1, for quotients whose numerator is 0 there."""
+    """Replace zero and negative elements by 1, to avoid a division by zero.
+
+    The numerator must be 0 at these elements.
+    """
     return where(x > 0, x, 1.0)
 
 
 def device(x: Array) -> Any:
-    """Return the device that holds the array `x`."""
+    """Return the device (CPU or GPU) that stores the array `x`."""
     return array_api_compat.device(x)
 
 
@@ -145,7 +154,7 @@ def machine_epsilon(x: Array) -> float:
 
 
 def concrete_values(x: Array) -> numpy.ndarray | None:
-    """Return the values of `x` as a NumPy array, or None while they are traced (inside `jax.jit`, `jax.grad`)."""
+    """Convert `x` to a NumPy array; return None if `x` is traced (inside `jax.jit`, `jax.grad`)."""
     try:
         return to_numpy(x)
     except (TypeError, RuntimeError):
@@ -153,7 +162,7 @@ def concrete_values(x: Array) -> numpy.ndarray | None:
 
 
 def all_true(condition: Array) -> bool | None:
-    """Return True if all elements are true, or None while they are traced (inside `jax.jit`, `vmap`)."""
+    """Check if all elements are true; return None if they are traced (inside `jax.jit`, `vmap`)."""
     try:
         return condition if isinstance(condition, bool) else bool(namespace(condition).all(condition))
     except (TypeError, RuntimeError):  # tracers of JAX and PyTorch have no value
@@ -161,7 +170,7 @@ def all_true(condition: Array) -> bool | None:
 
 
 def stop_gradient(x: Array) -> Array:
-    """Return `x` as a constant of automatic differentiation."""
+    """Exclude `x` from automatic differentiation: return it as a constant."""
     if array_api_compat.is_torch_array(x):
         return x.detach()
     if array_api_compat.is_jax_array(x):
@@ -172,27 +181,29 @@ def stop_gradient(x: Array) -> Array:
 
 
 def to_common_arrays(*values: Array) -> tuple[Array, ...]:
-    """Convert values to arrays of the library, floating dtype and device of the arrays among them.
+    """Convert values to arrays of one library, floating dtype and device.
+
+    The arrays among the values determine all three.
 
     Lists and integers become floats. Plain numbers without an array become NumPy float64 scalars.
     """
     listed = [numpy.asarray(value) if isinstance(value, list | tuple) else value for value in values]
     xp = namespace(*listed)
-    arrays = [value for value in listed if not is_plain(value)]
+    arrays = [value for value in listed if not is_plain_number(value)]
     floating = [value for value in arrays if xp.isdtype(value.dtype, "real floating")]
     dtype = xp.result_type(*floating) if floating else xp.asarray(1.0).dtype
     device = array_api_compat.device(arrays[0]) if arrays else None
 
-    def converted(value: Array) -> Array:
-        if is_plain(value):
+    def convert(value: Array) -> Array:
+        if is_plain_number(value):
             return xp.asarray(float(value), dtype=dtype, device=device)
         return value if value.dtype == dtype else xp.astype(value, dtype)
 
-    return tuple(converted(value) for value in listed)
+    return tuple(convert(value) for value in listed)
 
 
 def broadcast(x: Array, *values: Array) -> Array:
-    """Broadcast `x` against some values; floats among floats stay floats."""
+    """Broadcast `x` to the common shape of `x` and some values; return a float if all are floats."""
     if type(x) is float and all(type(value) is float for value in values):
         return x
     shape = numpy.broadcast_shapes(*(tuple(getattr(value, "shape", ())) for value in (x, *values)))
@@ -200,25 +211,28 @@ def broadcast(x: Array, *values: Array) -> Array:
 
 
 def broadcast_to(x: Array, shape: tuple[int, ...]) -> Array:
-    """Broadcast `x` to a shape."""
+    """Broadcast `x` to a given shape."""
     return x if tuple(x.shape) == shape else namespace(x).broadcast_to(x, shape)
 
 
 @cache
 def gauss_legendre(points: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Compute nodes and weights of the Gauss-Legendre rule on [0, 1]."""
+    """Compute nodes and weights of the Gauss-Legendre quadrature on [0, 1]."""
     nodes, weights = numpy.polynomial.legendre.leggauss(points)
     return tuple(float(x) for x in (1 + nodes) / 2), tuple(float(w) for w in weights / 2)
 
 
 def integral(integrand: Callable[[float], Array], points: int) -> Array:
-    """Integrate a function of x over [0, 1] by the Gauss-Legendre rule; its values may be arrays of any library."""
+    """Integrate a function over [0, 1] by Gauss-Legendre quadrature.
+
+    The values of the function may be arrays of any library.
+    """
     nodes, weights = gauss_legendre(points)
     return weighted_sum([integrand(node) for node in nodes], weights)
 
 
 def weighted_sum(values: Sequence[Array], weights: Sequence[float]) -> Array:
-    """Sum `weights[i] * values[i]`, a quadrature rule for arrays of any library."""
+    """Compute the weighted sum of values, such as a quadrature, for arrays of any library."""
     total = weights[0] * values[0]
     for value, weight in zip(values[1:], weights[1:], strict=True):
         total = total + weight * value
@@ -226,7 +240,7 @@ def weighted_sum(values: Sequence[Array], weights: Sequence[float]) -> Array:
 
 
 def to_numpy(x: Array) -> numpy.ndarray:
-    """Convert `x` to a NumPy array in the memory of the host, for output and files."""
+    """Convert an array of any library to a NumPy array in host memory, for output and files."""
     if array_api_compat.is_torch_array(x):
         return numpy.asarray(x.detach().cpu())
     try:
@@ -236,7 +250,10 @@ def to_numpy(x: Array) -> numpy.ndarray:
 
 
 def to_list(x: Array) -> Any:
-    """Convert `x` to lists for JSON: None in place of NaN, and the text "inf" in place of infinity."""
+    """Convert an array to nested lists for JSON.
+
+    None replaces NaN, and the text "inf" replaces infinity.
+    """
     values = to_numpy(x)
     if values.dtype == bool:
         return values.tolist()

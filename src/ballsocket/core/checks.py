@@ -11,7 +11,7 @@ from unicodedata import category
 
 import numpy
 
-from .arrays import Array, all_true, is_plain, namespace, to_common_arrays
+from .arrays import Array, all_true, is_plain_number, namespace, to_common_arrays
 
 Value = TypeVar("Value")
 
@@ -29,7 +29,9 @@ _PREVIEW_LENGTH = 40
 
 
 def require(name: str, value: Array, good: Array, allowed: str) -> None:
-    """Raise ValueError with the first element of `value` for which `good` is false.
+    """Check that all elements of a value are allowed; raise ValueError otherwise.
+
+    The message has the first element for which `good` is false.
 
     Traced values (inside `jax.jit`) are not checked.
 
@@ -45,22 +47,22 @@ def require(name: str, value: Array, good: Array, allowed: str) -> None:
     """
     if all_true(good) is not False:
         return
-    raise ValueError(f"{name}{_invalid_element(value, good)} is not allowed: {allowed}")
+    raise ValueError(f"{name}{_format_invalid_element(value, good)} is not allowed: {allowed}")
 
 
 def first_invalid(value: Array, good: Array) -> float:
-    """Return the first element of `value` for which `good` is false."""
+    """Return the first element of `value` that is not allowed, where `good` is false."""
     if not _shape(value):
         return value
-    return float(namespace(value).reshape(value, (-1,))[_first_false(good)[0]])
+    return float(namespace(value).reshape(value, (-1,))[_find_first_false(good)[0]])
 
 
-def _invalid_element(value: Array, good: Array) -> str:
-    """Format index and value of the first invalid element, and the number of further ones."""
+def _format_invalid_element(value: Array, good: Array) -> str:
+    """Format index and value of the first invalid element for a message, with the number of further ones."""
     shape = _shape(value)
     if not shape:
         return f" = {shown(value) if isinstance(value, int) else format(float(value), 'g')}"
-    first, count = _first_false(good)
+    first, count = _find_first_false(good)
     index, remainder = [], first
     for size in reversed(shape):
         index.append(remainder % size)
@@ -70,18 +72,19 @@ def _invalid_element(value: Array, good: Array) -> str:
 
 
 def _shape(value: Array) -> tuple[int, ...]:
+    """Return the shape of an array; () for a number."""
     return tuple(getattr(value, "shape", ()))
 
 
-def _first_false(good: Array) -> tuple[int, int]:
-    """Return the flat index of the first false element, and the number of false elements."""
+def _find_first_false(good: Array) -> tuple[int, int]:
+    """Find the flat index of the first false element, and count the false elements."""
     xp = namespace(good)
     bad = ~xp.reshape(good, (-1,))
     return int(xp.argmax(xp.astype(bad, xp.int32))), int(xp.sum(xp.astype(bad, xp.int32)))
 
 
 def check_numeric(name: str, value: Any) -> Array:
-    """Return a number or an array of real numbers; lists become arrays.
+    """Check that a value is a number or an array of real numbers; return lists as arrays.
 
     Raises
     ------
@@ -92,15 +95,19 @@ def check_numeric(name: str, value: Any) -> Array:
     """
     if isinstance(value, list | tuple):
         value = _list_to_array(name, value)
-    if is_plain(value) and not isinstance(value, bool):
+    if is_plain_number(value) and not isinstance(value, bool):
         return _check_integer(name, value)
-    if not hasattr(value, "dtype") or isinstance(value, numpy.ma.MaskedArray | numpy.matrix) or not _is_real(value):
-        raise TypeError(_type_message(name, value))
+    if (
+        not hasattr(value, "dtype")
+        or isinstance(value, numpy.ma.MaskedArray | numpy.matrix)
+        or not _has_real_numbers(value)
+    ):
+        raise TypeError(_format_type_error(name, value))
     return to_common_arrays(value)[0]  # sums of small integers would overflow
 
 
 def check_number(name: str, value: Any) -> float:
-    """Return a single number as a float; raise TypeError for anything else."""
+    """Check that a value is a single number, and return it as a float; raise TypeError otherwise."""
     number = check_numeric(name, value)
     if _shape(number):
         raise TypeError(f"{name} must be one number, got {shown(value)}")
@@ -108,7 +115,9 @@ def check_number(name: str, value: Any) -> float:
 
 
 def check_vectors(name: str, value: Any, axes: str) -> Array:
-    """Return an array of vectors, whose last axis holds `axes`, such as "x, y, z (mm)".
+    """Check that a value is an array of vectors with three components, and return it.
+
+    `axes` describes the last axis in the message, such as "x, y, z (mm)".
 
     Raises
     ------
@@ -123,7 +132,7 @@ def check_vectors(name: str, value: Any, axes: str) -> Array:
 
 
 def _check_integer(name: str, value: float) -> float:
-    """Return a number; raise ValueError for an integer that is too large for a float."""
+    """Check that an integer fits into a float, and return it; raise ValueError otherwise."""
     try:
         float(value)
     except OverflowError as error:
@@ -136,20 +145,20 @@ def _list_to_array(name: str, value: Any) -> numpy.ndarray:
     try:
         listed = numpy.asarray(value)
     except (ValueError, OverflowError) as error:  # rows of different lengths
-        raise TypeError(_type_message(name, value)) from error
+        raise TypeError(_format_type_error(name, value)) from error
     return listed.astype(float) if listed.dtype.kind in "iuf" else listed
 
 
-def _is_real(value: Any) -> bool:
-    """Return True for an array of integers, or of floats of single or double precision."""
+def _has_real_numbers(value: Any) -> bool:
+    """Check if an array has integers, or floats of single or double precision."""
     xp = namespace(value)
     if xp.isdtype(value.dtype, "integral"):
         return True
     return bool(xp.isdtype(value.dtype, "real floating")) and xp.finfo(value.dtype).bits >= 32
 
 
-def _type_message(name: str, value: Any) -> str:
-    """Format the message of a value that is neither a number nor an array of real numbers."""
+def _format_type_error(name: str, value: Any) -> str:
+    """Format the message for a value that is neither a number nor an array of real numbers."""
     text = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
     for kind, title in _REJECTED_ARRAYS.items():
         if isinstance(value, kind):
@@ -164,19 +173,22 @@ _REJECTED_ARRAYS = {numpy.ma.MaskedArray: "a masked array", numpy.matrix: "a num
 
 
 def reject_unnamed_loads(loads: tuple[Any, ...]) -> None:
-    """Raise TypeError for loads that are positional arguments."""
+    """Raise TypeError for loads that are passed without a keyword such as `force=`."""
     if loads:
         load = shown(loads[0])
         raise TypeError(f"a load needs its name: force={load} in N, indentation={load} in mm or half_angle={load}")
 
 
 def degrees_hint(value: float) -> str:
-    """Format the hint that converts a value in degrees to radians."""
+    """Format a hint on radians: "40 degrees are 0.6981 radians"."""
     return f"{value:g} degrees are {radians(value):.4g} radians"
 
 
 def select_load(**loads: Any) -> tuple[str, Any]:
-    """Return name and value of the single load that is not None; raise ValueError for none or several."""
+    """Return name and value of the only load that is not None.
+
+    Raises ValueError if there is none, or more than one.
+    """
     set_loads = {name: value for name, value in loads.items() if value is not None}
     if len(set_loads) != 1:
         got = ", ".join(set_loads) if set_loads else "none"
@@ -185,21 +197,30 @@ def select_load(**loads: Any) -> tuple[str, Any]:
 
 
 def needs(extra: str, *modules: str) -> None:
-    """Raise ImportError, with the command to install, unless all modules of an extra are installed."""
+    """Check that the modules of an optional extra are installed; raise ImportError otherwise.
+
+    The message has the command to install them.
+    """
     for module in modules:
         if find_spec(module) is None:
             raise ImportError(f"{module} is not installed: pip install 'ballsocket[{extra}]'", name=module)
 
 
 def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
-    """Raise ValueError for the first name that is unknown; `where` completes the message."""
+    """Check that all names are known; raise ValueError for the first unknown name.
+
+    `where` completes the message.
+    """
     for name in names:
         if name not in known:
             raise ValueError(f"{shown(name)} {where} is not known{nearest(name, known)}")
 
 
 def nearest(name: Any, known: Iterable[str]) -> str:
-    """Format a hint for an unknown name: the most similar known name, or the known names."""
+    """Format a hint for an unknown name, such as "; did you mean 'exact'?".
+
+    It has the most similar known name, or else all known names.
+    """
     text = normalise_name((name if isinstance(name, str) else shown(name))[:_MAX_SHOWN_LENGTH])
     names = {normalise_name(known_name): known_name for known_name in known}
     close = get_close_matches(text, names, n=1, cutoff=0.8)
@@ -209,18 +230,18 @@ def nearest(name: Any, known: Iterable[str]) -> str:
 
 
 def _join_names(names: list[str]) -> str:
-    """Join names to a text of limited length."""
+    """Join names by commas, and shorten a long list."""
     text = ", ".join(names)
     return text if len(text) <= _MAX_LIST_LENGTH else f"{text[: text.rindex(', ', 0, _MAX_LIST_LENGTH)]}, ..."
 
 
 def normalise_name(text: str) -> str:
-    """Convert a name to lower case with hyphens, the form of the names of materials, joints and models."""
+    """Convert a name to lower case with hyphens, such as "Hip 36" to "hip-36"."""
     return text.strip().lower().replace(" ", "-").replace("_", "-")
 
 
 def known_name(kind: str, name: Any, known: Iterable[str]) -> str:
-    """Find a known name, regardless of capitals, spaces, hyphens and underscores.
+    """Return the known name that matches a name, regardless of capitals, spaces, hyphens and underscores.
 
     Parameters
     ----------
@@ -242,7 +263,7 @@ def known_name(kind: str, name: Any, known: Iterable[str]) -> str:
 
 
 class NamedItems(dict[str, Value]):
-    """Dictionary whose KeyError suggests the most similar name.
+    """Dictionary of named items whose KeyError suggests the most similar name.
 
     Parameters
     ----------
@@ -269,7 +290,7 @@ class NamedItems(dict[str, Value]):
 
 
 def check_text(name: str, value: Any) -> str:
-    """Return a text without control characters.
+    """Check that a value is a text of limited length without control characters, and return it.
 
     Raises
     ------
@@ -286,7 +307,7 @@ def check_text(name: str, value: Any) -> str:
 
 
 def shown(value: Any) -> str:
-    """Format any value for a message, on one short line."""
+    """Format any value on one short line, for a message."""
     try:
         text = repr(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits; lists in lists in lists

@@ -128,7 +128,7 @@ MOVED = {
 
 
 def new_path(name: str) -> str | None:
-    """Return the present path of a module by its path in version 1.0, or None if it has not moved."""
+    """Return the present path of a module from its path in version 1.0; None if it has not moved."""
     parent = name
     while "." in parent:
         if parent in MOVED:
@@ -138,6 +138,8 @@ def new_path(name: str) -> str | None:
 
 
 class _MovedModule(Loader):
+    """Loader of a module that has moved, under its old path."""
+
     def __init__(self, path: str) -> None:
         self._path = path
 
@@ -151,6 +153,8 @@ class _MovedModule(Loader):
 
 
 class _MovedModules(MetaPathFinder):
+    """Finder that maps old module paths to the present ones."""
+
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
@@ -160,18 +164,19 @@ class _MovedModules(MetaPathFinder):
         return ModuleSpec(name, _MovedModule(moved), is_package=True)
 
 
-def keep_old_paths() -> None:
-    """Let the import system find moved modules by their old paths."""
+def register_old_paths() -> None:
+    """Register the old paths of moved modules with the import system."""
     if not any(isinstance(finder, _MovedModules) for finder in sys.meta_path):
         sys.meta_path.insert(0, _MovedModules())
 
 
 def _warn(old: str, new: str) -> None:
+    """Issue a DeprecationWarning that states the new name."""
     warnings.warn(f"{old} is deprecated: use {new}; removed in 2.0", DeprecationWarning, stacklevel=3)
 
 
 def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
-    """Return a module's `__getattr__` that finds renamed functions and classes by their old names.
+    """Make the `__getattr__` of a module that resolves old names of functions and classes.
 
     `names` maps each old name to the present one, in the same module or with the path of another.
     """
@@ -187,7 +192,10 @@ def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
 
 
 class RenamedAttribute:
-    """Old name of a method or attribute: `listen = RenamedAttribute("progress")` in the body of a class."""
+    """Descriptor for the old name of a method or attribute; each access warns.
+
+    Example in the body of a class: `listen = RenamedAttribute("progress")`.
+    """
 
     def __init__(self, new: str) -> None:
         self._new = new
@@ -201,11 +209,16 @@ class RenamedAttribute:
 
 
 def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Return a decorator that accepts keyword arguments by their old names: `@renamed_arguments(listen="progress")`."""
+    """Make a decorator that accepts keyword arguments by their old names.
+
+    Example: `@renamed_arguments(listen="progress")`.
+    """
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        """Wrap a function that translates old argument names."""
+
         @functools.wraps(function)
-        def accepting(*args: P.args, **kwargs: P.kwargs) -> T:
+        def wrapper(*args: P.args, **kwargs: P.kwargs) -> T:
             for old in names.keys() & kwargs.keys():
                 new = names[old]
                 if new in kwargs:
@@ -214,29 +227,30 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
                 kwargs[new] = kwargs.pop(old)
             return function(*args, **kwargs)
 
-        return accepting
+        return wrapper
 
     return decorate
 
 
 def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
-    """Return a decorator that keeps old names of a dataclass: fields, other attributes and methods.
+    """Make a decorator of dataclasses that accepts old names of fields, attributes and methods.
 
     An old name of a field replaces the value under the new name, which `dataclasses.replace` passes as well.
     """
 
     def decorate(owner: type[T]) -> type[T]:
+        """Wrap the initialiser of a class, and add its old attribute names."""
         initialise: Any = owner.__init__
         arguments = {old: new for old, new in names.items() if new in owner.__dict__.get("__dataclass_fields__", {})}
 
         @functools.wraps(initialise)
-        def accepting(self: T, *args: Any, **kwargs: Any) -> None:
+        def wrapper(self: T, *args: Any, **kwargs: Any) -> None:
             for old in arguments.keys() & kwargs.keys():
                 _warn(f"argument {old!r} of {owner.__name__}()", repr(arguments[old]))
                 kwargs[arguments[old]] = kwargs.pop(old)
             initialise(self, *args, **kwargs)
 
-        setattr(owner, "__init__", accepting)  # noqa: B010 (mypy refuses to assign to a method)
+        setattr(owner, "__init__", wrapper)  # noqa: B010 (mypy refuses to assign to a method)
         for old, new in names.items():
             attribute = RenamedAttribute(new)
             attribute.__set_name__(owner, old)

@@ -1,7 +1,7 @@
 """Access to input files: every reader opens the files of users here.
 
-A server restricts its processes to certain folders by the environment variable of `restricted`. Child processes inherit
-this variable. The command line reads any file of its user.
+A server restricts its processes to certain folders by the environment variable of `restriction_variables`. Child
+processes inherit this variable. The command line reads any file of its user.
 """
 
 from __future__ import annotations
@@ -34,26 +34,30 @@ class AllowedFolders:
     folders: tuple[Path, ...]
 
     def resolve(self, path: Path, name: str) -> Path:
-        """Resolve all symbolic links and ".." of a path; `name` stands for it in the message.
+        """Resolve symbolic links and ".." in a path, and check that the folders contain it.
+
+        `name` replaces the path in the message.
 
         Raises
         ------
         ValueError
             A path outside the folders.
         """
-        resolved = resolved_path(path)
+        resolved = resolve_path(path)
         if not any(resolved.is_relative_to(folder) for folder in self.folders):
             raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
         return resolved
 
 
-def restricted(folders: Iterable[Path]) -> Mapping[str, str]:
-    """Return the environment variable that restricts a process and its child processes to the given folders."""
-    return {_VARIABLE: json.dumps([str(resolved_path(folder)) for folder in folders])}
+def restriction_variables(folders: Iterable[Path]) -> Mapping[str, str]:
+    """Return the environment variables that restrict a process and its children to some input folders."""
+    return {_VARIABLE: json.dumps([str(resolve_path(folder)) for folder in folders])}
 
 
 def resolve_input(path: Path) -> Path:
-    """Resolve and check the path of an input file, before any access to the file.
+    """Resolve the path of an input file, and check that it lies in the allowed folders.
+
+    The file is not accessed.
 
     Raises
     ------
@@ -87,8 +91,8 @@ def open_input(path: Path) -> BinaryIO:
 
 
 @contextmanager
-def recorded_inputs() -> Iterator[list[Path]]:
-    """Record the paths of all input files that are opened in this context, each once."""
+def record_inputs() -> Iterator[list[Path]]:
+    """Record the path of each input file that is opened within the block."""
     opened: list[Path] = []
     token = _opened.set(opened)
     try:
@@ -100,8 +104,8 @@ def recorded_inputs() -> Iterator[list[Path]]:
             outer += [path for path in opened if path not in outer]
 
 
-def resolved_path(path: Path) -> Path:
-    """Resolve a path; raise ValueError where the system cannot resolve it."""
+def resolve_path(path: Path) -> Path:
+    """Resolve symbolic links and ".." in a path; raise ValueError if the system cannot."""
     try:
         return path.resolve()
     except (OSError, RuntimeError) as error:  # a circle of links, a name that is too long

@@ -20,19 +20,19 @@ class Choice(Enum):
 
 @dataclass(frozen=True)
 class Unit:
-    """Displayed unit: `text` after a number, and `factor` from the internal unit to this one."""
+    """Displayed unit: its text, and the factor from the internal unit."""
 
     text: str
     factor: float = 1.0
 
     @property
     def bracketed(self) -> str:
-        """Unit in brackets for the head of a column or the label of an axis; empty for a plain number."""
+        """Unit in brackets, such as " [mm]", for column heads and axis labels; empty for a plain number."""
         return f" [{self.text}]" if self.text else ""
 
 
 class Kind(StrEnum):
-    """Physical kind of a number, which determines its units."""
+    """Physical kind of a number, such as a length or a force, which determines its units."""
 
     LENGTH = "length"
     FORCE = "force"
@@ -55,22 +55,22 @@ class Kind(StrEnum):
 
     @property
     def example(self) -> str:
-        """Example of an input with a unit, for messages."""
+        """Example of an input with a unit, for messages: "a length, such as '16 mm'"."""
         return _KINDS[self][1]
 
     @property
     def written(self) -> Unit:
-        """Unit in JSON, files and tables of plain numbers: degrees for an angle, otherwise the internal unit."""
+        """Unit in JSON, files and plain tables: degrees for an angle, otherwise the internal unit."""
         return _WRITTEN.get(self, Unit(self.unit))
 
     @property
     def suffix(self) -> str:
-        """Unit as the end of a column name in CSV; empty for a plain number."""
+        """Unit at the end of a CSV column name, such as "N_per_mm"; empty for a plain number."""
         return _SUFFIXES.get(self, self.unit)
 
     @property
     def typed(self) -> str:
-        """Unit of a number without a unit in a file or on the command line; empty for a plain number."""
+        """Assumed unit of an input without a unit, in a file or on the command line; empty for a plain number."""
         return _TYPED.get(self, self.unit)
 
 

@@ -12,12 +12,15 @@ _LOADERS: dict[str, Callable[[], Plot]] = {}
 
 
 def register_plot(name: str, loader: Callable[[], Plot]) -> None:
-    """Register the function that imports and returns the plot of that name, so that matplotlib is imported late."""
+    """Register a function that imports and returns a plot function, by the name of the plot.
+
+    Matplotlib is thus imported only when a plot is made.
+    """
     _LOADERS[name] = loader
 
 
 def load_plot(name: str) -> Plot:
-    """Import and return the plot of that name.
+    """Import and return the plot function registered under a name.
 
     Raises
     ------

@@ -17,7 +17,8 @@ from .checks import check_numeric, degrees_hint, first_invalid, require
 from .kinds import Kind, Unit
 
 
-def _not_nan(x: Array) -> Array:
+def _is_not_nan(x: Array) -> Array:
+    """Return a mask of the elements that are not NaN."""
     return x == x
 
 
@@ -25,32 +26,38 @@ _MIN_THICKNESS = 1e-300
 """Smallest thickness in mm; ratios to a smaller one overflow."""
 
 
-def _positive(x: Array) -> Array:
+def _is_positive(x: Array) -> Array:
+    """Return a mask of the elements that are positive and finite."""
     return (x > 0) & (x < inf)
 
 
-def _positive_or_infinite(x: Array) -> Array:
+def _is_positive_or_infinite(x: Array) -> Array:
+    """Return a mask of the elements that are positive, infinite ones included."""
     return x > _MIN_THICKNESS
 
 
-def _not_negative(x: Array) -> Array:
+def _is_not_negative(x: Array) -> Array:
+    """Return a mask of the elements that are 0 or more and finite."""
     return (x >= 0) & (x < inf)
 
 
-def _below_quarter_turn(x: Array) -> Array:
+def _is_below_quarter_turn(x: Array) -> Array:
+    """Return a mask of the angles from 0 to below π/2."""
     return (x >= 0) & (x < pi / 2)
 
 
-def _within_half_turn(x: Array) -> Array:
+def _is_within_half_turn(x: Array) -> Array:
+    """Return a mask of the angles from -π to π."""
     return abs(x) <= pi * (1 + 1e-6)  # single precision rounds pi up
 
 
-def _poisson_ratio(x: Array) -> Array:
+def _is_poisson_ratio(x: Array) -> Array:
+    """Return a mask of the possible Poisson's ratios, above -1 and up to 0.5."""
     return (x > -1) & (x <= 0.5)
 
 
-def _angle_range(subject: str, low: float, high: float) -> dict[str, Any]:
-    """Return the limits of an angle between two angles in degrees, as arguments of `Quantity`."""
+def _angle_limits(subject: str, low: float, high: float) -> dict[str, Any]:
+    """Make the arguments `allows` and `allowed` of an angle between two limits in degrees."""
     minimum, maximum = radians(low), radians(high)
     allowed = f"{subject} is {low:g} to {high:g} degrees, which are {minimum:.4g} to {maximum:.4g} radians"
     return {"allows": lambda x: (x >= minimum) & (x <= maximum), "allowed": allowed}
@@ -58,7 +65,7 @@ def _angle_range(subject: str, low: float, high: float) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Quantity of a contact, a joint, a load or a cup.
+    """Physical quantity of a contact, joint, load or cup, with its symbol, unit and allowed values.
 
     Attributes
     ----------
@@ -70,7 +77,7 @@ class Quantity:
         Physical kind, which determines the units.
     meaning : str
         Definition in the glossary.
-    handy : Unit or None
+    display_unit : Unit or None
         Unit on axes, in the explorer and in a terminal; None is the unit of files.
     allows : callable
         Function that returns the mask of the allowed numbers of an array.
@@ -81,7 +88,7 @@ class Quantity:
     --------
     >>> QUANTITIES["indentation"].label()
     'indentation d [µm]'
-    >>> QUANTITIES["poisson"].checked(0.6)
+    >>> QUANTITIES["poisson"].check(0.6)
     Traceback (most recent call last):
     ValueError: poisson = 0.6 is not allowed: Poisson's ratio lies above -1, up to 0.5
     """
@@ -91,50 +98,56 @@ class Quantity:
     title: str
     kind: Kind
     meaning: str
-    handy: Unit | None = None
-    allows: Callable[[Array], Array] = _not_nan
+    display_unit: Unit | None = None
+    allows: Callable[[Array], Array] = _is_not_nan
     allowed: str = ""
 
     @property
     def unit(self) -> str:
-        """Internal unit in the spelling of the CF conventions."""
+        """Internal unit in the spelling of the CF conventions, such as "mm2"."""
         return self.kind.unit
 
     @property
     def key(self) -> str:
-        """Name in JSON, which ends in "_deg" for angles."""
+        """Key in JSON: the name, which ends in "_deg" for an angle."""
         return f"{self.name}_deg" if self.kind is Kind.ANGLE else self.name
 
     @property
     def column(self) -> str:
-        """Name of the column in CSV and data frames, which ends in the unit, such as "max_pressure_MPa"."""
+        """Column name in CSV and data frames, with the unit at its end, such as "max_pressure_MPa"."""
         return f"{self.name}_{self.kind.suffix}" if self.kind.suffix else self.name
 
     @property
     def written(self) -> Unit:
-        """Unit in JSON, in files and in tables of plain numbers."""
+        """Unit in JSON, files and plain tables."""
         return self.kind.written
 
     @property
     def shown(self) -> Unit:
-        """Unit on axes, in the explorer and in a terminal."""
-        return self.handy or self.kind.written
+        """Unit displayed on axes, in the explorer and in a terminal."""
+        return self.display_unit or self.kind.written
 
-    def capital(self, unit: Unit | None = None) -> str:
-        """Format the label of an input, such as "Radial clearance c [mm]"."""
+    def input_label(self, unit: Unit | None = None) -> str:
+        """Format the label of an input field, such as "Radial clearance c [mm]"."""
         label = self.label(unit)
         return label[:1].upper() + label[1:]
 
     def head(self, unit: Unit | None = None) -> str:
-        """Format the head of a column in `shown` or another unit, such as "pmax [MPa]"."""
+        """Format a column head of symbol and unit, such as "pmax [MPa]".
+
+        The unit is `shown` by default.
+        """
         return f"{self.symbol}{(unit or self.shown).bracketed}".strip()
 
     def label(self, unit: Unit | None = None) -> str:
-        """Format the label of an axis in `shown` or another unit, such as "largest pressure pmax [MPa]"."""
+        """Format an axis label of title, symbol and unit, such as "largest pressure pmax [MPa]".
+
+        The unit is `shown` by default.
+        """
         return f"{self.title} {self.head(unit)}".strip()
 
-    def checked(self, value: Any) -> Array:
-        """Return a number or an array of allowed numbers.
+    def check(self, value: Any) -> Array:
+        """Check that a number or array has only allowed values, and return it.
 
         Raises
         ------
@@ -150,19 +163,23 @@ class Quantity:
         return number
 
     def radian_hint(self, value: float) -> str:
-        """Return a hint in radians if an invalid angle would be valid in degrees."""
+        """Format a hint on radians for an invalid angle that would be valid in degrees; otherwise empty."""
         if self.kind is not Kind.ANGLE or not self.allows(radians(value)):
             return ""
         return f"; {degrees_hint(value)}"
 
 
-def _table(*quantities: Quantity) -> Mapping[str, Quantity]:
+def _make_table(*quantities: Quantity) -> Mapping[str, Quantity]:
+    """Make a read-only table of quantities by name."""
     return MappingProxyType({quantity.name: quantity for quantity in quantities})
 
 
-def _body_quantities(body: str, symbols: tuple[str, str, str]) -> Mapping[str, Quantity]:
-    """Return moduli and yield stress of liner or ball, with the name of the body in their names."""
-    return _table(
+def _make_body_quantities(body: str, symbols: tuple[str, str, str]) -> Mapping[str, Quantity]:
+    """Make the moduli and yield stress of one body, such as "liner_young".
+
+    `symbols` are those of E, ν and σy.
+    """
+    return _make_table(
         *(
             replace(quantity, name=f"{body}_{quantity.name}", symbol=symbol, title=f"{quantity.title} of the {body}")
             for quantity, symbol in zip((*MATERIAL.values(), STRENGTH["yield_stress"]), symbols, strict=True)
@@ -171,16 +188,16 @@ def _body_quantities(body: str, symbols: tuple[str, str, str]) -> Mapping[str, Q
 
 
 # fmt: off
-CONTACT = _table(
-    Quantity("force", "F", "normal force", Kind.FORCE, "Force along the axis of the load.", allows=_not_negative,
+CONTACT = _make_table(
+    Quantity("force", "F", "normal force", Kind.FORCE, "Force along the axis of the load.", allows=_is_not_negative,
              allowed="a force (N) is 0 or more and finite"),
     Quantity("indentation", "d", "indentation", Kind.LENGTH,
              "Approach of the centres of ball and socket from first touch; with finite elements the path of the "
              "ball's equator, which contains the ball's own compression. The paper writes δ as well.",
-             Unit("µm", 1e3), allows=_not_negative, allowed="an indentation (mm) is 0 or more and finite"),
+             Unit("µm", 1e3), allows=_is_not_negative, allowed="an indentation (mm) is 0 or more and finite"),
     Quantity("half_angle", "ε", "half angle", Kind.ANGLE,
              "Polar angle from the axis of the load to the edge of the contact, at the centre of the socket.",
-             allows=_below_quarter_turn, allowed="a half angle (rad) is 0 or more and below pi/2"),
+             allows=_is_below_quarter_turn, allowed="a half angle (rad) is 0 or more and below pi/2"),
     Quantity("max_pressure", "pmax", "largest pressure", Kind.MODULUS,
              "Largest contact pressure, at any angle; also called peak pressure."),
     Quantity("area", "A", "contact area", Kind.AREA,
@@ -198,7 +215,7 @@ CONTACT = _table(
 )
 """Printed quantities of a contact, in this order."""
 
-DERIVED = _table(
+DERIVED = _make_table(
     Quantity("pressure_integral", "∫p dA", "pressure integral", Kind.FORCE,
              "Integral of the pressure over the area, regardless of direction. Friction and wear need it."),
     Quantity("indentation_ratio", "d/L", "indentation ratio", Kind.NUMBER, "Indentation over liner thickness."),
@@ -220,63 +237,63 @@ DERIVED = _table(
 )
 """Quantities derived from joint, cup and contact."""
 
-JOINT = _table(
-    Quantity("ball_radius", "R1", "ball radius", Kind.LENGTH, "Radius of the ball, the femoral head.", allows=_positive,
-             allowed="a radius (mm) is above 0 and finite"),
-    Quantity("head_diameter", "2 R1", "head diameter", Kind.LENGTH, "Twice the radius of the ball.", allows=_positive,
-             allowed="a diameter (mm) is above 0 and finite"),
+JOINT = _make_table(
+    Quantity("ball_radius", "R1", "ball radius", Kind.LENGTH, "Radius of the ball, the femoral head.",
+             allows=_is_positive, allowed="a radius (mm) is above 0 and finite"),
+    Quantity("head_diameter", "2 R1", "head diameter", Kind.LENGTH, "Twice the radius of the ball.",
+             allows=_is_positive, allowed="a diameter (mm) is above 0 and finite"),
     Quantity("socket_radius", "R2", "socket radius", Kind.LENGTH, "R1 + c, inner radius of the liner.",
-             allows=_positive, allowed="a radius (mm) is above 0 and finite"),
+             allows=_is_positive, allowed="a radius (mm) is above 0 and finite"),
     Quantity("clearance", "c", "radial clearance", Kind.LENGTH,
              "R2 - R1, half of the diametral clearance that implant papers usually quote. The paper writes ΔR.",
-             allows=_not_negative,
+             allows=_is_not_negative,
              allowed="a radial clearance (mm) is 0 or more and finite; negative is a preloaded joint: an interference"),
     Quantity("diametral_clearance", "2 c", "diametral clearance", Kind.LENGTH,
-             "Difference of the diameters, twice the radial clearance.", allows=_not_negative,
+             "Difference of the diameters, twice the radial clearance.", allows=_is_not_negative,
              allowed="a diametral clearance (mm) is 0 or more and finite; negative is a preloaded joint"),
     Quantity("liner_thickness", "L", "liner thickness", Kind.LENGTH,
              "Thickness of the elastic layer between the socket's surface and its backing; `inf` is a massive socket.",
-             allows=_positive_or_infinite, allowed="a thickness (mm) is above 0; inf is a massive socket"),
+             allows=_is_positive_or_infinite, allowed="a thickness (mm) is above 0; inf is a massive socket"),
     Quantity("outer_radius", "Ro", "outer radius", Kind.LENGTH,
              "Outer radius of the liner, R2 + L, or of a shell of finite thickness right behind it.",
-             allows=_positive, allowed="a radius (mm) is above 0 and finite"),
-    Quantity("outer_diameter", "2 Ro", "outer diameter", Kind.LENGTH, "Twice the outer radius.", allows=_positive,
+             allows=_is_positive, allowed="a radius (mm) is above 0 and finite"),
+    Quantity("outer_diameter", "2 Ro", "outer diameter", Kind.LENGTH, "Twice the outer radius.", allows=_is_positive,
              allowed="a diameter (mm) is above 0 and finite"),
 )
 """The dimensions of a joint."""
 
-FIT = _table(
+FIT = _make_table(
     Quantity("interference", "-c", "interference", Kind.LENGTH,
              "Excess R1 - R2 of the ball's radius over the socket's in a preloaded joint, in place of a clearance.",
-             allows=_positive, allowed="an interference (mm) is above 0 and finite"),
+             allows=_is_positive, allowed="an interference (mm) is above 0 and finite"),
 )
 """Alternative to the clearance for a joint that is preloaded without a load."""
 
-MATERIAL = _table(
+MATERIAL = _make_table(
     Quantity("young", "E", "Young's modulus", Kind.MODULUS, "Stress over strain of a bar in tension.",
-             allows=_positive, allowed="Young's modulus (MPa) is above 0 and finite"),
+             allows=_is_positive, allowed="Young's modulus (MPa) is above 0 and finite"),
     Quantity("poisson", "ν", "Poisson's ratio", Kind.NUMBER,
-             "Lateral contraction over extension of a bar in tension; 0.5 is incompressible.", allows=_poisson_ratio,
+             "Lateral contraction over extension of a bar in tension; 0.5 is incompressible.", allows=_is_poisson_ratio,
              allowed="Poisson's ratio lies above -1, up to 0.5"),
 )
 """Elastic constants of a material."""
 
-LINEARITY = _table(
+LINEARITY = _make_table(
     Quantity("proportional_limit", "σp", "proportional limit", Kind.MODULUS,
              "Stress up to which strain is proportional to stress. Above it the secant modulus is lower than E.",
-             allows=_positive, allowed="a proportional limit (MPa) is above 0 and finite"),
+             allows=_is_positive, allowed="a proportional limit (MPa) is above 0 and finite"),
 )
 """Optional proportional limit of a material."""
 
-STRENGTH = _table(
+STRENGTH = _make_table(
     Quantity("yield_stress", "σy", "yield stress", Kind.MODULUS,
              "Von Mises stress at which a material begins to yield. Optional; contacts are compared with it.",
-             allows=_positive, allowed="a yield stress (MPa) is above 0 and finite"),
+             allows=_is_positive, allowed="a yield stress (MPa) is above 0 and finite"),
     Quantity("fatigue_limit", "σf", "fatigue limit", Kind.MODULUS,
-             "Von Mises stress that a material endures in cyclic loading.", allows=_positive,
+             "Von Mises stress that a material endures in cyclic loading.", allows=_is_positive,
              allowed="a fatigue limit (MPa) is above 0 and finite"),
     Quantity("allowable_pressure", "pa", "allowable pressure", Kind.MODULUS,
-             "Contact pressure allowed by the manufacturer of a material or by a design rule.", allows=_positive,
+             "Contact pressure allowed by the manufacturer of a material or by a design rule.", allows=_is_positive,
              allowed="an allowable pressure (MPa) is above 0 and finite"),
 )
 """Strengths of a material; each is optional."""
@@ -284,7 +301,7 @@ STRENGTH = _table(
 STRESS_LIMITS = MappingProxyType({**LINEARITY, **STRENGTH})
 """Stress limits of a material."""
 
-BEARING = _table(
+BEARING = _make_table(
     Quantity("von_mises", "σv", "von Mises stress", Kind.MODULUS,
              "Largest von Mises stress in the liner: computed by models that solve for the stresses, else a "
              "fraction of the largest pressure that is fitted to the exact solution."),
@@ -294,47 +311,47 @@ BEARING = _table(
 )
 """Stresses of a contact relative to the strengths."""
 
-FIELD = _table(
+FIELD = _make_table(
     Quantity("angle", "φ", "polar angle", Kind.ANGLE, "Angle from the axis of the load, at the centre of the socket.",
-             allows=_within_half_turn, allowed="a polar angle lies between -pi and pi, in radians"),
+             allows=_is_within_half_turn, allowed="a polar angle lies between -pi and pi, in radians"),
     Quantity("pressure", "p", "contact pressure", Kind.MODULUS, "Pressure of the ball on the socket at a polar angle."),
 )
 """Quantities that vary along a contact."""
 
-LAYER = _table(
+LAYER = _make_table(
     Quantity("thickness", "", "thickness", Kind.LENGTH,
              "Thickness of a layer behind the liner; `inf` is a massive body.",
-             allows=_positive_or_infinite, allowed="a thickness (mm) is above 0; inf is a massive body"),
+             allows=_is_positive_or_infinite, allowed="a thickness (mm) is above 0; inf is a massive body"),
 )
 """Dimension of a layer behind the liner."""
 
-CUP = _table(
+CUP = _make_table(
     Quantity("arc_of_cover", "", "arc of cover", Kind.ANGLE, "Angle from rim to rim of the cup; 180° is a hemisphere.",
-             **_angle_range("an arc of cover", 40.0, 340.0)),
+             **_angle_limits("an arc of cover", 40.0, 340.0)),
     Quantity("chamfer", "", "chamfer", Kind.LENGTH,
              "Width of the 45° chamfer of the rim's inner edge, along the bore and in depth.",
-             allows=_not_negative, allowed="a chamfer (mm) is 0 or more and finite"),
+             allows=_is_not_negative, allowed="a chamfer (mm) is 0 or more and finite"),
     Quantity("inclination", "", "inclination", Kind.ANGLE,
              "Radiographic inclination of the cup: angle between the axes of body and cup in the frontal view.",
-             **_angle_range("an inclination", 0.0, 90.0)),
+             **_angle_limits("an inclination", 0.0, 90.0)),
     Quantity("anteversion", "", "anteversion", Kind.ANGLE,
              "Radiographic anteversion of the cup: angle between the cup's axis and the frontal plane.",
-             **_angle_range("an anteversion", -90.0, 90.0)),
+             **_angle_limits("an anteversion", -90.0, 90.0)),
 )
 """Rim and orientation of a cup."""
 
-AIM = _table(
+AIM = _make_table(
     Quantity("tilt", "γ", "tilt", Kind.ANGLE, "Angle between the load and the axis of the cup.",
-             **_angle_range("a tilt", 0.0, 180.0)),
+             **_angle_limits("a tilt", 0.0, 180.0)),
     Quantity("azimuth", "", "azimuth", Kind.ANGLE,
              "Direction of a tilted load around the axis of the cup, from the direction of its tilt.",
-             **_angle_range("an azimuth", 0.0, 360.0)),
+             **_angle_limits("an azimuth", 0.0, 360.0)),
 )
 """Direction of a load relative to the axis of the cup."""
 # fmt: on
 
 PARTS = MappingProxyType(
-    {**_body_quantities("liner", ("E", "ν", "σy")), **_body_quantities("ball", ("E1", "ν1", "σy1"))}
+    {**_make_body_quantities("liner", ("E", "ν", "σy")), **_make_body_quantities("ball", ("E1", "ν1", "σy1"))}
 )
 """Moduli and yield stresses of liner and ball."""
 

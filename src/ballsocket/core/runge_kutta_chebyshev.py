@@ -28,7 +28,7 @@ _MAX_STAGES = 60
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChebyshevStep:
-    """Result of one integration step.
+    """Result of one Runge-Kutta-Chebyshev step.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class ChebyshevStep:
 
 
 def stage_count(length: float, spectral_radius: float) -> int:
-    """Return the number of stages for a stable step, at least 2 and at most 60.
+    """Compute the number of stages that makes a step stable, from 2 to 60.
 
     Parameters
     ----------
@@ -57,13 +57,13 @@ def stage_count(length: float, spectral_radius: float) -> int:
 
 
 def max_step_length(spectral_radius: float) -> float:
-    """Return the length of the longest stable step; infinite for a decay rate of 0."""
+    """Compute the length of the longest stable step; infinite for a decay rate of 0."""
     return ((_MAX_STAGES - 2) ** 2 - 1) / (_STABILITY * spectral_radius) if spectral_radius > 0 else float("inf")
 
 
 @lru_cache(maxsize=_MAX_STAGES)
 def _coefficients(stages: int) -> tuple[tuple[float, ...], ...]:
-    """Compute the coefficients (μ, ν, μ~, γ~) of the stages."""
+    """Compute the coefficients (μ, ν, μ~, γ~) of all Runge-Kutta-Chebyshev stages."""
     w0 = 1 + _DAMPING / stages**2
     T, D, S = [1.0, w0], [0.0, 1.0], [0.0, 0.0]  # Chebyshev polynomials at w0, their first and second derivatives
     for _ in range(2, stages + 1):
@@ -80,7 +80,7 @@ def _coefficients(stages: int) -> tuple[tuple[float, ...], ...]:
 
 
 def integrate_step(rate: Rate, values: Numbers, slope: Numbers, length: float, stages: int) -> ChebyshevStep:
-    """Integrate one Runge-Kutta-Chebyshev step, and estimate its error.
+    """Integrate a differential equation over one Runge-Kutta-Chebyshev step, with an error estimate.
 
     Parameters
     ----------

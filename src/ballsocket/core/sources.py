@@ -12,7 +12,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Source:
-    """Publication and the position in it.
+    """Reference to a publication, with the equations or tables used.
 
     Attributes
     ----------
@@ -27,17 +27,17 @@ class Source:
 
     @property
     def doi(self) -> str:
-        """DOI, or an empty text if the entry has none."""
-        return _field(bibliography()[self.key], "doi")
+        """DOI of the publication; empty if its entry has none."""
+        return _read_field(bibliography()[self.key], "doi")
 
     @property
     def short(self) -> str:
-        """Authors and year."""
+        """Authors and year, such as "Plank et al. 2007"."""
         entry = bibliography()[self.key]
-        people = _field(entry, "author") or _field(entry, "editor")
+        people = _read_field(entry, "author") or _read_field(entry, "editor")
         names = [person.split(",")[0] for person in people.split(" and ")]
         authors = f"{names[0]} et al." if len(names) > 2 else " & ".join(names)
-        return f"{authors} {_field(entry, 'year')}"
+        return f"{authors} {_read_field(entry, 'year')}"
 
     def __str__(self) -> str:
         return f"{self.short}, {self.place}" if self.place else self.short
@@ -45,7 +45,7 @@ class Source:
 
 @cache
 def bibliography() -> dict[str, str]:
-    """Read the BibTeX entries of the project by key."""
+    """Read the BibTeX entries of the project's bibliography, by key."""
     text = (files("ballsocket") / "data" / "references.bib").read_text(encoding="utf-8")
     return {entry.split("{", 1)[1].split(",", 1)[0]: entry.strip() for entry in re.split(r"\n(?=@)", text.strip())}
 
@@ -76,16 +76,16 @@ def cite(*used: Any) -> str:
     >>> "10.3390/app112311170" in bs.cite(bs.HessForsbach())
     True
     """
-    keys = dict.fromkeys(key for item in used for key in _keys(item))
+    keys = dict.fromkeys(key for item in used for key in _list_keys(item))
     return "\n\n".join(bibliography()[key] for key in keys)
 
 
-def _keys(item: Any) -> list[str]:
-    """List the keys of an item; raise TypeError if it cannot be cited."""
+def _list_keys(item: Any) -> list[str]:
+    """List the BibTeX keys of an item; raise TypeError if the item cannot be cited."""
     if isinstance(item, Source):
         return [item.key]
     if isinstance(item, type) or not any(hasattr(item, mark) for mark in ("sources", "source", "model")):
-        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_describe(item)}")
+        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_format_item(item)}")
     keys = list(_collect_keys(item))
     if not keys and hasattr(item, "source"):
         raise TypeError(f"no known publication is named in the source of {item}: {item.source!r}")
@@ -93,9 +93,9 @@ def _keys(item: Any) -> list[str]:
 
 
 def _collect_keys(item: Any) -> Iterator[str]:
-    """Yield the keys of an item and of its model, joint, materials and layers."""
+    """Yield the BibTeX keys of an item, its model, joint, materials and layers."""
     yield from (source.key for source in getattr(item, "sources", ()))
-    yield from named_in(str(getattr(item, "source", "")))
+    yield from find_cited_keys(str(getattr(item, "source", "")))
     for layer in getattr(item, "backing", ()):
         yield from _collect_keys(layer)
     for attribute in ("model", "joint", "liner", "ball", "material"):
@@ -103,21 +103,22 @@ def _collect_keys(item: Any) -> Iterator[str]:
             yield from _collect_keys(getattr(item, attribute))
 
 
-def named_in(text: str) -> Iterator[str]:
-    """Yield the keys of the publications that a text names, such as "Plank et al. 2007"."""
+def find_cited_keys(text: str) -> Iterator[str]:
+    """Find the BibTeX keys of the publications that a text cites, such as "Plank et al. 2007"."""
     for key in bibliography() if text else ():
         source = Source(key)
         if (source.doi and source.doi in text) or re.search(rf"(?<!& )\b{re.escape(source.short)}\b", text):
             yield key
 
 
-def _describe(item: Any) -> str:
+def _format_item(item: Any) -> str:
+    """Format an item that cannot be cited, for a message."""
     name = getattr(item, "__name__", "")
     return f"the class or function {name}; use {name}()" if name and callable(item) else f"{item!r:.60}"
 
 
-def _field(entry: str, name: str) -> str:
-    """Extract a field of a BibTeX entry as plain text."""
+def _read_field(entry: str, name: str) -> str:
+    """Read a field of a BibTeX entry as plain text; empty if it is missing."""
     match = re.search(rf"^\s*{name}\s*=\s*\{{(.*)\}},?\s*$", entry, flags=re.MULTILINE)
     text = match.group(1) if match else ""
     for latex, letter in _LETTERS.items():

@@ -11,7 +11,9 @@ from .arrays import Numbers
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Stress:
-    """Stress components in MPa, tension positive, around the centre of the socket and the load axis.
+    """Stress components in spherical coordinates in MPa, tension positive.
+
+    The coordinates have the centre of the socket and the load axis.
 
     Attributes
     ----------
@@ -33,7 +35,7 @@ class Stress:
 
     @property
     def principal(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Principal stresses in MPa, the largest first."""
+        """Principal stresses in MPa, in descending order."""
         centre = (self.radial + self.meridional) / 2
         radius = numpy.hypot((self.radial - self.meridional) / 2, self.shear)  # of Mohr's circle
         stresses = numpy.sort(numpy.stack(numpy.broadcast_arrays(centre - radius, centre + radius, self.hoop)), axis=0)
@@ -42,7 +44,7 @@ class Stress:
 
 @dataclass(frozen=True, kw_only=True)
 class Peak:
-    """Largest von Mises stress and its position.
+    """Largest von Mises stress in a body, and its position.
 
     Attributes
     ----------

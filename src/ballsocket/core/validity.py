@@ -12,12 +12,16 @@ from types import SimpleNamespace
 from typing import Any
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
+from .deprecation import RenamedAttribute
 from .kinds import Unit
 from .quantities import QUANTITIES
 
 
 class Status(IntEnum):
-    """Success of a press or the reason of its failure. Arrays hold its integer codes."""
+    """Outcome of a press: success, or the reason of its failure.
+
+    Arrays of results have the integer codes.
+    """
 
     OK = 0
     OUTSIDE_DOMAIN = 1
@@ -31,12 +35,12 @@ class Status(IntEnum):
 
     @property
     def sentence(self) -> str:
-        """Message of this status."""
+        """Message that describes this status."""
         return _SENTENCES[self]
 
     @property
     def failed(self) -> bool:
-        """True if the result has no numbers (NaN)."""
+        """True if results of this status are NaN."""
         return self in _FAILED
 
 
@@ -53,7 +57,7 @@ _FAILED = frozenset(
 
 
 def is_missing(status: Array) -> Array:
-    """Return the mask of the points whose status means that their numbers are NaN."""
+    """Return a mask of the points whose status means that their results are NaN."""
     mask = status != status
     for failure in _FAILED:
         mask = mask | (status == int(failure))
@@ -74,12 +78,12 @@ _SENTENCES = {
 
 
 class OutsideDomainError(ValueError):
-    """Error of a press without any point in the domain of the model."""
+    """Error raised if no point of a press lies in the domain of the model."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Range:
-    """Range of a quantity in which a model is valid or has formulas, with the reason of its limits.
+    """Limits of a quantity within which a model is valid or defined, with their reason.
 
     Parameters
     ----------
@@ -105,28 +109,30 @@ class Range:
             object.__setattr__(self, "symbol", QUANTITIES[name].symbol if name in QUANTITIES else name)
 
     @cached_property
-    def of(self) -> Callable[[Any], Array]:
-        """Function that returns the quantity of a contact."""
+    def quantity_of(self) -> Callable[[Any], Array]:
+        """Function that reads or computes the quantity from a contact."""
         return self.quantity if callable(self.quantity) else attrgetter(self.quantity)
 
+    of = RenamedAttribute("quantity_of")
+
     def holds(self, contact: Any) -> Array:
-        """Return the mask of the points inside the closed range."""
-        value = self.of(contact)
+        """Return a mask of the contacts inside the closed range, limits included."""
+        value = self.quantity_of(contact)
         return (value >= self.low) & (value <= self.high)
 
     def strictly_holds(self, contact: Any) -> Array:
-        """Return the mask of the points inside the open range."""
-        value = self.of(contact)
+        """Return a mask of the contacts inside the open range, limits excluded."""
+        value = self.quantity_of(contact)
         return (value > self.low) & (value < self.high)
 
     @property
     def sentence(self) -> str:
-        """Message for a contact outside the range."""
+        """Note for a contact outside the range."""
         return f"outside {self}: {self.why}"
 
     def value_text(self, joint: Any) -> str:
-        """Format the quantity of a joint with its symbol."""
-        value = to_numpy(self.of(SimpleNamespace(joint=joint))).ravel()
+        """Format symbol and value of the quantity of a joint, such as "R2/L = 3"."""
+        value = to_numpy(self.quantity_of(SimpleNamespace(joint=joint))).ravel()
         return f"{self.symbol} = {value[0]:g}" + (f" (and {value.size - 1} more)" if value.size > 1 else "")
 
     def __str__(self) -> str:
@@ -139,14 +145,16 @@ class Range:
 
     @property
     def _unit(self) -> Unit:
-        """Unit of the printed limits: degrees for an angle, empty for numbers."""
+        """Unit of the printed limits: degrees for an angle, empty for a plain number."""
         quantity = QUANTITIES.get(self.quantity) if isinstance(self.quantity, str) else None
         return Unit("") if quantity is None else quantity.written
 
 
 @dataclass(frozen=True, kw_only=True)
 class Promise:
-    """Measured difference of a model from the elastic solution at the same force, inside its validity.
+    """Measured accuracy of a model relative to the elastic solution at equal force.
+
+    It applies inside the validity of the model.
 
     `ballsocket.evidence.validity` measures it: 99 % of the points lie within it, and all within 1.3 times as much.
 
@@ -166,31 +174,34 @@ class Promise:
 
 
 def _symbol(name: str) -> str:
+    """Return the symbol of a quantity."""
     return QUANTITIES[name].symbol
 
 
 @dataclass(frozen=True, kw_only=True)
 class NeverValid(Range):
-    """Empty range of a model whose results are for comparison and never valid."""
+    """Empty validity range, of a model whose results are only for comparison."""
 
     quantity: str | Callable[[Any], Array] = "indentation"
     symbol: str = ""
 
     def holds(self, contact: Any) -> Array:
-        """Return False for each point."""
-        return self.of(contact) != self.of(contact)
+        """Return a mask that is false for all contacts."""
+        return self.quantity_of(contact) != self.quantity_of(contact)
 
     def __str__(self) -> str:
         return "nothing"
 
     @property
     def sentence(self) -> str:
-        """Message for each contact."""
+        """Note for all contacts of the model."""
         return f"never valid: {self.why}"
 
 
 def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
-    """Return the mask of the points inside the domain of a model or modulus; True for an empty array of joints.
+    """Return a mask of the joints inside the domain of a model or modulus.
+
+    The mask is true for an empty array of joints.
 
     Parameters
     ----------
@@ -237,7 +248,7 @@ RIGID_BACKING = Range(
 
 @dataclass(frozen=True, kw_only=True)
 class Remark(Range):
-    """Range outside of which a result gets a note; it does not limit the validity."""
+    """Range outside of which a result gets a note but remains valid."""
 
     @property
     def sentence(self) -> str:
@@ -246,7 +257,9 @@ class Remark(Range):
 
 
 def infinite_layer_share(contact: Any) -> Array:
-    """Estimate the fraction of the indentation that depends on the form of an infinite last layer; 0 without one.
+    """Estimate the fraction of the indentation that depends on the assumed shape of an infinite outer layer.
+
+    The fraction is 0 without an infinite layer.
 
     The indentation of a half space around a hemisphere exceeds that of a full space around a closed sphere by
     α (1 + ν) F/(E b), with E, ν and the inner radius b of the layer. The factor α is 0.06 to 0.1 for a rigid ball
@@ -263,7 +276,7 @@ def infinite_layer_share(contact: Any) -> Array:
 
 
 def body_remarks(socket: str, ball: str) -> tuple[Remark, Remark]:
-    """Return the remarks of a model about the bodies that it assumes for an infinite layer and for a soft ball."""
+    """Make the remarks on a model's assumed shapes of an infinite outer layer and of a soft ball."""
     spaces = (
         f"the infinite layer is {socket}; between a full space around a closed sphere (exact) and a half space around "
         "a hemisphere (fem) d differs by more than 2 %, up to 26 % in massive sockets and 55 % in bone behind a shell, "

@@ -10,7 +10,7 @@ import numpy
 
 from ..contact import Model
 from ..contact.assembly import check_joint
-from ..contact.law import CurveLaw, curve_law
+from ..contact.law import CurveLaw, fit_curve_law
 from ..core import arrays
 from ..core.arrays import Array, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
@@ -264,7 +264,7 @@ def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
     """Fit a curve of a contact quantity over the indentation, up to the socket radius."""
     joint = joint.with_floats()
     shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
-    return curve_law(
+    return fit_curve_law(
         lambda depths: getattr(model.press(joint, indentation=depths), quantity), shallowest, joint.socket_radius
     )
 

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy
 
 from ..contact import Model
-from ..contact.law import CurveLaw, ForceLaw, PolynomialPieces, curve_law
+from ..contact.law import CurveLaw, ForceLaw, PolynomialPieces, fit_curve_law
 from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, exp, log, where
 from ..core.checks import require
@@ -164,7 +164,7 @@ def _ends(law: ForceLaw, joint: Joint) -> tuple[float, float]:
 
 def energy_curve(law: ForceLaw, shallowest: float, deepest: float) -> CurveLaw:
     """Integrate a force law, and fit ln U over ln d by a curve."""
-    return curve_law(lambda depths: _integrate_force(law, depths, shallowest), shallowest, deepest)
+    return fit_curve_law(lambda depths: _integrate_force(law, depths, shallowest), shallowest, deepest)
 
 
 def _integrate_force(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbers:

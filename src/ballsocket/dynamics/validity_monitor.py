@@ -75,4 +75,4 @@ class ValidityMonitor:
 def _holds_when_larger(contact: Contact, limit: Range) -> bool:
     """Return True for a limit that holds, or that holds for a larger contact."""
     grows = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
-    return bool(limit.holds(contact)) or (grows and bool(limit.of(contact) < limit.low))
+    return bool(limit.holds(contact)) or (grows and bool(limit.quantity_of(contact) < limit.low))

@@ -13,7 +13,7 @@ from unicodedata import category
 from ..catalogue import off_axis, reference
 from ..contact import Model
 from ..core.checks import check_text, nearest, require, shown
-from ..core.input_files import open_input, recorded_inputs, resolve_input
+from ..core.input_files import open_input, record_inputs, resolve_input
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
 from ..files.joint_file import JointFile, JointTables
@@ -230,7 +230,7 @@ def read_question(path: str | Path) -> Question:
         A file cannot be read.
     """
     path = Path(path)
-    with recorded_inputs() as opened:
+    with record_inputs() as opened:
         question = read_toml(path, "question", lambda content: _question(content, path))
     files = packed_files(path, opened)
     for file in files:

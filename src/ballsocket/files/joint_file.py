@@ -8,7 +8,7 @@ from math import degrees, hypot, inf, pi
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
-from ..contact.assembly import check_load
+from ..contact.assembly import select_and_check_load
 from ..core.checks import check_text, known_name, nearest, require, shown
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
@@ -235,7 +235,7 @@ def _load_of(table: LoadTable) -> dict[str, float]:
     if len(load) > 1:
         raise ValueError(f"one load is needed, got {', '.join(load)}")
     with as_given(written_in(table)):
-        return dict([check_load(**load)]) if load else {}
+        return dict([select_and_check_load(**load)]) if load else {}
 
 
 def read_aim(content: Mapping[str, Any]) -> dict[str, Any]:

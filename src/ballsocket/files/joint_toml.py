@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from math import degrees, inf, isinf, nextafter, radians
 from typing import Any
 
-from ..core.arrays import is_plain
+from ..core.arrays import is_plain_number
 from ..core.checks import needs
 from ..core.kinds import Kind
 from ..core.quantities import CUP, QUANTITIES
@@ -27,7 +27,7 @@ def tables_of(file: JointFile) -> Tables:
         A joint of arrays.
     """
     joint = file.joint
-    if not all(map(is_plain, joint.numbers())):
+    if not all(map(is_plain_number, joint.numbers())):
         raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
     tables: Tables = {
         "joint": {name: float(getattr(joint, name)) for name in ("ball_radius", "clearance", "liner_thickness")},

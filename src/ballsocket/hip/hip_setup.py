@@ -10,7 +10,7 @@ from typing import Any
 import numpy
 
 from ..contact import Model
-from ..core.arrays import Numbers, is_plain
+from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import require, shown
 from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..core.validity import check_domain
@@ -92,7 +92,7 @@ class HipSetup(CupFrame):
         for name, kind in (("joint", Joint), ("cycle", Cycle | Mix), ("cup", Cup)):
             if not isinstance(getattr(self, name), kind):
                 raise TypeError(f"{name} must be a {name.capitalize()}, got {shown(getattr(self, name))}")
-        if not all(map(is_plain, self.joint.numbers())):
+        if not all(map(is_plain_number, self.joint.numbers())):
             raise ValueError("joint must have single numbers, got arrays; simulate each joint on its own")
         for name, radius in (("head_diameter", self.joint.ball_radius), ("bore diameter", self.joint.socket_radius)):
             diameter = 2.0 * float(radius)

@@ -28,7 +28,7 @@ _LIMIT_TOLERANCE = 1e-9  # distance from the end of a range, in deviations of th
 
 
 def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, Information]:
-    """Widen the uncertainties by the observed scatter, and compute the information with its profile intervals.
+    """Compute the 95 % bands of all unknowns, with uncertainties widened by the observed scatter.
 
     The factor is Birge's ratio, the root of χ² over the degrees of freedom, if above 1. Student's quantile
     replaces the normal quantile if the probability of the scatter is below 5 %.
@@ -55,7 +55,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
     if factor > 1:
         misfit = replace(misfit, widening=factor)
         best = replace(minimise(misfit, best.theta), rivals=best.rivals)
-    quantile = _quantile(factor, misfit.freedom)
+    quantile = _band_quantile(factor, misfit.freedom)
     rises = (quantile**2, (quantile * QUANTILE_99 / QUANTILE_95) ** 2)
     for _ in range(_MAX_RESTARTS):
         rivals = [rival for rival in best.rivals if misfit.costs(rival[None])[0] < best.cost + rises[0] / 2]
@@ -64,29 +64,32 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
             break
         best = replace(minimise(misfit, profiles.lowest), rivals=best.rivals)
     rows = enumerate(zip(misfit.transform.unknowns, *profiles.ends, strict=True))
-    intervals = tuple(_interval(index, *row) for index, row in rows)
-    matrix = misfit.information(best.theta)
+    intervals = tuple(_combine_ends(index, *row) for index, row in rows)
+    matrix = misfit.fisher_information(best.theta)
     return misfit, best, Information(misfit.transform, best.theta, matrix, intervals, quantile)
 
 
-def _interval(
+def _combine_ends(
     index: int, unknown: Unknown, band: tuple[ProfileEnd, ProfileEnd], wide: tuple[ProfileEnd, ProfileEnd]
 ) -> Interval:
-    """Combine the band of 95 % with the interval of 99 %, which may be open."""
+    """Make the interval of an unknown from the ends of its 95 % band and its 99 % interval.
+
+    The 99 % interval may be open.
+    """
     ends = zip(wide, (-1, 1), strict=True)
     closed = all(end.closed or unknown.is_physical(side, float(end.theta[index])) for end, side in ends)
     return Interval(*band, closed)
 
 
 def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
-    """Compute the factor, 1 or more, by which the scatter of the data exceeds the stated uncertainties.
+    """Compute the ratio of observed scatter to stated uncertainties, at least 1.
 
     This is the most likely factor for the distribution of the scatter, with the degrees of freedom as the number of
     values. For a normal scatter it is the root of χ² over the degrees of freedom.
     """
     from scipy.optimize import brentq
 
-    z = misfit.standard(misfit.forward.at(misfit.transform.values(best.theta[None]))[0])
+    z = misfit.standardised_residuals(misfit.forward.results_at(misfit.transform.to_values(best.theta[None]))[0])
     z = numpy.where(misfit.saturated, numpy.minimum(z, 0.0), z)
 
     def excess(factor: float) -> float:
@@ -101,8 +104,11 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
     return float(brentq(excess, 1.0, upper, rtol=1e-6))
 
 
-def _quantile(factor: float, freedom: int) -> float:
-    """Return Student's quantile for a scatter that is improbably large, else the normal quantile."""
+def _band_quantile(factor: float, freedom: int) -> float:
+    """Return the half width of a 95 % band in standard deviations.
+
+    It is Student's quantile for an improbably large scatter, else the normal quantile.
+    """
     from scipy.stats import chi2, t
 
     improbable = freedom > 0 and chi2.sf(factor**2 * freedom, freedom) < _SIGNIFICANCE
@@ -111,7 +117,7 @@ def _quantile(factor: float, freedom: int) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Profiles:
-    """Ends of profile intervals, and the best point on all paths.
+    """Ends of all profile likelihood intervals, and the best point found on the way.
 
     Attributes
     ----------
@@ -130,7 +136,7 @@ class Profiles:
 
 @dataclass(eq=False)
 class _Path:
-    """Path along the profile of one unknown to one of its ends."""
+    """State of the search for one end of a profile interval."""
 
     index: int
     side: int
@@ -143,7 +149,7 @@ class _Path:
 
 @dataclass(frozen=True, eq=False)
 class _Point:
-    """Quadratic model of χ² about a point of a path."""
+    """Quadratic approximation of χ² about a point of a path."""
 
     rise: float
     gradient: Numbers
@@ -151,7 +157,7 @@ class _Point:
 
 
 def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: Sequence[float]) -> Profiles:
-    """Find both ends of the profile interval of each unknown.
+    """Find both ends of the profile likelihood interval of each unknown.
 
     All ends are computed together: an iteration needs one array call of the model.
 
@@ -188,43 +194,49 @@ def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: 
         if costs.min() < least:
             lowest, least = active[int(costs.argmin())].theta, float(costs.min())
         for path, residual, slope in zip(active, residuals, slopes, strict=True):
-            _advance(path, residual, slope, cost, low, high)
+            _advance_path(path, residual, slope, cost, low, high)
     ends = iter([path.end or ProfileEnd(path.previous, False, (path.index,)) for path in paths])
     rows = [
-        [(_outermost(ends, len(starts), index, -1), _outermost(ends, len(starts), index, 1)) for index in indices]
+        [
+            (_next_outermost_end(ends, len(starts), index, -1), _next_outermost_end(ends, len(starts), index, 1))
+            for index in indices
+        ]
         for _ in rises
     ]
     return Profiles(rows, lowest, least)
 
 
-def _outermost(ends: Iterator[ProfileEnd], count: int, index: int, side: int) -> ProfileEnd:
-    """Read the next ends, one for each start, and choose the outermost."""
+def _next_outermost_end(ends: Iterator[ProfileEnd], count: int, index: int, side: int) -> ProfileEnd:
+    """Return the outermost of the next `count` ends, one for each start."""
     return max([next(ends) for _ in range(count)], key=lambda end: side * float(end.theta[index]))
 
 
-def _limits(path: _Path, point: _Point, move: Numbers, low: Numbers, high: Numbers) -> tuple[int, ...]:
-    """Find the other unknowns at an end of their ranges whose gradient of χ² points outward."""
+def _limiting_unknowns(path: _Path, point: _Point, move: Numbers, low: Numbers, high: Numbers) -> tuple[int, ...]:
+    """Find the other unknowns whose range limits an interval, at its end.
+
+    The gradient of χ² points outward there.
+    """
     theta = numpy.clip(path.theta + move, low, high)
     new_gradient = point.gradient + point.hessian @ move
-    outward = _points_outward(theta, new_gradient, low, high)
+    outward = _is_limited_by_range(theta, new_gradient, low, high)
     inner = set(numpy.flatnonzero(~outward).tolist()) - {path.index}
     at_limit = [index for index in numpy.flatnonzero(outward).tolist() if index != path.index]
     gains = {index: _misfit_decrease(point.hessian, new_gradient, [*inner, index]) for index in at_limit}
     return tuple(index for index, gain in gains.items() if gain > _MIN_LIMIT_GAIN * path.rise)
 
 
-def _points_outward(theta: Numbers, gradient: Numbers, low: Numbers, high: Numbers) -> Numbers:
-    """Find the unknowns at an end of their ranges beyond which χ² would decrease."""
+def _is_limited_by_range(theta: Numbers, gradient: Numbers, low: Numbers, high: Numbers) -> Numbers:
+    """Return a mask of the unknowns at an end of their range beyond which χ² would decrease."""
     return ((theta - low < _LIMIT_TOLERANCE) & (gradient > 0)) | ((high - theta < _LIMIT_TOLERANCE) & (gradient < 0))
 
 
 def _misfit_decrease(hessian: Numbers, gradient: Numbers, free: list[int]) -> float:
-    """Compute the decrease of χ² to its minimum over the free unknowns, by the quadratic model."""
+    """Compute the decrease of χ² to its minimum over the free unknowns, in the quadratic approximation."""
     return float(gradient[free] @ numpy.linalg.solve(hessian[numpy.ix_(free, free)], gradient[free]))
 
 
-def _advance(path: _Path, residual: Numbers, slope: Numbers, best: float, low: Numbers, high: Numbers) -> None:
-    """Take one Newton step towards the end, or cut the step to a quarter where the model has no result."""
+def _advance_path(path: _Path, residual: Numbers, slope: Numbers, best: float, low: Numbers, high: Numbers) -> None:
+    """Compute the next Newton step of a path, or cut the last step to a quarter if the model failed."""
     if not (numpy.isfinite(residual).all() and numpy.isfinite(slope).all()):
         path.step /= 4
         path.theta = path.previous + (path.theta - path.previous) / 4
@@ -240,9 +252,9 @@ def _advance(path: _Path, residual: Numbers, slope: Numbers, best: float, low: N
     others_fitted = gain < _RELATIVE_TOLERANCE * path.rise
     if others_fitted and abs(excess - path.rise) < _RELATIVE_TOLERANCE * path.rise:
         end = numpy.clip(theta + move, low, high)
-        path.end = ProfileEnd(end, True, _limits(path, point, move, low, high))
+        path.end = ProfileEnd(end, True, _limiting_unknowns(path, point, move, low, high))
     elif others_fitted and limit < _LIMIT_TOLERANCE and excess < path.rise:
-        limits = _limits(path, point, numpy.zeros(len(theta)), low, high)
+        limits = _limiting_unknowns(path, point, numpy.zeros(len(theta)), low, high)
         path.end = ProfileEnd(theta, False, (path.index, *limits))
     else:
         path.step = max(path.step / 2, _MIN_CURVED_STEP) if gain > path.rise else path.step
@@ -250,12 +262,14 @@ def _advance(path: _Path, residual: Numbers, slope: Numbers, best: float, low: N
 
 
 def _newton_step(path: _Path, point: _Point, low: Numbers, high: Numbers) -> tuple[Numbers, float, float]:
-    """Solve the quadratic model for the end; return the step, the rise of χ² on the profile, and the gain.
+    """Compute the Newton step towards the end of a profile interval.
+
+    Returns the step, the rise of χ² on the profile, and the gain.
 
     The other unknowns minimise χ² within their ranges.
     """
     index, theta = path.index, path.theta
-    fixed = _points_outward(theta, point.gradient, low, high)
+    fixed = _is_limited_by_range(theta, point.gradient, low, high)
     fixed[index] = True
     shift = numpy.zeros(len(theta))
     while True:

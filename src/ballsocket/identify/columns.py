@@ -28,7 +28,7 @@ _UNCERTAINTY = "_uncertainty"
 
 
 class Gaps(Enum):
-    """Treatment of rows in which a number is missing."""
+    """Treatment of rows with a missing number: refuse, or leave out."""
 
     REFUSE = "refuse"
     LEAVE_OUT = "leave-out"
@@ -36,14 +36,14 @@ class Gaps(Enum):
 
 @dataclass(frozen=True)
 class Head:
-    """Head of a column: name of the quantity, and factor from its unit to mm, N, MPa, rad."""
+    """Parsed column head: name of the quantity, and factor from its unit to mm, N, MPa, rad."""
 
     name: str
     factor: float
 
 
-def head_of(text: str) -> Head:
-    """Read a head such as "force_N", "indentation_um", "area [mm2]", "max_pressure_uncertainty_MPa".
+def parse_head(text: str) -> Head:
+    """Parse a column head with a unit, such as "force_N", "indentation_um" or "area [mm2]".
 
     Raises
     ------
@@ -69,7 +69,7 @@ def head_of(text: str) -> Head:
 
 
 def _without_brackets(head: str) -> str:
-    """Rewrite a unit in brackets at the end of a head as a part of its name."""
+    """Rewrite a head with a unit in brackets, "area [mm2]" to "area_mm2"."""
     start = min((head.index(bracket) for bracket in "[(" if bracket in head), default=-1)
     if start < 0 or head[-1] not in "])":
         return head
@@ -87,7 +87,7 @@ def read_measured(
     machine: Machine = IDEAL_MACHINE,
     gaps: Gaps = Gaps.REFUSE,
 ) -> tuple[Measured, ...]:
-    """Read sets of measurements from a CSV or Parquet file, one for each measured quantity.
+    """Read measurements from a CSV or Parquet file, one data set for each measured quantity.
 
     Heads are names of `ballsocket.identify.MEASURED` with units: "force_N", "indentation_um", "half_angle_deg",
     "area_mm2", "max_pressure_MPa". A column "pressure_MPa" needs a column "angle_deg". Columns of uncertainties (k = 1)
@@ -123,8 +123,8 @@ def read_measured(
         The file cannot be read.
     """
     path = Path(path)
-    columns = _columns(path)
-    kind = _load_of(columns, load, path.name)
+    columns = _read_columns(path)
+    kind = _choose_load(columns, load, path.name)
     chosen = list(quantities) or [name for name in columns if name in MEASURED and name != kind]
     if not chosen:
         raise ValueError(f"{path.name} has no column of a measured quantity{f' besides {kind}' if kind else ''}")
@@ -138,37 +138,38 @@ def read_measured(
             Measured(
                 quantity=name,
                 values=rows[name],
-                uncertainty=_uncertainty(path.name, name, rows, uncertainty),
+                uncertainty=_choose_uncertainty(path.name, name, rows, uncertainty),
                 saturation=saturation,
                 machine=machine if "indentation" in (name, kind) else IDEAL_MACHINE,
                 order=order,
                 name=path.name,
-                **_load_columns(kind, rows, load_uncertainty),
+                **_load_arguments(kind, rows, load_uncertainty),
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
         )
     return tuple(sets)
 
 
-def _columns(path: Path) -> dict[str, Numbers]:
-    """Read the columns by name, in mm, N, MPa, rad."""
+def _read_columns(path: Path) -> dict[str, Numbers]:
+    """Read the columns of a file by name, converted to mm, N, MPa, rad."""
     heads: dict[str, Head] = {}
 
-    def check(texts: Sequence[str]) -> None:
+    def parse_heads(texts: Sequence[str]) -> None:
+        """Parse all column heads; raise ValueError for duplicates."""
         for text in texts:
             try:
-                heads[text] = head_of(text)
+                heads[text] = parse_head(text)
             except ValueError as error:
                 raise ValueError(f"{path.name}: {error}") from error
         names = [head.name for head in heads.values()]
         if len(names) < len(texts) or len(set(names)) < len(names):
             raise ValueError(f"{path.name} has two columns with the same name: {', '.join(texts)}")
 
-    return {heads[text].name: heads[text].factor * column for text, column in read_columns(path, check).items()}
+    return {heads[text].name: heads[text].factor * column for text, column in read_columns(path, parse_heads).items()}
 
 
-def _load_of(columns: Mapping[str, Numbers], load: str, title: str) -> str:
-    """Choose the load: the stated one, or the first that has a column; empty without one."""
+def _choose_load(columns: Mapping[str, Numbers], load: str, title: str) -> str:
+    """Choose the load column: the stated one, or the first load with a column; empty without a load."""
     if load:
         if load not in LOADS or load not in columns:
             raise ValueError(f"{title} has no load {shown(load)}: it needs a column of {', '.join(_LOADS)}")
@@ -177,7 +178,7 @@ def _load_of(columns: Mapping[str, Numbers], load: str, title: str) -> str:
 
 
 def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple[dict[str, Numbers], Numbers]:
-    """Select the rows without gaps, and return their numbers from 0."""
+    """Select the rows without gaps, and return the columns with the row numbers, which start at 0."""
     missing = numpy.isnan(numpy.stack(list(columns.values())))
     rows = missing.any(axis=0)
     if rows.any() and gaps is Gaps.REFUSE:
@@ -192,19 +193,19 @@ def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple
     return {name: column[~rows] for name, column in columns.items()}, numpy.flatnonzero(~rows).astype(float)
 
 
-def _uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
-    """Return the uncertainty of a quantity from its column, or as it is stated for the file."""
+def _choose_uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
+    """Return the uncertainties of a quantity, from its column or as stated for the file."""
     if name + _UNCERTAINTY in rows:
         return rows[name + _UNCERTAINTY]
     if stated is None:
         raise ValueError(
             f"{title}: the uncertainty of {name} is missing; add a column {name}{_UNCERTAINTY}_..., or an uncertainty"
         )
-    return uncertainty_of(_QUANTITIES[name], stated, rows[name])
+    return parse_uncertainty(_QUANTITIES[name], stated, rows[name])
 
 
-def uncertainty_of(quantity: Quantity, stated: float | str, values: Numbers) -> Any:
-    """Convert an uncertainty from "2 %" of each value, or from text or a number of the values' kind."""
+def parse_uncertainty(quantity: Quantity, stated: float | str, values: Numbers) -> Any:
+    """Parse an uncertainty: "2 %" of each value, a text with a unit, or a number."""
     name = f"{quantity.name}{_UNCERTAINTY}"
     percentage = re.fullmatch(r"\s*([-+.\deE]+)\s*%\s*", stated) if isinstance(stated, str) else None
     if percentage:
@@ -212,8 +213,8 @@ def uncertainty_of(quantity: Quantity, stated: float | str, values: Numbers) -> 
     return parse(name, stated, quantity.kind)
 
 
-def _load_columns(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:
-    """Return load and load uncertainty as arguments of `Measured`."""
+def _load_arguments(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:
+    """Return load and load uncertainty as keyword arguments of `Measured`."""
     if not kind:
         return {}
     return {kind: rows[kind], "load_uncertainty": rows.get(kind + _UNCERTAINTY, load_uncertainty)}

@@ -10,7 +10,7 @@ from ..core.deprecation import RenamedAttribute
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimate of one unknown with its band.
+    """Estimated value of one unknown with its 95 % band.
 
     Attributes
     ----------
@@ -37,11 +37,11 @@ class Estimate:
 
     @property
     def identifiable(self) -> bool:
-        """True for an identifiable unknown, or one with a stated distribution."""
+        """True if the data identify the unknown, or if it has a stated distribution."""
         return self.value == self.value
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON; an unidentifiable value is None."""
+        """Return a dictionary of the estimate for JSON; the value is None if unidentifiable."""
         value = self.value if self.identifiable else None
         return {
             "name": self.name,
@@ -57,7 +57,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Product:
-    """An identifiable product of powers of unknowns that are not identifiable separately.
+    """Identifiable product of powers of unknowns that are not identifiable separately.
 
     Attributes
     ----------
@@ -76,11 +76,11 @@ class Product:
 
     @property
     def name(self) -> str:
-        """Name of the product, "clearance · liner_young"."""
+        """Name of the product, such as "clearance · liner_young"."""
         return " · ".join(name if power == 1 else f"{name}^{power:.3g}" for name, power in self.exponents.items())
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
+        """Return a dictionary of the product for JSON."""
         return {
             "name": self.name,
             "exponents": self.exponents,

@@ -27,7 +27,7 @@ _DEFAULT_FORCE = 2000.0  # largest load in N for data without forces
 
 @dataclass(frozen=True)
 class Candidate:
-    """A possible measurement.
+    """Possible next measurement: quantity, load and uncertainty.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Candidate:
     order: float = 0.0
 
     def measured(self, value: float) -> Measured:
-        """Convert the candidate to a set of data."""
+        """Convert the candidate to a data set with an assumed measured value."""
         load: dict[str, Any] = {} if self.force is None else {"force": self.force}
         return Measured(
             quantity=self.quantity,
@@ -64,7 +64,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Gain:
-    """Expected gain of a candidate.
+    """Expected information gain of a candidate measurement.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class Gain:
     settles = RenamedAttribute("identifies")
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
+        """Return a dictionary of the gain for JSON."""
         return {
             "quantity": self.candidate.quantity,
             "force": self.candidate.force,
@@ -97,7 +97,7 @@ class Gain:
 
 @dataclass(frozen=True, eq=False)
 class Experiment:
-    """Candidates for the next measurement in descending order of their gain.
+    """Candidates for the next measurement, in descending order of their information gain.
 
     Attributes
     ----------
@@ -114,12 +114,12 @@ class Experiment:
 
     @property
     def best(self) -> Gain:
-        """Candidate with the largest gain."""
+        """Candidate with the largest information gain."""
         return self.gains[0]
 
     @property
     def best_by_quantity(self) -> tuple[Gain, ...]:
-        """Candidate with the largest gain of each quantity."""
+        """Best candidate of each quantity, in descending order of information gain."""
         best: dict[str, Gain] = {}
         for gain in self.gains:
             best.setdefault(gain.candidate.quantity, gain)
@@ -127,7 +127,7 @@ class Experiment:
 
     @property
     def sufficient_quantities(self) -> tuple[str, ...]:
-        """Quantities of which one measurement would make every unknown identifiable."""
+        """Quantities for which one measurement would make every unknown identifiable."""
         if not self.unidentifiable:
             return ()
         wanted = set(self.unidentifiable)
@@ -135,13 +135,13 @@ class Experiment:
         return tuple(name for name in STANDARD_QUANTITIES if name in sufficient)
 
     def summary(self) -> list[dict[str, Any]]:
-        """Return a list for JSON."""
+        """Return a list of the gains for JSON."""
         return [gain.summary() for gain in self.gains]
 
 
 @renamed_arguments(found="fitted")
 def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = None) -> Experiment:
-    """Compute the expected gains of candidates at the present best point.
+    """Compute the expected information gains of candidate measurements.
 
     Parameters
     ----------
@@ -159,41 +159,41 @@ def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = Non
     Chaloner & Verdinelli 1995, Stat. Sci. 10, 273.
     """
     chosen = standard_candidates(fitted) if candidates is None else tuple(candidates)
-    rows = _slopes(fitted, chosen)
+    rows = _candidate_slopes(fitted, chosen)
     valid = [(candidate, row) for candidate, row in zip(chosen, rows, strict=True) if numpy.isfinite(row).all()]
-    gains = [_gain(fitted, candidate, row) for candidate, row in valid]
+    gains = [_compute_gain(fitted, candidate, row) for candidate, row in valid]
     return Experiment(tuple(sorted(gains, key=lambda gain: -gain.bits)), fitted.information.unidentifiable)
 
 
 def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
-    """List the default candidates; see `experiment`."""
-    forces = _forces(fitted)
+    """List the default candidate measurements; see `experiment`."""
+    forces = _candidate_forces(fitted)
     pairs = [
         (quantity, None) if quantity in OF_JOINT else (quantity, force)
         for quantity in STANDARD_QUANTITIES
         for force in forces
     ]
     candidates = [
-        Candidate(quantity, 1.0, force, *_machine(fitted, quantity)) for quantity, force in dict.fromkeys(pairs)
+        Candidate(quantity, 1.0, force, *_choose_machine(fitted, quantity)) for quantity, force in dict.fromkeys(pairs)
     ]
-    values = _results(fitted, candidates)
+    values = _candidate_results(fitted, candidates)
     return tuple(
-        replace(candidate, uncertainty=_uncertainty(fitted, candidate.quantity, value))
+        replace(candidate, uncertainty=_estimate_uncertainty(fitted, candidate.quantity, value))
         for candidate, value in zip(candidates, values.tolist(), strict=True)
         if value > 0
     )
 
 
-def _forces(fitted: FittedModel) -> list[float]:
-    """Return equally spaced forces up to one and a half times the largest of the data."""
+def _candidate_forces(fitted: FittedModel) -> list[float]:
+    """Return equally spaced forces in N up to 1.5 times the largest force of the data."""
     rows = [measured.loads for measured in fitted.data if measured.load == "force"]
     rows += [row for measured, row in zip(fitted.data, fitted.results, strict=True) if measured.quantity == "force"]
     largest = float(numpy.max(numpy.concatenate(rows), initial=0.0)) if rows else 0.0
     return numpy.linspace(0.0, _LOAD_FACTOR * (largest or _DEFAULT_FORCE), _N_LOADS + 1)[1:].tolist()
 
 
-def _machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
-    """Choose the machine of the present indentations, and the number of its next reading."""
+def _choose_machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
+    """Choose the machine of the present indentations, and count its next reading."""
     orders = {measured.machine: measured.order for measured in fitted.data if measured.machine is not IDEAL_MACHINE}
     if quantity != "indentation" or not orders:
         return IDEAL_MACHINE, 0.0
@@ -201,8 +201,11 @@ def _machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
     return machine, float(order.max()) + 1
 
 
-def _uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
-    """Estimate an uncertainty from the data, absolute or relative, whichever varied less; 2 % of a new quantity."""
+def _estimate_uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
+    """Estimate the uncertainty of a new measurement from those of the data.
+
+    It is absolute or relative, whichever varies less; 2 % for a new quantity.
+    """
     rows = [(measured.uncertainty, abs(measured.values)) for measured in fitted.data if measured.quantity == quantity]
     if not rows:
         return _RELATIVE_UNCERTAINTY * value
@@ -212,20 +215,20 @@ def _uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
     return float(numpy.median(absolute) if constant else numpy.median(relative) * value)
 
 
-def _results(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
-    """Compute the results of the candidates at the best point, (candidates,)."""
+def _candidate_results(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
+    """Compute the model results of the candidates at the best point: (candidates,)."""
     forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
-    return forward.at(numpy.atleast_2d(fitted.transform.values(fitted.best.theta)))[0]
+    return forward.results_at(numpy.atleast_2d(fitted.transform.to_values(fitted.best.theta)))[0]
 
 
-def _slopes(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
-    """Compute the derivatives of the candidates with respect to theta, (candidates, unknowns)."""
+def _candidate_slopes(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
+    """Compute the derivatives of the candidates' results with respect to theta: (candidates, unknowns)."""
     forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
     return fitted.misfit.slopes(forward, fitted.transform, fitted.best.theta)[1]
 
 
-def _gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) -> Gain:
-    """Compute the gain of a candidate by a rank-one update of the covariance."""
+def _compute_gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) -> Gain:
+    """Compute the information gain of a candidate by a rank-one update of the covariance."""
     before = fitted.information.covariance
     row = slopes * (fitted.misfit.scatter.information**0.5 / candidate.uncertainty)
     covariance = before @ row

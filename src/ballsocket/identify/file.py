@@ -21,7 +21,7 @@ from ..problem import Joint
 from ..studies.file import named_model
 from ..studies.phrases import ends_of
 from ..studies.scatter import distribution_of
-from .columns import Gaps, read_measured, uncertainty_of
+from .columns import Gaps, parse_uncertainty, read_measured
 from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
 from .measured import MEASURED, Measured
@@ -45,7 +45,7 @@ _SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class IdentifyFile:
-    """Contents of an identification file.
+    """Parsed contents of an identification file.
 
     Attributes
     ----------
@@ -63,13 +63,13 @@ class IdentifyFile:
     free: dict[str, Prior]
     scatter: ScatterModel
 
-    def identified(self) -> IdentificationResult:
-        """Identify the unknowns from the measurements."""
+    def identify_unknowns(self) -> IdentificationResult:
+        """Identify the unknowns of the file from its measurements."""
         return identify(self.model, self.joint, self.data, self.free, scatter=self.scatter)
 
 
 def read_identify(path: str | Path) -> IdentifyFile:
-    """Read an identification file.
+    """Read an identification file (TOML).
 
     - At the top: `model` by name, by default "tabulated"; `scatter` ("normal", or "heavy-tailed" for outliers); and the
       joint as in study files.
@@ -94,7 +94,7 @@ def read_identify(path: str | Path) -> IdentifyFile:
 
 
 def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
-    """Convert the tables of a file to model, joint, data and unknowns."""
+    """Parse the tables of an identification file to model, joint, data and unknowns."""
     check_keys(content, "", "at the top", FILE_KEYS)
     joint_file = joint_in(content, folder)
     machines = {name: _parse_machine(name, table) for name, table in table_of(content, "machine").items()}
@@ -108,7 +108,10 @@ def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
 
 
 def _parse_unknowns(table: Mapping[str, Any]) -> dict[str, Prior]:
-    """Read the unknowns; those of a material may have their own table, `liner.young`."""
+    """Parse the table of unknowns.
+
+    Those of a material may have their own table, `liner.young`.
+    """
     flat: dict[str, Any] = {}
     for name, value in table.items():
         is_material = name in ("liner", "ball") and isinstance(value, Mapping)
@@ -118,7 +121,7 @@ def _parse_unknowns(table: Mapping[str, Any]) -> dict[str, Prior]:
 
 
 def _parse_prior(name: str, value: Any) -> Prior:
-    """Read the prior of an unknown: the two ends of a range, or a distribution."""
+    """Parse the prior of an unknown: two ends of a range, or a distribution."""
     kind = FREE_NUMBERS[name].kind
     if isinstance(value, str):
         return ends_of(name, value, kind)
@@ -128,7 +131,7 @@ def _parse_prior(name: str, value: Any) -> Prior:
 
 
 def _parse_machine(name: str, table: Any) -> Machine:
-    """Read the errors of a machine."""
+    """Parse the table of a machine and its errors."""
     if not isinstance(table, Mapping):
         raise ValueError(f"machine.{name} = {shown(table)} must be a table: [machine.{name}]")
     check_names(table, MACHINE_ERRORS, f"in [machine.{name}]")
@@ -137,20 +140,20 @@ def _parse_machine(name: str, table: Any) -> Machine:
 
 
 def _number_or_range(name: str, value: Any, error: str) -> NumberOrRange:
-    """Read the size of an error: a number, or two ends."""
+    """Parse the size of a machine error: a number, or two ends."""
     kind = MACHINE_ERRORS[error].quantity.kind
     return ends_of(name, value, kind) if isinstance(value, str) and ".." in value else parse(name, value, kind)
 
 
 def _parse_data(tables: Any, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
-    """Read all data sets of a file."""
+    """Parse all data sets of a file."""
     if not isinstance(tables, list) or not tables or not all(isinstance(table, Mapping) for table in tables):
         raise ValueError("the file has no measurements: add [[data]] before each set")
     return tuple(measured for table in tables for measured in _parse_data_table(table, machines, folder))
 
 
 def _parse_data_table(table: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
-    """Read the data sets of one table."""
+    """Parse the data sets of one [[data]] table."""
     check_keys(table, "data", "in [[data]]", FILE_KEYS)
     if ("file" in table) == ("values" in table):
         raise ValueError("[[data]] needs either a file, or a quantity with its values")
@@ -159,7 +162,7 @@ def _parse_data_table(table: Mapping[str, Any], machines: Mapping[str, Machine],
 
 
 def _data_from_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[Measured, ...]:
-    """Read the data sets of a table that names a CSV or Parquet file."""
+    """Read the data sets of a [[data]] table that names a CSV or Parquet file."""
     check_names(table, (*_FILE_KEYS, *_COMMON_KEYS), "in [[data]] with a file")
     listed = table.get("quantities", [])
     quantities = [listed] if isinstance(listed, str) else listed
@@ -178,7 +181,7 @@ def _data_from_file(table: Mapping[str, Any], machine: Machine, folder: Path) ->
 
 
 def _data_from_values(table: Mapping[str, Any], machine: Machine) -> Measured:
-    """Read the data set of a table that lists its values."""
+    """Parse the data set of a [[data]] table that lists its values."""
     check_names(table, (*_VALUE_KEYS, *_COMMON_KEYS), "in [[data]] with values")
     for key in ("quantity", "uncertainty"):
         if key not in table:
@@ -195,7 +198,7 @@ def _data_from_values(table: Mapping[str, Any], machine: Machine) -> Measured:
     return Measured(
         quantity=name,
         values=values,
-        uncertainty=uncertainty_of(_QUANTITIES[name], table["uncertainty"], values),
+        uncertainty=parse_uncertainty(_QUANTITIES[name], table["uncertainty"], values),
         observable=_parse_observable(name, table),
         load_uncertainty=_parse_load_uncertainty(table, next((kind for kind in LOADS if kind in table), "force")),
         machine=machine,
@@ -206,25 +209,25 @@ def _data_from_values(table: Mapping[str, Any], machine: Machine) -> Measured:
 
 
 def _parse_observable(name: str, table: Mapping[str, Any]) -> CustomObservable | None:
-    """Return the custom observable of a frequency; None for a quantity of a contact."""
+    """Parse the custom observable of a frequency; None for a quantity of a contact."""
     if (name == FREQUENCY.name) != ("mass" in table):
         raise ValueError("[[data]] of a frequency needs its mass, and other data take none")
     return oscillation(parse("mass", table["mass"], Kind.MASS)) if "mass" in table else None
 
 
 def _saturation_argument(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Read the saturation as an argument of `Measured`, if it is stated."""
+    """Parse the saturation to a keyword argument of `Measured`; empty if it is not stated."""
     return {"saturation": parse("saturation", table["saturation"], Kind.MODULUS)} if "saturation" in table else {}
 
 
 def _parse_load_uncertainty(table: Mapping[str, Any], load: str) -> float:
-    """Read the uncertainty of the loads; 0 by default."""
+    """Parse the uncertainty of the loads; 0 by default."""
     return (
         parse("load_uncertainty", table["load_uncertainty"], LOADS[load].kind) if "load_uncertainty" in table else 0.0
     )
 
 
 def _parse_numbers(name: str, value: Any, kind: str) -> numpy.ndarray:
-    """Read one number or a list of numbers with units as an array."""
+    """Parse a number or a list of numbers with units to an array."""
     numbers = value if isinstance(value, list) else [value]
     return numpy.array([parse(name, number, kind) for number in numbers])

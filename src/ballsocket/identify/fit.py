@@ -24,7 +24,7 @@ from .unknowns import ParameterTransform, Unknown
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FittedModel:
-    """A model that is fitted to data.
+    """Contact model fitted to measured data, with estimates and residuals.
 
     Attributes
     ----------
@@ -44,41 +44,44 @@ class FittedModel:
 
     @property
     def model(self) -> Model:
-        """Model with the numbers of the best point."""
+        """Contact model with the best-fit values of its numbers."""
         return insert_numbers(self.misfit.forward.model, split_numbers(self.point)[1])
 
     @property
     def data(self) -> tuple[Measured, ...]:
-        """Sets of measurements."""
+        """Data sets of the fit."""
         return self.misfit.forward.data
 
     @property
     def transform(self) -> ParameterTransform:
-        """Transform between values of the unknowns and theta."""
+        """Transform between values of the unknowns and scaled parameters theta."""
         return self.misfit.transform
 
     @cached_property
     def point(self) -> dict[str, float]:
-        """Best values by unknown in mm, N, MPa, rad; other values fit as well where an unknown is unidentifiable."""
-        values = self.transform.values(self.best.theta).tolist()
+        """Best-fit values by unknown, in mm, N, MPa, rad.
+
+        Other values of an unidentifiable unknown fit the data as well.
+        """
+        values = self.transform.to_values(self.best.theta).tolist()
         return dict(zip(self.transform.names, values, strict=True))
 
     @property
     def joint(self) -> Joint:
-        """Joint with the numbers of the best point."""
+        """Joint with the best-fit values of its numbers."""
         return varied(self.misfit.forward.joint, split_numbers(self.point)[0])[0]
 
     @cached_property
     def estimates(self) -> dict[str, Estimate]:
-        """Estimates with bands of 95 % by unknown; an unidentifiable unknown has no value."""
+        """Estimates with 95 % bands, by unknown; NaN for the value of an unidentifiable unknown."""
         return {unknown.name: self._estimate(index) for index, unknown in enumerate(self.transform.unknowns)}
 
     def _estimate(self, index: int) -> Estimate:
-        """Compute the estimate of one unknown."""
+        """Make the estimate of one unknown from its profile interval."""
         unknown, information = self.transform.unknowns[index], self.information
         interval, name = information.intervals[index], unknown.name
         ends = (interval.low, interval.high)
-        low, high = (_snapped(unknown, self.transform.values(end.theta)[index]) for end in ends)
+        low, high = (_snap_to_range(unknown, self.transform.to_values(end.theta)[index]) for end in ends)
         value = float("nan") if name in information.unidentifiable else self.point[name]
         width, limits = information.deviations[name], information.limited_by(name)
         return Estimate(name, unknown.quantity.unit, value, low, high, width, limits)
@@ -89,13 +92,15 @@ class FittedModel:
 
     @cached_property
     def results(self) -> tuple[Numbers, ...]:
-        """Results of the model at the best point, a row for each set of data."""
-        results = self.misfit.forward.at(self.transform.values(self.best.theta[None]))[0]
-        return self._by_set(results)
+        """Model results at the best point, one array per data set."""
+        results = self.misfit.forward.results_at(self.transform.to_values(self.best.theta[None]))[0]
+        return self._split_by_data_set(results)
 
     @renamed_arguments(place="index")
     def curve(self, index: int, count: int = 60) -> tuple[Numbers, Numbers]:
-        """Compute the fitted curve of a data set that has no angles.
+        """Compute the fitted curve over the load range of a data set.
+
+        The data set has no angles.
 
         Parameters
         ----------
@@ -118,26 +123,32 @@ class FittedModel:
         order = numpy.interp(loads, measured.loads[ascending], measured.order[ascending])
         row = replace(measured, uncertainty=1.0, load_uncertainty=0.0, order=order, **changes)
         forward = replace(self.misfit.forward, data=(row,))
-        return loads, forward.at(self.transform.values(self.best.theta[None]))[0]
+        return loads, forward.results_at(self.transform.to_values(self.best.theta[None]))[0]
 
     @property
     def residuals(self) -> tuple[Numbers, ...]:
-        """Values less results in stated uncertainties, a row for each set; for a saturated value its shortfall."""
-        z = self.misfit.widening * self.misfit.standard(numpy.concatenate(self.results))
-        return self._by_set(numpy.where(self.misfit.saturated, numpy.maximum(-z, 0.0), -z))
+        """Residuals (value minus result, over the stated uncertainty), one array per data set.
 
-    def _by_set(self, row: Numbers) -> tuple[Numbers, ...]:
-        """Split numbers (data,) into a row for each set."""
+        For a saturated value it is the shortfall.
+        """
+        z = self.misfit.widening * self.misfit.standardised_residuals(numpy.concatenate(self.results))
+        return self._split_by_data_set(numpy.where(self.misfit.saturated, numpy.maximum(-z, 0.0), -z))
+
+    def _split_by_data_set(self, row: Numbers) -> tuple[Numbers, ...]:
+        """Split an array (data,) into one array per data set."""
         return tuple(numpy.split(row, numpy.cumsum([len(measured) for measured in self.data])[:-1]))
 
     @property
     def freedom(self) -> int:
-        """Degrees of freedom: values less the unknowns without a stated distribution."""
+        """Degrees of freedom: number of values minus unknowns without a stated distribution."""
         return self.misfit.freedom
 
     @property
     def spread(self) -> float:
-        """Root of χ² over the degrees of freedom (Birge's ratio): 1 for right uncertainties; NaN without freedom."""
+        """Birge's ratio: root of χ² over the degrees of freedom, 1 for correct uncertainties.
+
+        It is NaN without degrees of freedom.
+        """
         total = sum(float(numpy.sum(row**2)) for row in self.residuals)
         return (total / self.freedom) ** 0.5 if self.freedom > 0 else float("nan")
 
@@ -147,6 +158,6 @@ class FittedModel:
         return not self.information.unidentifiable
 
 
-def _snapped(unknown: Unknown, value: float) -> float:
-    """Return the end of a band, snapped to the end of the range within rounding."""
+def _snap_to_range(unknown: Unknown, value: float) -> float:
+    """Return an end of a band, or the end of the range if both are equal within rounding."""
     return next((end for end in (unknown.low, unknown.high) if abs(value - end) <= 1e-9 * abs(end)), float(value))

@@ -10,7 +10,7 @@ import numpy
 
 from ..contact import Model
 from ..contact.assembly import check_joint
-from ..core.arrays import Numbers, is_plain
+from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import shown
 from ..core.deprecation import renamed_names
 from ..problem import Joint
@@ -21,7 +21,7 @@ from .misfit import FitResult, Misfit, Slopes, by_differences
 from .result import IdentificationResult
 from .scatter import NormalScatter, ScatterModel
 from .search import find_best_fit
-from .unknowns import ParameterTransform, Prior, Unknown, unknowns_of
+from .unknowns import ParameterTransform, Prior, Unknown, collect_unknowns
 
 _NORMAL = NormalScatter()
 _LOAD_ITERATIONS = 2  # fits with weights that depend on the best point, for uncertain loads
@@ -38,7 +38,7 @@ def identify(
     slopes: Slopes = by_differences,
     seed: int = 0,
 ) -> IdentificationResult:
-    """Identify joint parameters from measurements, with bands and identifiability.
+    """Identify parameters of a joint from measurements, with 95 % bands and identifiability.
 
     The method is maximum likelihood, with the stated distributions of unknowns, by least squares after a global search.
     Bands of 95 % come from the profile likelihood. They widen if the data scatter more than stated.
@@ -87,47 +87,50 @@ def identify(
     check_joint(joint)
     if not isinstance(model, Model):
         raise TypeError(f"model must be a model, such as bs.Tabulated(), got {shown(model)}")
-    if not all(map(is_plain, joint.numbers())):
+    if not all(map(is_plain_number, joint.numbers())):
         raise ValueError("joint must have plain numbers, got arrays: identify one joint at a time")
-    sets = _checked_data_sets(data)
-    unknowns = unknowns_of(free, [measured.machine for measured in sets], model)
+    sets = _check_data_sets(data)
+    unknowns = collect_unknowns(free, [measured.machine for measured in sets], model)
     _check_counts_and_areas(sets, joint, unknowns)
     forward = ForwardModel(model, joint, sets, tuple(unknown.name for unknown in unknowns))
-    uncertainty = _concatenated(measured.uncertainty for measured in sets)
+    uncertainty = _concatenate(measured.uncertainty for measured in sets)
     misfit = Misfit(forward, ParameterTransform(unknowns), scatter, slopes, uncertainty)
     best = find_best_fit(misfit, seed)
     uncertain_loads = any(measured.load and measured.load_uncertainty.any() for measured in sets)
     for _ in range(_LOAD_ITERATIONS if uncertain_loads else 0):
-        misfit = replace(misfit, uncertainty=_uncertainty_with_loads(misfit, best))
+        misfit = replace(misfit, uncertainty=_combine_uncertainties(misfit, best))
         best = find_best_fit(misfit, seed)
     return IdentificationResult(*compute_bands(misfit, best))
 
 
-def _uncertainty_with_loads(misfit: Misfit, best: FitResult) -> Numbers:
-    """Combine the uncertainties of values and loads, by the slope of the results with respect to the loads."""
-    data, values = misfit.forward.data, misfit.transform.values(best.theta[None])
-    above, below = (misfit.forward.at(values, load_perturbation=side * _LOAD_STEP)[0] for side in (1, -1))
+def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
+    """Combine the uncertainties of values and loads.
+
+    The slope of the results over the load converts those of the loads.
+    """
+    data, values = misfit.forward.data, misfit.transform.to_values(best.theta[None])
+    above, below = (misfit.forward.results_at(values, load_perturbation=side * _LOAD_STEP)[0] for side in (1, -1))
     slope = (above - below) / (2 * _LOAD_STEP)  # by ln of the load
-    of_loads = _concatenated(_relative_load_uncertainty(measured) for measured in data)
-    of_values = _concatenated(measured.uncertainty for measured in data)
+    of_loads = _concatenate(_relative_load_uncertainty(measured) for measured in data)
+    of_values = _concatenate(measured.uncertainty for measured in data)
     return numpy.hypot(of_values, numpy.where(of_loads > 0, slope * of_loads, 0.0))
 
 
 def _relative_load_uncertainty(measured: Measured) -> Numbers:
-    """Compute the uncertainty of the loads over the loads; 0 for a quantity of the joint."""
+    """Compute the relative uncertainty of the loads; 0 for a quantity of the joint."""
     if not measured.load:
         return numpy.zeros(len(measured))
     loads = measured.loads
     return numpy.where(loads > 0, measured.load_uncertainty / numpy.where(loads > 0, loads, 1.0), 0.0)
 
 
-def _concatenated(rows: Iterable[Numbers]) -> Numbers:
-    """Join the rows of all data sets to one array (data,)."""
+def _concatenate(rows: Iterable[Numbers]) -> Numbers:
+    """Concatenate the arrays of all data sets to one array (data,)."""
     return numpy.concatenate(list(rows))
 
 
-def _checked_data_sets(data: Any) -> tuple[Measured, ...]:
-    """Return the data sets as a tuple; raise TypeError for anything but `Measured`."""
+def _check_data_sets(data: Any) -> tuple[Measured, ...]:
+    """Check that the data are sets of `Measured`, and return them as a tuple."""
     sets = tuple(data) if isinstance(data, list | tuple) else (data,)
     if not sets:
         raise ValueError("data must have at least one set of measurements, got none")
@@ -138,13 +141,13 @@ def _checked_data_sets(data: Any) -> tuple[Measured, ...]:
 
 
 def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
-    """Raise ValueError without unknowns, with impossible areas, or with fewer values than unknowns."""
+    """Check that there are unknowns, enough values and possible areas; raise ValueError otherwise."""
     if not unknowns:
         raise ValueError("free has no unknowns: name at least one with two ends, such as clearance")
     for measured in data:
-        measured.check_within(joint)
+        measured.check_area(joint)
     count = sum(map(len, data))
-    ranges = [unknown.name for unknown in unknowns if not unknown.known]
+    ranges = [unknown.name for unknown in unknowns if not unknown.has_distribution]
     if count < len(ranges):
         raise ValueError(
             f"{count} values do not suffice for {len(ranges)} unknowns ({', '.join(ranges)}): measure more values, or "

@@ -32,7 +32,7 @@ _MIN_SINGULAR_VALUE = 0.5  # smallest singular value of independent unit directi
 
 @dataclass(frozen=True, eq=False)
 class ProfileEnd:
-    """One end of a profile interval.
+    """One end of a profile likelihood interval.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class ProfileEnd:
 
 @dataclass(frozen=True, eq=False)
 class Interval:
-    """Profile interval of an unknown.
+    """Profile likelihood interval of an unknown.
 
     Attributes
     ----------
@@ -67,13 +67,13 @@ class Interval:
 
     @property
     def limits(self) -> frozenset[int]:
-        """Indices of the unknowns whose ranges limit the band."""
+        """Indices of the unknowns whose ranges limit the 95 % band."""
         return frozenset((*self.low.limited_by, *self.high.limited_by))
 
 
 @dataclass(frozen=True, eq=False)
 class Information:
-    """Information of the data about the unknowns, and its limits over their ranges.
+    """Fisher information of the data on the unknowns, with identifiability and covariance.
 
     Attributes
     ----------
@@ -98,45 +98,49 @@ class Information:
     untold = RenamedAttribute("unidentifiable")
 
     @cached_property
-    def _modes(self) -> tuple[Numbers, Numbers]:
-        return _modes(self.matrix)
+    def _eigenmodes(self) -> tuple[Numbers, Numbers]:
+        """Eigenvalues and eigenvectors of the information matrix."""
+        return _eigenmodes(self.matrix)
 
     @property
     def eigenvalues(self) -> Numbers:
-        """Eigenvalues of the information, in descending order."""
-        return self._modes[0]
+        """Eigenvalues of the information matrix, in descending order."""
+        return self._eigenmodes[0]
 
     @cached_property
     def rank(self) -> int:
-        """Number of identifiable directions; full if every unknown is identifiable."""
+        """Number of identifiable directions in the space of unknowns.
+
+        It is full if every unknown is identifiable.
+        """
         unidentifiable = [self.transform.names.index(name) for name in self.unidentifiable]
         if not unidentifiable:
             return len(self.transform.names)
-        directions = numpy.stack([self._band_direction(index) for index in unidentifiable], axis=1)
+        directions = numpy.stack([self._band_vector(index) for index in unidentifiable], axis=1)
         sizes = numpy.linalg.svd(directions / numpy.linalg.norm(directions, axis=0), compute_uv=False)
         return len(self.transform.names) - max(1, int(numpy.sum(sizes > _MIN_SINGULAR_VALUE)))
 
     @property
     def condition(self) -> float:
-        """Ratio of the largest to the smallest eigenvalue; inf if the data have no information in a direction."""
+        """Condition number: ratio of largest to smallest eigenvalue, infinite if the smallest is 0."""
         values = self.eigenvalues
         return float(values[0] / values[-1]) if values[-1] > 1e-12 * values[0] else inf
 
     @cached_property
     def deviations(self) -> Mapping[str, float]:
-        """Width of the band of 95 % over the prior range, by unknown."""
+        """Ratio of 95 % band width to prior range, by unknown."""
         pairs = zip(self.transform.unknowns, self.intervals, range(len(self.intervals)), strict=True)
         return {unknown.name: _width_ratio(unknown, interval, index) for unknown, interval, index in pairs}
 
     @cached_property
     def unidentifiable(self) -> tuple[str, ...]:
-        """Unidentifiable unknowns for which only a range is stated.
+        """Names of the unidentifiable unknowns, among those with only a range as prior.
 
         One of three conditions holds. The profile interval of 99 % leaves the range. The band of 95 % takes half of the
         range or more. The range of another unidentifiable unknown limits the band and shifts it by a tenth or more.
         """
         widths, unknowns = self.deviations, self.transform.unknowns
-        ranges = [index for index, unknown in enumerate(unknowns) if not unknown.known]
+        ranges = [index for index, unknown in enumerate(unknowns) if not unknown.has_distribution]
         wide = {
             index
             for index in ranges
@@ -146,69 +150,83 @@ class Information:
         return tuple(unknown.name for index, unknown in enumerate(unknowns) if index in wide | shifted)
 
     def _is_shifted(self, index: int, cause: int) -> bool:
-        """Check if the range of another unknown limits a band and shifts it by a tenth or more."""
+        """Check if the range of another unknown limits a band and shifts it by 10 % or more."""
         limited = cause in self.intervals[index].limits
-        return limited and abs(self._band_direction(cause)[index]) >= MAX_SHIFT * sqrt(12)
+        return limited and abs(self._band_vector(cause)[index]) >= MAX_SHIFT * sqrt(12)
 
-    def _band_direction(self, index: int) -> Numbers:
-        """Compute the change of all unknowns from the lower to the upper end of the band of one unknown."""
+    def _band_vector(self, index: int) -> Numbers:
+        """Compute the change of all unknowns in theta from lower to upper end of one unknown's band."""
         interval = self.intervals[index]
         return interval.high.theta - interval.low.theta
 
     def limited_by(self, name: str) -> tuple[str, ...]:
-        """Return the names of the unknowns whose ranges limit a band, its own name included."""
+        """Return the names of the unknowns whose ranges limit the band of an unknown.
+
+        The name of the unknown itself may be one of them.
+        """
         limits = self.intervals[self.transform.names.index(name)].limits
         unknowns = enumerate(self.transform.unknowns)
-        return tuple(unknown.name for index, unknown in unknowns if index in limits and not unknown.known)
+        return tuple(unknown.name for index, unknown in unknowns if index in limits and not unknown.has_distribution)
 
     @cached_property
-    def _determined(self) -> Numbers:
-        """Information in the identifiable directions."""
-        values, vectors = self._modes
+    def _identifiable_information(self) -> Numbers:
+        """Information matrix restricted to the identifiable directions."""
+        values, vectors = self._eigenmodes
         return (vectors[:, : self.rank] * values[: self.rank]) @ vectors[:, : self.rank].T
 
     @cached_property
     def covariance(self) -> Numbers:
-        """Covariance of the scaled unknowns from data, prior distributions, and ranges in unidentifiable directions."""
-        from_prior = [unknown.known or unknown.name in self.unidentifiable for unknown in self.transform.unknowns]
-        return numpy.linalg.inv(self._determined + numpy.diag(numpy.array(from_prior, dtype=float)))
+        """Covariance matrix of theta, from the data and prior distributions.
+
+        In unidentifiable directions the ranges count as priors.
+        """
+        from_prior = [
+            unknown.has_distribution or unknown.name in self.unidentifiable for unknown in self.transform.unknowns
+        ]
+        return numpy.linalg.inv(self._identifiable_information + numpy.diag(numpy.array(from_prior, dtype=float)))
 
     @cached_property
     def products(self) -> tuple[Product, ...]:
-        """Identifiable products of powers of unidentifiable unknowns."""
+        """Identifiable products of powers of unknowns that are unidentifiable separately."""
         if not self.unidentifiable:
             return ()
-        products = (self._product(vector) for vector in self._modes[1][:, : self.rank].T)
+        products = (self._make_product(vector) for vector in self._eigenmodes[1][:, : self.rank].T)
         return tuple(product for product in products if product is not None)
 
-    def _product(self, vector: Numbers) -> Product | None:
-        """Write a direction as a product of powers, the largest of which is 1; None without an identifiable product."""
+    def _make_product(self, vector: Numbers) -> Product | None:
+        """Convert an eigenvector to a product of powers; None if the product is not identifiable.
+
+        Its largest power is 1.
+        """
         unknowns = self.transform.unknowns
-        spans = [unknown.span for unknown in unknowns]
+        spans = [unknown.prior_deviation for unknown in unknowns]
         powers = vector / spans
         factors = [index for index in range(len(unknowns)) if abs(vector)[index] > _MIN_MIXED_COMPONENT]
         mixed = set(self.unidentifiable) & {unknowns[index].name for index in factors}
         if len(factors) < 2 or not mixed or not all(unknowns[index].logarithmic for index in factors):
             return None
         powers = powers / powers[factors[numpy.argmax(abs(powers[factors]))]]
-        exponents = {unknowns[index].name: _rounded(float(powers[index])) for index in factors}
+        exponents = {unknowns[index].name: _round_power(float(powers[index])) for index in factors}
         product = self._product_band(exponents)
         widths = [
-            abs(self._band_direction(index)[index]) * spans[index] for index in factors if unknowns[index].name in mixed
+            abs(self._band_vector(index)[index]) * spans[index] for index in factors if unknowns[index].name in mixed
         ]
         return product if log(product.high / product.low) < MAX_WIDTH_RATIO * min(widths) else None
 
     def _product_band(self, exponents: dict[str, float]) -> Product:
-        """Compute a product with its band, at the best point and over the bands of the unidentifiable unknowns."""
+        """Compute value and 95 % band of a product of powers of unknowns.
+
+        The band includes those of the unidentifiable unknowns.
+        """
         weight = numpy.array([exponents.get(name, 0.0) for name in self.transform.names])
-        direction = weight * [unknown.span for unknown in self.transform.unknowns]
-        known = numpy.diag([float(unknown.known) for unknown in self.transform.unknowns])
-        covariance = numpy.linalg.pinv(self._determined + known, rcond=1e-9, hermitian=True)
+        direction = weight * [unknown.prior_deviation for unknown in self.transform.unknowns]
+        known = numpy.diag([float(unknown.has_distribution) for unknown in self.transform.unknowns])
+        covariance = numpy.linalg.pinv(self._identifiable_information + known, rcond=1e-9, hermitian=True)
         half = self.quantile * float(direction @ covariance @ direction) ** 0.5
-        middle = self._logarithm(exponents, self.theta)
+        middle = self._log_product(exponents, self.theta)
         intervals = [self.intervals[self.transform.names.index(name)] for name in self.unidentifiable]
         ends = [
-            self._logarithm(exponents, end.theta) for interval in intervals for end in (interval.low, interval.high)
+            self._log_product(exponents, end.theta) for interval in intervals for end in (interval.low, interval.high)
         ]
         low, high = min(middle - half, *ends), max(middle + half, *ends)
         units = {unknown.name: unknown.quantity.unit for unknown in self.transform.unknowns}
@@ -217,26 +235,29 @@ class Information:
         )
         return Product(exponents, unit, exp(middle), exp(low), exp(high))
 
-    def _logarithm(self, exponents: Mapping[str, float], theta: Numbers) -> float:
-        """Compute the logarithm of a product of powers at theta."""
-        values = dict(zip(self.transform.names, self.transform.values(theta).tolist(), strict=True))
+    def _log_product(self, exponents: Mapping[str, float], theta: Numbers) -> float:
+        """Compute the logarithm of a product of powers of unknowns at theta."""
+        values = dict(zip(self.transform.names, self.transform.to_values(theta).tolist(), strict=True))
         return sum(power * log(values[name]) for name, power in exponents.items())
 
 
 def _width_ratio(unknown: Unknown, interval: Interval, index: int) -> float:
-    """Compute the width of a band over that of the range, or over the band of 95 % of a distribution."""
+    """Compute the ratio of band width to prior width.
+
+    The prior width is that of the range, or of the 95 % band of a distribution.
+    """
     width = float(interval.high.theta[index] - interval.low.theta[index])
-    return width / (2 * QUANTILE_95 if unknown.known else sqrt(12))
+    return width / (2 * QUANTILE_95 if unknown.has_distribution else sqrt(12))
 
 
-def _modes(matrix: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute the eigenvalues in descending order, and the eigenvectors in columns."""
+def _eigenmodes(matrix: Numbers) -> tuple[Numbers, Numbers]:
+    """Compute eigenvalues in descending order, and eigenvectors as columns, of a symmetric matrix."""
     values, vectors = numpy.linalg.eigh((matrix + matrix.T) / 2)
     return numpy.maximum(values[::-1], 0.0), vectors[:, ::-1]
 
 
-def _rounded(power: float) -> float:
-    """Round a power to a multiple of 1/2 that is nearer than 0.1."""
+def _round_power(power: float) -> float:
+    """Round a power to the nearest multiple of 1/2 if it is closer than 0.1."""
     half_integer = round(2 * power) / 2
     return half_integer if abs(power - half_integer) < 0.1 and half_integer else power
 

@@ -15,7 +15,7 @@ from .unknowns import ParameterTransform
 
 
 def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute results and derivatives by JAX.
+    """Compute model results and their derivatives by automatic differentiation with JAX.
 
     The first call for a set of data compiles the model, which takes seconds.
 
@@ -44,9 +44,9 @@ def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numb
     needs("jax", "jax")
     import jax
 
-    values = transform.values(theta)
+    values = transform.to_values(theta)
     with jax.enable_x64(True):
-        rows = [_compiled(forward)(row) for row in values.reshape(-1, values.shape[-1])]
+        rows = [_compile(forward)(row) for row in values.reshape(-1, values.shape[-1])]
     results, slopes = (numpy.stack([numpy.asarray(row[index]) for row in rows]) for index in (0, 1))
     shape = theta.shape[:-1]
     slopes = slopes.reshape(*shape, -1, theta.shape[-1])
@@ -54,12 +54,12 @@ def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numb
 
 
 @lru_cache(maxsize=8)
-def _compiled(forward: ForwardModel) -> Callable[[Numbers], tuple[Any, Any]]:
-    """Compile results and derivatives of a forward model."""
+def _compile(forward: ForwardModel) -> Callable[[Numbers], tuple[Any, Any]]:
+    """Compile results and derivatives of a forward model with JAX."""
     import jax
 
     def results(values: Any) -> Any:
-        return forward.at(values[None, :])[0]
+        return forward.results_at(values[None, :])[0]
 
     compiled: Callable[[Numbers], tuple[Any, Any]] = jax.jit(
         lambda values: (results(values), jax.jacfwd(results)(values))

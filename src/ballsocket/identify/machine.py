@@ -8,6 +8,7 @@ from math import inf
 from typing import Any
 
 from ..core.checks import nearest, require, shown
+from ..core.deprecation import RenamedAttribute
 from .machine_errors import MachineError
 from .registry import MACHINE_ERRORS
 
@@ -17,7 +18,9 @@ NumberOrRange = float | tuple[float, float]
 
 @dataclass(frozen=True, init=False)
 class Machine:
-    """A machine that adds its errors to the indentations it reads: d + compliance x force + offset + drift x order.
+    """Testing machine that adds errors to the indentations it reads.
+
+    A reading is d + compliance x force + offset + drift x order.
 
     Parameters
     ----------
@@ -69,31 +72,34 @@ class Machine:
         return f"Machine({', '.join([*sizes, f'name={self.name!r}'])})"
 
     def key(self, error: str) -> str:
-        """Return the name of an unknown of this machine, "machine.offset"."""
+        """Return the name of an error of this machine as an unknown, such as "machine.offset"."""
         return f"{self.name}.{error}"
 
     @property
-    def unknowns(self) -> dict[str, tuple[float, float]]:
-        """Ends of the unknown errors, by key."""
+    def unknown_errors(self) -> dict[str, tuple[float, float]]:
+        """Lower and upper end of each unknown error, by its name such as "machine.offset"."""
         return {self.key(error): size for error, size in self.errors if isinstance(size, tuple)}
 
-    def known(self) -> dict[str, float]:
-        """Return the known errors by key."""
+    def known_errors(self) -> dict[str, float]:
+        """Return the sizes of the known errors, by names such as "machine.offset"."""
         return {self.key(error): size for error, size in self.errors if not isinstance(size, tuple)}
+
+    known = RenamedAttribute("known_errors")
+    unknowns = RenamedAttribute("unknown_errors")
 
     @property
     def has_zero_error(self) -> bool:
-        """True if a reading at zero force may differ from zero."""
+        """True if the indentation read at zero force may differ from zero."""
         return any(size != 0.0 for error, size in self.errors if MACHINE_ERRORS[error].slope is None)
 
     @property
     def depends_on_force(self) -> bool:
-        """True if an error changes the reading with the force."""
+        """True if an error depends on the force."""
         return any(size != 0.0 for error, size in self.errors if MACHINE_ERRORS[error].slope is not None)
 
 
 def _check_size(error: MachineError, size: Any) -> None:
-    """Raise ValueError for a size that is neither a number nor two ascending ends, or that is not allowed."""
+    """Check the size of an error: an allowed number, or two ascending ends; raise ValueError otherwise."""
     ends = size if isinstance(size, tuple) else (size, size)
     if len(ends) != 2 or not -inf < ends[0] <= ends[1] < inf or (isinstance(size, tuple) and ends[0] == ends[1]):
         raise ValueError(f"{error.name} = {shown(size)} must be a number, or two ends in ascending order")

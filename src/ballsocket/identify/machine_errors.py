@@ -15,7 +15,9 @@ Effect = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True, kw_only=True)
 class MachineError:
-    """One error of a machine: the reading gains its size times `effect(force, order)`.
+    """Type of machine error, such as an offset, that adds to each reading.
+
+    A reading increases by the size of the error times `effect(force, order)`.
 
     Attributes
     ----------
@@ -39,7 +41,10 @@ class MachineError:
 
     @property
     def name(self) -> str:
-        """Name of the quantity, which is also an argument of `Machine` and a key in files."""
+        """Name of the error.
+
+        It is also an argument of `Machine` and a key in files.
+        """
         return self.quantity.name
 
 

@@ -38,7 +38,9 @@ _NOT_NEGATIVE = "the value must be 0 or more and finite"  # rule in a message
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Measured:
-    """Measured values of one quantity, at loads or of the joint itself.
+    """Data set: measured values of one quantity with uncertainties and loads.
+
+    A quantity of the joint itself has no load.
 
     Parameters
     ----------
@@ -100,111 +102,119 @@ class Measured:
     own = RenamedAttribute("observable")
 
     def __post_init__(self) -> None:
+        """Check all fields, and convert them to arrays."""
         if not isinstance(self.machine, Machine):
             raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
         if self.observable is None:
-            self._set("quantity", known_name("quantity", self.quantity, MEASURED))
-        self._set("described", MEASURED[self.quantity] if self.observable is None else self.observable.described)
-        values = _row(self._label(self.quantity), self.values)
-        self._set("values", values)
+            self._set_field("quantity", known_name("quantity", self.quantity, MEASURED))
+        self._set_field("described", MEASURED[self.quantity] if self.observable is None else self.observable.described)
+        values = _to_row(self._format_label(self.quantity), self.values)
+        self._set_field("values", values)
         self._check_values(values)
-        self._set("uncertainty", self._broadcast(f"{self.quantity}_uncertainty", self.uncertainty, values))
-        sigma, title = self.uncertainty, self._label(f"{self.quantity}_uncertainty")
+        self._set_field("uncertainty", self._broadcast(f"{self.quantity}_uncertainty", self.uncertainty, values))
+        sigma, title = self.uncertainty, self._format_label(f"{self.quantity}_uncertainty")
         require(title, sigma, (sigma > 0) & (sigma < inf), "an uncertainty is above 0 and finite")
         require("saturation", self.saturation, self.saturation > 0, "the largest reading of a film is above 0")
         if self.quantity not in OF_JOINT:
             self._set_load(values)
         if (self.angle is not None) != (self.quantity == "pressure"):
             rule = "needs an angle" if self.angle is None else "takes no angle"
-            raise ValueError(f"{self._label(self.quantity)} {rule}")
+            raise ValueError(f"{self._format_label(self.quantity)} {rule}")
         if self.angle is not None:
-            self._set("angle", FIELD["angle"].checked(self._broadcast("angle", self.angle, values)))
+            self._set_field("angle", FIELD["angle"].check(self._broadcast("angle", self.angle, values)))
         if self.machine is not IDEAL_MACHINE and "indentation" not in (self.quantity, self.load):
-            raise ValueError(f"{self._label(self.quantity)} has a machine, but only indentations are read by one")
-        self._set("order", self._reading_order(values))
+            raise ValueError(
+                f"{self._format_label(self.quantity)} has a machine, but only indentations are read by one"
+            )
+        self._set_field("order", self._check_order(values))
 
-    def _set(self, name: str, value: Any) -> None:
+    def _set_field(self, name: str, value: Any) -> None:
+        """Set a field of this frozen instance."""
         object.__setattr__(self, name, value)
 
-    def _label(self, quantity: str) -> str:
-        """Return the name of a quantity in messages, with the name of the data set."""
+    def _format_label(self, quantity: str) -> str:
+        """Format the name of a quantity with the name of the data set, for messages."""
         return f"{self.name}: {quantity}" if self.name else quantity
 
-    def _reading_order(self, values: Numbers) -> Numbers:
-        """Return the numbers of the readings; 0, 1, 2, ... by default."""
+    def _check_order(self, values: Numbers) -> Numbers:
+        """Check the numbers of the readings, and return them; 0, 1, 2, ... by default."""
         if self.order is None:
             return numpy.arange(float(values.size))
         order = self._broadcast("order", self.order, values)
-        require(self._label("order"), order, abs(order) < inf, "numbers of readings must be finite")
+        require(self._format_label("order"), order, abs(order) < inf, "numbers of readings must be finite")
         return order
 
     def _check_values(self, values: Numbers) -> None:
-        """Raise ValueError for a missing value, or one that is not allowed."""
+        """Check that no value is missing or not allowed; raise ValueError otherwise."""
         gaps = numpy.flatnonzero(numpy.isnan(values))
         if len(gaps):
             rows = ", ".join(str(gap + 1) for gap in gaps[:8])
-            raise ValueError(f"{self._label(self.quantity)} has no number in row {rows}: add it, or omit the row")
+            raise ValueError(
+                f"{self._format_label(self.quantity)} has no number in row {rows}: add it, or omit the row"
+            )
         if self.observable is not None:
             return
         if not self.described.allowed:
-            require(self._label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
+            require(self._format_label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
         elif self.machine is IDEAL_MACHINE:  # a machine with an offset may read less than 0
             allowed = self.described.allows(values)
-            require(self._label(self.quantity), values, allowed, self.described.allowed)
+            require(self._format_label(self.quantity), values, allowed, self.described.allowed)
 
     def _broadcast(self, name: str, numbers: Any, values: Numbers) -> Numbers:
-        """Return one number per value, from one number for all values or one for each."""
-        row = _row(self._label(name), numbers)
+        """Broadcast one number to all values, or check that there is one number per value."""
+        row = _to_row(self._format_label(name), numbers)
         if row.size not in (1, values.size):
-            raise ValueError(f"{self._label(name)} must have 1 or {values.size} numbers, got {row.size}")
+            raise ValueError(f"{self._format_label(name)} must have 1 or {values.size} numbers, got {row.size}")
         if numpy.isnan(row).any():
-            raise ValueError(f"{self._label(name)} has no number in row {int(numpy.isnan(row).argmax()) + 1}")
+            raise ValueError(f"{self._format_label(name)} has no number in row {int(numpy.isnan(row).argmax()) + 1}")
         return numpy.broadcast_to(row, values.shape)
 
     def _set_load(self, values: Numbers) -> None:
-        """Check and store the load with its uncertainty."""
+        """Check the load with its uncertainty, and store both."""
         kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
         if kind == self.quantity:
-            raise ValueError(f"{self._label(kind)} is both the measured quantity and the load; choose another load")
+            raise ValueError(
+                f"{self._format_label(kind)} is both the measured quantity and the load; choose another load"
+            )
         row = self._broadcast(kind, load, values)
         if self.machine is IDEAL_MACHINE or kind != "indentation":
-            require(self._label(kind), row, LOADS[kind].allows(row), LOADS[kind].allowed)
-        self._set("load", kind)
-        self._set(kind, row)
+            require(self._format_label(kind), row, LOADS[kind].allows(row), LOADS[kind].allowed)
+        self._set_field("load", kind)
+        self._set_field(kind, row)
         sigma = self._broadcast("load_uncertainty", self.load_uncertainty, values)
-        require(self._label("load_uncertainty"), sigma, (sigma >= 0) & (sigma < inf), _NOT_NEGATIVE)
-        self._set("load_uncertainty", sigma)
+        require(self._format_label("load_uncertainty"), sigma, (sigma >= 0) & (sigma < inf), _NOT_NEGATIVE)
+        self._set_field("load_uncertainty", sigma)
         self._check_unloaded(row, values)
 
     def _check_unloaded(self, load: Numbers, values: Numbers) -> None:
-        """Raise ValueError for a value without a load, except from a machine with a zero error."""
+        """Check that values at zero load are 0, unless the machine has a zero error."""
         if not self.machine.has_zero_error:
             rule = f"at first touch the {self.described.title} is 0, except with a zero error of the machine"
-            require(self._label(self.load), load, (load > 0) | (values == 0), rule)
+            require(self._format_label(self.load), load, (load > 0) | (values == 0), rule)
 
     def __len__(self) -> int:
         return len(self.values)
 
     @property
     def loads(self) -> Numbers:
-        """Loads; empty for a quantity of the joint."""
+        """Loads in N, mm or rad; empty for a quantity of the joint."""
         return getattr(self, self.load) if self.load else numpy.zeros(0)
 
     @property
     def saturated(self) -> Numbers:
-        """Mask of the values that are lower bounds."""
+        """Mask of the saturated values, which are lower bounds."""
         return numpy.asarray(self.values >= self.saturation)
 
-    def check_within(self, joint: Joint) -> None:
-        """Raise ValueError for an area larger than half of the ball."""
+    def check_area(self, joint: Joint) -> None:
+        """Check that measured contact areas are smaller than half of the ball; raise ValueError otherwise."""
         if self.quantity == "area":
             half = 2 * pi * float(joint.ball_radius) ** 2
             rule = f"a contact area is below half of the ball, 2π R1² = {half:.4g} mm²"
-            require(self._label("area"), self.values, self.values < half, rule)
+            require(self._format_label("area"), self.values, self.values < half, rule)
 
 
-def _row(name: str, numbers: Any) -> Numbers:
-    """Convert numbers to an array (values,)."""
+def _to_row(name: str, numbers: Any) -> Numbers:
+    """Convert numbers to an array (values,); raise ValueError if this is impossible."""
     try:
         plain = numpy.asarray(numbers)
         row = numpy.atleast_1d(plain.astype(float, casting="safe" if plain.dtype.kind == "c" else "unsafe"))

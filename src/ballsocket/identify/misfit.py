@@ -19,7 +19,9 @@ Slopes = Callable[[ForwardModel, ParameterTransform, Numbers], tuple[Numbers, Nu
 
 
 def by_differences(forward: ForwardModel, transform: ParameterTransform, theta: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute results and central differences in one array call, one-sided at the range ends.
+    """Compute model results and their derivatives by central differences.
+
+    One array call computes all points. At the ends of the ranges, differences are one-sided.
 
     Parameters
     ----------
@@ -40,25 +42,27 @@ def by_differences(forward: ForwardModel, transform: ParameterTransform, theta: 
     step = forward.model.smooth_step * numpy.eye(count)
     stencil = numpy.concatenate([points, points + step, points - step], axis=1)
     stencil = numpy.clip(stencil, transform.low, transform.high)
-    results = forward.at(transform.values(stencil.reshape(-1, count))).reshape(*stencil.shape[:2], -1)
+    results = forward.results_at(transform.to_values(stencil.reshape(-1, count))).reshape(*stencil.shape[:2], -1)
     centre, above, below = results[:, 0], results[:, 1 : 1 + count], results[:, 1 + count :]
     up, down = (numpy.diagonal(half, axis1=1, axis2=2) for half in numpy.split(stencil[:, 1:], 2, axis=1))
-    above, up = _or_centre(above, up, centre, points[:, 0])
-    below, down = _or_centre(below, down, centre, points[:, 0])
+    above, up = _replace_missing_neighbours(above, up, centre, points[:, 0])
+    below, down = _replace_missing_neighbours(below, down, centre, points[:, 0])
     slopes = (above - below) / numpy.where(up > down, up - down, inf)[..., None]
     shape = theta.shape[:-1]
     return centre.reshape(*shape, -1), slopes.swapaxes(1, 2).reshape(*shape, -1, count)
 
 
-def _or_centre(results: Numbers, theta: Numbers, centre: Numbers, points: Numbers) -> tuple[Numbers, Numbers]:
-    """Replace a neighbour without a result by the point itself."""
+def _replace_missing_neighbours(
+    results: Numbers, theta: Numbers, centre: Numbers, points: Numbers
+) -> tuple[Numbers, Numbers]:
+    """Replace neighbouring points without a result by the central point."""
     missing = numpy.isnan(results).any(axis=-1)
     return numpy.where(missing[..., None], centre[:, None], results), numpy.where(missing, points, theta)
 
 
 @dataclass(frozen=True, eq=False)
 class FitResult:
-    """End of a search.
+    """Result of a search for the best fit.
 
     Attributes
     ----------
@@ -80,7 +84,9 @@ class FitResult:
 
 @dataclass(frozen=True, eq=False)
 class Misfit:
-    """Data against results: residuals for least squares, whose half sum of squares is minus ln of the posterior.
+    """Difference between data and model results: residuals for a least-squares fit.
+
+    Half of their sum of squares is minus ln of the posterior density, up to a constant.
 
     Attributes
     ----------
@@ -117,25 +123,28 @@ class Misfit:
 
     @property
     def freedom(self) -> int:
-        """Degrees of freedom: values less the unknowns without a stated distribution."""
-        return len(self.value) - sum(not unknown.known for unknown in self.transform.unknowns)
+        """Degrees of freedom: number of values minus unknowns without a stated distribution."""
+        return len(self.value) - sum(not unknown.has_distribution for unknown in self.transform.unknowns)
 
-    def standard(self, results: Numbers) -> Numbers:
-        """Compute (result - value)/uncertainty with the widened uncertainties."""
+    def standardised_residuals(self, results: Numbers) -> Numbers:
+        """Compute the standardised residuals z = (result - value)/uncertainty, with widened uncertainties."""
         return (results - self.value) / (self.widening * self.uncertainty)
 
     def residuals(self, results: Numbers) -> Numbers:
-        """Compute one residual per value; half the sum of squares is minus ln of the likelihood up to a constant."""
-        z = self.standard(results)
+        """Compute the least-squares residual of each value from the distribution of the scatter.
+
+        Half the sum of squares is minus ln of the likelihood, up to a constant.
+        """
+        z = self.standardised_residuals(results)
         return numpy.where(self.saturated, self.scatter.censored(z)[0], self.scatter.misfit(z))
 
     def residuals_and_slopes(self, theta: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute residuals (..., data), those of stated distributions included, and their derivatives."""
+        """Compute least-squares residuals of data and priors, (..., data), and their derivatives."""
         results, slopes = self.slopes(self.forward, self.transform, theta)
-        z = self.standard(results)
+        z = self.standardised_residuals(results)
         weight = numpy.where(self.saturated, self.scatter.censored(z)[1], self.scatter.slope(z))
         weight = weight / (self.widening * self.uncertainty)
-        known = numpy.array([unknown.known for unknown in self.transform.unknowns])
+        known = numpy.array([unknown.has_distribution for unknown in self.transform.unknowns])
         unit = numpy.broadcast_to(numpy.eye(theta.shape[-1])[known], (*theta.shape[:-1], known.sum(), len(known)))
         return (
             numpy.concatenate([self.residuals(results), self.transform.prior_residuals(theta)[..., known]], axis=-1),
@@ -143,38 +152,50 @@ class Misfit:
         )
 
     def costs(self, theta: Numbers) -> Numbers:
-        """Compute minus ln of likelihood and prior distributions up to a constant, (points,); inf without a result."""
-        residuals = self.residuals(self.forward.at(self.transform.values(theta)))
+        """Compute the cost of each point: minus ln of the posterior density up to a constant.
+
+        The priors are the stated distributions. The cost is infinite without a result; shape (points,).
+        """
+        residuals = self.residuals(self.forward.results_at(self.transform.to_values(theta)))
         squares = numpy.sum(residuals**2, axis=1) + numpy.sum(self.transform.prior_residuals(theta) ** 2, axis=-1)
         cost = squares / 2
         return numpy.where(numpy.isfinite(cost), cost, inf)
 
     def log_posterior(self, theta: Numbers) -> Numbers:
-        """Compute ln of the posterior density up to a constant, (points,); all values in a range are equally likely."""
+        """Compute the logarithm of the posterior density of each point, up to a constant: (points,).
+
+        All values in a range are equally likely.
+        """
         prior = log_prior(self.transform, theta)
         inside = numpy.clip(theta, self.transform.low, self.transform.high)
-        residuals = self.residuals(self.forward.at(self.transform.values(inside)))
+        residuals = self.residuals(self.forward.results_at(self.transform.to_values(inside)))
         total = prior - numpy.sum(residuals**2, axis=1) / 2
         return numpy.where(numpy.isfinite(total), total, -inf)
 
-    def information(self, theta: Numbers) -> Numbers:
-        """Compute the Fisher information of the data about theta, (unknowns, unknowns)."""
+    def fisher_information(self, theta: Numbers) -> Numbers:
+        """Compute the Fisher information matrix of the data on theta: (unknowns, unknowns)."""
         results, slopes = self.slopes(self.forward, self.transform, theta)
         return (slopes * self._weights(results)[:, None]).T @ slopes
 
-    def shifts(self, theta: Numbers, errors: Numbers) -> Numbers:
-        """Compute JᵀW δ for errors δ (kinds, data) of the values: (unknowns, kinds)."""
+    def project_errors(self, theta: Numbers, errors: Numbers) -> Numbers:
+        """Project errors of the values on the unknowns: Jᵀ W δ of shape (unknowns, kinds).
+
+        J are the derivatives, W the weights, and δ the errors (kinds, data).
+        """
         results, slopes = self.slopes(self.forward, self.transform, theta)
         return slopes.T @ (self._weights(results) * errors).T
 
     def _weights(self, results: Numbers) -> Numbers:
-        """Compute the information of each value about its result, in 1/unit²."""
+        """Compute the Fisher information of each value on its model result, in 1/unit²."""
         information = numpy.where(self.saturated, self._censored_information(results), self.scatter.information)
         return information / (self.widening * self.uncertainty) ** 2
 
     def _censored_information(self, results: Numbers) -> Numbers:
-        """Compute -d²/dz² of ln P(reading above): h² + h s, with the hazard h and the slope s of -ln of the density."""
-        z = self.standard(results)
+        """Compute the Fisher information of saturated values, for an uncertainty of 1.
+
+        It is -d²/dz² of ln P(reading above): h² + h s, with the hazard h and the slope s of -ln of the density.
+        """
+        z = self.standardised_residuals(results)
         residual, slope = self.scatter.censored(z)
         hazard, density_slope = -residual * slope, self.scatter.misfit(z) * self.scatter.slope(z)
         return numpy.maximum(hazard * (hazard + density_slope), 0.0)

@@ -16,7 +16,7 @@ from ..models.adhesion import AdhesiveSocket
 
 @dataclass(frozen=True, kw_only=True)
 class ModelNumber:
-    """One number of a contact model.
+    """Parameter of a contact model that can be an unknown, such as the work of adhesion.
 
     Attributes
     ----------
@@ -35,16 +35,16 @@ class ModelNumber:
 
     @property
     def name(self) -> str:
-        """Name of the quantity, which is also the name of the unknown."""
+        """Name of the parameter, which is also the name of the unknown."""
         return self.quantity.name
 
     def belongs_to(self, model: Model) -> bool:
-        """Check if a model, or the model that it wraps, has this number."""
+        """Check if a model, or the model that it wraps, has this parameter."""
         inner = _wrapped(model)
         return isinstance(model, self.models) if inner is None else self.belongs_to(inner)
 
     def insert_into(self, model: Model, value: Array) -> Model:
-        """Return the model with another value of this number."""
+        """Return a copy of the model with another value of this parameter."""
         inner = _wrapped(model)
         if inner is not None:
             wrapper: Any = model
@@ -58,7 +58,7 @@ class ModelNumber:
 
 
 def _wrapped(model: Model) -> Model | None:
-    """Return the model inside a wrapper, such as a model in a cup; None for a plain model."""
+    """Return the model inside a wrapper, such as a model in a cup; None if there is no wrapper."""
     inner = getattr(model, "model", None)
     return inner if isinstance(inner, Model) else None
 

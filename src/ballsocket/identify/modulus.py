@@ -25,12 +25,14 @@ FORCES = (1000.0, 2000.0, 3000.0)
 
 
 def as_constant(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """Return a constant modulus: the mean of `wanted`, the target K in MPa/mm of the shape of the joint."""
+    """Fit a constant foundation modulus: the mean of the target moduli `wanted` in MPa/mm."""
     return constant(float(numpy.mean(wanted)))
 
 
 def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """Fit K R2/E = C1 + C2 (R2/L) + C3 (R2/L)², Eq. (18), by least squares of relative errors.
+    """Fit the polynomial foundation modulus of Eq. (18) by least squares of relative errors.
+
+    K R2/E = C1 + C2 (R2/L) + C3 (R2/L)².
 
     The constants are 0 or more.
 
@@ -41,22 +43,25 @@ def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
     """
     from scipy.optimize import nnls
 
-    thicknesses = numpy.unique(_values(joint.thickness_ratio)).size
+    thicknesses = numpy.unique(_to_floats(joint.thickness_ratio)).size
     if thicknesses < 3:
         raise ValueError(
             f"liner_thickness has {thicknesses} different values, but Eq. (18) has three constants: give 3 or more"
         )
-    ratio, scaled = numpy.broadcast_arrays(_values(joint.thickness_ratio), wanted * _values(joint.socket_radius))
-    scaled = scaled / _values(joint.liner.young)
+    ratio, scaled = numpy.broadcast_arrays(_to_floats(joint.thickness_ratio), wanted * _to_floats(joint.socket_radius))
+    scaled = scaled / _to_floats(joint.liner.young)
     basis = numpy.stack([ratio.ravel() ** k for k in range(3)], axis=-1) / scaled.ravel()[:, None]
     constants, _ = nnls(basis, numpy.ones(scaled.size))
     return polynomial(*map(float, constants), source="fitted")
 
 
 def as_corrected_vessel(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """Fit K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L), by least squares."""
-    ratio = _values(joint.thickness_ratio)
-    kappa, factor = numpy.broadcast_arrays(ratio / (1 + ratio), wanted / _values(spherical_vessel(joint)))
+    """Fit a corrected vessel modulus K_B (a0 + a1 κ + a2 κ²) by least squares.
+
+    κ = R2/(R2 + L), and K_B is the modulus of a spherical vessel.
+    """
+    ratio = _to_floats(joint.thickness_ratio)
+    kappa, factor = numpy.broadcast_arrays(ratio / (1 + ratio), wanted / _to_floats(spherical_vessel(joint)))
     powers = min(3, numpy.unique(kappa).size)  # one thickness determines one constant
     basis = numpy.stack([kappa.ravel() ** k for k in range(powers)], axis=-1)
     constants = numpy.linalg.lstsq(basis, factor.ravel(), rcond=None)[0]
@@ -65,7 +70,7 @@ def as_corrected_vessel(joint: Joint, wanted: numpy.ndarray) -> Modulus:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Calibration:
-    """A foundation modulus fitted to a reference.
+    """Foundation modulus fitted to a reference model, with its errors.
 
     Attributes
     ----------
@@ -91,17 +96,20 @@ class Calibration:
 
     @property
     def model(self) -> RadialFoundation:
-        """Closed form of the paper with the fitted modulus."""
+        """Closed-form contact model with the fitted modulus."""
         return RadialFoundation(modulus=self.modulus)
 
     @property
     def residual(self) -> numpy.ndarray:
-        """Relative residual of the fit, fitted over target less 1; shape of the joint."""
-        return _values(self.modulus(self.joint)) / self.wanted - 1
+        """Relative residual of the fitted modulus, fitted over target minus 1.
+
+        It has the shape of the joint.
+        """
+        return _to_floats(self.modulus(self.joint)) / self.wanted - 1
 
     @cached_property
     def error(self) -> dict[str, float]:
-        """Worst relative error of the closed form over joints and loads.
+        """Largest relative error of the closed form over joints and loads, by quantity.
 
         In indentation, peak pressure and half angle at equal force; in force at equal indentation.
         """
@@ -110,13 +118,13 @@ class Calibration:
         at_force = self.model.press(self.joint, force=force)
         at_depth = self.model.press(self.joint, indentation=truth.indentation)
         errors = {
-            name: worst_error(getattr(at_force, name), getattr(truth, name))
+            name: max_relative_error(getattr(at_force, name), getattr(truth, name))
             for name in ("indentation", "max_pressure", "half_angle")
         }
-        return {**errors, "force": worst_error(at_depth.force, truth.force)}
+        return {**errors, "force": max_relative_error(at_depth.force, truth.force)}
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
+        """Return a dictionary of the calibration for JSON."""
         return {
             "reference": self.reference.name,
             "modulus": self.modulus.name,
@@ -132,7 +140,7 @@ class Calibration:
 def calibrate(
     joint: Joint, *, force: Array = FORCES, form: Form = as_constant, reference: Model | None = None
 ) -> Calibration:
-    """Fit a foundation modulus to the mean of p0/d of a reference model over several loads.
+    """Fit a foundation modulus to the mean p0/d of a reference model over several loads.
 
     The paper fits its modulus to finite elements in the same way.
 
@@ -170,7 +178,7 @@ def calibrate(
         raise ValueError(f"force = {loads.tolist()} is not allowed: a calibration needs loads (N) above 0")
     shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in joint.numbers()))
     contact = model.press(joint, force=loads.reshape(-1, *(1 for _ in shape)))
-    moduli = _values(contact.foundation_modulus)
+    moduli = _to_floats(contact.foundation_modulus)
     if not numpy.all(numpy.isfinite(moduli)):
         raise ValueError(f"{model.name} has no result for some joints or loads: {'; '.join(contact.notes)}")
     wanted = numpy.mean(moduli, axis=0)
@@ -184,11 +192,11 @@ def calibrate(
     )
 
 
-def _values(x: Array) -> numpy.ndarray:
-    """Convert numbers of any array library to a NumPy array."""
+def _to_floats(x: Array) -> numpy.ndarray:
+    """Convert numbers or arrays of any library to a NumPy array of floats."""
     return numpy.asarray(arrays.to_numpy(x), dtype=float)
 
 
-def worst_error(value: Array, truth: Array) -> float:
-    """Compute the largest relative error of all points."""
-    return float(numpy.max(abs(_values(value) / _values(truth) - 1)))
+def max_relative_error(value: Array, truth: Array) -> float:
+    """Compute the largest relative error of values over all points."""
+    return float(numpy.max(abs(_to_floats(value) / _to_floats(truth) - 1)))

@@ -16,7 +16,7 @@ from ..core.quantities import Quantity
 
 @dataclass(frozen=True)
 class CustomObservable:
-    """A custom quantity that is computed from a contact.
+    """Custom measured quantity that is computed from a contact.
 
     Attributes
     ----------
@@ -41,7 +41,9 @@ FREQUENCY = Quantity(
 
 
 def oscillation(mass: float) -> CustomObservable:
-    """Return the frequency in Hz of a mass on a contact, sqrt(dF/dd / m) / 2π, as a custom observable.
+    """Make a custom observable for the oscillation frequency in Hz of a mass on the contact.
+
+    The frequency is sqrt(dF/dd / m) / 2π.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ CONVERGED = 1.01
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Samples of the posterior distribution, with their quality.
+    """Samples of the posterior distribution of the unknowns, with convergence measures.
 
     Attributes
     ----------
@@ -50,22 +50,22 @@ class Posterior:
 
     @property
     def converged(self) -> bool:
-        """True if R-hat of every unknown is at most `CONVERGED`."""
+        """True if the chains have converged: R-hat of every unknown is at most `CONVERGED`."""
         return max(self.r_hat.values()) <= CONVERGED
 
     @renamed_arguments(share="probability")
     def band(self, name: str, probability: float = 0.95) -> tuple[float, float]:
-        """Compute the central interval that holds an unknown with a probability."""
+        """Compute the central credible interval of an unknown for a given probability."""
         column = self.samples[:, self.names.index(name)]
         low, high = numpy.quantile(column, [(1 - probability) / 2, (1 + probability) / 2])
         return float(low), float(high)
 
     def median(self, name: str) -> float:
-        """Compute the median of an unknown."""
+        """Compute the posterior median of an unknown."""
         return float(numpy.median(self.samples[:, self.names.index(name)]))
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
+        """Return a dictionary of the posterior for JSON."""
         return {
             "samples": len(self.samples),
             "acceptance": self.acceptance,
@@ -82,7 +82,7 @@ class Posterior:
 
 @renamed_arguments(found="fitted")
 def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Posterior:
-    """Sample the posterior distribution by two ensembles of Markov chains.
+    """Sample the posterior distribution of the unknowns by Markov chain Monte Carlo.
 
     Half of the proposals are independent draws about the best point, with the covariance there. The others are moves
     between walkers, which follow a curved posterior. The chains end when the number of independent samples suffices.
@@ -112,7 +112,7 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
     """
     needs("identify", "emcee")
     require("samples", samples, samples >= 100, "a posterior has 100 samples or more")
-    ensembles = [_ensemble(fitted, seed + number) for number in range(_N_ENSEMBLES)]
+    ensembles = [_start_ensemble(fitted, seed + number) for number in range(_N_ENSEMBLES)]
     steps = ceil(samples / (_N_WALKERS * _N_ENSEMBLES))
     for _ in range(_MAX_ROUNDS):
         for sampler in ensembles:
@@ -122,17 +122,19 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
         steps = ceil(0.5 * chains.shape[1])
         if chains[..., 0].size >= samples * times.max() and chains.shape[1] > 10 * times.max():
             break
-    return _posterior(fitted, ensembles, chains, times, samples)
+    return _select_samples(fitted, ensembles, chains, times, samples)
 
 
-def _posterior(fitted: FittedModel, ensembles: list[Any], chains: Numbers, times: Numbers, samples: int) -> Posterior:
-    """Select equally spaced samples of all chains, with their quality."""
+def _select_samples(
+    fitted: FittedModel, ensembles: list[Any], chains: Numbers, times: Numbers, samples: int
+) -> Posterior:
+    """Select equally spaced samples from all chains, and compute their convergence measures."""
     names = fitted.transform.names
     flat = chains.reshape(-1, chains.shape[-1])
     selected = flat[numpy.linspace(0, len(flat) - 1, samples).round().astype(int)]
     return Posterior(
         names=names,
-        samples=fitted.transform.values(selected),
+        samples=fitted.transform.to_values(selected),
         acceptance=float(numpy.mean([sampler.acceptance_fraction.mean() for sampler in ensembles])),
         autocorrelation=dict(zip(names, times.tolist(), strict=True)),
         effective=dict(zip(names, (len(flat) / times).tolist(), strict=True)),
@@ -140,28 +142,28 @@ def _posterior(fitted: FittedModel, ensembles: list[Any], chains: Numbers, times
     )
 
 
-def _ensemble(fitted: FittedModel, seed: int) -> Any:
-    """Return a sampler after burn-in, with proposals that match the first chains."""
+def _start_ensemble(fitted: FittedModel, seed: int) -> Any:
+    """Return an ensemble sampler after burn-in, with proposals adapted to the first chains."""
     random = numpy.random.RandomState(seed)
     guess = _StudentProposal(fitted.best.theta, numpy.linalg.cholesky(fitted.information.covariance))
     start = guess.draw(_N_WALKERS, random)
     transform = fitted.transform
     anywhere = transform.low + (transform.high - transform.low) * random.random_sample(start.shape)
     start = numpy.where((start > transform.low) & (start < transform.high), start, anywhere)
-    first = _sampler(fitted, guess, random)
+    first = _make_sampler(fitted, guess, random)
     start = first.run_mcmc(start, _BURN_IN, skip_initial_state_check=True).coords
     chain = first.get_chain(discard=_BURN_IN // 2, flat=True)
     count = len(transform.names)
     covariance = numpy.cov(chain.T).reshape(2 * [count]) + 1e-12 * numpy.eye(count)
-    second = _sampler(fitted, _StudentProposal(chain.mean(axis=0), numpy.linalg.cholesky(covariance)), random)
+    second = _make_sampler(fitted, _StudentProposal(chain.mean(axis=0), numpy.linalg.cholesky(covariance)), random)
     state = second.run_mcmc(start, _BURN_IN // 2, skip_initial_state_check=True)
     second.reset()
     second.run_mcmc(state, 1, skip_initial_state_check=True)
     return second
 
 
-def _sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
-    """Return an ensemble sampler of emcee with three kinds of moves."""
+def _make_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
+    """Make an ensemble sampler of emcee with three kinds of moves."""
     from emcee import EnsembleSampler
     from emcee.moves import DEMove, MHMove, StretchMove
 
@@ -174,31 +176,34 @@ def _sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> An
 
 @dataclass(frozen=True, eq=False)
 class _StudentProposal:
-    """Proposals by Student's t about a centre, independent of the walkers."""
+    """Proposal distribution of Markov chains: Student's t about a centre."""
 
     centre: Numbers
     root: Numbers
 
     def draw(self, count: int, random: Any) -> Numbers:
-        """Draw `count` proposals of the scaled parameters theta: (count, unknowns)."""
+        """Draw proposals of the scaled parameters theta: (count, unknowns)."""
         size = len(self.centre)
         scale = numpy.sqrt(_PROPOSAL_FREEDOM / random.chisquare(_PROPOSAL_FREEDOM, (count, 1)))
         return self.centre + scale * random.standard_normal((count, size)) @ self.root.T
 
     def log_density(self, theta: Numbers) -> Numbers:
-        """Compute ln of the density up to a constant, (points,)."""
+        """Compute the logarithm of the proposal density up to a constant: (points,)."""
         standard = numpy.linalg.solve(self.root, (theta - self.centre).T)
         exponent = -(_PROPOSAL_FREEDOM + len(self.centre)) / 2
         return exponent * numpy.log1p(numpy.sum(standard**2, axis=0) / _PROPOSAL_FREEDOM)
 
     def __call__(self, theta: Numbers, random: Any) -> tuple[Numbers, Numbers]:
-        """Return a proposal for each walker, and ln of the ratio of the proposal densities."""
+        """Propose a new point for each walker, with the log ratio of the proposal densities."""
         new = self.draw(len(theta), random)
         return new, self.log_density(theta) - self.log_density(new)
 
 
 def _autocorrelation_time(chains: Numbers) -> float:
-    """Compute the integrated autocorrelation time of chains (ensembles, steps, walkers) over Sokal's window."""
+    """Compute the integrated autocorrelation time in steps, over Sokal's window.
+
+    The chains are (ensembles, steps, walkers).
+    """
     steps = chains.shape[1]
     deviations = chains - chains.mean()
     power = abs(numpy.fft.rfft(deviations, 2 * steps, axis=1)) ** 2
@@ -210,7 +215,10 @@ def _autocorrelation_time(chains: Numbers) -> float:
 
 
 def _r_hat(chains: Numbers) -> float:
-    """Compute the split R-hat of chains (ensembles, steps, walkers): each ensemble is cut in halves."""
+    """Compute the split R-hat convergence measure of chains (ensembles, steps, walkers).
+
+    Each ensemble is cut into halves.
+    """
     steps = chains.shape[1] // 2
     halves = numpy.concatenate([chains[:, :steps], chains[:, -steps:]]).reshape(2 * len(chains), -1)
     count = halves.shape[1]

@@ -27,7 +27,7 @@ _END_TOLERANCE = 1e-6  # distance in theta from the end of a range
 
 @dataclass(frozen=True, eq=False, repr=False)
 class IdentificationResult(FittedModel):
-    """Joint parameters identified from measurements.
+    """Result of an identification: estimates, bands, notes and the next measurement.
 
     Attributes
     ----------
@@ -43,17 +43,17 @@ class IdentificationResult(FittedModel):
 
     @cached_property
     def sensitivity(self) -> tuple[Sensitivity, ...]:
-        """Shifts of the estimates by machine errors of assumed size: zero offset, compliance and drift."""
+        """Shifts of the estimates by assumed machine errors: zero offset, compliance and drift."""
         return sensitivities(self)
 
     def shift_ratio(self, error: Sensitivity, name: str) -> float:
-        """Compute the ratio of a shift to half the width of the band; 0 for an unidentifiable unknown."""
+        """Compute the ratio of a shift to half the band width; 0 for an unidentifiable unknown."""
         estimate = self.estimates[name]
         return 2 * abs(error.shifts[name]) / (estimate.high - estimate.low) if estimate.identifiable else 0.0
 
     @cached_property
     def notes(self) -> tuple[str, ...]:
-        """Notes on identifiability, ends of ranges, fit, machine errors, and validity of the model."""
+        """Notes on identifiability, range ends, fit, machine errors and model validity."""
         writers = (
             _identifiability_notes,
             _band_notes,
@@ -67,15 +67,15 @@ class IdentificationResult(FittedModel):
 
     @cached_property
     def next(self) -> Experiment:
-        """Expected gains of the standard measurements over the loads of the data; see `experiment`."""
+        """Expected information gains of the standard next measurements; see `experiment`."""
         return experiment(self)
 
     def posterior(self, samples: int = 4000, seed: int = 0) -> Posterior:
-        """Sample the posterior by Markov chains; see `ballsocket.identify.posterior.posterior`."""
+        """Sample the posterior distribution by Markov chains; see `ballsocket.identify.posterior.posterior`."""
         return posterior(self, samples, seed)
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON in mm, N, MPa, rad."""
+        """Return a dictionary of the result for JSON, in mm, N, MPa, rad."""
         return {
             "model": self.model.name,
             "valid": self.identifiable and self.best.converged,
@@ -102,7 +102,7 @@ class IdentificationResult(FittedModel):
         }
 
     def __repr__(self) -> str:
-        rows = [f"{estimate.name} {_value_and_band(estimate)}" for estimate in self.estimates.values()]
+        rows = [f"{estimate.name} {_format_estimate(estimate)}" for estimate in self.estimates.values()]
         products = [
             f"{product.name} = {product.value:.4g} {product.unit} ({product.low:.4g} to {product.high:.4g})"
             for product in self.information.products
@@ -110,20 +110,20 @@ class IdentificationResult(FittedModel):
         return "\n".join([*rows, *products, *self.notes])
 
 
-def _value_and_band(estimate: Estimate) -> str:
-    """Write a value and its band with their unit."""
+def _format_estimate(estimate: Estimate) -> str:
+    """Format the value and band of an estimate with their unit."""
     unit = f" {estimate.unit}" if estimate.unit != "1" else ""
     band = f"{estimate.low:.4g} to {estimate.high:.4g}{unit}"
     return f"= {estimate.value:.4g}{unit} ({band})" if estimate.identifiable else f"is not identifiable: {band}"
 
 
 def _finite_or_none(number: float) -> float | None:
-    """Return a finite number, else None."""
+    """Return a finite number, or None for JSON if it is infinite or NaN."""
     return number if abs(number) < float("inf") else None
 
 
 def _identifiability_notes(result: IdentificationResult) -> Iterator[str]:
-    """Note the unidentifiable unknowns, and the measurements that would identify them."""
+    """Yield a note on unidentifiable unknowns and the measurements that would identify them."""
     unidentifiable = result.information.unidentifiable
     if not unidentifiable:
         return
@@ -147,7 +147,7 @@ def _identifiability_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _band_notes(result: IdentificationResult) -> Iterator[str]:
-    """Note the bands that end at the end of a range."""
+    """Yield notes on bands that a range limits."""
     for name, estimate in result.estimates.items():
         if name not in estimate.limited_by:
             continue
@@ -164,22 +164,22 @@ def _band_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _title_in_notes(quantity: str) -> str:
-    """Return the name of a quantity for notes."""
+    """Return the title of a measured quantity for notes."""
     return "free play" if quantity == "diametral_clearance" else MEASURED[quantity].title
 
 
 def _join_with_or(names: Sequence[str]) -> str:
-    """Join names by commas and "or"."""
+    """Join names by commas and a final "or"."""
     return " or ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 
 
 def _join_with_and(names: Sequence[str]) -> str:
-    """Join names by commas and "and"."""
+    """Join names by commas and a final "and"."""
     return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 
 
 def _search_notes(result: IdentificationResult) -> Iterator[str]:
-    """Note a search without convergence, and other points with nearly the same misfit."""
+    """Yield notes on a search that did not converge, and on other points that fit as well."""
     if not result.best.converged:
         yield "the search did not converge: the numbers are those of its last step"
     if result.best.rivals and result.identifiable:
@@ -187,17 +187,17 @@ def _search_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _range_notes(result: IdentificationResult) -> Iterator[str]:
-    """Note the best values that lie at the end of their range."""
+    """Yield notes on best values at an end of their range."""
     theta = result.best.theta
     for index, unknown in enumerate(result.transform.unknowns):
         for side, end in ((-1, unknown.low), (1, unknown.high)):
-            at_end = abs(theta[index] - unknown.to_scale(end) / unknown.span) < _END_TOLERANCE
+            at_end = abs(theta[index] - unknown.to_scale(end) / unknown.prior_deviation) < _END_TOLERANCE
             if at_end and not unknown.is_physical(side, theta[index]):
                 yield f"the best {unknown.name} is {end:g}, the end of its range: widen the range, or check the data"
 
 
 def _fit_notes(result: IdentificationResult) -> Iterator[str]:
-    """Note outliers, a scatter larger than stated, and the factor on the uncertainties."""
+    """Yield notes on outliers, excessive scatter, and widened uncertainties."""
     from scipy.stats import chi2
 
     outliers = [
@@ -219,7 +219,7 @@ def _fit_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _machine_notes(result: IdentificationResult) -> Iterator[str]:
-    """Note the machine errors that shift an estimate by a standard uncertainty or more."""
+    """Yield notes on machine errors that shift an estimate by a standard uncertainty or more."""
     numbers = [unknown.name for unknown in result.transform.unknowns if not unknown.of_machine]
     for error in result.sensitivity if numbers else ():
         ratio, name = max((result.shift_ratio(error, name), name) for name in numbers)
@@ -233,7 +233,7 @@ def _machine_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _validity_notes(result: IdentificationResult) -> Iterator[str]:
-    """List the notes of the model at the loads of the data."""
+    """Yield the model's own notes on the contacts at the loads of the data."""
     notes: dict[str, None] = {}
     for measured in result.data:
         if measured.load:

@@ -14,60 +14,66 @@ from ..core.deprecation import RenamedAttribute, renamed_names
 
 
 class ScatterModel(Protocol):
-    """Distribution of the standardised residual z = (result - value)/uncertainty."""
+    """Protocol of a distribution of the standardised residual z = (result - value)/uncertainty."""
 
     def misfit(self, z: Numbers) -> Numbers:
-        """Compute r, where r²/2 is minus ln of the density over the density at 0."""
+        """Compute the least-squares residual r of a value from its standardised residual z.
+
+        r²/2 is minus ln of the density, relative to the density at 0.
+        """
 
     def slope(self, z: Numbers) -> Numbers:
-        """Compute dr/dz."""
+        """Compute the derivative dr/dz of the least-squares residual."""
 
     def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute r and dr/dz of a lower bound, where r²/2 is minus ln P(reading above result - z)."""
+        """Compute the least-squares residual of a saturated value, and its derivative.
+
+        r²/2 is minus ln of the probability of a reading above the limit.
+        """
 
     @property
     def information(self) -> float:
-        """Fisher information of one reading about the true value, in 1/uncertainty²."""
+        """Fisher information of one reading on the true value, in 1/uncertainty²."""
 
     @property
     def constant(self) -> float:
-        """Natural logarithm of the density at 0, for an uncertainty of 1."""
+        """Logarithm of the probability density at 0, for an uncertainty of 1."""
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
-        """Draw readings about 0 with an uncertainty of 1."""
+        """Draw random readings about 0 with an uncertainty of 1."""
 
 
 @dataclass(frozen=True)
 class NormalScatter:
-    """Normal scatter of the readings about the true value."""
+    """Normal distribution of the readings about the true value."""
 
     @property
     def information(self) -> float:
-        """Fisher information of a reading, 1."""
+        """Fisher information of one reading on the true value, 1/uncertainty²."""
         return 1.0
 
     @property
     def constant(self) -> float:
-        """Natural logarithm of the density at 0."""
+        """Logarithm of the probability density at 0, for an uncertainty of 1."""
         return -log(2 * pi) / 2
 
     def misfit(self, z: Numbers) -> Numbers:
-        """Return z, as -ln of the density over that at 0 is z²/2."""
+        """Return the least-squares residual, which equals the standardised residual z."""
         return z
 
     def slope(self, z: Numbers) -> Numbers:
-        """Return ones, the derivative of the misfit."""
+        """Return the derivative of the least-squares residual, 1 for each value."""
         return numpy.ones_like(z)
 
     def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute misfit and slope of a lower bound from the normal distribution function."""
+        """Compute the least-squares residual of a saturated value, and its derivative."""
         from scipy.special import log_ndtr
 
         logarithm = log_ndtr(z)
-        return _censored(logarithm, numpy.exp(self.constant - z * z / 2 - logarithm))
+        return _censored_residual(logarithm, numpy.exp(self.constant - z * z / 2 - logarithm))
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
-        """Draw normal readings."""
+        """Draw random readings from the standard normal distribution."""
         return random.standard_normal(count)
 
     beyond = RenamedAttribute("censored")
@@ -76,7 +82,7 @@ class NormalScatter:
 
 @dataclass(frozen=True, kw_only=True)
 class HeavyTailed:
-    """Scatter by Student's t about the true value, which limits the influence of outliers.
+    """Student's t distribution of the readings, which limits the influence of outliers.
 
     Parameters
     ----------
@@ -101,43 +107,54 @@ class HeavyTailed:
 
     @property
     def information(self) -> float:
-        """Fisher information of one reading about the true value, in 1/uncertainty²."""
+        """Fisher information of one reading on the true value, in 1/uncertainty²."""
         return (self.degrees + 1) / (self.degrees + 3)
 
     @property
     def constant(self) -> float:
-        """Natural logarithm of the density at 0."""
+        """Logarithm of the probability density at 0, for an uncertainty of 1."""
         n = self.degrees
         return lgamma((n + 1) / 2) - lgamma(n / 2) - log(n * pi) / 2
 
     def misfit(self, z: Numbers) -> Numbers:
-        """Compute r = ±sqrt((n + 1) ln(1 + z²/n)) for n degrees of freedom."""
+        """Compute the least-squares residual of a value from its standardised residual z.
+
+        r = ±sqrt((n + 1) ln(1 + z²/n)) for n degrees of freedom.
+        """
         return numpy.sign(z) * numpy.sqrt((self.degrees + 1) * numpy.log1p(z * z / self.degrees))
 
     def slope(self, z: Numbers) -> Numbers:
-        """Compute dr/dz; its limit at 0 is sqrt((n + 1)/n)."""
+        """Compute the derivative dr/dz of the least-squares residual.
+
+        Its limit at 0 is sqrt((n + 1)/n).
+        """
         n, r = self.degrees, self.misfit(z)
         at_centre = abs(z) < 1e-6
         slope = (n + 1) * z / (n + z * z) / numpy.where(at_centre, 1.0, r)
         return numpy.where(at_centre, ((n + 1) / n) ** 0.5, slope)
 
     def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute misfit and slope of a lower bound from Student's distribution function."""
+        """Compute the least-squares residual of a saturated value, and its derivative."""
         from scipy.special import stdtr
 
         probability = numpy.maximum(stdtr(self.degrees, z), 1e-300)
-        return _censored(numpy.log(probability), numpy.exp(self.constant - self.misfit(z) ** 2 / 2) / probability)
+        return _censored_residual(
+            numpy.log(probability), numpy.exp(self.constant - self.misfit(z) ** 2 / 2) / probability
+        )
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
-        """Draw readings of Student's t."""
+        """Draw random readings from Student's t distribution."""
         return random.standard_t(self.degrees, count)
 
     beyond = RenamedAttribute("censored")
     told = RenamedAttribute("information")
 
 
-def _censored(logarithm: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute r and dr/dz from ln P and its derivative."""
+def _censored_residual(logarithm: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
+    """Compute the least-squares residual of a saturated value, and its derivative, from ln P.
+
+    P is the probability of a reading above the limit. `hazard` is the derivative of ln P.
+    """
     r = numpy.sqrt(-2 * numpy.minimum(logarithm, 0.0))
     return r, numpy.where(r > 1e-150, -hazard / numpy.maximum(r, 1e-150), 0.0)
 

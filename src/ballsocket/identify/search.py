@@ -16,14 +16,14 @@ _EQUAL_COST = 1e-6  # difference of cost that counts as equal
 
 
 def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
-    """Minimise the misfit from the best points of a global search.
+    """Find the best fit by least squares, from the best points of a global search.
 
     Raises
     ------
     ValueError
         The model has no result for all data at any point within the ranges.
     """
-    ends = [minimise(misfit, start) for start in _starts(misfit, seed)]
+    ends = [minimise(misfit, start) for start in _choose_starts(misfit, seed)]
     best = _choose_fit(misfit, ends)
     distant = [end for end in ends if numpy.max(abs(end.theta - best.theta)) > _SAME_POINT]
     rivals = tuple(end.theta for end in distant if end.cost < best.cost + _RIVAL_COST)
@@ -31,14 +31,20 @@ def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
 
 
 def _choose_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
-    """Choose the fit of least cost; among fits of equal cost, the one nearest to the middle of the ranges."""
+    """Choose the fit of lowest cost.
+
+    Among fits of equal cost it is the one nearest to the middle of the ranges.
+    """
     least, middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
     lowest = [end for end in ends if end.cost <= least + _EQUAL_COST]
     return min(lowest, key=lambda end: float(numpy.max(abs(end.theta - middle))))
 
 
-def _starts(misfit: Misfit, seed: int) -> list[Numbers]:
-    """Return the best point of a Sobol sequence, and the best point that is far from it."""
+def _choose_starts(misfit: Misfit, seed: int) -> list[Numbers]:
+    """Choose one or two starting points from a Sobol sequence.
+
+    They are the point of lowest cost, and the best point far from it.
+    """
     from scipy.stats import qmc
 
     low, high = misfit.transform.low, misfit.transform.high
@@ -60,12 +66,13 @@ def _starts(misfit: Misfit, seed: int) -> list[Numbers]:
 
 
 def minimise(misfit: Misfit, start: Numbers) -> FitResult:
-    """Minimise the misfit from a start by least squares with derivatives."""
+    """Minimise the misfit from a starting point by least squares with derivatives."""
     from scipy.optimize import least_squares
 
     cache: dict[bytes, tuple[Numbers, Numbers]] = {}
 
     def evaluate(theta: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute residuals and derivatives, and cache those of the last point."""
         key = theta.tobytes()
         if key not in cache:
             cache.clear()

@@ -22,7 +22,7 @@ _TYPICAL_FORCE = 500.0  # force in N of the reading by which errors are ordered
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Shift of the estimates by one error of a machine.
+    """Sensitivity of the estimates to one machine error of assumed size.
 
     Attributes
     ----------
@@ -43,20 +43,23 @@ class Sensitivity:
 
     @property
     def title(self) -> str:
-        """Description of the error, such as "a zero offset of 1 µm"."""
+        """Description of the machine error, such as "a zero offset of 1 µm"."""
         error = MACHINE_ERRORS[self.part]
         shown = error.quantity.shown
         of_machine = f" in {self.machine}" if self.machine else ""
         return f"{error.phrase.format(f'{shown.factor * self.size:g} {shown.text}')}{of_machine}"
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON in mm, N, MPa, rad; the shift of an unidentifiable unknown is None."""
+        """Return a dictionary of the shifts for JSON, in mm, N, MPa, rad.
+
+        The shift of an unidentifiable unknown is None.
+        """
         shifts = {name: shift if shift == shift else None for name, shift in self.shifts.items()}
         return {"machine": self.machine, "error": self.part, "size": self.size, "shifts": shifts}
 
 
 def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
-    """Compute the shifts of all estimates by errors of the machines that read indentations.
+    """Compute the shifts of all estimates caused by machine errors of assumed size.
 
     The shifts are linear at the best point: δθ = (Jᵀ W J)⁻¹ Jᵀ W δ, with the errors δ of the values. Errors that are
     unknowns of the fit are omitted. Their sizes are those assumed in the registry.
@@ -65,10 +68,10 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
     if not cases:
         return ()
     theta, transform, forward = fitted.best.theta, fitted.transform, fitted.misfit.forward
-    values = transform.values(theta[None])
-    results = forward.at(values)[0]
+    values = transform.to_values(theta[None])
+    results = forward.results_at(values)[0]
     errors = numpy.stack([_result_change(fitted, machine, error, values, results) for machine, error in cases])
-    moves = fitted.information.covariance @ fitted.misfit.shifts(theta, errors)
+    moves = fitted.information.covariance @ fitted.misfit.project_errors(theta, errors)
     shifts = transform.derivatives(theta)[:, None] * moves
     unidentifiable = [name in fitted.information.unidentifiable for name in transform.names]
     shifts[unidentifiable] = numpy.nan
@@ -79,32 +82,35 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
 
 
 def _neglected_errors(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]:
-    """Yield the name of each machine with each error that is not an unknown, the largest error first."""
+    """Yield (machine name, error) for each machine error that is not an unknown.
+
+    The errors are in descending order of their effect.
+    """
     machines = {measured.machine.name: measured.machine for measured in fitted.data if _reads_indentation(measured)}
     errors = sorted(MACHINE_ERRORS.values(), key=lambda error: -error.assumed * abs(error.effect(_TYPICAL_FORCE, 1.0)))
     for name, machine in machines.items():
         for error in errors:
-            if machine.key(error.name) not in machine.unknowns:
+            if machine.key(error.name) not in machine.unknown_errors:
                 yield name, error
 
 
 def _reads_indentation(measured: Measured) -> bool:
-    """Check if a data set has indentations as values or loads."""
+    """Check if the values or the loads of a data set are indentations."""
     return "indentation" in (measured.quantity, measured.load)
 
 
 def _result_change(fitted: FittedModel, name: str, error: MachineError, values: Numbers, results: Numbers) -> Numbers:
-    """Compute the change of the results by an error of a machine, (data,)."""
+    """Compute the change of the model results caused by a machine error of assumed size: (data,)."""
     data = tuple(
-        _with_error(measured, error) if _reads_indentation(measured) and measured.machine.name == name else measured
+        _add_error(measured, error) if _reads_indentation(measured) and measured.machine.name == name else measured
         for measured in fitted.data
     )
-    changed = replace(fitted.misfit.forward, data=data).at(values)[0]
+    changed = replace(fitted.misfit.forward, data=data).results_at(values)[0]
     return (changed - results) / _RELATIVE_STEP
 
 
-def _with_error(measured: Measured, error: MachineError) -> Measured:
-    """Return the data set with an error added to its machine."""
+def _add_error(measured: Measured, error: MachineError) -> Measured:
+    """Return a copy of a data set whose machine has an additional error."""
     machine = measured.machine if measured.machine.name else Machine(name=_DEFAULT_NAME)
     size: dict[str, Any] = {error.name: getattr(machine, error.name) + _RELATIVE_STEP * error.assumed}
     return replace(measured, machine=replace(machine, **size))

@@ -9,7 +9,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import renamed_arguments
+from ..core.deprecation import renamed_arguments, renamed_names
 from .bands import compute_bands
 from .fit import FittedModel
 from .measured import Measured
@@ -18,7 +18,7 @@ from .search import find_best_fit
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """Estimates and bands from many synthetic sets of data.
+    """Estimates and bands from repeated identifications of synthetic data.
 
     Attributes
     ----------
@@ -36,30 +36,30 @@ class Trials:
     high: Numbers
 
     @property
-    def half(self) -> Numbers:
-        """Half widths of the bands."""
+    def half_widths(self) -> Numbers:
+        """Half widths of the 95 % bands, in standard deviations of the priors."""
         return (self.high - self.low) / 2
 
     @property
     def coverage(self) -> dict[str, float]:
-        """Fraction of the bands that hold the true value, by unknown: 0.95 is right."""
+        """Fraction of the bands that contain the true value, by unknown; 0.95 is expected."""
         covered = (self.low <= self.truth) & (self.truth <= self.high)
         return dict(zip(self.names, covered.mean(axis=0).tolist(), strict=True))
 
     @property
     def bias(self) -> dict[str, float]:
-        """Mean error of the estimates in widths of the band, by unknown: 0 is right."""
-        bias = (self.middle - self.truth).mean(axis=0) / (2 * self.half.mean(axis=0))
+        """Mean error of the estimates over the mean band width, by unknown; 0 is expected."""
+        bias = (self.middle - self.truth).mean(axis=0) / (2 * self.half_widths.mean(axis=0))
         return dict(zip(self.names, bias.tolist(), strict=True))
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
+        """Return a dictionary of the trials for JSON."""
         return {"trials": len(self.middle), "coverage": self.coverage, "bias": self.bias}
 
 
 @renamed_arguments(found="fitted")
 def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
-    """Identify synthetic data about the best point many times, with the scatter of the stated uncertainties.
+    """Identify many synthetic data sets about the best fit, to test coverage and bias of the bands.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
     stated = replace(fitted.misfit, uncertainty=widened, widening=1.0)
     middle, low, high = [], [], []
     for number in range(count):
-        misfit = replace(stated, forward=replace(stated.forward, data=drawn(fitted, random)))
+        misfit = replace(stated, forward=replace(stated.forward, data=draw_data_sets(fitted, random)))
         _, best, information = compute_bands(misfit, find_best_fit(misfit, seed + number))
         middle.append(best.theta)
         low.append([interval.low.theta[index] for index, interval in enumerate(information.intervals)])
@@ -93,18 +93,24 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
 
 
 @renamed_arguments(found="fitted")
-def drawn(fitted: FittedModel, random: numpy.random.Generator) -> tuple[Measured, ...]:
-    """Draw synthetic measurements for the joint of the best point; load errors are included in the values."""
+def draw_data_sets(fitted: FittedModel, random: numpy.random.Generator) -> tuple[Measured, ...]:
+    """Draw synthetic measurements about the results of the best fit.
+
+    The values include the errors of the loads.
+    """
     widened = fitted.misfit.widening * fitted.misfit.uncertainty
     uncertainties = numpy.split(widened, numpy.cumsum([len(measured) for measured in fitted.data])[:-1])
     scatter = fitted.misfit.scatter
     return tuple(
-        replace(measured, values=_readings(measured, results, uncertainty * scatter.draw(len(measured), random)))
+        replace(measured, values=_add_noise(measured, results, uncertainty * scatter.draw(len(measured), random)))
         for measured, results, uncertainty in zip(fitted.data, fitted.results, uncertainties, strict=True)
     )
 
 
-def _readings(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
-    """Add noise to results, limited by saturation, and by 0 except for a machine."""
+def _add_noise(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
+    """Add noise to results; limit the readings by the saturation, and by 0 for an ideal machine."""
     readings = results + noise
     return numpy.minimum(readings if measured.machine.name else numpy.maximum(readings, 0.0), measured.saturation)
+
+
+__getattr__ = renamed_names(__name__, {"drawn": "draw_data_sets"})

@@ -29,7 +29,7 @@ _SEARCH_DEVIATIONS = 8.0  # half width of the search range about a known mean, i
 
 @dataclass(frozen=True, kw_only=True)
 class Unknown:
-    """A number that an identification estimates.
+    """Unknown number of an identification, with its prior and search range.
 
     Attributes
     ----------
@@ -56,20 +56,20 @@ class Unknown:
     of_machine: bool = False
 
     @property
-    def known(self) -> bool:
-        """True if the prior is a distribution, and not only a range."""
+    def has_distribution(self) -> bool:
+        """True if the prior is a distribution, False if it is only a range."""
         return not isinstance(self.prior, Rectangular)
 
     @property
-    def middle(self) -> float:
-        """Scaled mean of the prior, in its standard deviations; 0 for a range."""
+    def prior_mean(self) -> float:
+        """Mean of the prior on the search scale, in its standard deviations; 0 for a range."""
         if isinstance(self.prior, Rectangular):
             return 0.0
-        return (self.prior.mean if isinstance(self.prior, Normal) else log(self.prior.median)) / self.span
+        return (self.prior.mean if isinstance(self.prior, Normal) else log(self.prior.median)) / self.prior_deviation
 
     @property
-    def span(self) -> float:
-        """Standard deviation of the prior on the scale of the search."""
+    def prior_deviation(self) -> float:
+        """Standard deviation of the prior on the search scale."""
         if isinstance(self.prior, Normal):
             return self.prior.deviation
         if isinstance(self.prior, LogNormal):
@@ -77,26 +77,26 @@ class Unknown:
         return (self.to_scale(self.high) - self.to_scale(self.low)) / sqrt(12)
 
     def is_physical(self, side: int, theta: float) -> bool:
-        """Check if a scaled value lies at a physical limit of the range, such as a compliance of 0."""
+        """Check if theta lies at an end of the range that is a physical limit, such as a compliance of 0."""
         end = self.high if side > 0 else self.low
         beyond = end + side * 1e-6 * max(abs(end), 1e-12)
-        return abs(theta - self.to_scale(end) / self.span) < 1e-6 and not self.quantity.allows(beyond)
+        return abs(theta - self.to_scale(end) / self.prior_deviation) < 1e-6 and not self.quantity.allows(beyond)
 
     def to_scale(self, value: Array) -> Array:
-        """Convert a value to the scale of the search: its logarithm, or the value itself."""
+        """Convert a value to the search scale: its logarithm, or the value itself."""
         return numpy.log(value) if self.logarithmic else value
 
     def from_scale(self, scaled: Array) -> Array:
-        """Convert a number on the scale of the search to a value."""
+        """Convert a number on the search scale to a value."""
         return numpy.exp(scaled) if self.logarithmic else scaled
 
     def derivative(self, scaled: Array) -> Array:
-        """Compute the derivative of the value with respect to the number on the scale of the search."""
+        """Compute the derivative of the value with respect to the number on the search scale."""
         return numpy.exp(scaled) if self.logarithmic else numpy.ones_like(scaled)
 
 
-def unknowns_of(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
-    """Collect the unknowns: free numbers of joint and model by name, and the unknown errors of machines.
+def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
+    """Collect the unknowns of an identification: free numbers by name, and machine errors with ranges.
 
     Parameters
     ----------
@@ -118,35 +118,35 @@ def unknowns_of(free: Mapping[str, Prior], machines: Iterable[Machine], model: M
     for name in priors:
         if name in MODEL_NUMBERS:
             _check_model(MODEL_NUMBERS[name], model)
-    numbers = [_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
+    numbers = [_make_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
     return (*numbers, *_unknown_errors(machines))
 
 
 def _check_model(number: ModelNumber, model: Model) -> None:
-    """Raise ValueError if the model does not have this number."""
+    """Check that the model has a free number; raise ValueError otherwise."""
     if not number.belongs_to(model):
         models = ", ".join(name for name, candidate in catalogue.items() if number.belongs_to(candidate))
         raise ValueError(f"{number.name} is not a number of the model {model.name}; models that have it: {models}")
 
 
 def _unknown_errors(machines: Iterable[Machine]) -> list[Unknown]:
-    """Collect the unknown errors of machines; raise ValueError for different machines with the same name."""
+    """Collect the unknown machine errors; raise ValueError if two machines share a name."""
     by_name: dict[str, Machine] = {}
     for machine in machines:
         if by_name.setdefault(machine.name, machine) != machine:
             raise ValueError(f"two machines have the name {shown(machine.name)}; use different names")
     return [
-        _unknown(machine.key(error), MACHINE_ERRORS[error].quantity, size, of_machine=True)
+        _make_unknown(machine.key(error), MACHINE_ERRORS[error].quantity, size, of_machine=True)
         for machine in by_name.values()
         for error, size in machine.errors
         if isinstance(size, tuple)
     ]
 
 
-def _unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = False) -> Unknown:
-    """Make an unknown with its search range and scale; raise ValueError for ends that are not allowed."""
-    prior = _prior(name, stated)
-    low, high = _ends(prior, quantity)
+def _make_unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = False) -> Unknown:
+    """Make an unknown with its prior, search range and scale."""
+    prior = _make_prior(name, stated)
+    low, high = _search_range(prior, quantity)
     for end in (low, high):
         require(name, end, quantity.allows(end), quantity.allowed)
     ratios = isinstance(prior, Rectangular) and low > 0 and quantity.kind is not Kind.NUMBER
@@ -161,8 +161,8 @@ def _unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = Fa
     )
 
 
-def _prior(name: str, stated: Prior) -> Distribution:
-    """Convert two ends to a distribution."""
+def _make_prior(name: str, stated: Prior) -> Distribution:
+    """Convert two ends to a rectangular distribution; return a stated distribution unchanged."""
     if isinstance(stated, Distribution):
         return stated
     try:
@@ -176,8 +176,11 @@ def _prior(name: str, stated: Prior) -> Distribution:
     return Rectangular(low=low, high=high)
 
 
-def _ends(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
-    """Compute the ends of the search: those of the range, or a few standard deviations about a mean, if allowed."""
+def _search_range(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
+    """Compute the ends of the search range.
+
+    They are those of a range, or eight standard deviations about a mean, if allowed.
+    """
     if isinstance(prior, Rectangular):
         return prior.low, prior.high
     if isinstance(prior, LogNormal):
@@ -206,41 +209,49 @@ class ParameterTransform:
 
     @property
     def low(self) -> Numbers:
-        """Lower ends of the search, as theta."""
-        return self.theta([unknown.low for unknown in self.unknowns])
+        """Lower ends of the search ranges, as theta."""
+        return self.to_theta([unknown.low for unknown in self.unknowns])
 
     @property
     def high(self) -> Numbers:
-        """Upper ends of the search, as theta."""
-        return self.theta([unknown.high for unknown in self.unknowns])
+        """Upper ends of the search ranges, as theta."""
+        return self.to_theta([unknown.high for unknown in self.unknowns])
 
-    def theta(self, values: Any) -> Numbers:
-        """Convert values (..., unknowns) to theta."""
+    def to_theta(self, values: Any) -> Numbers:
+        """Convert values (..., unknowns) to scaled parameters theta."""
         columns = numpy.moveaxis(numpy.asarray(values, dtype=float), -1, 0)
         pairs = zip(self.unknowns, columns, strict=True)
-        return numpy.stack([unknown.to_scale(column) / unknown.span for unknown, column in pairs], axis=-1)
+        return numpy.stack([unknown.to_scale(column) / unknown.prior_deviation for unknown, column in pairs], axis=-1)
 
-    def values(self, theta: Numbers) -> Numbers:
-        """Convert theta (..., unknowns) to values."""
+    def to_values(self, theta: Numbers) -> Numbers:
+        """Convert scaled parameters theta (..., unknowns) to values."""
         pairs = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
-        return numpy.stack([unknown.from_scale(column * unknown.span) for unknown, column in pairs], axis=-1)
+        return numpy.stack([unknown.from_scale(column * unknown.prior_deviation) for unknown, column in pairs], axis=-1)
 
     def derivatives(self, theta: Numbers) -> Numbers:
-        """Compute the derivatives of the values with respect to theta, (..., unknowns)."""
+        """Compute the derivatives of the values with respect to theta: (..., unknowns)."""
         pairs = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
-        columns = [unknown.derivative(column * unknown.span) * unknown.span for unknown, column in pairs]
+        columns = [
+            unknown.derivative(column * unknown.prior_deviation) * unknown.prior_deviation for unknown, column in pairs
+        ]
         return numpy.stack(columns, axis=-1)
 
     def prior_residuals(self, theta: Numbers) -> Numbers:
-        """Compute the distance of each unknown from the mean of its prior in standard deviations; 0 for a range."""
-        known = numpy.array([unknown.known for unknown in self.unknowns])
-        return numpy.where(known, theta - [unknown.middle for unknown in self.unknowns], 0.0)
+        """Compute the deviation of each unknown from its prior mean, in standard deviations.
+
+        It is 0 for a range.
+        """
+        known = numpy.array([unknown.has_distribution for unknown in self.unknowns])
+        return numpy.where(known, theta - [unknown.prior_mean for unknown in self.unknowns], 0.0)
 
 
 def log_prior(transform: ParameterTransform, theta: Numbers) -> Numbers:
-    """Compute ln of the prior density of theta; -inf outside the ranges, within which all values are equally likely."""
+    """Compute the logarithm of the prior density of theta, up to a constant; -inf outside the ranges.
+
+    All values in a range are equally likely.
+    """
     inside = numpy.all((theta >= transform.low) & (theta <= transform.high), axis=-1)
-    flat = numpy.array([0.0 if unknown.known else 1.0 for unknown in transform.unknowns])
+    flat = numpy.array([0.0 if unknown.has_distribution else 1.0 for unknown in transform.unknowns])
     stretch = numpy.sum(flat * numpy.log(transform.derivatives(theta)), axis=-1)
     square = numpy.sum(transform.prior_residuals(theta) ** 2, axis=-1) / 2
     return numpy.where(inside, stretch - square, -inf)

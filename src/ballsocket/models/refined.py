@@ -75,7 +75,7 @@ class Refined(Model):
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         edge = _limit_half_angle(joint, load) if kind == "half_angle" else _solve_edge(joint, kind, load)
-        return make_answer(RefinedSolution(joint=joint, edge=edge), kind, load)
+        return make_solver_result(RefinedSolution(joint=joint, edge=edge), kind, load)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -221,8 +221,8 @@ def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
     return broadcast(safe_divisor(load) / scale, load, *joint.numbers())
 
 
-def make_answer(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
-    """Make the solver result of a solution for loads of one kind."""
+def make_solver_result(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
+    """Make the `SolverResult` of a refined solution for loads of one kind; mark points that have not converged."""
     force, indentation = solution.loads(kind, load)
     return SolverResult(
         laws=solution,

@@ -120,7 +120,7 @@ def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledCon
 
 def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
     """Compute ln c and its slope by ln k at four wave numbers; only the smallest may come near q = 1."""
-    if arrays.is_plain(half_angle):
+    if arrays.is_plain_number(half_angle):
         return log_compliances_of_number(half_angle, liner, waves)
     xp = arrays.namespace(half_angle)
     short = xp.asarray(waves[1:], dtype=half_angle.dtype, device=arrays.device(half_angle))

@@ -124,7 +124,7 @@ def _label(name: str, quantity: Quantity) -> str:
 def _about(found: IdentificationResult) -> Numbers:
     random = numpy.random.default_rng(0)
     places = random.multivariate_normal(found.best.theta, found.information.covariance, _DRAWN)
-    return found.transform.values(numpy.clip(places, found.transform.low, found.transform.high))
+    return found.transform.to_values(numpy.clip(places, found.transform.low, found.transform.high))
 
 
 def _draw_alone(axes: Axes, values: Numbers) -> None:

@@ -74,15 +74,15 @@ def press_figure(
         style = in_matplotlib(line, THICK if contact.valid else THIN)
         angle = _angles(contact)
         left.plot(numpy.degrees(angle), contact.pressure(angle) * pressure.factor, label=_said(name), **style)
-        right.plot(*(arrays.to_numpy(axis.of(curves[name])) for axis in axes), **style)
-        right.plot(*(axis.of(contact) for axis in axes), "o", color=line.colour, markersize=4.5)
+        right.plot(*(arrays.to_numpy(axis.values_of(curves[name])) for axis in axes), **style)
+        right.plot(*(axis.values_of(contact) for axis in axes), "o", color=line.colour, markersize=4.5)
     finish(left, FIELD["angle"].label(), FIELD["pressure"].label(pressure))
     left.set_xlim(0.0, 90.0)
     if left.dataLim.ymin > -0.02 * left.dataLim.ymax:
         left.set_ylim(bottom=0.0)
     left.set_xticks(range(0, 91, 15))
     finish(right, *(axis.label for axis in axes))
-    furthest = [max(axis.of(contact) for contact in contacts.values()) for axis in axes]
+    furthest = [max(axis.values_of(contact) for contact in contacts.values()) for axis in axes]
     right.set_xlim(0.0, 1.12 * furthest[0] or 1.0)
     right.set_ylim(0.0, 1.6 * furthest[1] or 1.0)
     columns = min(len(contacts), 4)

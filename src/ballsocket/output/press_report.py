@@ -78,13 +78,17 @@ def press_sections(
 
 def _number(contact: Contact, name: str, units: Units) -> str:
     column = next(column for column in units.columns if column.attribute == name)
-    return f"{number_text(column.of(contact), 4, 'no answer')} {column.unit}"
+    return f"{number_text(column.values_of(contact), 4, 'no answer')} {column.unit}"
 
 
 def _answers(comparison: Comparison, units: Units) -> str:
     columns = units.columns
     rows = [
-        (name, *(number_text(column.of(contact), 4, "-") for column in columns), "yes" if contact.valid else "no")
+        (
+            name,
+            *(number_text(column.values_of(contact), 4, "-") for column in columns),
+            "yes" if contact.valid else "no",
+        )
         for name, contact in comparison.items()
     ]
     heads = ("model", *(column.head for column in columns), "valid")

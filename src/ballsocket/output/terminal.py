@@ -68,7 +68,7 @@ def print_curve(contact: Contact) -> None:
         if column.attribute in HEADLINE:
             table.add_column(column.head, justify="right", no_wrap=True)
     table.add_column("valid", no_wrap=True)
-    values = [column.of(contact) for column in COLUMNS if column.attribute in HEADLINE]
+    values = [column.values_of(contact) for column in COLUMNS if column.attribute in HEADLINE]
     for place, valid in enumerate(contact.valid):
         table.add_row(*(number_text(value[place], 4, "-") for value in values), "yes" if valid else "no")
     terminal.print(table)
@@ -137,13 +137,13 @@ def _press_table(comparison: Comparison, columns: Sequence[Column], bars: str) -
 
 def _percents(contact: Contact, exact: Contact, columns: Sequence[Column]) -> list[str]:
     """How far a contact is from the exact one; nothing where they are equal, or there is nothing to measure by."""
-    shares = [100 * float(relative_deviation(column.of(contact), column.of(exact))) for column in columns]
+    shares = [100 * float(relative_deviation(column.values_of(contact), column.values_of(exact))) for column in columns]
     return ["" if share != share or share == 0 else f"{share:+.1f}".replace("-0.0", "+0.0") for share in shares]
 
 
 def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequence[str]) -> list[Text]:
     style = "" if contact.valid else "yellow"
-    numbers = [number_text(column.of(contact), 4, "-") for column in columns]
+    numbers = [number_text(column.values_of(contact), 4, "-") for column in columns]
     bars = [Text(f" {bar}", style=style or "cyan") for bar in profile]
     mark = Text("yes", style="green") if contact.valid else Text("no", style="yellow")
     return [*(Text(text, style=style) for text in (name, *numbers)), *bars, mark]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from math import cos, pi, sin
 
 from ..core import arrays
-from ..core.arrays import Array, is_plain
+from ..core.arrays import Array, is_plain_number
 from ..core.checks import check_numeric, require, shown
 from ..core.kinds import Choice
 from ..core.quantities import CUP
@@ -21,21 +21,27 @@ UP: Direction = (0.0, 0.0, 1.0)
 
 
 class Interface(Choice):
-    """Interface between the liner and the layer behind it, or the rigid socket: bonded, or sliding without friction."""
+    """Interface between the liner and its backing: bonded, or sliding without friction."""
 
     BONDED = "bonded"
     SLIDING = "sliding"
 
 
 class Side(Choice):
-    """Side of the body; on the left, x points to the middle."""
+    """Side of the body, right or left, on which the cup lies.
+
+    On the left, x points to the middle of the body.
+    """
 
     RIGHT = "right"
     LEFT = "left"
 
 
 class UnsetAngle(float):
-    """Default angle of a cup without an orientation: 0, which the standard of a cycle may replace."""
+    """Default angle of 0 rad of a cup whose orientation is not set.
+
+    The standard of a load cycle may replace it.
+    """
 
 
 _UNSET_ANGLE = UnsetAngle(0.0)
@@ -46,7 +52,7 @@ _ENUMERATIONS = {"interface": Interface, "side": Side}
 
 @dataclass(frozen=True, kw_only=True)
 class Cup:
-    """Rim of the socket, interface of its liner, and orientation in the body.
+    """Geometry and orientation of a cup: rim, interface of its liner, and angles in the body.
 
     `Cup()` is a hemisphere that opens downwards. A vertical load acts along its axis, as every axisymmetric model
     assumes. Inclination and anteversion are radiographic: the anteversion is the angle between the cup's axis and the
@@ -98,7 +104,7 @@ class Cup:
 
     def __post_init__(self) -> None:
         for name, quantity in CUP.items():
-            if not is_plain(quantity.checked(getattr(self, name))):
+            if not is_plain_number(quantity.check(getattr(self, name))):
                 raise TypeError(f"{name} must be one number, got {shown(getattr(self, name))}")
         for name, kind in _ENUMERATIONS.items():
             if not isinstance(getattr(self, name), kind):
@@ -107,17 +113,17 @@ class Cup:
 
     @property
     def rim(self) -> float:
-        """Polar angle of the rim in rad."""
+        """Polar angle of the rim in rad, half of the arc of cover."""
         return self.arc_of_cover / 2
 
     @property
     def oriented(self) -> bool:
-        """True if an inclination or an anteversion was set, 0 included."""
+        """True if inclination or anteversion was set, even to 0."""
         return not (isinstance(self.inclination, UnsetAngle) and isinstance(self.anteversion, UnsetAngle))
 
     @property
     def opening(self) -> Direction:
-        """Unit vector along the axis of the cup, out of its opening."""
+        """Unit vector along the axis of the cup, out of its opening, in the body frame."""
         # (sin RI cos RA, sin RA, -cos RI cos RA) with x lateral
         lateral = sin(self.inclination) * cos(self.anteversion)
         down = cos(self.inclination) * cos(self.anteversion)
@@ -125,13 +131,15 @@ class Cup:
 
     @property
     def dome(self) -> Direction:
-        """Unit vector along the axis of the cup, to the pole of its bore."""
+        """Unit vector along the axis of the cup, towards the pole of its bore, in the body frame."""
         x, y, z = self.opening
         return -x, -y, -z
 
     @property
     def frame(self) -> tuple[Direction, Direction, Direction]:
-        """Unit vectors x, y, z of the cup frame in the body frame: x up in the plane of the rim, z to the dome.
+        """Unit vectors x, y, z of the cup frame, in the body frame.
+
+        x points up in the plane of the rim, z to the dome.
 
         In an inclined cup, a vertical load lies between x and z.
         """
@@ -141,7 +149,10 @@ class Cup:
         return x, y, z
 
     def tilted(self, angle: float) -> Cup:
-        """Return this cup with its axis at an angle (rad, at most π/2) to a vertical load."""
+        """Return this cup with a given angle in rad between its axis and a vertical load.
+
+        The angle is at most π/2.
+        """
         return replace(self, inclination=angle, anteversion=0.0)
 
     def tilt(self, direction: Array) -> Array:
@@ -171,10 +182,12 @@ class Cup:
         length = arrays.sqrt(along**2 + across**2)
         require("the length of direction", length, length > 0, "a direction points somewhere")
         angle = arrays.atan2(across, along)
-        return float(angle) if is_plain(angle) else angle
+        return float(angle) if is_plain_number(angle) else angle
 
     def edge_distance(self, radius: Array, half_angle: Array, direction: Array = UP) -> Array:
-        """Compute the shortest arc in mm from the edge of a contact to the rim; negative if the rim cuts the contact.
+        """Compute the arc length in mm from the edge of a contact to the rim.
+
+        It is the shortest arc, and negative where the rim cuts the contact.
 
         It is the contact-patch-to-rim distance R (β/2 - γ - ε). With ε = 0 it is the distance of the contact's centre.
 

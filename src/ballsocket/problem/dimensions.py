@@ -8,7 +8,7 @@ from math import floor, log10
 from types import MappingProxyType
 from typing import TypedDict
 
-from ..core.arrays import Array, is_plain
+from ..core.arrays import Array, is_plain_number
 from ..core.checks import check_names, require
 from ..core.quantities import FIT, JOINT
 
@@ -34,7 +34,10 @@ _RADIAL_LENGTHS = ("ball_radius", "socket_radius", "clearance")
 
 
 class Lengths(TypedDict, total=False):
-    """Keyword arguments for the lengths of a joint: two of radius, socket and clearance; thickness or outer radius."""
+    """Keyword arguments for the lengths of a joint in mm.
+
+    Two of radius, socket and clearance are needed, and the thickness or the outer radius.
+    """
 
     ball_radius: Array
     head_diameter: Array
@@ -48,7 +51,7 @@ class Lengths(TypedDict, total=False):
 
 
 class Dimensions:
-    """Mixin of derived lengths of a joint."""
+    """Mixin of the lengths of a joint that follow from radius, clearance and thickness."""
 
     ball_radius: Array
     clearance: Array
@@ -57,7 +60,7 @@ class Dimensions:
     @property
     @abstractmethod
     def shell(self) -> Array:
-        """Thickness in mm of the layer right behind the liner; 0 without a layer, or if it is infinite."""
+        """Thickness in mm of the finite layer directly behind the liner; 0 if there is none."""
 
     @property
     def socket_radius(self) -> Array:
@@ -66,7 +69,7 @@ class Dimensions:
 
     @property
     def outer_radius(self) -> Array:
-        """Outer radius in mm of the liner, and of the shell where there is one behind it."""
+        """Outer radius in mm of the liner, or of the shell if there is one."""
         return self.socket_radius + self.liner_thickness + self.shell
 
     @property
@@ -76,7 +79,7 @@ class Dimensions:
 
     @property
     def diametral_clearance(self) -> Array:
-        """Diametral clearance 2 c in mm, which implant papers usually state."""
+        """Diametral clearance 2 c in mm, difference of the diameters."""
         return 2 * self.clearance
 
     @property
@@ -86,12 +89,12 @@ class Dimensions:
 
     @property
     def outer_diameter(self) -> Array:
-        """Twice the outer radius in mm."""
+        """Outer diameter in mm, twice the outer radius."""
         return 2 * self.outer_radius
 
 
 def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], shell: Array) -> dict[str, Array]:
-    """Check some lengths and derive radius, clearance and thickness of a joint from them.
+    """Check given lengths, and derive ball radius, clearance and liner thickness of a joint in mm.
 
     Parameters
     ----------
@@ -115,7 +118,7 @@ def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], 
         A length that is neither a number nor an array.
     """
     check_names(lengths, LENGTHS, "among the lengths of a joint")
-    numbers = {name: LENGTHS[name].checked(value) for name, value in lengths.items()}
+    numbers = {name: LENGTHS[name].check(value) for name, value in lengths.items()}
     check_unique_lengths(numbers)
     if not current:
         _check_enough(numbers)
@@ -128,11 +131,13 @@ def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], 
         good = numbers["interference"] <= _MAX_INTERFERENCE * stored["ball_radius"]
         require("interference", numbers["interference"], good, "it is at most a tenth of the ball's radius")
     unchecked = {"clearance"} if {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers) else set()
-    return {name: length if name in unchecked else JOINT[name].checked(length) for name, length in stored.items()}
+    return {name: length if name in unchecked else JOINT[name].check(length) for name, length in stored.items()}
 
 
 def derive_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], shell: Array) -> dict[str, Array]:
-    """Derive radius, clearance and thickness as `resolve_lengths`, without checks; a thickness may be negative.
+    """Derive ball radius, clearance and liner thickness in mm from given lengths, without checks.
+
+    The thickness may be negative.
 
     Two of radius, socket radius and clearance determine the third. With only one new length, the current ball radius is
     kept, or else the current clearance. An outer radius determines the thickness of the liner.
@@ -153,7 +158,7 @@ def derive_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], s
 
 
 def check_unique_lengths(names: Iterable[str]) -> None:
-    """Raise ValueError for lengths of which one follows from the others."""
+    """Check that no given length follows from the others; raise ValueError otherwise."""
     names_by_length = {_EQUIVALENTS.get(name, name): name for name in names}
     for name in names:
         duplicate = names_by_length[_EQUIVALENTS.get(name, name)]
@@ -168,7 +173,7 @@ def check_unique_lengths(names: Iterable[str]) -> None:
 
 
 def _check_enough(names: Iterable[str]) -> None:
-    """Raise ValueError for too few lengths of a new joint."""
+    """Check that the given lengths define a new joint; raise ValueError otherwise."""
     names_by_length = {_EQUIVALENTS.get(name, name): name for name in names}
     if not ("liner_thickness" in names_by_length or "outer_radius" in names_by_length):
         raise ValueError("liner_thickness is missing, or outer_radius; liner_thickness = inf is a massive socket")
@@ -179,7 +184,7 @@ def _check_enough(names: Iterable[str]) -> None:
 
 
 def _difference(larger: Array, smaller: Array) -> Array:
-    """Subtract; round plain numbers to the digits of the minuend, so that 18 - 17.9 is 0.1."""
-    if not (is_plain(larger) and is_plain(smaller) and 0 < larger < float("inf")):
+    """Subtract two lengths, and round plain numbers to the digits of the larger: 18 - 17.9 is 0.1."""
+    if not (is_plain_number(larger) and is_plain_number(smaller) and 0 < larger < float("inf")):
         return larger - smaller
     return round(larger - smaller, 14 - floor(log10(larger)))

@@ -21,7 +21,9 @@ from ..core.deprecation import RenamedAttribute
 
 @dataclass(frozen=True, kw_only=True)
 class LinearGap:
-    """Linearised gap u = d cos φ - c (1 - cos φ), Eq. (6) of Heß & Forsbach 2021, doi 10.3390/app112311170.
+    """Linearised surface displacement under a rigid ball, u = d cos φ - c (1 - cos φ).
+
+    Eq. (6) of Heß & Forsbach 2021, doi 10.3390/app112311170.
 
     Parameters
     ----------
@@ -38,21 +40,24 @@ class LinearGap:
     """True since ∂u/∂d = cos φ: the work of the force equals that of the pressure."""
 
     def displacement(self, angle: Numbers, d: Numbers | float) -> Numbers:
-        """Compute u(φ) in mm at angles in rad and indentations in mm, which broadcast."""
+        """Compute the radial surface displacement u(φ) in mm.
+
+        Angles are in rad, indentations in mm; they broadcast.
+        """
         return d - (self.clearance + d) * 2 * numpy.sin(angle / 2) ** 2
 
     def transform(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the Abel transform A[u](t)."""
+        """Compute the Abel transform A[u](t) of the displacement in mm."""
         return d * numpy.cos(1.5 * t) - 2 * self.clearance * numpy.sin(t) * numpy.sin(t / 2)
 
     def slope(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the derivative d A[u]/dt."""
+        """Compute the derivative dA[u]/dt of the Abel transform in mm/rad."""
         half = t / 2
         clearance_term = 2 * numpy.cos(t) * numpy.sin(half) + numpy.sin(t) * numpy.cos(half)
         return -1.5 * d * numpy.sin(1.5 * t) - self.clearance * clearance_term
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute A[∂u/∂d](t)."""
+        """Compute the Abel transform of ∂u/∂d, the change of displacement with indentation."""
         return numpy.cos(1.5 * t) + 0.0 * d
 
     deepening = RenamedAttribute("indentation_derivative")
@@ -60,7 +65,7 @@ class LinearGap:
 
 @dataclass(frozen=True, kw_only=True)
 class CircularGap:
-    """Gap of a circular ball, u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5).
+    """Surface displacement under a circular ball, u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5).
 
     Parameters
     ----------
@@ -77,32 +82,35 @@ class CircularGap:
     """False since ∂u/∂d is not cos φ: the work of the force differs from that of the pressure."""
 
     def displacement(self, angle: Numbers, d: Numbers | float) -> Numbers:
-        """Compute u(φ) in mm at angles in rad and indentations in mm; NaN beyond the ball."""
-        return self._parts(2 * numpy.sin(angle / 2) ** 2, d)[0]
+        """Compute the radial surface displacement u(φ) in mm; NaN beyond the ball.
+
+        Angles are in rad, indentations in mm; they broadcast.
+        """
+        return self._gap_derivatives(2 * numpy.sin(angle / 2) ** 2, d)[0]
 
     def transform(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the Abel transform A[u](t)."""
-        return _transform(t, lambda w: self._parts(w, d)[:2])
+        """Compute the Abel transform A[u](t) of the displacement in mm."""
+        return _transform(t, lambda w: self._gap_derivatives(w, d)[:2])
 
     def slope(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the derivative d A[u]/dt."""
-        return _transform_slope(t, lambda w: self._parts(w, d))
+        """Compute the derivative dA[u]/dt of the Abel transform in mm/rad."""
+        return _transform_slope(t, lambda w: self._gap_derivatives(w, d))
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute A[∂u/∂d](t)."""
-        return _transform(t, lambda w: self._indentation_parts(w, d))
+        """Compute the Abel transform of ∂u/∂d, the change of displacement with indentation."""
+        return _transform(t, lambda w: self._indentation_derivatives(w, d))
 
     deepening = RenamedAttribute("indentation_derivative")
 
-    def _parts(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
-        """Compute u and its first two derivatives with respect to w; NaN beyond the ball."""
+    def _gap_derivatives(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
+        """Compute the displacement u and its first two derivatives with respect to w; NaN beyond the ball."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         dropped = e * e * w * (2 - w)
         root = numpy.sqrt(R1 * R1 - dropped)
         tilt = e * e * (1 - w) / root
         return d - e * w - dropped / (R1 + root), -e - tilt, (e * e - tilt * tilt) / root
 
-    def _indentation_parts(self, w: Numbers, d: Numbers) -> tuple[Numbers, Numbers]:
+    def _indentation_derivatives(self, w: Numbers, d: Numbers) -> tuple[Numbers, Numbers]:
         """Compute ∂u/∂d and its derivative with respect to w."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         sine = w * (2 - w)
@@ -115,7 +123,7 @@ Gap = LinearGap | CircularGap
 
 
 def check_gap(gap: object) -> None:
-    """Raise TypeError unless `gap` is one of the two classes of gaps."""
+    """Check that `gap` is the class LinearGap or CircularGap; raise TypeError otherwise."""
     if gap not in (LinearGap, CircularGap):
         raise TypeError(f"gap must be LinearGap or CircularGap, got {shown(gap)}")
 
@@ -132,27 +140,39 @@ Derivatives = Callable[[Numbers], tuple[Numbers, ...]]
 """Function of w that returns u and its derivatives with respect to w."""
 
 
-def _at_nodes(t: Numbers, derivatives: Derivatives) -> tuple[Numbers, tuple[Numbers, ...]]:
-    """Compute sin θ along a new first axis, and u and its derivatives at w = (1 - cos t) sin² θ."""
+def _evaluate_at_nodes(t: Numbers, derivatives: Derivatives) -> tuple[Numbers, tuple[Numbers, ...]]:
+    """Evaluate the displacement and its derivatives at the quadrature nodes θ, where w = (1 - cos t) sin² θ.
+
+    Returns sin θ along a new first axis, and the values.
+    """
     sine = _SINES.reshape(-1, *(1 for _ in numpy.shape(t)))
     return sine, derivatives(2 * numpy.sin(t / 2) ** 2 * sine**2)
 
 
-def _mean(values: Numbers) -> Numbers:
-    """Compute ∫ values sin θ dθ over [0, π/2]."""
+def _sine_weighted_mean(values: Numbers) -> Numbers:
+    """Compute the mean of values over θ in [0, π/2] with the weight sin θ."""
     return numpy.tensordot(_ANGLE_WEIGHTS * _SINES, values, axes=1)
 
 
 def _transform(t: Numbers, derivatives: Derivatives) -> Numbers:
-    """Compute A[u] = cos(t/2) ∫ u sin θ dθ + 2 sin(t/2) sin t ∫ u' sin³ θ dθ over [0, π/2]."""
-    sine, (u, u1) = _at_nodes(t, derivatives)
-    return numpy.cos(t / 2) * _mean(u) + 2 * numpy.sin(t / 2) * numpy.sin(t) * _mean(sine**2 * u1)
+    """Compute the Abel transform of a displacement by quadrature over θ in [0, π/2].
+
+    A[u] = cos(t/2) ∫ u sin θ dθ + 2 sin(t/2) sin t ∫ u' sin³ θ dθ.
+    """
+    sine, (u, u1) = _evaluate_at_nodes(t, derivatives)
+    return numpy.cos(t / 2) * _sine_weighted_mean(u) + 2 * numpy.sin(t / 2) * numpy.sin(t) * _sine_weighted_mean(
+        sine**2 * u1
+    )
 
 
 def _transform_slope(t: Numbers, derivatives: Derivatives) -> Numbers:
-    """Compute the derivative of `_transform` with respect to t."""
-    sine, (u, u1, u2) = _at_nodes(t, derivatives)
+    """Compute the derivative of the Abel transform of a displacement with respect to t."""
+    sine, (u, u1, u2) = _evaluate_at_nodes(t, derivatives)
     half = numpy.sin(t / 2)
     first = 2 * numpy.cos(t / 2) * numpy.sin(t) + 2 * half * numpy.cos(t)
     second = 2 * half * numpy.sin(t) ** 2
-    return -half / 2 * _mean(u) + first * _mean(sine**2 * u1) + second * _mean(sine**4 * u2)
+    return (
+        -half / 2 * _sine_weighted_mean(u)
+        + first * _sine_weighted_mean(sine**2 * u1)
+        + second * _sine_weighted_mean(sine**4 * u2)
+    )

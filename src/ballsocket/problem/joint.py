@@ -9,7 +9,7 @@ from itertools import chain
 from math import inf
 from typing import Any, Unpack
 
-from ..core.arrays import Array, is_plain, to_list, where
+from ..core.arrays import Array, is_plain_number, to_list, where
 from ..core.checks import check_names, require, shown
 from ..core.kinds import Choice
 from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
@@ -18,7 +18,10 @@ from .values import larger, make_unchecked, set_fields, short_text
 
 
 class Support(Choice):
-    """Boundary condition of the outermost surface of a socket: no displacement (FIXED) or no traction (FREE)."""
+    """Boundary condition of the outermost surface of a socket.
+
+    FIXED: no displacement. FREE: no traction.
+    """
 
     FIXED = "fixed"
     FREE = "free"
@@ -26,7 +29,7 @@ class Support(Choice):
 
 @dataclass(frozen=True, kw_only=True, init=False)
 class Joint(Dimensions):
-    """A ball in a socket of nearly its own radius, lined with an elastic layer.
+    """Ball in a socket of nearly equal radius, lined with an elastic layer.
 
     The support of the liner is rigid unless `backing` or `support` define it. The validity of a model states if it
     assumes a rigid support.
@@ -102,21 +105,21 @@ class Joint(Dimensions):
             raise TypeError(f"ball must be a Material, or None for a rigid ball, got {shown(ball)}")
         if not isinstance(support, Support):
             raise TypeError(f"support must be Support.FIXED or Support.FREE, got {shown(support)}")
-        layers = _checked_backing(backing)
-        set_fields(self, **resolve_lengths(lengths, {}, _shell(layers)))
+        layers = _check_backing(backing)
+        set_fields(self, **resolve_lengths(lengths, {}, _shell_thickness(layers)))
         set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
         for name, inner in self._thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
 
     def _thicknesses(self) -> list[tuple[str, Array]]:
-        """List names and thicknesses of the liner and the layers behind it."""
+        """List names and thicknesses in mm of the liner and the layers behind it."""
         layers = [(f"backing[{number}].thickness", layer.thickness) for number, layer in enumerate(self.backing)]
         return [("liner_thickness", self.liner_thickness), *layers]
 
     @property
     def shell(self) -> Array:
-        """Thickness in mm of the layer right behind the liner; 0 without a layer, or if it is infinite."""
-        return _shell(self.backing)
+        """Thickness in mm of the finite layer directly behind the liner; 0 if there is none."""
+        return _shell_thickness(self.backing)
 
     @property
     def thickness_ratio(self) -> Array:
@@ -130,12 +133,12 @@ class Joint(Dimensions):
 
     @property
     def modulus_ratio(self) -> Array:
-        """Young's modulus of the liner over that of the ball; 0 for a rigid ball."""
+        """Ratio of Young's moduli of liner and ball, E/E1; 0 for a rigid ball."""
         return 0.0 * self.liner.young if self.ball is None else self.liner.young / self.ball.young
 
     @property
     def backing_ratio(self) -> Array:
-        """Young's modulus of the liner over that of the softest layer behind it.
+        """Ratio of Young's moduli of the liner and of the softest layer behind it.
 
         It is 0 for a fixed support without backing, and `inf` for a free outermost surface.
         """
@@ -144,7 +147,7 @@ class Joint(Dimensions):
         if self.support is Support.FIXED:
             return softest
         _, outermost = self._thicknesses()[-1]
-        if is_plain(outermost):
+        if is_plain_number(outermost):
             return softest if outermost == inf else inf + softest
         return where(outermost < inf, inf, softest)
 
@@ -157,19 +160,22 @@ class Joint(Dimensions):
         return 1 / compliance
 
     def numbers(self) -> tuple[Array, ...]:
-        """List all numbers of the joint in a fixed order (see `with_numbers`)."""
+        """List all lengths and elastic constants of the joint, in a fixed order.
+
+        `with_numbers` has the same order.
+        """
         ball = () if self.ball is None else (self.ball.young, self.ball.poisson)
         lengths = (self.ball_radius, self.clearance, self.liner_thickness)
         layers = ((layer.thickness, layer.material.young, layer.material.poisson) for layer in self.backing)
         return (*lengths, self.liner.young, self.liner.poisson, *ball, *chain.from_iterable(layers))
 
     def strengths(self) -> tuple[Array, ...]:
-        """Return the known strengths and proportional limits of liner and ball."""
+        """List the known strengths and proportional limits of liner and ball in MPa."""
         ball = () if self.ball is None else self.ball.stress_limits.values()
         return (*self.liner.stress_limits.values(), *ball)
 
     def without_strengths(self) -> Joint:
-        """Return this joint without strengths, on which no solution depends."""
+        """Return a copy of the joint without strengths, on which no elastic solution depends."""
         parts: dict[str, Any] = {
             "liner": self.liner.without_strengths(),
             "ball": None if self.ball is None else self.ball.without_strengths(),
@@ -178,7 +184,10 @@ class Joint(Dimensions):
         return make_unchecked(Joint, **{**vars(self), **parts})
 
     def with_numbers(self, numbers: Any) -> Joint:
-        """Return this joint with other numbers in the order of `numbers()`, without checks."""
+        """Return a copy of the joint with new lengths and elastic constants, in the order of `numbers()`.
+
+        Nothing is checked.
+        """
         radius, clearance, thickness, young, poisson, *remaining = numbers
         behind = remaining if self.ball is None else remaining[2:]
         layers = zip(self.backing, behind[::3], behind[1::3], behind[2::3], strict=True)
@@ -196,7 +205,7 @@ class Joint(Dimensions):
         )
 
     def replace(self, **changes: Any) -> Joint:
-        """Return this joint with other lengths, materials, layers or another name.
+        """Return a copy of the joint with other lengths, materials, layers or another name.
 
         Radius, clearance and thickness stay the same unless the changes determine them. For example, another head
         diameter keeps the clearance and the thickness of the liner. The name of a changed joint ends in ", varied".
@@ -224,9 +233,9 @@ class Joint(Dimensions):
         lengths = {name: value for name, value in changes.items() if name in LENGTHS}
         new_attributes = {name: value for name, value in changes.items() if name not in LENGTHS}
         current = {name: getattr(self, name) for name in STORED_LENGTHS}
-        shell = _shell(_checked_backing(new_attributes.get("backing", self.backing)))
+        shell = _shell_thickness(_check_backing(new_attributes.get("backing", self.backing)))
         stored = resolve_lengths(lengths, current, shell)
-        if is_plain(stored["clearance"]) and stored["clearance"] < 0:
+        if is_plain_number(stored["clearance"]) and stored["clearance"] < 0:
             stored["interference"] = -stored.pop("clearance")
         varied_name = f"{self.name.removesuffix(_VARIED)}{_VARIED}"
         names = {"name": varied_name, "source": ""} if changes and self.name else {}
@@ -234,12 +243,15 @@ class Joint(Dimensions):
         return Joint(**old_attributes | names | new_attributes, **stored)
 
     def with_floats(self) -> Joint:
-        """Return this joint of plain numbers with floats in place of integers."""
+        """Return a copy of the joint with floats in place of integers; its numbers must be plain."""
         numbers = self.numbers()
         return self if all(type(number) is float for number in numbers) else self.with_numbers(map(float, numbers))
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary for JSON in mm and MPa; arrays become lists, and infinity the text "inf"."""
+        """Return a dictionary of the joint for JSON, in mm and MPa.
+
+        Arrays become lists, and infinity the text "inf".
+        """
         lengths = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
         return {
             "name": self.name,
@@ -252,7 +264,7 @@ class Joint(Dimensions):
 
     @property
     def dimensions(self) -> str:
-        """Text of ball radius, clearance and liner thickness."""
+        """Text of ball radius, clearance and liner thickness, with units."""
         liner = _thickness_text(self.liner_thickness)
         return f"R1 {short_text(self.ball_radius)} mm, clearance {short_text(self.clearance)} mm, {liner}"
 
@@ -268,18 +280,18 @@ _VARIED = ", varied"
 """End of the name of a changed joint."""
 
 
-def _shell(backing: Sequence[Layer]) -> Array:
-    """Return the thickness of the first layer; 0 without layers, or if it is infinite."""
+def _shell_thickness(backing: Sequence[Layer]) -> Array:
+    """Return the thickness in mm of the first layer; 0 without layers, or if it is infinite."""
     if not backing:
         return 0.0
     thickness = backing[0].thickness
-    if is_plain(thickness):
+    if is_plain_number(thickness):
         return thickness if thickness < inf else 0.0
     return where(thickness < inf, thickness, 0.0)
 
 
-def _checked_backing(backing: Any) -> tuple[Layer, ...]:
-    """Return a list of layers as a tuple; raise TypeError for anything else."""
+def _check_backing(backing: Any) -> tuple[Layer, ...]:
+    """Check that the backing is a list of layers, and return it as a tuple; raise TypeError otherwise."""
     if not isinstance(backing, list | tuple):
         raise TypeError(f"backing must be a tuple of Layers from the liner outwards, got {shown(backing)}")
     for number, layer in enumerate(backing):
@@ -289,5 +301,6 @@ def _checked_backing(backing: Any) -> tuple[Layer, ...]:
 
 
 def _thickness_text(value: Array) -> str:
+    """Format the thickness of a liner; "massive socket" if it is infinite."""
     text = short_text(value)
     return "massive socket" if text == "inf" else f"liner {text} mm"

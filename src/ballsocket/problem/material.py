@@ -13,7 +13,7 @@ from .values import make_unchecked, set_fields, short_text
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """A linear elastic, isotropic material.
+    """Linear elastic, isotropic material.
 
     Parameters
     ----------
@@ -51,31 +51,31 @@ class Material:
     allowable_pressure: Array | None = None
 
     def __post_init__(self) -> None:
-        elastic = {name: quantity.checked(getattr(self, name)) for name, quantity in MATERIAL.items()}
-        limits = {name: STRESS_LIMITS[name].checked(limit) for name, limit in self.stress_limits.items()}
+        elastic = {name: quantity.check(getattr(self, name)) for name, quantity in MATERIAL.items()}
+        limits = {name: STRESS_LIMITS[name].check(limit) for name, limit in self.stress_limits.items()}
         set_fields(self, **elastic, **limits)
 
     @property
     def strengths(self) -> dict[str, Array]:
-        """Known strengths by name."""
+        """Known strengths in MPa, by name."""
         return {name: limit for name, limit in self.stress_limits.items() if name in STRENGTH}
 
     @property
     def stress_limits(self) -> dict[str, Array]:
-        """Known strengths and the proportional limit by name."""
+        """Known strengths and proportional limit in MPa, by name."""
         listed = {name: getattr(self, name) for name in STRESS_LIMITS}
         return {name: limit for name, limit in listed.items() if limit is not None}
 
     def without_strengths(self) -> Material:
-        """Return this material without strengths and proportional limit."""
+        """Return a copy of the material without strengths and proportional limit."""
         return make_unchecked(Material, **{**vars(self), **dict.fromkeys(STRESS_LIMITS)})
 
     def with_numbers(self, young: Array, poisson: Array) -> Material:
-        """Return this material with other elastic constants, without checks."""
+        """Return a copy of the material with other elastic constants, without checks."""
         return make_unchecked(Material, **{**vars(self), "young": young, "poisson": poisson})
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary for JSON."""
+        """Return a dictionary of the material for JSON, in MPa."""
         numbers = {"young": self.young, "poisson": self.poisson, **self.stress_limits}
         return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
 
@@ -112,21 +112,21 @@ class Layer:
     material: Material
 
     def __post_init__(self) -> None:
-        thickness = LAYER["thickness"].checked(self.thickness)
+        thickness = LAYER["thickness"].check(self.thickness)
         if not isinstance(self.material, Material):
             raise TypeError(f"material must be a Material, got {shown(self.material)}")
         set_fields(self, thickness=thickness)
 
     def without_strengths(self) -> Layer:
-        """Return this layer without strengths."""
+        """Return a copy of the layer whose material has no strengths."""
         return make_unchecked(Layer, thickness=self.thickness, material=self.material.without_strengths())
 
     def with_numbers(self, thickness: Array, young: Array, poisson: Array) -> Layer:
-        """Return this layer with other numbers, without checks."""
+        """Return a copy of the layer with another thickness and elastic constants, without checks."""
         return make_unchecked(Layer, thickness=thickness, material=self.material.with_numbers(young, poisson))
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary for JSON."""
+        """Return a dictionary of the layer for JSON, in mm and MPa."""
         return {"thickness": to_list(self.thickness), **self.material.summary()}
 
     def __str__(self) -> str:

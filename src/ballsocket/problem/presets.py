@@ -103,9 +103,10 @@ materials: dict[str, Material] = NamedItems(
 """Materials by the name in files and on the command line: the name of the constant in lower case with hyphens."""
 
 
-def _joint(
+def _make_joint(
     name: str, radius: float, clearance: float, thickness: float, pair: tuple[Material, Material], source: str
 ) -> Joint:
+    """Make a preset joint from lengths in mm and the pair (ball material, liner material)."""
     ball, liner = pair
     return Joint(
         ball_radius=radius,
@@ -119,14 +120,18 @@ def _joint(
 
 
 _ALL_JOINTS = (
-    _joint("hess-forsbach", 17.9, 0.1, 6.75, (STEEL, UHMWPE), "Heß & Forsbach 2021, Figs. 3 and 4"),
-    _joint("hip-22", 11.0, 0.1, 5.0, (COCR, UHMWPE), _PLANK),
-    _joint("hip-28", 14.0, 0.1, 5.0, (COCR, UHMWPE), _PLANK),
-    _joint("hip-32", 16.0, 0.1, 6.0, (ALUMINA, CROSSLINKED_PE), "representative, within Heß & Forsbach 2021, Table 1"),
-    _joint("hip-36", 18.0, 0.1, 5.0, (ALUMINA, CROSSLINKED_PE), "representative, within Heß & Forsbach 2021, Table 1"),
-    _joint("reverse-shoulder-36", 18.0, 0.1, 6.0, (COCR, UHMWPE), _GLENOSPHERE),
-    _joint("reverse-shoulder-42", 21.0, 0.1, 6.0, (COCR, UHMWPE), _GLENOSPHERE),
-    _joint(
+    _make_joint("hess-forsbach", 17.9, 0.1, 6.75, (STEEL, UHMWPE), "Heß & Forsbach 2021, Figs. 3 and 4"),
+    _make_joint("hip-22", 11.0, 0.1, 5.0, (COCR, UHMWPE), _PLANK),
+    _make_joint("hip-28", 14.0, 0.1, 5.0, (COCR, UHMWPE), _PLANK),
+    _make_joint(
+        "hip-32", 16.0, 0.1, 6.0, (ALUMINA, CROSSLINKED_PE), "representative, within Heß & Forsbach 2021, Table 1"
+    ),
+    _make_joint(
+        "hip-36", 18.0, 0.1, 5.0, (ALUMINA, CROSSLINKED_PE), "representative, within Heß & Forsbach 2021, Table 1"
+    ),
+    _make_joint("reverse-shoulder-36", 18.0, 0.1, 6.0, (COCR, UHMWPE), _GLENOSPHERE),
+    _make_joint("reverse-shoulder-42", 21.0, 0.1, 6.0, (COCR, UHMWPE), _GLENOSPHERE),
+    _make_joint(
         "suspension-ball-joint",
         13.5,
         0.02,
@@ -134,7 +139,7 @@ _ALL_JOINTS = (
         (STRUCTURAL_STEEL, POM),
         "representative (construction: Wozniak et al. 2021, doi 10.3390/en14113238); run in, its preload lost",
     ),
-    _joint(
+    _make_joint(
         "tilting-pad-pivot",
         12.5,
         0.05,

@@ -4,24 +4,27 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..core.arrays import Array, is_plain, where
+from ..core.arrays import Array, is_plain_number, where
 
 
 def make_unchecked(cls: Any, **fields: Any) -> Any:
-    """Make a material, layer or joint without checks, from checked or traced numbers."""
+    """Make a material, layer or joint without the checks of its initialiser.
+
+    The numbers have been checked, or JAX traces them.
+    """
     instance = object.__new__(cls)
     set_fields(instance, **fields)
     return instance
 
 
 def set_fields(instance: Any, **fields: Any) -> None:
-    """Set fields of a frozen value during its construction."""
+    """Set fields of a frozen dataclass instance during its construction."""
     for name, value in fields.items():
         object.__setattr__(instance, name, value)
 
 
 def short_text(value: Array) -> str:
-    """Format a number with six digits; return the shape of an array, or "<traced>"."""
+    """Format a number with six digits, or the shape of an array; "<traced>" without a value."""
     shape = tuple(getattr(value, "shape", ()))
     try:
         return f"{float(value):g}" if not shape else f"<array {'x'.join(map(str, shape))}>"
@@ -30,5 +33,5 @@ def short_text(value: Array) -> str:
 
 
 def larger(x: Array, y: Array) -> Array:
-    """Return the larger of two values, element by element."""
-    return max(x, y) if is_plain(x) and is_plain(y) else where(x > y, x, y)
+    """Return the elementwise maximum of two values."""
+    return max(x, y) if is_plain_number(x) and is_plain_number(y) else where(x > y, x, y)

@@ -145,8 +145,8 @@ def test_a_bracket_finds_the_contacts_between_its_ends(pair):
         assert bracket.estimate_angle(kind, 0.99 * first) is None
         assert bracket.solve(kind, 1.01 * last) is None
         assert bracket.estimate_angle(kind, 1.01 * last) is None
-        assert bracket.is_exceeded(kind, 1.01 * last)
-        assert not bracket.is_exceeded(kind, 0.99 * last)
+        assert bracket.lies_below(kind, 1.01 * last)
+        assert not bracket.lies_below(kind, 0.99 * last)
         for fraction in (0.0, 0.3, 0.9, 1.0):
             load = first ** (1 - fraction) * last**fraction
             load = min(max(load, first * (1 + 1e-12)), last * (1 - 1e-12))

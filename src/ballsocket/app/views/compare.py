@@ -189,11 +189,11 @@ def _text_table(
             if contact is None:
                 row.append("no answer")
                 continue
-            number = float(each.of(contact))
+            number = float(each.values_of(contact))
             share = (
                 ""
                 if first is None or contact is first
-                else percent(relative_deviation(number, float(each.of(first))), "+")
+                else percent(relative_deviation(number, float(each.values_of(first))), "+")
             )
             apart = f" ({share})" if share else ""
             row.append(f"{number_text(number)}{apart}")

@@ -41,8 +41,12 @@ class Judge:
         self._go = pn.widgets.Button(label="Run finite elements", color="primary", width=180)
         self._halt = pn.widgets.Button(label="Stop", width=90, disabled=True)
         self._bar = pn.indicators.Progress(value=0, max=100, width=220, visible=False)
-        self._arc = pn.widgets.FloatInput(label=CUP["arc_of_cover"].capital(), step=5, width=140, stylesheets=inputs())
-        self._chamfer = pn.widgets.FloatInput(label=CUP["chamfer"].capital(), step=0.5, width=120, stylesheets=inputs())
+        self._arc = pn.widgets.FloatInput(
+            label=CUP["arc_of_cover"].input_label(), step=5, width=140, stylesheets=inputs()
+        )
+        self._chamfer = pn.widgets.FloatInput(
+            label=CUP["chamfer"].input_label(), step=0.5, width=120, stylesheets=inputs()
+        )
         self._interface = pn.widgets.Select(
             label="Liner on its backing", options=[one.value for one in Interface], width=160, stylesheets=inputs()
         )

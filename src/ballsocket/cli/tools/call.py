@@ -11,7 +11,7 @@ from typing import Any
 from typer.models import ArgumentInfo
 
 from ...core.checks import check_names, known_name, shown
-from ...core.input_files import AllowedFolders, resolved_path
+from ...core.input_files import AllowedFolders, resolve_path
 from ...core.storage.atomic_files import write_text
 from ...files.toml import MOST, read_toml
 from .schema import option, parameters
@@ -78,7 +78,7 @@ def _inside(name: str, folder: Path) -> str:
     """Check that a name stays inside the folder, and return it as an operand."""
     if Path(name).is_absolute():
         raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
-    AllowedFolders((resolved_path(folder),)).resolve(folder / name, name)
+    AllowedFolders((resolve_path(folder),)).resolve(folder / name, name)
     return _operand(name)
 
 

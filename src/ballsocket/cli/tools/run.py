@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...core.input_files import restricted
+from ...core.input_files import restriction_variables
 from ...core.storage.array_files import cache_folder
 from ..root import DONE
 
@@ -46,7 +46,7 @@ async def run(words: Sequence[str], folder: Path, longest: float) -> Told:
             *_COMMAND,
             *words,
             cwd=folder,
-            env={**os.environ, **restricted((folder, cache_folder()))},
+            env={**os.environ, **restriction_variables((folder, cache_folder()))},
             stdin=stdin,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.PIPE,

@@ -24,7 +24,9 @@ _CONNECTION_TIMEOUT = 10
 
 @dataclass(frozen=True, kw_only=True)
 class Distributed:
-    """Executor on Dask workers: `xarray.map_blocks` makes one Dask task of each piece.
+    """Executor that distributes pieces of work over Dask workers.
+
+    `xarray.map_blocks` makes one Dask task of each piece.
 
     If a worker dies, its pieces are computed again. Workers on other machines need the same version of this package.
     They must reach the store under the same path.
@@ -61,7 +63,7 @@ class Distributed:
                 )
 
     def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
-        """Yield each number with the result of its work, in any order, as soon as it is finished.
+        """Compute pieces of work on the workers; yield (number, result) in the order of completion.
 
         Raises
         ------
@@ -90,7 +92,7 @@ class Distributed:
 
     @contextmanager
     def _connect(self) -> Iterator[Client]:
-        """Connect to the scheduler, or to a new cluster on this machine."""
+        """Connect to the scheduler, or to a new cluster on this machine, until the end of the block."""
         from distributed import Client
 
         if self.address is not None:
@@ -107,7 +109,7 @@ class Distributed:
 
 @contextmanager
 def local_cluster(workers: int, retries: int = 3) -> Iterator[LocalCluster]:
-    """Start a Dask cluster on this machine with workers of one thread, and stop it at the end of the block.
+    """Start a Dask cluster on this machine with single-threaded workers, until the end of the block.
 
     By default, Dask workers return freed memory to the system at once, which makes exact solutions a third slower. This
     cluster disables that. Other clusters can set a large `MALLOC_TRIM_THRESHOLD_` in the environment of their workers.
@@ -126,7 +128,10 @@ def local_cluster(workers: int, retries: int = 3) -> Iterator[LocalCluster]:
 
 @contextmanager
 def _send_work(client: Client, work: Work) -> Iterator[str]:
-    """Send the work once to every worker, also to later ones, and yield the name of the plugin that holds it."""
+    """Send the work function once to all workers, and yield the name of its Dask plugin.
+
+    Workers that join later receive it too.
+    """
     from distributed import WorkerPlugin
 
     class WorkPlugin(WorkerPlugin):
@@ -142,7 +147,7 @@ def _send_work(client: Client, work: Work) -> Iterator[str]:
 
 
 def _dask_blocks(plugin_name: str, numbers: Sequence[int]) -> xarray.Dataset:
-    """Build a dataset along `block` with one piece per chunk; a computed element is (number, result)."""
+    """Build a Dask dataset with one piece per chunk, whose computed elements are (number, result)."""
     import xarray
 
     pieces = xarray.Dataset({"result": ("block", numpy.array(numbers))}).chunk(block=1)
@@ -152,7 +157,7 @@ def _dask_blocks(plugin_name: str, numbers: Sequence[int]) -> xarray.Dataset:
 
 
 def _compute_block(block: xarray.Dataset, plugin_name: str) -> xarray.Dataset:
-    """Compute the pieces of a chunk on a worker."""
+    """Compute the pieces of one chunk on a worker."""
     from distributed import get_worker
 
     plugin: Any = get_worker().plugins[plugin_name]

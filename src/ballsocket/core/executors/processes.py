@@ -49,26 +49,28 @@ _WORKER_DIED: Any = object()
 
 
 class Engine(Protocol):
-    """Executor of numbered pieces of work."""
+    """Protocol of an executor of numbered pieces of work."""
 
     def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
-        """Yield each number with the result of its work, in any order, as soon as it is finished."""
+        """Compute pieces of work; yield (number, result) in the order of completion."""
         ...
 
 
 @dataclass(frozen=True)
 class Serial:
-    """Executor in this process, one piece after another."""
+    """Executor that computes one piece after another in this process."""
 
     def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
-        """Yield each number with the result of its work, in order."""
+        """Compute pieces of work; yield (number, result) in the order of `numbers`."""
         for number in numbers:
             yield number, work(number)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Processes:
-    """Executor in worker processes of this machine, each with one thread of linear algebra.
+    """Executor that distributes pieces over worker processes of this machine.
+
+    Each process uses one thread of linear algebra.
 
     If a worker process dies, its piece is computed again. As always with `multiprocessing`, a script that uses this
     executor needs the guard `if __name__ == "__main__":`.
@@ -94,7 +96,7 @@ class Processes:
             require("workers", self.workers, 1 <= self.workers <= MAX_WORKERS, f"it must be 1 to {MAX_WORKERS}")
 
     def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
-        """Yield each number with the result of its work, in any order, as soon as it is finished.
+        """Compute pieces of work in worker processes; yield (number, result) in the order of completion.
 
         Raises
         ------
@@ -118,6 +120,7 @@ class Processes:
 
     @property
     def _n_workers(self) -> int:
+        """Number of worker processes."""
         return self.workers or available_cores()
 
 
@@ -127,7 +130,10 @@ def available_cores() -> int:
 
 
 def _run_until_broken(pool: ProcessPoolExecutor, pending: deque[int], max_queued: int) -> Iterator[tuple[int, Any]]:
-    """Yield each pending number with its future, until all are finished or a worker process has died."""
+    """Yield each number with its completed future, until all are completed or a worker process has died.
+
+    A piece whose process died has `_WORKER_DIED` in place of a future.
+    """
     submitted: dict[Future[Any], int] = {}
     broken = False
     while submitted or (pending and not broken):
@@ -180,7 +186,10 @@ _work: Work | None = None
 
 
 def _initialize_worker(work: Work) -> None:
-    """Set the work of this worker process once, and let the parent process handle Ctrl-C."""
+    """Initialise a worker process: store its work function, and ignore Ctrl-C.
+
+    The parent process handles Ctrl-C.
+    """
     global _work
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     exit_with_parent()
@@ -188,6 +197,7 @@ def _initialize_worker(work: Work) -> None:
 
 
 def _compute_piece(number: int) -> Any:
+    """Compute one piece with the work function of this worker process."""
     assert _work is not None
     return _work(number)
 

@@ -27,7 +27,7 @@ _MAX_CACHE_SIZE = 2 * 2**30
 
 
 def write_arrays(path: Path, **arrays: Any) -> None:
-    """Write arrays, numbers and texts by name; each has a checksum in the file.
+    """Write named arrays, numbers and texts to an npz file, with checksums.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def write_arrays(path: Path, **arrays: Any) -> None:
 
 
 def read_arrays(path: Path) -> dict[str, Numbers]:
-    """Read the arrays of a file by name, and verify their checksums.
+    """Read the arrays of an npz file by name, and verify their checksums.
 
     Raises
     ------
@@ -63,13 +63,16 @@ def read_arrays(path: Path) -> dict[str, Numbers]:
 
 
 def _count_members(stream: BinaryIO) -> int:
-    """Read the number of members from the end record of an archive; a damaged directory lists fewer."""
+    """Read the number of members from the end record of a zip archive.
+
+    A damaged archive lists fewer members than it has.
+    """
     stream.seek(-_END_RECORD_LENGTH, os.SEEK_END)
     return int.from_bytes(stream.read(_END_RECORD_LENGTH)[10:12], "little")
 
 
 def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
-    """Read an array from the cache folder, or compute and cache it.
+    """Read an array from the cache folder; compute and store it if it is missing.
 
     Processes share the cache. A damaged file is replaced. If the folder is not writable, the array is only computed.
 
@@ -92,7 +95,10 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
 
 
 def cache_folder() -> Path:
-    """Return the cache folder: the environment variable BALLSOCKET_CACHE, or `ballsocket` in the user's cache."""
+    """Return the path of the cache folder.
+
+    It is the environment variable BALLSOCKET_CACHE, or `ballsocket` in the user's cache folder.
+    """
     folder = os.environ.get("BALLSOCKET_CACHE")
     if folder:
         return Path(folder)

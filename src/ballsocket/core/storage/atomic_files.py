@@ -25,19 +25,21 @@ _MIN_AGE = 60.0
 
 
 def is_draft(name: str) -> bool:
-    """Check if a name is that of a draft folder."""
+    """Check if a name has the form of a draft folder."""
     return name.startswith(".") and name.endswith(_DRAFT_SUFFIX)
 
 
 def check_parent_folder(path: Path) -> None:
-    """Raise ValueError if the parent folder of a file does not exist."""
+    """Check that the parent folder of a file exists; raise ValueError otherwise."""
     if not path.parent.is_dir():
         raise ValueError(f"cannot write {path.name}: {str(path.parent)!r} is not a folder; create it first")
 
 
 @contextmanager
 def write_atomically(path: Path) -> Iterator[Path]:
-    """Yield a draft path with the same file name, and move the draft to `path` if no error was raised.
+    """Yield a draft path to write to, and move the draft to `path` at the end.
+
+    An error in the block discards the draft. The draft has the same file name.
 
     The draft is a file or a folder.
 
@@ -59,7 +61,9 @@ def write_atomically(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def make_draft_folder(path: Path) -> Iterator[Path]:
-    """Yield a temporary folder in the parent folder of `path`, and remove the draft folders of killed processes.
+    """Make a temporary draft folder in the parent folder of `path`, until the end of the block.
+
+    Draft folders of killed processes are removed first.
 
     Raises
     ------
@@ -81,7 +85,7 @@ def make_draft_folder(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def _lock(folder: Path) -> Iterator[bool]:
-    """Lock a folder until the end of the block or of this process; yield False if it cannot be locked."""
+    """Lock a folder until the end of the block, and yield True; yield False if this is impossible."""
     if fcntl is None:
         yield False
         return
@@ -96,7 +100,7 @@ def _lock(folder: Path) -> Iterator[bool]:
 
 
 def _is_abandoned(folder: Path) -> bool:
-    """Check if a draft folder belongs to a process that has ended."""
+    """Check if the process that made a draft folder has ended."""
     with _lock(folder) as locked:
         return locked and time.time() - folder.stat().st_mtime > _MIN_AGE
 

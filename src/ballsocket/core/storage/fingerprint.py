@@ -13,7 +13,10 @@ _SUFFIXES = {".py", ".npz", ".toml", ".csv"}
 
 @cache
 def fingerprint() -> str:
-    """Return the version of the package and eight characters that change with any line of its code or data."""
+    """Compute an identifier of the installed code: version and eight characters of a hash.
+
+    It changes with any line of code or data of the package.
+    """
     package = Path(__file__).parents[2]
     digest = sha256()
     for path in sorted(path for path in package.rglob("*") if path.suffix in _SUFFIXES):
@@ -23,7 +26,7 @@ def fingerprint() -> str:
 
 
 def check_worker_code(code: str) -> None:
-    """Check that this process runs the same code as the process that started the run.
+    """Check that this worker runs the code of the process that started the run.
 
     Parameters
     ----------

@@ -12,15 +12,21 @@ from ..executors.processes import Engine, Work
 
 
 class PieceStore(ABC):
-    """Store of the results of numbered pieces of work; worker processes receive a copy of it."""
+    """Base class of stores for the results of numbered pieces of work.
+
+    Each worker process receives a copy of the store.
+    """
 
     @abstractmethod
     def load(self, numbers: Sequence[int]) -> dict[int, Any]:
-        """Load the stored results by number, without the pieces that are missing, damaged or from another run."""
+        """Load the stored results of some pieces, by number.
+
+        Missing or damaged pieces and those of another run are omitted.
+        """
 
     @abstractmethod
     def save(self, number: int, result: Any) -> Any:
-        """Store the result of a piece, and return the value to send to the calling process.
+        """Store the result of a piece, and return the value for the calling process.
 
         Raises
         ------
@@ -31,7 +37,7 @@ class PieceStore(ABC):
 
 @dataclass(frozen=True, eq=False)
 class PieceRun:
-    """Run of numbered pieces of work that computes only the pieces without a stored result.
+    """Resumable run of numbered pieces of work: only pieces without a stored result are computed.
 
     Parameters
     ----------
@@ -49,7 +55,7 @@ class PieceRun:
 
     @cached_property
     def stored(self) -> dict[int, Any]:
-        """Results that were stored before this run, by number."""
+        """Results of earlier runs, by number of the piece."""
         return {} if self.store is None else self.store.load(self.numbers)
 
     @cached_property
@@ -58,13 +64,13 @@ class PieceRun:
         return [number for number in self.numbers if number not in self.stored]
 
     def compute_missing(self, engine: Engine) -> Iterator[tuple[int, Any]]:
-        """Compute and store the missing pieces, and yield each number with its result as soon as it is finished."""
+        """Compute and store the missing pieces; yield (number, result) in the order of completion."""
         return engine.run(self.work if self.store is None else _StoringWork(self.work, self.store), self.missing)
 
 
 @dataclass(frozen=True, eq=False)
 class _StoringWork:
-    """Work that stores each result in the process that computed it."""
+    """Work function that also stores each result, in the process that computed it."""
 
     work: Work
     store: PieceStore

@@ -87,7 +87,7 @@ class ElasticContact(SolvedContact):
         ValueError
             More than one contact, or one that is narrower than 1 degree: there the half-space (`Hertz`) answers.
         """
-        angles = numpy.asarray(arrays.to_numpy(QUANTITIES["angle"].checked(angle)), dtype=float)
+        angles = numpy.asarray(arrays.to_numpy(QUANTITIES["angle"].check(angle)), dtype=float)
         values = surface_displacement(self._single, angles)
         return values if angles.ndim else float(values)
 
@@ -105,7 +105,7 @@ class ElasticContact(SolvedContact):
         """
         angles, depths = (
             numpy.asarray(value, dtype=float)
-            for value in (QUANTITIES["angle"].checked(angle), check_numeric("depth", depth))
+            for value in (QUANTITIES["angle"].check(angle), check_numeric("depth", depth))
         )
         thickness = sum(shell.thickness for shell in self._single.kernel.socket.shells)
         inside = (depths >= 0) & (depths <= thickness * (1 + 1e-9))
@@ -126,7 +126,7 @@ class ElasticContact(SolvedContact):
         where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
         where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
         """
-        changes = self.laws.spread(_hemisphere_of, rows=(len(CHANGES),))
+        changes = self.laws.combine(_hemisphere_of, rows=(len(CHANGES),))
         return {name: self._match_load(changes[number, ...]) for number, name in enumerate(CHANGES)}
 
     @property
@@ -183,7 +183,9 @@ class ElasticContact(SolvedContact):
         lower, upper = super().von_mises_bounds
         if arrays.all_true(arrays.isfinite(upper) | self._failed) is not False:
             return lower, upper
-        estimate = self._mask_failed(lambda: self.laws.located(lambda position, piece: self._estimate_von_mises(piece)))
+        estimate = self._mask_failed(
+            lambda: self.laws.combine_by_index(lambda position, piece: self._estimate_von_mises(piece))
+        )
         return (1 - VON_MISES_TOLERANCE) * estimate, (1 + VON_MISES_TOLERANCE) * estimate
 
     def _estimate_von_mises(self, piece: JointContacts) -> numpy.ndarray:

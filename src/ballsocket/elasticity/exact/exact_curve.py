@@ -16,7 +16,7 @@ from ...problem.gaps import LinearGap
 from .chebyshev_curve import ChebyshevCurve, fit_curve
 from .contact import CurveContact
 from .load_curve import LoadCurve
-from .model import Exact, curve_of, make_answer
+from .model import Exact, curve_of, make_solver_result
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +65,7 @@ class ExactCurve(ModelWrapper):
         solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: chebyshev_curve_of(self.model, plain_joint).press(kind, loads)
         )
-        return make_answer(solution, self.model.tolerance, load)
+        return make_solver_result(solution, self.model.tolerance, load)
 
 
 @lru_cache(maxsize=256)

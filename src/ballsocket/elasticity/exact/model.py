@@ -64,7 +64,7 @@ class Exact(Model):
 
     def __post_init__(self) -> None:
         tolerance = check_numeric("tolerance", self.tolerance)
-        if not arrays.is_plain(tolerance):
+        if not arrays.is_plain_number(tolerance):
             raise TypeError(f"tolerance must be one number, got {shown(self.tolerance)}")
         good = 1e-10 <= tolerance <= 1e-2
         require("tolerance", self.tolerance, good, "double precision keeps a relative tolerance of 1e-10 to 1e-2")
@@ -113,19 +113,19 @@ class Exact(Model):
         solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: curve_of(self, plain_joint).press(kind, loads)
         )
-        return make_answer(solution, self.tolerance, load)
+        return make_solver_result(solution, self.tolerance, load)
 
 
 _NEAR_HEMISPHERE = NearHemisphere()
 
 
-def make_answer(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
-    """Make the solver result of a solution; errors beyond the tolerance count as not converged."""
+def make_solver_result(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
+    """Make the `SolverResult` of a solution; points whose error exceeds the tolerance have not converged."""
     return SolverResult(
         laws=solution,
         force=solution.force,
         indentation=solution.indentation,
-        failures={Status.NOT_CONVERGED: ~(solution.worst <= max(tolerance, 10 * arrays.machine_epsilon(load)))},
+        failures={Status.NOT_CONVERGED: ~(solution.max_error <= max(tolerance, 10 * arrays.machine_epsilon(load)))},
     )
 
 

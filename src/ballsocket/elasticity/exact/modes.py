@@ -291,8 +291,8 @@ def _check_radius(radius: float) -> None:
 
 def _check_material(young: float, poisson: float) -> None:
     """Raise ValueError for moduli outside their ranges."""
-    MATERIAL["young"].checked(young)
-    MATERIAL["poisson"].checked(poisson)
+    MATERIAL["young"].check(young)
+    MATERIAL["poisson"].check(poisson)
 
 
 def _check_degrees(degrees: ArrayLike) -> numpy.ndarray:

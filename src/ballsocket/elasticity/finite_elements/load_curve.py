@@ -80,7 +80,7 @@ class MeshedLoadCurve:
             angle = bracket.estimate_angle(kind, load)
             if angle is not None:
                 return min(sum(angle <= edge for edge in self.classes[1:]), last)
-            if bracket.is_exceeded(kind, load):
+            if bracket.lies_below(kind, load):
                 return start
         return last
 
@@ -109,7 +109,7 @@ class MeshedLoadCurve:
                 else None
             )
             return contact if contact is not None and is_pressed(contact) else None
-        if number == 0 and self.ends_at_rim and bracket.is_exceeded(kind, load):
+        if number == 0 and self.ends_at_rim and bracket.lies_below(kind, load):
             return _solve_full_contact(kind, load, bracket.pair, self.gap)
         return bracket.solve(kind, load)
 

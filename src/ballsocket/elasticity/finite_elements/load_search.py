@@ -60,13 +60,16 @@ class ContactBracket:
             for kind in ("force", "indentation")
         }
 
-    def is_exceeded(self, kind: str, load: float) -> bool:
-        """Check that no sample is missing and that the load exceeds that of the widest contact."""
+    def lies_below(self, kind: str, load: float) -> bool:
+        """Check if the load exceeds that of the widest contact of the bracket.
+
+        This is False if a sample is missing.
+        """
         return len(self._samples) == _SAMPLES and bool(getattr(self._samples[-1], kind) < load)
 
     def estimate_angle(self, kind: str, load: float) -> float | None:
         """Estimate the half angle under a load; None outside the range."""
-        if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.is_exceeded(kind, load):
+        if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.lies_below(kind, load):
             return None
         if load > getattr(self._samples[-1], kind):  # the perfect fit lies before the next sample
             return self._samples[-1].half_angle * (self.high / self.low) ** (0.5 / (_SAMPLES - 1))
@@ -74,7 +77,7 @@ class ContactBracket:
 
     def solve(self, kind: str, load: float) -> PartialContact | None:
         """Solve the contact under a load, "force" or "indentation"; None outside the range."""
-        if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.is_exceeded(kind, load):
+        if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.lies_below(kind, load):
             return None
         above = sum(getattr(sample, kind) <= load for sample in self._samples)
         if above == len(self._samples):

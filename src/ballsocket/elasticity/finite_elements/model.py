@@ -154,7 +154,7 @@ class FiniteElement(Model):
             force=solution.force,
             indentation=solution.indentation,
             failures={
-                Status.AT_RIM: solution.spread(lambda piece: piece.state.at_rim) == 1,
-                Status.NOT_ROUND: solution.spread(lambda piece: piece.state.unsound) == 1,
+                Status.AT_RIM: solution.combine(lambda piece: piece.state.at_rim) == 1,
+                Status.NOT_ROUND: solution.combine(lambda piece: piece.state.unsound) == 1,
             },
         )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from math import inf, pi
 
-from ...core.arrays import is_plain
+from ...core.arrays import is_plain_number
 from ...core.checks import check_numeric, require, shown
 from .shapes import Resolution
 
@@ -93,7 +93,7 @@ class Uniform:
     growth: float = 1.03
 
     def __post_init__(self) -> None:
-        if not is_plain(check_numeric("size", self.size)):
+        if not is_plain_number(check_numeric("size", self.size)):
             raise TypeError(f"size must be one number, got {shown(self.size)}")
         require("size", self.size, 0 < self.size < inf, "an element size (mm) must be above 0 and finite")
         _check_growth(self.growth)

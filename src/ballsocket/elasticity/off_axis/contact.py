@@ -66,7 +66,7 @@ class OffAxisContact(SolvedContact):
     @cached_property
     def stiffness_matrix(self) -> Array:
         """Derivative of the force by the displacement in N/mm, (..., 3, 3), symmetric."""
-        rows = self.laws.spread(lambda piece: piece.state.tangent.reshape(9, -1), (9,))
+        rows = self.laws.combine(lambda piece: piece.state.tangent.reshape(9, -1), (9,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3))
 
@@ -78,7 +78,7 @@ class OffAxisContact(SolvedContact):
     @cached_property
     def edge_loaded(self) -> Array:
         """True where the contact reaches the end of the bore."""
-        loaded = self.laws.spread(lambda piece: piece.state.edge_loaded) == 1
+        loaded = self.laws.combine(lambda piece: piece.state.edge_loaded) == 1
         return bool(loaded) if self._is_plain else loaded
 
     @cached_property
@@ -86,7 +86,7 @@ class OffAxisContact(SolvedContact):
         """Angle in rad from the edge of the contact to the end of the bore: `edge_distance` over the bore's radius."""
         from .load_cases import edge_margins  # slow to import
 
-        return self._mask_failed(lambda: self.laws.spread(lambda piece: edge_margins(piece.state)))
+        return self._mask_failed(lambda: self.laws.combine(lambda piece: edge_margins(piece.state)))
 
     @property
     def edge_distance(self) -> Array:
@@ -105,7 +105,7 @@ class OffAxisContact(SolvedContact):
     @property
     def tilt(self) -> Array:
         """Angle in rad between the pole of the dome and the direction of the load."""
-        return self._match_load(self.laws.spread(lambda piece: polar_angle(piece.state.axes.T)))
+        return self._match_load(self.laws.combine(lambda piece: polar_angle(piece.state.axes.T)))
 
     @property
     def _patch(self) -> ContactPatch:
@@ -147,7 +147,7 @@ class OffAxisContact(SolvedContact):
         if self._is_plain and self.status is Status.DISLOCATED:
             notes.append(self._dislocation_note)
         if not self._failed_everywhere:
-            unbounded = self.laws.spread(lambda piece: piece.state.unbounded) == 1
+            unbounded = self.laws.combine(lambda piece: piece.state.unbounded) == 1
             notes += self._note(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
             notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _RIM_NOTE)
         return tuple(notes)
@@ -165,7 +165,7 @@ class OffAxisContact(SolvedContact):
 
     def _vector(self, name: str) -> Array:
         """Return a vector of every contact (..., 3), NaN where there is no solution."""
-        rows = self.laws.spread(lambda piece: getattr(piece.state, name), (3,))
+        rows = self.laws.combine(lambda piece: getattr(piece.state, name), (3,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1)
 

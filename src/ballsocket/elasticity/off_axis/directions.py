@@ -39,7 +39,7 @@ def check_direction(direction: Any) -> Numbers:
 def tilted_directions(tilt: Array, azimuth: Array | None) -> Numbers:
     """Compute unit vectors (..., 3) in the cup's frame from a tilt and an azimuth (0 by default) in rad."""
     inputs = {"tilt": tilt, "azimuth": 0.0 if azimuth is None else azimuth}
-    angles = (arrays.to_numpy(AIM[name].checked(angle)) for name, angle in inputs.items())
+    angles = (arrays.to_numpy(AIM[name].check(angle)) for name, angle in inputs.items())
     return numpy.moveaxis(unit_vectors(*numpy.broadcast_arrays(*angles)), 0, -1)
 
 
@@ -50,7 +50,7 @@ def cup_frames(cup: Cup, inclination: Array | None, anteversion: Array | None) -
     """
     inputs = {"inclination": inclination, "anteversion": anteversion}
     angles = (
-        arrays.to_numpy(CUP[name].checked(getattr(cup, name) if angle is None else angle))
+        arrays.to_numpy(CUP[name].check(getattr(cup, name) if angle is None else angle))
         for name, angle in inputs.items()
     )
     pairs = numpy.broadcast_arrays(*angles)

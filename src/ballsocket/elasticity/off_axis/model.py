@@ -264,8 +264,8 @@ class Sphere(Model):
             force=solution.force,
             indentation=solution.indentation,
             failures={
-                Status.DISLOCATED: solution.spread(lambda piece: piece.state.dislocated) == 1,
-                Status.NOT_CONVERGED: solution.spread(lambda piece: piece.state.unconverged) == 1,
+                Status.DISLOCATED: solution.combine(lambda piece: piece.state.dislocated) == 1,
+                Status.NOT_CONVERGED: solution.combine(lambda piece: piece.state.unconverged) == 1,
             },
         )
 

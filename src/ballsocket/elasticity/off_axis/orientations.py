@@ -216,7 +216,7 @@ def _check_single(joint: Any, load: Mapping[str, Any]) -> None:
 
 def _check_angles(name: str, values: Array) -> Numbers:
     """Validate a row of angles (n,) in rad of a cup."""
-    angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].checked(values)).astype(float))
+    angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].check(values)).astype(float))
     if angles.ndim != 1 or angles.size == 0:
         raise ValueError(f"{name} of shape {angles.shape} is not allowed: give a row of angles")
     rising = bool((numpy.diff(angles) > 0).all())

@@ -146,7 +146,7 @@ def scan_from_points(
     """Make a scan from points (points, 3) in mm; see `read_scan`."""
     size = check_number("finest", finest)
     require("finest", size, 0 < size <= _MAX_AVERAGING_ANGLE, "the angle is above 0 and at most 0.35 radians (20°)")
-    rotation = check_number("azimuth", AIM["azimuth"].checked(azimuth))
+    rotation = check_number("azimuth", AIM["azimuth"].check(azimuth))
     require(f"points of {name}", len(points), len(points) >= _MIN_POINTS, f"a scan has at least {_MIN_POINTS} points")
     require(f"points of {name}", points, numpy.isfinite(points), "a point is finite")
     in_range = abs(points) <= _MAX_COORDINATE

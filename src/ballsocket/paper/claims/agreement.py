@@ -10,7 +10,7 @@ from ...contact import Contact, Model
 from ...elasticity.finite_elements.contact import MeshedContact
 from ...elasticity.finite_elements.model import FiniteElement
 from ...elasticity.finite_elements.spacing import Element, Uniform
-from ...identify.modulus import worst_error
+from ...identify.modulus import max_relative_error
 from ...models.foundation import Bartel, BondedLayer, HessForsbach
 from ...models.half_space import Hertz
 from .. import cases
@@ -52,9 +52,9 @@ def good_agreement_at_0_4(reference: Model) -> Finding:
         curve = reference.press(series, force=cases.LOADS[:, None])
         pushed = HessForsbach().press(series, indentation=curve.indentation)
         for name in SHOWN[:2]:
-            off = worst_error(getattr(ours, name), getattr(truth, name))
+            off = max_relative_error(getattr(ours, name), getattr(truth, name))
             worst[name] = max(worst[name], percent(off))
-        worst["force"] = max(worst["force"], percent(worst_error(pushed.force, curve.force)))
+        worst["force"] = max(worst["force"], percent(max_relative_error(pushed.force, curve.force)))
     return Finding(
         name="good-agreement-at-0.4",
         where="Section 3.2, Figures 3 and 5",
@@ -156,7 +156,7 @@ def usable_above_0_45(reference: Model) -> Finding:
         joints = cases.by_ratio(numpy.array([0.8, 1.2, 1.8, 2.8, 4.1, 5.8, 7.5]), poisson)
         truth, ours = (model.press(joints, force=cases.LOADS[[0, -1], None]) for model in (reference, HessForsbach()))
         for name in worst:
-            off = worst_error(getattr(ours, name), getattr(truth, name))
+            off = max_relative_error(getattr(ours, name), getattr(truth, name))
             worst[name] = max(worst[name], percent(off))
     return Finding(
         name="usable-above-0.45",
@@ -176,7 +176,7 @@ def older_models_err_considerably(reference: Model) -> Finding:
         for poisson in (0.4, 0.45):
             _, _, joints = cases.outline(poisson)
             truth, theirs = (each.press(joints, force=cases.LOAD).max_pressure for each in (reference, model))
-            off.append(worst_error(theirs, truth))
+            off.append(max_relative_error(theirs, truth))
         worst[f"{model.name}: peak pressure, worst, %"] = percent(max(off))
     return Finding(
         name="older-models-err-considerably",

@@ -14,7 +14,7 @@ from ...core.sources import Source
 from ...elasticity.exact.contact import ElasticContact
 from ...elasticity.exact.model import Exact
 from ...elasticity.finite_elements.model import FiniteElement
-from ...identify.modulus import worst_error
+from ...identify.modulus import max_relative_error
 from ...problem import Joint, Material
 from ...problem.presets import COCR, CROSSLINKED_PE, STEEL, UHMWPE
 from .finding import SHOWN, Finding, graded, percent, true
@@ -58,7 +58,7 @@ def exact_agrees_with_calculix(_: Model) -> Finding:
 
 def _against_calculix(model: Model, table: Numbers) -> dict[str, float]:
     ours = model.press(_joints_of(table), force=table["force"])
-    depth, pressure = (percent(worst_error(getattr(ours, name), table[name])) for name in SHOWN[:2])
+    depth, pressure = (percent(max_relative_error(getattr(ours, name), table[name])) for name in SHOWN[:2])
     angle = float(numpy.max(abs(numpy.degrees(ours.half_angle) - table["half_angle_deg"])))
     return {"indentation off by, %": depth, "peak pressure off by, %": pressure, "half angle off by, °": angle}
 

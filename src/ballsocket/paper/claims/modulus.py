@@ -8,7 +8,7 @@ import numpy
 
 from ...contact import Model
 from ...core.arrays import Numbers
-from ...identify.modulus import worst_error
+from ...identify.modulus import max_relative_error
 from ...models.foundation import Bartel, Vessel
 from ...models.modulus import bonded_layer, spherical_vessel
 from .. import cases
@@ -43,7 +43,7 @@ def linear_kinematics_suffice(_: Model) -> Finding:
         family = cases.with_clearance(joints, clearance)
         exact, linear = (model.press(family, force=cases.LOAD) for model in (Bartel(), Vessel()))
         for name in worst:
-            off = worst_error(getattr(linear, name), getattr(exact, name))
+            off = max_relative_error(getattr(linear, name), getattr(exact, name))
             worst[name] = max(worst[name], percent(off))
     return Finding(
         name="linear-kinematics-suffice",
