@@ -21,6 +21,7 @@ __all__ = [
     "press",
     "questions",
     "reproduce",
+    "schema",
     "serve_mcp",
     "study",
 ]

@@ -31,7 +31,7 @@ _NAME = "\0"
 """Placeholder for the name of a key while its value is read; `shown` never lets it through from a file."""
 
 _PATH = re.compile(r" - at `\$(?P<path>[^`]*)`$")
-_STEP = re.compile(r"\.(?P<key>\w+)|\[(?P<index>\d+)\]")
+_STEP = re.compile(r"\.(?P<key>\w+)|\[(?P<index>\d+|\.\.\.)\]")
 
 
 def meaning(text: str) -> msgspec.Meta:
@@ -70,6 +70,17 @@ class Text(Value, str):
     def read(cls, name: str, value: Any) -> Self:
         """Convert a text of a file."""
         return cls(check_text(name, value))
+
+
+class Texts(Value, list[str]):
+    """Text or list of texts."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": ["string", "array"], "items": {"type": "string"}}
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert one text or a list of texts of a file."""
+        return cls(check_text(name, text) for text in (value if isinstance(value, list) else [value]))
 
 
 _MAX_INTEGER = 1 << 53
@@ -261,10 +272,25 @@ def _step_into(place: _Place, step: re.Match[str]) -> _Place:
         assert struct is not None
         kind = next(field.type for field in struct.fields if field.encode_name == key)
         return _Place(place.value[key], kind, place.key or place.table, key, struct.cls.qualified)
+    if step["index"] == "...":
+        return _step_into_named_table(place)
     listed = _list_in(place.type)
     assert listed is not None
     key = f"{place.key}[{step['index']}]"
     return replace(place, value=place.value[int(step["index"])], type=listed.item_type, key=key)
+
+
+def _step_into_named_table(place: _Place) -> _Place:
+    """Return the place of the first table that is refused among tables with names that the file chooses."""
+    named = next(part for part in _parts(place.type) if isinstance(part, inspect.DictType))
+    struct = _struct_in(named.value_type)
+    assert struct is not None
+    for name, table in place.value.items():
+        try:
+            msgspec.convert(table, struct.cls, dec_hook=_read_value)
+        except msgspec.ValidationError:
+            return replace(place, value=table, type=struct, key=f"{place.key}.{name}")
+    raise AssertionError("one of the tables is refused")
 
 
 def _parts(kind: inspect.Type) -> Iterator[inspect.Type]:
@@ -328,6 +354,9 @@ def _tables_of(kind: inspect.Type) -> Iterator[tuple[str, inspect.StructType]]:
     for field in struct.fields if struct else ():
         if inner := _struct_in(field.type):
             yield f"[{field.encode_name}]", inner
+        for part in _parts(field.type):
+            if isinstance(part, inspect.DictType) and (inner := _struct_in(part.value_type)):
+                yield f"[{field.encode_name}.NAME]", inner
         if (listed := _list_in(field.type)) and (inner := _struct_in(listed.item_type)):
             yield f"[[{field.encode_name}]]", inner
 

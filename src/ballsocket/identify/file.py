@@ -5,17 +5,30 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy
 
 from ..contact import Model
-from ..core.checks import check_names, check_text, known_name, shown
+from ..core.checks import check_names, known_name, shown
 from ..core.kinds import Kind
-from ..core.quantities import LOADS
-from ..files.joint_file import KEYS, check_keys
-from ..files.named_joint import PARTS, joint_in
-from ..files.toml import read_toml, table_of
+from ..core.quantities import FIELD, LOADS, MATERIAL
+from ..files.joint_file import JointTables
+from ..files.named_joint import joint_in
+from ..files.schema import (
+    QUANTITY_SCHEMA,
+    Mass,
+    Modulus,
+    Table,
+    Text,
+    Texts,
+    Value,
+    meaning,
+    read_table,
+    table_of_quantities,
+    values_of,
+)
+from ..files.toml import read_toml
 from ..files.units import parse
 from ..problem import Joint
 from ..studies.file import named_model
@@ -31,16 +44,144 @@ from .result import IdentificationResult
 from .scatter import HeavyTailed, NormalScatter, ScatterModel
 from .unknowns import Prior
 
+_QUANTITIES = {**MEASURED, FREQUENCY.name: FREQUENCY}
+_SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
+_NUMBERS_SCHEMA = {"anyOf": [QUANTITY_SCHEMA, {"type": "array", "items": QUANTITY_SCHEMA}]}
+
+
+class Readings(Value, list[Any]):
+    """Number or list of numbers, with units."""
+
+    kind: ClassVar[Kind]
+    schema: ClassVar[Mapping[str, Any]] = _NUMBERS_SCHEMA
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert one number or a list of numbers, as floats if the class has a kind of quantity."""
+        values = value if isinstance(value, list) else [value]
+        return cls(parse(name, number, cls.kind) for number in values) if hasattr(cls, "kind") else cls(values)
+
+
+class OrderReadings(Readings):
+    """Numbers of the readings."""
+
+    kind = Kind.NUMBER
+
+
+class Uncertainty(Value):
+    """Number, text with a unit, or percentage of each value."""
+
+    schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
+
+    def __init__(self, stated: float | str) -> None:
+        self.stated = stated
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Accept the value of a file; the quantity of the data determines its unit."""
+        return cls(value)
+
+
+class PriorValue(Value):
+    """Two ends, such as '0.02..0.3 mm', or a distribution `{mean, deviation}`, `{median, factor}`, `{low, high}`."""
+
+    kind: ClassVar[Kind]
+    schema: ClassVar[Mapping[str, Any]] = {"type": ["string", "object"], "additionalProperties": QUANTITY_SCHEMA}
+
+    def __init__(self, prior: Prior) -> None:
+        self.prior = prior
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert the prior of an unknown."""
+        if isinstance(value, str):
+            return cls(ends_of(name, value, cls.kind))
+        if not isinstance(value, Mapping):
+            raise ValueError(
+                f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}"
+            )
+        return cls(distribution_of(name, value, lambda key, number: parse(key, number, cls.kind)))
+
+
+class ErrorSize(Value):
+    """Size of an error of a machine: a number, or two ends such as '0..20 um'."""
+
+    kind: ClassVar[Kind]
+    schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
+
+    def __init__(self, size: NumberOrRange) -> None:
+        self.size = size
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert the size of an error."""
+        is_range = isinstance(value, str) and ".." in value
+        return cls(ends_of(name, value, cls.kind) if is_range else parse(name, value, cls.kind))
+
+
+_LINER_NUMBERS, _BALL_NUMBERS = (
+    {key: FREE_NUMBERS[f"{body}_{key}"] for key in MATERIAL if f"{body}_{key}" in FREE_NUMBERS}
+    for body in ("liner", "ball")
+)
+FreeLiner = table_of_quantities("FreeLiner", _LINER_NUMBERS, PriorValue)
+"""Unknowns of the liner."""
+
+FreeBall = table_of_quantities("FreeBall", _BALL_NUMBERS, PriorValue)
+"""Unknowns of the ball."""
+
+
+class FreeMaterials(Table, kw_only=True):
+    """Unknowns of materials."""
+
+    liner: FreeLiner | None = None  # type: ignore[valid-type]
+    ball: FreeBall | None = None  # type: ignore[valid-type]
+
+
+FreeTable = table_of_quantities("FreeTable", FREE_NUMBERS, PriorValue, (FreeMaterials,))
+"""Unknowns with their priors."""
+
+MachineTable = table_of_quantities(
+    "MachineTable", {name: error.quantity for name, error in MACHINE_ERRORS.items()}, ErrorSize
+)
+"""Errors of a machine."""
+
+
+class DataKeys(Table, kw_only=True):
+    """Set of data: columns of a file, or a quantity with its values."""
+
+    file: Annotated[Text | None, meaning("CSV or Parquet file, whose heads have units")] = None
+    quantities: Annotated[Texts | None, meaning("measured columns; all by default")] = None
+    load: Annotated[Text | None, meaning("column of the load; force by default")] = None
+    gaps: Annotated[Literal["refuse", "leave-out"], meaning("rows with a missing number")] = "refuse"
+    quantity: Annotated[Text | None, meaning("measured quantity of the values")] = None
+    values: Annotated[Readings | None, meaning("measured values")] = None
+    mass: Annotated[Mass | None, meaning("mass of the ball, for a frequency")] = None
+    order: Annotated[OrderReadings | None, meaning("numbers of the readings, for a drift")] = None
+    name: Annotated[Text | None, meaning("name of the data in tables and notes")] = None
+    uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the values")] = None
+    load_uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the loads")] = None
+    saturation: Annotated[Modulus | None, meaning("largest reading of a film or sensor")] = None
+    machine: Annotated[Text | None, meaning("name of the machine: [machine.NAME]")] = None
+
+
+DataTable = table_of_quantities("DataTable", {**LOADS, "angle": FIELD["angle"]}, Readings, (DataKeys,))
+"""Set of data with its loads and angles."""
+
 _FILE_KEYS = ("file", "quantities", "load", "gaps")
 _VALUE_KEYS = ("quantity", "values", "angle", "mass", "order", *LOADS)
 _COMMON_KEYS = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
-_TABLES: Mapping[str, tuple[str, ...]] = {
-    "": (*PARTS, "model", "scatter", "free", "machine", "data"),
-    "data": (*_FILE_KEYS, *_VALUE_KEYS, *_COMMON_KEYS),
-}
-FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
-_QUANTITIES = {**MEASURED, FREQUENCY.name: FREQUENCY}
-_SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
+
+
+class IdentifyTable(JointTables, kw_only=True):
+    """Identification file."""
+
+    model: Annotated[Text | None, meaning("name of the model; tabulated by default")] = None
+    scatter: Annotated[Literal["normal", "heavy-tailed"], meaning("scatter of the data: heavy-tailed for outliers")] = (
+        "normal"
+    )
+    free: FreeTable | None = None  # type: ignore[valid-type]
+    machine: dict[str, MachineTable] | None = None  # type: ignore[valid-type]
+    data: Annotated[list[DataTable] | None, meaning("sets of data")] = None  # type: ignore[valid-type]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,140 +235,110 @@ def read_identify(path: str | Path) -> IdentifyFile:
 
 
 def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
-    """Parse the tables of an identification file to model, joint, data and unknowns."""
-    check_keys(content, "", "at the top", FILE_KEYS)
-    joint_file = joint_in(content, folder)
-    machines = {name: _parse_machine(name, table) for name, table in table_of(content, "machine").items()}
+    """Convert the tables of a file to model, joint, data and unknowns."""
+    tables = read_table(content, IdentifyTable)
+    joint_file = joint_in(tables, folder)
+    machines = {name: _parse_machine(name, table) for name, table in (tables.machine or {}).items()}
+    if not tables.data:
+        raise ValueError("the file has no measurements: add [[data]] before each set")
+    sets = [
+        measured
+        for table, keys in zip(tables.data, content["data"], strict=True)
+        for measured in _parse_data_table(table, keys, machines, folder)
+    ]
     return IdentifyFile(
-        model=named_model(content.get("model", "tabulated")).in_cup(joint_file.cup),
+        model=named_model(tables.model or "tabulated").in_cup(joint_file.cup),
         joint=joint_file.joint,
-        data=_parse_data(content.get("data", []), machines, folder),
-        free=_parse_unknowns(table_of(content, "free")),
-        scatter=_SCATTER_MODELS[known_name("scatter", content.get("scatter", "normal"), _SCATTER_MODELS)],
+        data=tuple(sets),
+        free=_parse_unknowns(tables.free, content.get("free", {})),
+        scatter=_SCATTER_MODELS[tables.scatter],
     )
 
 
-def _parse_unknowns(table: Mapping[str, Any]) -> dict[str, Prior]:
-    """Parse the table of unknowns.
-
-    Those of a material may have their own table, `liner.young`.
-    """
-    flat: dict[str, Any] = {}
-    for name, value in table.items():
-        is_material = name in ("liner", "ball") and isinstance(value, Mapping)
-        flat |= {f"{name}_{number}": entry for number, entry in value.items()} if is_material else {name: value}
-    check_names(flat, FREE_NUMBERS, "in [free]")
-    return {name: _parse_prior(name, value) for name, value in flat.items()}
-
-
-def _parse_prior(name: str, value: Any) -> Prior:
-    """Parse the prior of an unknown: two ends of a range, or a distribution."""
-    kind = FREE_NUMBERS[name].kind
-    if isinstance(value, str):
-        return ends_of(name, value, kind)
-    if not isinstance(value, Mapping):
-        raise ValueError(f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}")
-    return distribution_of(name, value, lambda key, number: parse(key, number, kind))
+def _parse_unknowns(table: Any, content: Mapping[str, Any]) -> dict[str, Prior]:
+    """Return the priors of the unknowns by name; those of a material may have their own table, `liner.young`."""
+    priors: dict[str, Prior] = {}
+    for name in content:
+        if name in ("liner", "ball"):
+            of_material = values_of(getattr(table, name), PriorValue, content[name])
+            priors |= {f"{name}_{number}": entry.prior for number, entry in of_material.items()}
+        else:
+            priors[name] = getattr(table, name).prior
+    return priors
 
 
 def _parse_machine(name: str, table: Any) -> Machine:
-    """Parse the table of a machine and its errors."""
-    if not isinstance(table, Mapping):
-        raise ValueError(f"machine.{name} = {shown(table)} must be a table: [machine.{name}]")
-    check_names(table, MACHINE_ERRORS, f"in [machine.{name}]")
-    sizes: dict[str, Any] = {error: _number_or_range(f"{name}.{error}", value, error) for error, value in table.items()}
+    """Create a machine with its errors."""
+    sizes = {error: entry.size for error in MACHINE_ERRORS if (entry := getattr(table, error)) is not None}
     return Machine(name=name, **sizes)
 
 
-def _number_or_range(name: str, value: Any, error: str) -> NumberOrRange:
-    """Parse the size of a machine error: a number, or two ends."""
-    kind = MACHINE_ERRORS[error].quantity.kind
-    return ends_of(name, value, kind) if isinstance(value, str) and ".." in value else parse(name, value, kind)
-
-
-def _parse_data(tables: Any, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
-    """Parse all data sets of a file."""
-    if not isinstance(tables, list) or not tables or not all(isinstance(table, Mapping) for table in tables):
-        raise ValueError("the file has no measurements: add [[data]] before each set")
-    return tuple(measured for table in tables for measured in _parse_data_table(table, machines, folder))
-
-
-def _parse_data_table(table: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
-    """Parse the data sets of one [[data]] table."""
-    check_keys(table, "data", "in [[data]]", FILE_KEYS)
-    if ("file" in table) == ("values" in table):
+def _parse_data_table(
+    table: Any, keys: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path
+) -> tuple[Measured, ...]:
+    """Create the sets of data of one table; `keys` are those that the file states."""
+    if ("file" in keys) == ("values" in keys):
         raise ValueError("[[data]] needs either a file, or a quantity with its values")
-    machine = machines[known_name("machine", table["machine"], machines)] if "machine" in table else IDEAL_MACHINE
-    return _data_from_file(table, machine, folder) if "file" in table else (_data_from_values(table, machine),)
+    machine = IDEAL_MACHINE if table.machine is None else machines[known_name("machine", table.machine, machines)]
+    if "file" in keys:
+        check_names(keys, (*_FILE_KEYS, *_COMMON_KEYS), "in [[data]] with a file")
+        return _data_from_file(table, machine, folder)
+    check_names(keys, (*_VALUE_KEYS, *_COMMON_KEYS), "in [[data]] with values")
+    return (_data_from_values(table, machine),)
 
 
-def _data_from_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[Measured, ...]:
-    """Read the data sets of a [[data]] table that names a CSV or Parquet file."""
-    check_names(table, (*_FILE_KEYS, *_COMMON_KEYS), "in [[data]] with a file")
-    listed = table.get("quantities", [])
-    quantities = [listed] if isinstance(listed, str) else listed
-    gaps = known_name("gaps", table.get("gaps", Gaps.REFUSE.value), [choice.value for choice in Gaps])
-    load = check_text("load", table.get("load", ""))
+def _data_from_file(table: Any, machine: Machine, folder: Path) -> tuple[Measured, ...]:
+    """Read the sets of data of a table that names a CSV or Parquet file."""
+    load = str(table.load or "")
     return read_measured(
-        folder / check_text("file", table["file"]),
-        quantities=quantities,
+        folder / table.file,
+        quantities=table.quantities or [],
         load=load,
-        uncertainty=table.get("uncertainty"),
+        uncertainty=None if table.uncertainty is None else table.uncertainty.stated,
         load_uncertainty=_parse_load_uncertainty(table, load or "force"),
         machine=machine,
-        gaps=Gaps(gaps),
+        gaps=Gaps(table.gaps),
         **_saturation_argument(table),
     )
 
 
-def _data_from_values(table: Mapping[str, Any], machine: Machine) -> Measured:
-    """Parse the data set of a [[data]] table that lists its values."""
-    check_names(table, (*_VALUE_KEYS, *_COMMON_KEYS), "in [[data]] with values")
+def _data_from_values(table: Any, machine: Machine) -> Measured:
+    """Create the set of data of a table that lists its values."""
     for key in ("quantity", "uncertainty"):
-        if key not in table:
+        if getattr(table, key) is None:
             raise ValueError(f"[[data]] with values needs its {key}")
-    name = known_name("quantity", table["quantity"], _QUANTITIES)
-    values = _parse_numbers(name, table["values"], _QUANTITIES[name].kind)
+    name = known_name("quantity", table.quantity, _QUANTITIES)
+    values = numpy.array([parse(name, number, _QUANTITIES[name].kind) for number in table.values])
     loads: dict[str, Any] = {
-        kind: _parse_numbers(kind, table[kind], LOADS[kind].kind) for kind in LOADS if kind in table
+        key: numpy.array(numbers) for key in (*LOADS, "order", "angle") if (numbers := getattr(table, key)) is not None
     }
-    if "order" in table:
-        loads["order"] = _parse_numbers("order", table["order"], Kind.NUMBER)
-    if "angle" in table:
-        loads["angle"] = _parse_numbers("angle", table["angle"], Kind.ANGLE)
     return Measured(
         quantity=name,
         values=values,
-        uncertainty=parse_uncertainty(_QUANTITIES[name], table["uncertainty"], values),
+        uncertainty=parse_uncertainty(_QUANTITIES[name], table.uncertainty.stated, values),
         observable=_parse_observable(name, table),
-        load_uncertainty=_parse_load_uncertainty(table, next((kind for kind in LOADS if kind in table), "force")),
+        load_uncertainty=_parse_load_uncertainty(table, next((kind for kind in LOADS if kind in loads), "force")),
         machine=machine,
-        name=check_text("name", table.get("name", "")),
+        name=str(table.name or ""),
         **loads,
         **_saturation_argument(table),
     )
 
 
-def _parse_observable(name: str, table: Mapping[str, Any]) -> CustomObservable | None:
-    """Parse the custom observable of a frequency; None for a quantity of a contact."""
-    if (name == FREQUENCY.name) != ("mass" in table):
+def _parse_observable(name: str, table: Any) -> CustomObservable | None:
+    """Return the custom observable of a frequency; None for a quantity of a contact."""
+    if (name == FREQUENCY.name) != (table.mass is not None):
         raise ValueError("[[data]] of a frequency needs its mass, and other data take none")
-    return oscillation(parse("mass", table["mass"], Kind.MASS)) if "mass" in table else None
+    return None if table.mass is None else oscillation(float(table.mass))
 
 
-def _saturation_argument(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Parse the saturation to a keyword argument of `Measured`; empty if it is not stated."""
-    return {"saturation": parse("saturation", table["saturation"], Kind.MODULUS)} if "saturation" in table else {}
+def _saturation_argument(table: Any) -> dict[str, float]:
+    """Return the saturation as an argument of `Measured`, if it is stated."""
+    return {} if table.saturation is None else {"saturation": float(table.saturation)}
 
 
-def _parse_load_uncertainty(table: Mapping[str, Any], load: str) -> float:
-    """Parse the uncertainty of the loads; 0 by default."""
-    return (
-        parse("load_uncertainty", table["load_uncertainty"], LOADS[load].kind) if "load_uncertainty" in table else 0.0
-    )
-
-
-def _parse_numbers(name: str, value: Any, kind: str) -> numpy.ndarray:
-    """Parse a number or a list of numbers with units to an array."""
-    numbers = value if isinstance(value, list) else [value]
-    return numpy.array([parse(name, number, kind) for number in numbers])
+def _parse_load_uncertainty(table: Any, load: str) -> float:
+    """Return the uncertainty of the loads; 0 by default."""
+    if table.load_uncertainty is None:
+        return 0.0
+    return parse("load_uncertainty", table.load_uncertainty.stated, LOADS[load].kind)
